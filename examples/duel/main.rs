@@ -35,7 +35,7 @@ struct Options {
     #[arg(value_parser = clap::value_parser!(u8).range(0..2))]
     player: Option<u8>,
 
-    /// Address of the other process.
+    /// Address of the other process, in numbers; this one waits until the other is there.
     #[arg(long, value_name = "ADDRESS:PORT", requires = "player")]
     peer: Option<SocketAddr>,
 

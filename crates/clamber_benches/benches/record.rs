@@ -95,8 +95,7 @@ fn measure(
     // Grouped by the rarest record that is due in a tick. Its time includes those of the more frequent ones.
     let kinds = [
         ("state and input only", 1, 4),
-        ("with transforms", 4, 30),
-        ("with the skin", 30, 60),
+        ("with joints, skin and rocks", 4, 60),
         ("with a chunk to write", 60, u64::MAX),
     ];
     let viewed = how.skin_every > 0;

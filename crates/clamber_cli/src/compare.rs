@@ -11,7 +11,8 @@ use thiserror::Error;
 
 /// Compares two recordings of one scene tick by tick, bit for bit.
 ///
-/// For example, the recordings of one fight on two platforms. Prints the first tick and the first field that differ.
+/// For example, the recordings of one fight on two platforms. Prints the first tick and the first field that differ; of
+/// arenas the creatures and fighters that differ, or whose input does.
 /// Exits with 1 if the recordings differ, with 2 if one cannot be read.
 #[derive(Args, Clone, Debug)]
 pub struct CompareOptions {
@@ -51,6 +52,13 @@ pub enum Comparison {
     Differ(Box<Difference>),
     /// The first tick in which arenas differ.
     ArenasDiffer(Box<ArenaDifference>),
+    /// The step to this tick has other inputs for a fighter, in arenas that are equal so far.
+    InputsDiffer {
+        /// The tick.
+        tick: u64,
+        /// The fighter's name.
+        fighter: String,
+    },
     /// One ends after so many ticks that are equal, the other goes on.
     Shorter(u64),
 }
@@ -123,6 +131,13 @@ fn arenas(
     for (ours, theirs) in first.ticks_from(0).zip(second.ticks_from(0)) {
         let ours = ours.map_err(|error| failed(&options.first, error))?;
         let theirs = theirs.map_err(|error| failed(&options.second, error))?;
+        let mut both = ours.inputs.iter().zip(&theirs.inputs);
+        if let Some(fighter) = both.position(|(one, other)| one != other) {
+            return Ok(Comparison::InputsDiffer {
+                tick: ours.tick,
+                fighter: first.info().fighter(fighter),
+            });
+        }
         let (all, parts) = (theirs.fingerprint, &theirs.parts);
         if let Some(difference) = ArenaDifference::between(first.info(), &ours, all, parts) {
             return Ok(Comparison::ArenasDiffer(Box::new(difference)));
@@ -168,6 +183,12 @@ pub fn print(options: &CompareOptions) -> Result<bool, CompareError> {
         }
         Comparison::ArenasDiffer(difference) => {
             println!("{difference}");
+            false
+        }
+        Comparison::InputsDiffer { tick, fighter } => {
+            println!(
+                "the input of {fighter} for the step to tick {tick} differs; all is equal before"
+            );
             false
         }
     })

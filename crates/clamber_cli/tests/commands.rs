@@ -207,7 +207,7 @@ fn recordings_of_arenas_are_equal_or_who_differs_is_told() {
         (
             recorded_duel("duel_other", Some(60), 90),
             1,
-            "tick 61 differs in archer:",
+            "the input of archer for the step to tick 61 differs",
         ),
     ] {
         let ended = clamber(&["compare", &first, &other]);

@@ -4,14 +4,15 @@ use clamber_climber::ClimberInput;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-/// Raises the sword for a stab, and strikes; bits of [`ClimberInput::actions`]. While it stays down, the charge grows
-/// faster. The upper 16 bits of the actions are the game's.
+/// A press raises the sword for a stab, which then charges, and the next press strikes; bits of [`ClimberInput::actions`].
+/// While it stays down, the charge grows faster. After a stab that was broken off it has to be let go and pressed anew. The
+/// upper 16 bits of the actions are the game's.
 pub const STAB: u32 = 1;
-/// Cuts with the sword.
+/// A press cuts with the sword.
 pub const CUT: u32 = 1 << 1;
 /// Draws the bow as long as it is down, and shoots when it is let go.
 pub const BOW: u32 = 1 << 2;
-/// Throws a stone.
+/// A press throws a stone.
 pub const THROW: u32 = 1 << 3;
 
 /// Bits of [`PlayerInput::buttons`] beside the actions.

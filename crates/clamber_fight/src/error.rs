@@ -42,6 +42,18 @@ pub enum ArenaError {
         /// The fighter, by its number.
         fighter: usize,
     },
+    /// An input has a number that is not finite.
+    #[error("the input of fighter {fighter} has a number that is not finite")]
+    InputNotFinite {
+        /// The fighter, by its number.
+        fighter: usize,
+    },
+    /// Two terrains have the same id.
+    #[error("two terrains have the id {found}: give each its own")]
+    TerrainTwice {
+        /// The id.
+        found: u64,
+    },
     /// A terrain's id is one of those that the arena gives to creatures and fighters.
     #[error("a terrain has the id {found}, which is the arena's: take one below {below}")]
     TerrainId {
@@ -68,7 +80,7 @@ pub enum ArenaError {
     },
     /// The arena was saved with other creatures or configurations.
     #[error(
-        "this arena was saved with other creatures, brains or configurations (hash {found:016x}, and here it is {expected:016x}): load the files that it was saved with"
+        "this arena was saved with other creatures, brains, fighters or configurations (hash {found:016x}, and here it is {expected:016x}): load the files that it was saved with, and add the same creatures and fighters in the same order"
     )]
     Assets {
         /// The hash found.

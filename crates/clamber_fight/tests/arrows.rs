@@ -87,6 +87,7 @@ fn an_arrow_that_breaks_its_plate_sticks_first_and_falls_as_fast_as_the_plate() 
         .position(|one| matches!(one, ArenaEvent::CameLoose { .. }))
         .unwrap();
     assert!(stuck < hit && hit < loose, "{events:?}");
+    assert_eq!(struck(&events), [(None, Some(0))]);
     let broke = ArenaEvent::Creature {
         creature: GIANT,
         event: CreatureEvent::Staggered {
@@ -238,6 +239,17 @@ fn arrows_come_back_with_their_numbers_a_thousand_times() {
     assert_eq!(arena.save().next_projectile, 1000);
 }
 
+/// Of each hit, the weak point and the plate.
+fn struck(events: &[ArenaEvent]) -> Vec<(Option<usize>, Option<usize>)> {
+    let hits = events.iter().filter_map(|event| match event {
+        ArenaEvent::Hit {
+            weak_point, plate, ..
+        } => Some((*weak_point, *plate)),
+        _ => None,
+    });
+    hits.collect()
+}
+
 #[test]
 fn a_stone_is_heard_and_an_arrow_hurts_what_it_hits() {
     let slab = Slab {
@@ -280,6 +292,7 @@ fn a_stone_is_heard_and_an_arrow_hurts_what_it_hits() {
     let done = support::hits(&events);
     // Its energy is that of a fully drawn bow, but for what it fell.
     assert!(done.len() == 1 && (done[0] - 3.0).abs() < 0.1, "{done:?}");
+    assert_eq!(struck(&events), [(Some(0), None)]);
     let by = events
         .iter()
         .any(|event| matches!(event, ArenaEvent::Shot { by: HERO, .. }));

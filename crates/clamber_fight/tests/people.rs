@@ -237,7 +237,10 @@ fn bad_inputs_change_nothing() {
         ..ClimberInput::IDLE
     };
     let wild = refused(&mut arena, &[ClimberInput::IDLE, wild]);
-    assert!(matches!(wild, ArenaError::Climber(_)), "{wild}");
+    assert!(
+        matches!(wild, ArenaError::InputNotFinite { fighter: 1 }),
+        "{wild}"
+    );
     let blow = ClimberInput {
         blow: Some(Default::default()),
         ..ClimberInput::IDLE
@@ -248,6 +251,13 @@ fn bad_inputs_change_nothing() {
     let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(u64::MAX), &ground)];
     let id = arena.step(&[ClimberInput::IDLE; 2], &terrain).unwrap_err();
     assert!(matches!(id, ArenaError::TerrainId { .. }), "{id}");
+    let twice: [(ObstacleId, &dyn Obstacle); 2] =
+        [(ObstacleId(7), &ground), (ObstacleId(7), &ground)];
+    let twice = arena.step(&[ClimberInput::IDLE; 2], &twice).unwrap_err();
+    assert!(
+        matches!(twice, ArenaError::TerrainTwice { found: 7 }),
+        "{twice}"
+    );
     assert_eq!(arena.fingerprint(), before);
     assert_eq!(mode(&arena), ClimberMode::Standing);
 

@@ -381,4 +381,15 @@ fn assets_tell_arenas_apart() {
         ..slab.clone()
     };
     assert_ne!(make(&slab, DVec3::Y), make(&faster, DVec3::Y));
+
+    // A state is taken by its own kind of arena only: this archer has another bow.
+    let mut arena = slab.arena(FighterConfig::hero(), &[DVec3::Y]);
+    let mut weaker = FighterConfig::hero();
+    weaker.bow.as_mut().unwrap().speed *= 0.5;
+    let other = slab.arena(weaker, &[DVec3::Y]);
+    let before = arena.fingerprint();
+    let error = arena.restore(&other.save()).unwrap_err();
+    assert!(matches!(error, ArenaError::Assets { .. }), "{error}");
+    assert_eq!(arena.fingerprint(), before);
+    arena.restore(&arena.save()).unwrap();
 }

@@ -195,6 +195,15 @@ impl<W: Write> Recorder<W> {
         names.push((obstacle, name.to_owned()));
     }
 
+    /// True if the tick recorded last takes joints, figures and places of meshes: see [`RecordOptions::transforms_every`].
+    /// In other ticks a figure, or a mesh that was recorded before, need not be prepared.
+    ///
+    /// # Errors
+    /// [`RecordError::NoTick`] before the first tick; [`RecordError::Ended`] after writing failed.
+    pub fn is_due(&mut self) -> Result<bool, RecordError> {
+        Ok(self.chunks.last()?.transforms_due)
+    }
+
     /// Records a mesh at the tick recorded last, for people to look at, such as the ground or a rock: its shape the first
     /// time, its place whenever [`RecordOptions::transforms_every`] lets transforms be due. What stands still is recorded once.
     ///

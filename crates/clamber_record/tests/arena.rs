@@ -136,7 +136,7 @@ fn a_difference_names_who_is_different() {
     assert_eq!((difference.recorded.tick, replay.agreed), (121, 121));
     let archer = (ArenaPart::Fighter(1), "archer".to_owned());
     assert_eq!(difference.parts.first(), Some(&archer), "{difference}");
-    assert!(difference.to_string().contains("differs in archer"));
+    assert!(difference.to_string().contains("not the same archer"));
 
     // Ground that is a nanometre lower.
     let replay = recording

@@ -24,9 +24,9 @@ pub struct ArenaCreature(pub CreatureId);
 #[require(Transform, ClimberInput, LatchedInput)]
 pub struct ArenaFighter(pub FighterId);
 
-/// Shows an arrow or a stone of the [`FightArena`](super::FightArena). The plugin spawns an entity with it for each of them,
-/// despawns it when it is gone, and in each tick writes its `Transform`: its tip, with -Z along its direction. Insert what is
-/// to be seen when it is added, in an observer of `Add<ArenaProjectile>`.
+/// Shows an arrow or a stone of the [`FightArena`](super::FightArena). The plugin spawns an entity for each projectile, and
+/// despawns it with the projectile. In each tick it writes the entity's `Transform`: the tip, with -Z along the direction. To
+/// give it a mesh, observe `Add<ArenaProjectile>`.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Eq)]
 #[require(Transform)]
 pub struct ArenaProjectile(pub ProjectileId);

@@ -1,4 +1,4 @@
-//! A fight as one value: an arena that is stepped whole, and entities that show what is in it.
+//! A fight as one value: the arena is stepped as a whole, and entities show its contents.
 
 mod component;
 mod figure;

@@ -42,8 +42,8 @@ use clamber_fight::{Arena, ArenaEvent};
 /// # let _ = spawn;
 /// ```
 ///
-/// To save, load and roll back, use the arena itself: [`FightArena::arena_mut`]. What is shown follows in the same tick if
-/// that happens before [`ClamberSystems::Climb`](crate::ClamberSystems::Climb), or else in the next one.
+/// To save, load and roll back, use the arena itself: [`FightArena::arena_mut`]. Do it before
+/// [`ClamberSystems::Climb`](crate::ClamberSystems::Climb): entities show it in the same tick then, otherwise in the next.
 #[derive(Resource, Clone, Debug)]
 pub struct FightArena {
     arena: Arena,

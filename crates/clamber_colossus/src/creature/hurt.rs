@@ -1,6 +1,7 @@
 //! What a creature takes: wounds in weak points, blows on plates.
 
 use clamber_surface::mesh::TriangleId;
+use clamber_world::MaterialPoint;
 use glam::DVec3;
 
 use super::report::CreatureEvent;
@@ -16,19 +17,16 @@ impl Creature {
         }
         let triangle = u32::try_from(wound.at.key).ok().map(TriangleId);
         let joint = triangle.and_then(|triangle| self.surface.mesh().joint_of(triangle));
-        let (Some(triangle), Some(joint)) = (triangle, joint) else {
+        let Some(joint) = joint else {
             return 0.0;
         };
-        let plate = self
-            .kind
-            .plate_of(triangle)
-            .filter(|plate| self.state.plates[*plate].left > 0);
-        let done = match plate {
-            Some(plate) => {
+        let done = match self.struck_at(&wound.at, wound.place) {
+            (_, Some(plate)) => {
                 self.strain(plate, wound.damage);
                 0.0
             }
-            None => self.wound(wound),
+            (Some(weak_point), None) => self.wound(weak_point, wound.damage),
+            (None, None) => 0.0,
         };
         self.state.wounds.push(Felt {
             joint: joint.0,
@@ -58,29 +56,34 @@ impl Creature {
         }
     }
 
-    /// The damage that a weak point takes.
-    fn wound(&mut self, wound: &Wound) -> f64 {
-        for index in 0..self.kind.weak_points().len() {
-            let Some(place) = self.weak_point(index) else {
-                continue;
-            };
-            let radius = f64::from(self.kind.weak_points()[index].radius) * self.config.scale;
-            if place.distance(wound.place) > radius || !self.is_open(index) {
-                continue;
-            }
-            let left = &mut self.state.hit_points[index];
-            let damage = wound.damage.min(*left);
-            *left -= damage;
-            let (weak_point, used_up) = (index, *left <= 0.0);
-            self.state.told.push(CreatureEvent::Hurt {
-                weak_point,
-                damage,
-                used_up,
-            });
-            // What is too much for this one is not passed on.
-            return damage;
-        }
-        0.0
+    /// What a blow at a point of the skin would strike: the open weak point there, and the whole plate that would take the blow
+    /// in its place. Both by their indices.
+    pub fn struck_at(&self, at: &MaterialPoint, place: DVec3) -> (Option<usize>, Option<usize>) {
+        let triangle = u32::try_from(at.key).ok().map(TriangleId);
+        let plate = triangle
+            .and_then(|triangle| self.kind.plate_of(triangle))
+            .filter(|plate| self.state.plates[*plate].left > 0);
+        let points = self.kind.weak_points().iter().enumerate();
+        let mut near = points.filter(|(index, point)| {
+            let radius = f64::from(point.radius) * self.config.scale;
+            let middle = self.weak_point(*index);
+            middle.is_some_and(|middle| middle.distance(place) <= radius) && self.is_open(*index)
+        });
+        (near.next().map(|(index, _)| index), plate)
+    }
+
+    /// The damage that a weak point takes. What is too much for it is not passed on.
+    fn wound(&mut self, weak_point: usize, damage: f64) -> f64 {
+        let left = &mut self.state.hit_points[weak_point];
+        let damage = damage.min(*left);
+        *left -= damage;
+        let used_up = *left <= 0.0;
+        self.state.told.push(CreatureEvent::Hurt {
+            weak_point,
+            damage,
+            used_up,
+        });
+        damage
     }
 
     /// The share of the hit points of all weak points that is left: 0 once a major one is used up, and 1 without any.

@@ -33,24 +33,13 @@ impl Arena {
         };
         let index = creature_index(at.obstacle)?;
         let creature = self.creatures.get(index)?;
-        let plate = at
-            .material
-            .triangle()
-            .and_then(|triangle| creature.kind().plate_of(triangle));
-        let points = 0..creature.kind().weak_points().len();
-        let is_here = |index: &usize| {
-            let radius = f64::from(creature.kind().weak_points()[*index].radius);
-            let place = creature.weak_point(*index);
-            let near = place
-                .is_some_and(|place| place.distance(at.point) <= radius * creature.config().scale);
-            near && creature.is_open(*index)
-        };
+        let (weak_point, plate) = creature.struck_at(&at.material, at.point);
         Some(Aimed {
             creature: CreatureId(index as u32),
             at: at.material,
             place: at.point,
-            weak_point: points.into_iter().find(is_here),
-            plate: plate.filter(|plate| creature.state().plate(*plate) > 0),
+            weak_point,
+            plate,
         })
     }
 }

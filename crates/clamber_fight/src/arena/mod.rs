@@ -93,7 +93,8 @@ impl Arena {
         })
     }
 
-    /// Adds a creature. Do it before the first step: states that were saved before are of another arena.
+    /// Adds a creature. Do it before the first step, or in the same tick everywhere: states that were saved before are of
+    /// another arena.
     ///
     /// # Errors
     /// [`ArenaError::Tick`] if its brain was made for another tick, and [`ArenaError::Creature`] as of [`Creature::new`].
@@ -113,7 +114,8 @@ impl Arena {
     }
 
     /// Adds a fighter, at rest in the air; `position` is the centre of its climber's ball. It comes back there after its
-    /// death.
+    /// death. Do it before the first step, or in the same tick everywhere: states that were saved before are of another
+    /// arena.
     ///
     /// # Errors
     /// [`ArenaError::OutOfRange`] and [`ArenaError::Climber`] for a configuration outside its ranges, or a position that is not

@@ -9,6 +9,8 @@ use crate::projectile::Projectile;
 /// All that changes in an arena: a plain value, without meshes, caches and configurations.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ArenaState {
+    /// [`Arena::assets`] of the arena that it is of.
+    pub assets: u64,
     /// Ticks so far.
     pub tick: u64,
     /// The creatures, by number.
@@ -27,6 +29,7 @@ impl Arena {
     /// All that changes, to be restored later.
     pub fn save(&self) -> ArenaState {
         ArenaState {
+            assets: self.assets,
             tick: self.tick,
             creatures: self
                 .creatures
@@ -43,8 +46,8 @@ impl Arena {
     /// Goes back to a saved state: all goes on with the same bits as it did then. Events of the last step are forgotten.
     ///
     /// # Errors
-    /// [`ArenaError::OtherArena`] if it is of another arena, [`ArenaError::Climber`] and [`ArenaError::Creature`] if it is of
-    /// other climbers or creatures. Nothing is changed then.
+    /// [`ArenaError::Assets`] if it is of another arena, and [`ArenaError::OtherArena`], [`ArenaError::Climber`] and
+    /// [`ArenaError::Creature`] if it was changed to what cannot be. Nothing is changed then.
     pub fn restore(&mut self, state: &ArenaState) -> Result<(), ArenaError> {
         self.check_state(state)?;
         for (fighter, saved) in self.fighters.iter().zip(&state.fighters) {
@@ -83,6 +86,10 @@ impl Arena {
     }
 
     fn check_state(&self, state: &ArenaState) -> Result<(), ArenaError> {
+        let (found, expected) = (state.assets, self.assets);
+        if found != expected {
+            return Err(ArenaError::Assets { found, expected });
+        }
         let other = |reason| Err(ArenaError::OtherArena(reason));
         if state.creatures.len() != self.creatures.len() {
             return other("it has another number of creatures");

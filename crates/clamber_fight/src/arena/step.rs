@@ -1,6 +1,6 @@
 //! One step of an arena, in the order in which it happens.
 
-use clamber_climber::{Blow, ClimberError, ClimberInput, ClimberMode, ClimberObstacle, StepRules};
+use clamber_climber::{Blow, ClimberInput, ClimberMode, ClimberObstacle, StepRules};
 use clamber_colossus::{Creature, Person, Riding, Surroundings, Wound};
 use clamber_surface::surface::SkinnedSurface;
 use clamber_world::{Obstacle, ObstacleId};
@@ -16,6 +16,7 @@ use crate::projectile::{Air, Flown};
 #[derive(Clone, Debug, Default)]
 pub(super) struct Scratch {
     people: Vec<Person>,
+    ids: Vec<ObstacleId>,
     bodies: Vec<ClimberObstacle>,
     outcome: Outcome,
 }
@@ -32,8 +33,8 @@ impl Arena {
     /// the hit within the tick. A blow that a creature deals reaches its fighter with the next step.
     ///
     /// # Errors
-    /// [`ArenaError::Inputs`], [`ArenaError::Blow`], [`ArenaError::Climber`] for an input that is not finite, and
-    /// [`ArenaError::TerrainId`]: nothing is changed then. [`ArenaError::Creature`] if a creature cannot be posed: the arena has
+    /// [`ArenaError::Inputs`], [`ArenaError::Blow`], [`ArenaError::InputNotFinite`], [`ArenaError::TerrainId`] and
+    /// [`ArenaError::TerrainTwice`]: nothing is changed then. [`ArenaError::Creature`] if a creature cannot be posed: the arena has
     /// to be restored then.
     pub fn step(
         &mut self,
@@ -64,7 +65,7 @@ impl Arena {
     }
 
     fn check(
-        &self,
+        &mut self,
         inputs: &[ClimberInput],
         terrain: &[(ObstacleId, &dyn Obstacle)],
     ) -> Result<(), ArenaError> {
@@ -78,14 +79,19 @@ impl Arena {
             }
             let vectors = [input.walk, input.climb, input.aim];
             if !vectors.iter().all(|v| v.is_finite()) {
-                return Err(ClimberError::NotFinite("input").into());
+                return Err(ArenaError::InputNotFinite { fighter });
             }
         }
-        match terrain.iter().find(|(id, _)| id.0 >= CREATURES) {
-            Some((id, _)) => Err(ArenaError::TerrainId {
-                found: id.0,
-                below: CREATURES,
-            }),
+        let ids = &mut self.scratch.ids;
+        ids.clear();
+        ids.extend(terrain.iter().map(|(id, _)| *id));
+        ids.sort_unstable();
+        if let Some(ObstacleId(found)) = ids.last().copied().filter(|last| last.0 >= CREATURES) {
+            let below = CREATURES;
+            return Err(ArenaError::TerrainId { found, below });
+        }
+        match ids.windows(2).find(|pair| pair[0] == pair[1]) {
+            Some(pair) => Err(ArenaError::TerrainTwice { found: pair[0].0 }),
             None => Ok(()),
         }
     }
@@ -227,6 +233,7 @@ impl Arena {
                 continue;
             };
             let was_alive = creature.health() > 0.0;
+            let (weak_point, plate) = creature.struck_at(&hit.at, hit.place);
             let damage = creature.hurt(&Wound {
                 place: hit.place,
                 at: hit.at,
@@ -241,6 +248,8 @@ impl Arena {
                 at: hit.at,
                 place: hit.place,
                 time: hit.time,
+                weak_point,
+                plate,
                 damage,
             });
             if was_alive && creature.health() <= 0.0 {

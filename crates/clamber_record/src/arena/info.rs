@@ -39,14 +39,14 @@ impl ArenaInfo {
         }
     }
 
-    /// The name of a creature.
-    pub(crate) fn creature(&self, number: usize) -> String {
+    /// The name of a creature; `creature N` if it has none.
+    pub fn creature(&self, number: usize) -> String {
         let name = self.creatures.get(number).cloned();
         name.unwrap_or_else(|| format!("creature {number}"))
     }
 
-    /// The name of a fighter.
-    pub(crate) fn fighter(&self, number: usize) -> String {
+    /// The name of a fighter; `fighter N` if it has none.
+    pub fn fighter(&self, number: usize) -> String {
         let name = self.fighters.get(number).cloned();
         name.unwrap_or_else(|| format!("fighter {number}"))
     }

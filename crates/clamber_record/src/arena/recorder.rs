@@ -160,6 +160,14 @@ impl<W: Write> ArenaRecorder<W> {
         names.push((obstacle, name.to_owned()));
     }
 
+    /// [`Recorder::is_due`](crate::Recorder::is_due).
+    ///
+    /// # Errors
+    /// [`RecordError::NoTick`] before the first tick; [`RecordError::Ended`] after writing failed.
+    pub fn is_due(&mut self) -> Result<bool, RecordError> {
+        Ok(self.chunks.last()?.is_due)
+    }
+
     /// Records a mesh at the tick recorded last, for people to look at, such as the ground or a rock: its shape the first
     /// time, its place whenever [`RecordOptions::transforms_every`] lets transforms be due. What stands still is recorded once.
     ///

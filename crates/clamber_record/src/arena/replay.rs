@@ -60,7 +60,7 @@ impl fmt::Display for ArenaDifference {
         let names: Vec<&str> = self.parts.iter().map(|(_, name)| name.as_str()).collect();
         write!(
             f,
-            "tick {} differs in {}: recorded {:016x}, replayed {:016x}",
+            "tick {} differs: not the same {}; fingerprint {:016x} became {:016x}",
             self.recorded.tick,
             names.join(", "),
             self.recorded.fingerprint,

@@ -262,6 +262,9 @@ fn touches(surface: &SkinnedSurface, center: DVec3, radius: f64) -> bool {
     surface.closest_point(center, radius).is_some()
 }
 
+/// Share of its radius by which a climber's arms give before it loses its hold: the climber's own bound.
+const GIVE: f64 = 0.25;
+
 /// Largest distance of a climber's centre from the point that it stands on or holds, metres, in its mode.
 fn reach(climber: &Climber) -> f64 {
     let config = climber.config();
@@ -272,6 +275,7 @@ fn reach(climber: &Climber) -> f64 {
     match climber.state().mode {
         ClimberMode::Hanging => config.hang.arm_length.max(body) * 1.5,
         ClimberMode::LedgeHanging => body + ledge,
+        ClimberMode::Holding => body + GIVE * config.body.radius,
         _ => body,
     }
 }

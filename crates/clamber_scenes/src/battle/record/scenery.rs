@@ -72,6 +72,9 @@ impl Scenery {
         recorder: &mut Recorder<W>,
     ) -> Result<(), RecordError> {
         let first = !core::mem::replace(&mut self.is_recorded, true);
+        if !first && !recorder.is_due()? {
+            return Ok(());
+        }
         for mesh in &self.meshes {
             let body = mesh.body.map(|body| &battle.world().bodies[body]);
             if body.is_none() && !first {
