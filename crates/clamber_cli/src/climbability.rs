@@ -5,8 +5,9 @@ use std::path::PathBuf;
 
 use clamber_climber::ClimberConfig;
 use clamber_gltf::GltfError;
-use clamber_navigation::{ClimbGraph, GraphConfig, GraphSource, Missing, NavigationError};
+use clamber_navigation::{ClimbReport, GraphConfig, GraphSource, Missing, NavigationError};
 use clamber_surface::geometry::Similarity;
+use clamber_surface::mesh::SurfaceKind;
 use clap::Args;
 use thiserror::Error;
 
@@ -23,6 +24,31 @@ pub struct ClimbabilityOptions {
     /// Largest side of a patch of skin, metres.
     #[arg(long, value_name = "METRES", default_value_t = 0.4)]
     pub spacing: f64,
+
+    /// Materials that can be gripped.
+    #[arg(long, value_enum, value_delimiter = ',', default_value = "fur")]
+    pub grip: Vec<Material>,
+}
+
+/// A material of the skin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Material {
+    /// Bare skin.
+    Skin,
+    /// Fur or plants.
+    Fur,
+    /// Armour or rock.
+    Stone,
+}
+
+impl Material {
+    fn kind(self) -> SurfaceKind {
+        match self {
+            Self::Skin => SurfaceKind::Skin,
+            Self::Fur => SurfaceKind::Fur,
+            Self::Stone => SurfaceKind::Stone,
+        }
+    }
 }
 
 /// Why there is no report.
@@ -58,12 +84,12 @@ pub fn print(options: &ClimbabilityOptions) -> Result<bool, ClimbabilityError> {
     };
     let config = GraphConfig {
         spacing: options.spacing,
+        grips: options.grip.iter().map(|material| material.kind()).collect(),
         ..GraphConfig::new(ClimberConfig::colossus_climber())
     };
     let start = std::time::Instant::now();
-    let graph = ClimbGraph::build(&source, &config, |_| ControlFlow::Continue(()))?;
-    println!("{} patches, {:.2} s", graph.patches().len(), start.elapsed().as_secs_f64());
-    let report = graph.report(&source)?;
+    let (report, graph) = ClimbReport::new(&source, &config, |_| ControlFlow::Continue(()))?;
+    println!("{} patches, {} ways, {:.2} s", graph.patches().len(), graph.ways(), start.elapsed().as_secs_f64());
     println!("skin             {:9.1} m2", report.area);
     println!("can be gripped   {:9.1} m2", report.grip_area);
     println!("can be stood on  {:9.1} m2", report.stand_area);
@@ -77,5 +103,22 @@ pub fn print(options: &ClimbabilityOptions) -> Result<bool, ClimbabilityError> {
         };
         println!("{:16} {:.1} m up, {how}", point.name, point.place.y - source.ground);
     }
+    use clamber_navigation::{Footing, Forecast, Start};
+    for point in &report.weak_points {
+        let near = graph.patches_near(point.place, 1.0);
+        let time = std::time::Instant::now();
+        let goal = graph.goal(&near);
+        let made = time.elapsed();
+        let starts: Vec<Start> = graph.entries().iter().flat_map(|entry| [Footing::Stands, Footing::Holds].map(|footing| Start {
+            patch: entry.patch, footing, seconds: 0.0, stamina: 1.0 })).collect();
+        let forecast = Forecast::still().then(&graph, "idle", 0.0, 4.5).then(&graph, "shake", 0.0, 4.5);
+        for (name, forecast) in [("still", Forecast::still()), ("shaken", forecast)] {
+            let time = std::time::Instant::now();
+            let plan = graph.plan(&starts, &goal, &forecast);
+            println!("  {name}: goal {} patches {made:?}, plan {:?}: {:?}", near.len(), time.elapsed(),
+                plan.map(|p| (p.seconds(), p.stamina(), p.steps.len(), p.looked_at)));
+        }
+    }
     Ok(true)
 }
+

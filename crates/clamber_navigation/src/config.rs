@@ -4,15 +4,15 @@ use clamber_surface::mesh::{SurfaceKind, SurfaceTag};
 use crate::NavigationError;
 
 /// Who climbs, and how finely the skin is divided.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct GraphConfig {
     /// The climber's body and abilities.
     pub climber: ClimberConfig,
     /// Largest side of a patch of skin, metres, positive. Default 0.4, the radius of a climber. Smaller patches follow
     /// narrow ways better, and cost more.
     pub spacing: f64,
-    /// Whether a material can be gripped. Default: fur.
-    pub can_grip: fn(&SurfaceTag) -> bool,
+    /// Materials that can be gripped. Default: fur.
+    pub grips: Vec<SurfaceKind>,
 }
 
 impl GraphConfig {
@@ -21,8 +21,12 @@ impl GraphConfig {
         Self {
             climber,
             spacing: 0.4,
-            can_grip: |tag| tag.kind == SurfaceKind::Fur,
+            grips: vec![SurfaceKind::Fur],
         }
+    }
+
+    pub(crate) fn can_grip(&self, tag: &SurfaceTag) -> bool {
+        self.grips.contains(&tag.kind)
     }
 
     /// Radius of the climber's ball, metres.

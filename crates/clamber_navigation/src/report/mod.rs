@@ -2,12 +2,15 @@
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
+use std::ops::ControlFlow;
 
 use clamber_surface::rig::WeakPoint;
 use glam::DVec3;
 
-use crate::graph::Reached;
-use crate::{ClimbGraph, GraphSource, NavigationError};
+use crate::graph::{NONE, Reachable};
+use crate::progress::Tell;
+use crate::survey::Survey;
+use crate::{ClimbGraph, GraphConfig, GraphSource, NavigationError, Progress};
 
 /// What a climber can reach on a creature at rest.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,23 +54,27 @@ pub enum Missing {
     Way,
 }
 
-/// A weak point is reached from seats on patches within its radius and so many radii of the climber.
+/// A weak point is reached from seats on pieces within its radius and so many radii of the climber.
 const NEAR: f64 = 1.0;
 
-impl ClimbGraph {
-    /// What can be reached at rest from the ground.
+impl ClimbReport {
+    /// Looks at a creature. `progress` is called again and again, and cancels by [`ControlFlow::Break`].
     ///
     /// # Errors
-    /// [`NavigationError`] if the skeleton cannot be posed.
-    pub fn report(&self, source: &GraphSource<'_>) -> Result<ClimbReport, NavigationError> {
-        let reach = self.config.reach();
-        let from = self.entries.iter().map(|entry| entry.patch);
-        let reached = self.flood(from, reach);
-        let sum = |counts: &dyn Fn(usize) -> bool| {
-            let all = self.patches.iter().enumerate();
-            all.filter(|(index, _)| counts(*index))
-                .map(|(_, patch)| patch.area)
-                .sum()
+    /// As [`ClimbGraph::build`].
+    pub fn new(
+        source: &GraphSource<'_>,
+        config: &GraphConfig,
+        mut progress: impl FnMut(Progress) -> ControlFlow<()>,
+    ) -> Result<(Self, ClimbGraph), NavigationError> {
+        let mut tell = Tell(&mut progress);
+        let survey = Survey::new(source, config, &mut tell)?;
+        let (graph, patch_of) = ClimbGraph::of_survey(&survey, source, &mut tell)?;
+        let reached = graph.flood(graph.entries().iter().map(|entry| entry.patch));
+        let view = View {
+            survey: &survey,
+            patch_of: &patch_of,
+            reached: &reached,
         };
         let palette = source.skeleton.palette(&source.skeleton.rest_pose())?;
         let mut weak_points = Vec::new();
@@ -78,76 +85,95 @@ impl ClimbGraph {
                     let in_model = frame.transform_point3(point.position.as_dvec3());
                     source.world_from_model.transform_point(in_model)
                 });
-            weak_points.push(self.look_at(point, place, source, &reached));
+            weak_points.push(view.look_at(point, place, source));
         }
-        Ok(ClimbReport {
-            area: sum(&|_| true),
-            grip_area: sum(&|index| (self.config.can_grip)(&self.patches[index].tag)),
-            stand_area: sum(&|index| self.patches[index].seat.is_some() && self.can_stand(index)),
-            reachable_area: sum(&|index| reached.has(index)),
-            entries: self.entries.len(),
+        let report = Self {
+            area: view.sum(|_| true),
+            grip_area: view.sum(|piece| config.can_grip(&survey.pieces[piece].tag)),
+            stand_area: view.sum(|piece| survey.can_stand(piece)),
+            reachable_area: view.sum(|piece| view.has(piece)),
+            entries: graph.entries().len(),
             weak_points,
-        })
+        };
+        Ok((report, graph))
+    }
+}
+
+/// The pieces of skin, and which of them are reached.
+struct View<'a> {
+    survey: &'a Survey,
+    patch_of: &'a [u32],
+    reached: &'a Reachable,
+}
+
+impl View<'_> {
+    fn has(&self, piece: usize) -> bool {
+        let patch = self.patch_of[piece];
+        patch != NONE && self.reached.has(patch as usize)
     }
 
-    fn look_at(
-        &self,
-        point: &WeakPoint,
-        place: DVec3,
-        source: &GraphSource<'_>,
-        reached: &impl Reached,
-    ) -> PointReport {
+    /// Area of some pieces, square metres.
+    fn sum(&self, counts: impl Fn(usize) -> bool) -> f64 {
+        let pieces = self.survey.pieces.iter().enumerate();
+        let counted = pieces.filter(|(index, _)| counts(*index));
+        counted.map(|(_, piece)| piece.area).sum()
+    }
+
+    fn look_at(&self, point: &WeakPoint, place: DVec3, source: &GraphSource<'_>) -> PointReport {
         let radius = f64::from(point.radius) * source.world_from_model.scale;
-        let within = radius + NEAR * self.config.radius();
-        let goals: Vec<usize> = (0..self.patches.len())
+        let within = radius + NEAR * self.survey.config.radius();
+        let pieces = &self.survey.pieces;
+        let goals: Vec<usize> = (0..pieces.len())
             .filter(|index| {
-                let patch = &self.patches[*index];
-                patch.seat.is_some() && patch.point.distance(place) <= within
+                let piece = &pieces[*index];
+                piece.seat.is_some() && piece.point.distance(place) <= within
             })
             .collect();
-        let reachable = goals.iter().any(|patch| reached.has(*patch));
+        let reachable = goals.iter().any(|piece| self.has(*piece));
         PointReport {
             name: point.name.clone(),
             place,
             reachable,
-            missing: (!reachable).then(|| self.missing(&goals, reached)),
+            missing: (!reachable).then(|| self.missing(&goals)),
         }
     }
 
-    /// How much farther hands would have to reach, to come from what is reached to one of some patches: the way whose worst
+    /// How much farther hands would have to reach, to come from what is reached to one of some pieces: the way whose worst
     /// place asks for the shortest arms. It is found as the shortest way is (Dijkstra 1959), with the largest in place of the
     /// sum. A link is measured only when it is its turn: until then it counts as if no place on it asked more than its ends.
-    fn missing(&self, goals: &[usize], reached: &impl Reached) -> Missing {
-        let mut settled = vec![false; self.patches.len()];
+    fn missing(&self, goals: &[usize]) -> Missing {
+        let survey = self.survey;
+        let reach = survey.config.reach();
+        let mut settled = vec![false; survey.pieces.len()];
         let mut open = BinaryHeap::new();
-        let first = |patch| Turn {
-            arm: self.config.reach(),
+        let first = |piece| Turn {
+            arm: reach,
             is_measured: true,
-            from: patch,
-            to: patch,
+            from: piece,
+            to: piece,
         };
-        open.extend((0..settled.len()).filter(|patch| reached.has(*patch)).map(first));
+        open.extend((0..settled.len()).filter(|piece| self.has(*piece)).map(first));
         while let Some(turn) = open.pop() {
             let Turn { arm, from, to, .. } = turn;
-            if settled[to] || !self.can_hold(to, arm) {
+            if settled[to] || !survey.can_hold(to, arm) {
                 continue;
             }
             if !turn.is_measured {
                 let ends = [from.min(to), from.max(to)];
                 open.push(Turn {
-                    arm: arm.max(self.arm_between(ends, arm)),
+                    arm: arm.max(survey.arm_between(ends, arm)),
                     is_measured: true,
                     ..turn
                 });
                 continue;
             }
             if goals.binary_search(&to).is_ok() {
-                return Missing::Reach(arm - self.config.reach());
+                return Missing::Reach(arm - reach);
             }
             settled[to] = true;
-            for (beside, _) in self.links.of(to).filter(|(beside, _)| !settled[*beside]) {
+            for beside in survey.links.of(to).filter(|beside| !settled[*beside]) {
                 open.push(Turn {
-                    arm: arm.max(self.arms[beside]),
+                    arm: arm.max(survey.arms[beside]),
                     is_measured: false,
                     from: to,
                     to: beside,

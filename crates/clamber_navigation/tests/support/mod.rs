@@ -106,8 +106,8 @@ impl Body {
             world_from_model: Similarity::IDENTITY,
             ground: 0.0,
         };
-        let graph = ClimbGraph::build(&source, config, |_| ControlFlow::Continue(())).unwrap();
-        let report = graph.report(&source).unwrap();
+        let (report, graph) =
+            ClimbReport::new(&source, config, |_| ControlFlow::Continue(())).unwrap();
         (graph, report)
     }
 }

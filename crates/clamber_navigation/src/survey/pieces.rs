@@ -1,15 +1,15 @@
-//! The skin, divided into patches at rest, and where the climber's ball rests on each.
+//! The skin, divided into pieces at rest, and where the climber's ball rests on each.
 
-mod seat;
-mod split;
+
 
 use clamber_surface::mesh::{ColliderMesh, SurfaceTag, TriangleId, VertexId};
 use clamber_surface::surface::SkinnedSurface;
 use glam::DVec3;
 
+use super::split;
 use crate::{GraphConfig, NavigationError};
 
-/// Most patches of a graph.
+/// Most pieces of a graph.
 const MOST: u64 = 4_000_000;
 
 /// Where skin bends outwards by more than this angle, radians, the ball rolls over the edge through seats of its own.
@@ -17,30 +17,29 @@ const SHARP: f64 = 0.35;
 
 /// A piece of skin: a part of one triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct Patch {
+pub(crate) struct Piece {
     /// The triangle.
-    pub triangle: TriangleId,
-    /// Weights of the triangle's corners for the middle of the patch.
-    pub barycentric: [f64; 3],
-    /// Area at rest, square metres. Zero for a seat on an edge, which belongs to no patch.
-    pub area: f64,
+    pub(crate) triangle: TriangleId,
+    /// Weights of the triangle's corners for the middle of the piece.
+    pub(crate) barycentric: [f64; 3],
+    /// Area at rest, square metres. Zero for a seat on an edge.
+    pub(crate) area: f64,
     /// The material.
-    pub tag: SurfaceTag,
+    pub(crate) tag: SurfaceTag,
     /// The middle at rest, in the world.
-    pub point: DVec3,
+    pub(crate) point: DVec3,
     /// Outward unit normal at rest. On an edge, a direction between those of both sides.
-    pub normal: DVec3,
+    pub(crate) normal: DVec3,
     /// Where the climber's ball rests on it, at rest; `None` if it has no room there.
-    pub seat: Option<DVec3>,
+    pub(crate) seat: Option<DVec3>,
 }
 
-/// Divides a surface, which stands at rest, into patches. They are sorted by place, so that the numbers of triangles do not
+/// Divides a surface, which stands at rest, into pieces. They are sorted by place, so that the numbers of triangles do not
 /// matter.
 pub(crate) fn divide(
     surface: &SkinnedSurface,
     config: &GraphConfig,
-) -> Result<Vec<Patch>, NavigationError> {
+) -> Result<Vec<Piece>, NavigationError> {
     let mesh = surface.mesh();
     let mut positions = Vec::new();
     surface.skin_all(&mut positions);
@@ -65,27 +64,22 @@ pub(crate) fn divide(
             spacing: config.spacing,
         });
     }
-    let mut patches = Vec::with_capacity(found as usize);
+    let mut pieces = Vec::with_capacity(found as usize);
     for face in &there {
-        face.add_pieces(config.spacing, &mut patches);
-        face.add_edges(mesh, &places, config, &mut patches);
+        face.add_pieces(config.spacing, &mut pieces);
+        face.add_edges(mesh, &places, config, &mut pieces);
     }
-    if patches.is_empty() {
+    if pieces.is_empty() {
         return Err(NavigationError::NoSkin);
     }
-    patches.sort_by(order);
-    Ok(patches)
+    pieces.sort_by(order);
+    Ok(pieces)
 }
 
-/// Finds where the ball rests on a patch of a surface that stands at rest.
-pub(crate) fn seat(surface: &SkinnedSurface, patch: &Patch, radius: f64) -> Option<DVec3> {
-    seat::seat(surface, patch.point, patch.normal, radius)
-}
-
-fn order(a: &Patch, b: &Patch) -> std::cmp::Ordering {
-    let key = |patch: &Patch| {
-        let (p, n) = (patch.point, patch.normal);
-        [p.x, p.y, p.z, n.x, n.y, n.z, patch.area]
+fn order(a: &Piece, b: &Piece) -> std::cmp::Ordering {
+    let key = |piece: &Piece| {
+        let (p, n) = (piece.point, piece.normal);
+        [p.x, p.y, p.z, n.x, n.y, n.z, piece.area]
     };
     let (a, b) = ((key(a), a.tag), (key(b), b.tag));
     let by_place = a.0.iter().zip(&b.0).map(|(a, b)| a.total_cmp(b));
@@ -120,9 +114,9 @@ impl Face {
         })
     }
 
-    fn add_pieces(&self, spacing: f64, patches: &mut Vec<Patch>) {
-        let pieces = split::pieces(split::parts(&self.corners, spacing));
-        patches.extend(pieces.map(|piece| Patch {
+    fn add_pieces(&self, spacing: f64, pieces: &mut Vec<Piece>) {
+        let split = split::pieces(split::parts(&self.corners, spacing));
+        pieces.extend(split.map(|piece| Piece {
             area: self.area * piece.share,
             ..self.at(piece.barycentric, self.normal)
         }));
@@ -134,7 +128,7 @@ impl Face {
         mesh: &ColliderMesh,
         places: &[DVec3],
         config: &GraphConfig,
-        patches: &mut Vec<Patch>,
+        pieces: &mut Vec<Piece>,
     ) {
         for (k, beyond) in mesh.neighbours(self.triangle).into_iter().enumerate() {
             let other = beyond.and_then(|triangle| Self::new(mesh, places, triangle));
@@ -159,7 +153,7 @@ impl Face {
                     let turned = (f64::from(j) + 0.5) / across;
                     let normal = self.normal.lerp(other.normal, turned);
                     if let Some(normal) = normal.try_normalize() {
-                        patches.push(self.at(barycentric, normal));
+                        pieces.push(self.at(barycentric, normal));
                     }
                 }
             }
@@ -181,9 +175,9 @@ impl Face {
         order.then(self.triangle.cmp(&other.triangle)).is_lt()
     }
 
-    fn at(&self, barycentric: [f64; 3], normal: DVec3) -> Patch {
+    fn at(&self, barycentric: [f64; 3], normal: DVec3) -> Piece {
         let weighted = self.corners.iter().zip(barycentric).map(|(c, w)| *c * w);
-        Patch {
+        Piece {
             triangle: self.triangle,
             barycentric,
             area: 0.0,

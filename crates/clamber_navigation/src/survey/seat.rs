@@ -1,4 +1,4 @@
-//! Where the climber's ball has room at a patch.
+//! Where the climber's ball has room at a piece.
 
 use clamber_surface::surface::SkinnedSurface;
 use glam::DVec3;
@@ -9,7 +9,7 @@ const ROUNDS: u32 = 16;
 /// How deep a ball may be in skin and still have room, as a share of its radius: a climber's margin is 1/40.
 const GIVE: f64 = 0.02;
 
-/// A ray from a patch to its ball starts so far above the patch, as a share of the radius, so that it does not meet the patch
+/// A ray from a piece to its ball starts so far above the piece, as a share of the radius, so that it does not meet the piece
 /// itself.
 const ABOVE: f64 = 0.01;
 

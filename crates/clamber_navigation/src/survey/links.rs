@@ -4,16 +4,14 @@ use std::collections::BTreeMap;
 
 use glam::{DVec3, IVec3};
 
-use crate::patches::Patch;
+use super::pieces::Piece;
 
-/// For each patch, the patches whose seats a ball gets to straight.
+/// For each piece, the pieces whose seats a ball gets to straight.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Links {
-    /// The links of patch p are `start[p]..start[p + 1]`.
+    /// The links of piece p are `start[p]..start[p + 1]`.
     start: Vec<u32>,
     to: Vec<u32>,
-    /// Length of each link, metres.
-    length: Vec<f32>,
 }
 
 impl Links {
@@ -21,11 +19,11 @@ impl Links {
     ///
     /// The balls at both ends are free of skin and overlap, if `longest` is less than their diameter. So no skin crosses the
     /// way between them.
-    pub(super) fn new(patches: &[Patch], longest: f64) -> Self {
+    pub(super) fn new(pieces: &[Piece], longest: f64) -> Self {
         let cell = |seat: DVec3| (seat / longest).floor().as_ivec3();
         let mut cells: BTreeMap<[i32; 3], Vec<u32>> = BTreeMap::new();
-        for (index, patch) in patches.iter().enumerate() {
-            if let Some(seat) = patch.seat {
+        for (index, piece) in pieces.iter().enumerate() {
+            if let Some(seat) = piece.seat {
                 let here = cells.entry(cell(seat).to_array()).or_default();
                 here.push(index as u32);
             }
@@ -34,35 +32,33 @@ impl Links {
             start: vec![0],
             ..Self::default()
         };
-        let mut near: Vec<(u32, f32)> = Vec::new();
-        for (index, patch) in patches.iter().enumerate() {
+        let mut near: Vec<u32> = Vec::new();
+        for (index, piece) in pieces.iter().enumerate() {
             near.clear();
-            if let Some(seat) = patch.seat {
+            if let Some(seat) = piece.seat {
                 let middle = cell(seat);
                 for beside in around() {
                     let there = cells.get(&(middle + beside).to_array());
                     for other in there.into_iter().flatten() {
-                        let beyond = patches[*other as usize].seat;
+                        let beyond = pieces[*other as usize].seat;
                         let apart = beyond.map_or(f64::INFINITY, |beyond| beyond.distance(seat));
                         if apart <= longest && *other as usize != index {
-                            near.push((*other, apart as f32));
+                            near.push(*other);
                         }
                     }
                 }
             }
-            near.sort_unstable_by_key(|(other, _)| *other);
-            links.to.extend(near.iter().map(|(other, _)| *other));
-            links.length.extend(near.iter().map(|(_, length)| *length));
+            near.sort_unstable();
+            links.to.extend(&near);
             links.start.push(links.to.len() as u32);
         }
         links
     }
 
-    /// The patches beside a patch, in ascending order, with the lengths of the ways to them, metres.
-    pub(crate) fn of(&self, patch: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
-        let range = self.start[patch] as usize..self.start[patch + 1] as usize;
-        let to = self.to[range.clone()].iter().map(|to| *to as usize);
-        to.zip(self.length[range].iter().map(|length| f64::from(*length)))
+    /// The pieces beside a piece, in ascending order.
+    pub(crate) fn of(&self, piece: usize) -> impl Iterator<Item = usize> + '_ {
+        let range = self.start[piece] as usize..self.start[piece + 1] as usize;
+        self.to[range].iter().map(|to| *to as usize)
     }
 }
 

@@ -1,6 +1,5 @@
 //! How far hands have to reach from a seat, and on the way to the next one.
 
-use clamber_surface::geometry::WorldCapsule;
 use clamber_surface::surface::SkinnedSurface;
 use glam::DVec3;
 
@@ -10,30 +9,19 @@ use crate::GraphConfig;
 const BEYOND: f64 = 1.0;
 
 /// How far a hand has to reach from a ball, metres; infinite if there is nothing to grip within twice the climber's reach and a
-/// metre.
-pub(super) fn arm(surface: &SkinnedSurface, seat: DVec3, config: &GraphConfig) -> f64 {
+/// metre. `holds` is the skin that can be gripped.
+pub(super) fn arm(holds: &SkinnedSurface, seat: DVec3, config: &GraphConfig) -> f64 {
     if config.reach() < 0.0 {
         return f64::INFINITY;
     }
     let radius = config.radius();
-    let longest = 2.0 * config.reach() + BEYOND;
-    let near = [0.05 * radius, config.reach(), longest];
-    near.into_iter()
-        .find_map(|reach| {
-            let ball = WorldCapsule::ball(seat, radius + reach);
-            let mut nearest = f64::INFINITY;
-            surface.in_world().visit_overlap_capsule(&ball, |hit| {
-                if (config.can_grip)(&hit.tag) {
-                    nearest = nearest.min(hit.distance);
-                }
-            });
-            nearest.is_finite().then(|| (nearest - radius).max(0.0))
-        })
-        .unwrap_or(f64::INFINITY)
+    let longest = radius + 2.0 * config.reach() + BEYOND;
+    let hit = holds.in_world().closest_point(seat, longest);
+    hit.map_or(f64::INFINITY, |hit| (hit.distance - radius).max(0.0))
 }
 
 /// The longest reach on a straight way is known to this much, metres.
-pub(super) const EXACT: f64 = 0.004;
+pub(crate) const EXACT: f64 = 0.004;
 
 /// How far a hand has to reach at most on the straight way between two seats, from the arms at both ends: too long by at most
 /// [`EXACT`], and never too short.

@@ -1,0 +1,87 @@
+//! Which patch a point of the skin belongs to.
+
+use clamber_surface::mesh::{ColliderMesh, TriangleId};
+use glam::DVec3;
+
+use super::patch::NONE;
+use crate::survey::Survey;
+
+/// Of each triangle, its pieces and their patches.
+#[derive(Clone, Debug)]
+pub(super) struct Locator {
+    /// Those of triangle t are `start[t]..start[t + 1]`.
+    start: Vec<u32>,
+    pieces: Vec<([f32; 3], u32)>,
+}
+
+impl Locator {
+    /// A piece without a patch takes the nearest patch at rest.
+    pub(super) fn new(survey: &Survey, patch_of: &[u32], mesh: &ColliderMesh) -> Self {
+        let nearest = nearest(survey, patch_of);
+        let mut of: Vec<Vec<([f32; 3], u32)>> = vec![Vec::new(); mesh.triangles().len()];
+        for (piece, patch) in survey.pieces.iter().zip(&nearest) {
+            if *patch != NONE {
+                let weights = piece.barycentric.map(|weight| weight as f32);
+                of[piece.triangle.index()].push((weights, *patch));
+            }
+        }
+        let mut locator = Self {
+            start: vec![0],
+            pieces: Vec::new(),
+        };
+        for pieces in of {
+            locator.pieces.extend(pieces);
+            locator.start.push(locator.pieces.len() as u32);
+        }
+        locator
+    }
+
+    pub(super) fn find(&self, triangle: TriangleId, barycentric: [f32; 3]) -> Option<usize> {
+        let from = *self.start.get(triangle.index())? as usize;
+        let to = *self.start.get(triangle.index() + 1)? as usize;
+        let apart = |weights: &[f32; 3]| -> f32 {
+            (0..3).map(|k| (weights[k] - barycentric[k]).powi(2)).sum()
+        };
+        let pieces = self.pieces.get(from..to)?.iter();
+        let nearest = pieces.min_by(|a, b| apart(&a.0).total_cmp(&apart(&b.0)))?;
+        Some(nearest.1 as usize)
+    }
+}
+
+/// Pieces farther from any patch than this belong to none, metres.
+const FAR: f64 = 2.0;
+
+fn nearest(survey: &Survey, patch_of: &[u32]) -> Vec<u32> {
+    // The cells of a grid, sorted, with the pieces in them that have a patch.
+    let cell = |point: DVec3| (point / FAR).floor().as_i64vec3().to_array();
+    let mut cells: Vec<([i64; 3], usize)> = (0..patch_of.len())
+        .filter(|piece| patch_of[*piece] != NONE)
+        .map(|piece| (cell(survey.pieces[piece].point), piece))
+        .collect();
+    cells.sort_unstable();
+    let mut all = patch_of.to_vec();
+    for (piece, patch) in all.iter_mut().enumerate() {
+        if *patch != NONE {
+            continue;
+        }
+        let here = &survey.pieces[piece];
+        let middle = cell(here.point);
+        let mut best = (FAR, NONE);
+        for k in 0..27 {
+            let beside = [k % 3, k / 3 % 3, k / 9];
+            let at: [i64; 3] = std::array::from_fn(|axis| middle[axis] + beside[axis] - 1);
+            let from = cells.partition_point(|(cell, _)| *cell < at);
+            for (_, other) in cells[from..].iter().take_while(|(cell, _)| *cell == at) {
+                let there = &survey.pieces[*other];
+                // The other side of a thin part is no neighbour.
+                let faces = there.normal.dot(here.normal) > -0.5;
+                let apart = there.point.distance(here.point);
+                if faces && apart < best.0 {
+                    best = (apart, patch_of[*other]);
+                }
+            }
+        }
+        *patch = best.1;
+    }
+    all
+}

@@ -1,0 +1,132 @@
+//! Pieces of skin, merged into patches: places of about the size of the climber.
+
+use std::collections::BTreeMap;
+
+use clamber_surface::mesh::{SurfaceTag, TriangleId};
+use glam::DVec3;
+
+use super::ways::{Way, Ways};
+use crate::survey::Survey;
+
+/// A place on the skin where a climber can be at rest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Patch {
+    /// The triangle in its middle.
+    pub triangle: TriangleId,
+    /// Weights of the triangle's corners for the middle.
+    pub barycentric: [f64; 3],
+    /// The material there.
+    pub tag: SurfaceTag,
+    /// The middle at rest, in the world, metres.
+    pub point: DVec3,
+    /// Outward unit normal there at rest.
+    pub normal: DVec3,
+    /// Where the climber's ball is when it is there, at rest.
+    pub seat: DVec3,
+    /// Area at rest, square metres.
+    pub area: f64,
+    /// True if a climber can stand there at rest.
+    pub can_stand: bool,
+    /// True if a climber can hold on there at rest.
+    pub can_hold: bool,
+}
+
+/// A piece that belongs to no patch: a climber can neither stand nor hold on there.
+pub(crate) const NONE: u32 = u32::MAX;
+
+/// Merges pieces into patches, and tells the patch of each piece.
+///
+/// The pieces of a patch are alike: a climber can stand on all of them or on none, and hold on at all of them or at none. Each
+/// is reached from each within the patch. So whoever reaches one of them reaches all.
+pub(super) fn merge(survey: &Survey) -> (Vec<Patch>, Vec<u32>) {
+    let (pieces, reach) = (&survey.pieces, survey.config.reach());
+    let kinds: Vec<[bool; 2]> = (0..pieces.len())
+        .map(|piece| [survey.can_stand(piece), survey.can_hold(piece, reach)])
+        .collect();
+    let mut patch_of = vec![NONE; pieces.len()];
+    let mut patches = Vec::new();
+    let mut members: Vec<usize> = Vec::new();
+    for first in 0..pieces.len() {
+        let Some(start) = pieces[first].seat else {
+            continue;
+        };
+        if patch_of[first] != NONE || kinds[first] == [false; 2] {
+            continue;
+        }
+        let id = patches.len() as u32;
+        patch_of[first] = id;
+        members.clear();
+        members.push(first);
+        let mut next = 0;
+        while let Some(&piece) = members.get(next) {
+            next += 1;
+            for beside in survey.links.of(piece) {
+                let seat = pieces[beside].seat;
+                let is_near = seat.is_some_and(|seat| seat.distance(start) <= survey.config.spacing);
+                let is_alike = patch_of[beside] == NONE && kinds[beside] == kinds[first];
+                if is_near && is_alike && (!kinds[first][1] || survey.can_climb(ends(piece, beside))) {
+                    patch_of[beside] = id;
+                    members.push(beside);
+                }
+            }
+        }
+        patches.push(patch(survey, &members, kinds[first]));
+    }
+    (patches, patch_of)
+}
+
+fn patch(survey: &Survey, members: &[usize], [can_stand, can_hold]: [bool; 2]) -> Patch {
+    let seat = |piece: usize| survey.pieces[piece].seat.unwrap_or_default();
+    let sum: DVec3 = members.iter().map(|piece| seat(*piece)).sum();
+    let middle = sum / members.len() as f64;
+    let apart = |piece: &&usize| seat(**piece).distance_squared(middle);
+    let nearest = members.iter().min_by(|a, b| apart(a).total_cmp(&apart(b)));
+    let nearest = nearest.copied().unwrap_or(0);
+    let piece = &survey.pieces[nearest];
+    Patch {
+        triangle: piece.triangle,
+        barycentric: piece.barycentric,
+        tag: piece.tag,
+        point: piece.point,
+        normal: piece.normal,
+        seat: seat(nearest),
+        area: members.iter().map(|piece| survey.pieces[*piece].area).sum(),
+        can_stand,
+        can_hold,
+    }
+}
+
+/// The ways from patch to patch, over the links between their pieces.
+pub(super) fn ways(survey: &Survey, patches: &[Patch], patch_of: &[u32]) -> Ways {
+    let mut found: BTreeMap<(u32, u32), Way> = BTreeMap::new();
+    for piece in 0..survey.pieces.len() {
+        let from = patch_of[piece];
+        if from == NONE {
+            continue;
+        }
+        for beside in survey.links.of(piece) {
+            let to = patch_of[beside];
+            // The way back is the same.
+            if to == NONE || to <= from {
+                continue;
+            }
+            let [a, b] = [from, to].map(|patch| &patches[patch as usize]);
+            let walks = a.can_stand && b.can_stand;
+            let climbs = a.can_hold && b.can_hold;
+            let known = found.get(&(from, to)).copied().unwrap_or_default();
+            let way = Way {
+                walks,
+                climbs: known.climbs || climbs && survey.can_climb(ends(piece, beside)),
+            };
+            if way.walks || way.climbs {
+                found.insert((from, to), way);
+            }
+        }
+    }
+    Ways::new(patches, &found)
+}
+
+fn ends(a: usize, b: usize) -> [usize; 2] {
+    [a.min(b), a.max(b)]
+}

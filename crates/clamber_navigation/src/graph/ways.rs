@@ -1,0 +1,62 @@
+//! Ways from patch to patch.
+
+use std::collections::BTreeMap;
+
+use super::Patch;
+
+/// How a climber gets from one patch to another.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Way {
+    /// It walks.
+    pub(crate) walks: bool,
+    /// It climbs.
+    pub(crate) climbs: bool,
+}
+
+/// Of each patch, the ways that lead away from it.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Ways {
+    /// Those of patch p are `start[p]..start[p + 1]`.
+    start: Vec<u32>,
+    to: Vec<u32>,
+    way: Vec<Way>,
+    /// Length at rest, metres.
+    length: Vec<f32>,
+}
+
+impl Ways {
+    /// From ways that lead there and back, by the lower of their ends.
+    pub(super) fn new(patches: &[Patch], found: &BTreeMap<(u32, u32), Way>) -> Self {
+        let mut beside: Vec<Vec<(u32, Way)>> = vec![Vec::new(); patches.len()];
+        for (&(from, to), &way) in found {
+            beside[from as usize].push((to, way));
+            beside[to as usize].push((from, way));
+        }
+        let mut ways = Self {
+            start: vec![0],
+            ..Self::default()
+        };
+        for (from, mut beside) in beside.into_iter().enumerate() {
+            beside.sort_unstable_by_key(|(to, _)| *to);
+            for (to, way) in beside {
+                let length = patches[from].seat.distance(patches[to as usize].seat);
+                ways.to.push(to);
+                ways.way.push(way);
+                ways.length.push(length as f32);
+            }
+            ways.start.push(ways.to.len() as u32);
+        }
+        ways
+    }
+
+    /// Those that lead away from a patch: where to, how, and how far it is at rest, metres.
+    pub(crate) fn of(&self, patch: usize) -> impl Iterator<Item = (usize, Way, f64)> + '_ {
+        let range = self.start[patch] as usize..self.start[patch + 1] as usize;
+        range.map(|at| (self.to[at] as usize, self.way[at], f64::from(self.length[at])))
+    }
+
+    /// Number of them.
+    pub(crate) fn len(&self) -> usize {
+        self.to.len()
+    }
+}

@@ -1,0 +1,9 @@
+//! Ways to a goal for a climber that tires.
+
+mod forecast;
+mod goal;
+mod search;
+
+pub use forecast::Forecast;
+pub use goal::Goal;
+pub use search::{Plan, PlanStep, Start};

@@ -1,0 +1,117 @@
+//! The skin at rest: its pieces, where the climber's ball rests on them, what hands reach from there, and which of these seats
+//! are beside each other.
+
+mod arms;
+mod links;
+mod pieces;
+mod seat;
+mod split;
+
+use clamber_surface::mesh::TriangleId;
+use clamber_surface::surface::SkinnedSurface;
+use glam::DVec3;
+
+use crate::progress::{Stage, Tell};
+use crate::{GraphConfig, GraphSource, NavigationError};
+pub(crate) use arms::EXACT;
+use links::Links;
+pub(crate) use pieces::Piece;
+
+/// The ball's middle is at least so high above the ground, as a share of its radius.
+const LOWEST: f64 = 0.98;
+
+/// What is known about the skin at rest, piece by piece.
+#[derive(Clone, Debug)]
+pub(crate) struct Survey {
+    pub(crate) config: GraphConfig,
+    /// Height of the ground, metres.
+    pub(crate) ground: f64,
+    /// The pieces, sorted by place.
+    pub(crate) pieces: Vec<Piece>,
+    pub(crate) links: Links,
+    /// Of each piece, how far a hand has to reach from the ball's seat for something to grip, metres; infinite if there is
+    /// nothing near.
+    pub(crate) arms: Vec<f64>,
+    /// The skin at rest.
+    pub(crate) surface: SkinnedSurface,
+    /// The part of it that can be gripped.
+    holds: SkinnedSurface,
+}
+
+impl Survey {
+    pub(crate) fn new(
+        source: &GraphSource<'_>,
+        config: &GraphConfig,
+        tell: &mut Tell<'_>,
+    ) -> Result<Self, NavigationError> {
+        config.check()?;
+        let palette = source.skeleton.palette(&source.skeleton.rest_pose())?;
+        let mut surface = SkinnedSurface::new(source.mesh.clone());
+        surface.place(&palette, source.world_from_model)?;
+        let mut holds = surface.clone();
+        for (index, tag) in source.mesh.tags().iter().enumerate() {
+            if !config.can_grip(tag) {
+                holds.disable_triangle(TriangleId(index as u32))?;
+            }
+        }
+        let mut pieces = pieces::divide(&surface, config)?;
+        let of = pieces.len();
+        let lowest = source.ground + LOWEST * config.radius();
+        for (done, piece) in pieces.iter_mut().enumerate() {
+            tell.at(Stage::Seats, done, of)?;
+            let above = |seat: &DVec3| seat.dot(config.climber.up()) >= lowest;
+            let seat = seat::seat(&surface, piece.point, piece.normal, config.radius());
+            piece.seat = seat.filter(above);
+        }
+        let mut arms = Vec::with_capacity(of);
+        for (done, piece) in pieces.iter().enumerate() {
+            tell.at(Stage::Arms, done, of)?;
+            let arm = piece.seat.map(|seat| arms::arm(&holds, seat, config));
+            arms.push(arm.unwrap_or(f64::INFINITY));
+        }
+        Ok(Self {
+            config: config.clone(),
+            ground: source.ground,
+            links: Links::new(&pieces, config.link()),
+            pieces,
+            arms,
+            surface,
+            holds,
+        })
+    }
+
+    /// How far a hand has to reach at most on the way between two pieces; more than `enough` only if that is so.
+    pub(crate) fn arm_between(&self, ends: [usize; 2], enough: f64) -> f64 {
+        let [Some(from), Some(to)] = ends.map(|piece| self.pieces[piece].seat) else {
+            return f64::INFINITY;
+        };
+        let arms = ends.map(|piece| self.arms[piece]);
+        let arm_at = |seat| arms::arm(&self.holds, seat, &self.config);
+        arms::arm_between([from, to], arms, enough, &arm_at)
+    }
+
+    /// True if a climber can stand on a piece at rest.
+    pub(crate) fn can_stand(&self, piece: usize) -> bool {
+        let piece = &self.pieces[piece];
+        piece.seat.is_some() && self.slope(piece) <= self.config.climber.ground.max_slope
+    }
+
+    /// True if a climber can hold on at a piece at rest and climb there, with arms of this reach.
+    pub(crate) fn can_hold(&self, piece: usize, reach: f64) -> bool {
+        let grip = self.config.climber.grip;
+        grip.is_some_and(|grip| {
+            self.arms[piece] <= reach && self.slope(&self.pieces[piece]) <= grip.max_overhang
+        })
+    }
+
+    /// True if hands hold something all the way between two pieces where a climber can hold on.
+    pub(crate) fn can_climb(&self, ends: [usize; 2]) -> bool {
+        let reach = self.config.reach();
+        self.arm_between(ends, reach) <= reach + EXACT
+    }
+
+    fn slope(&self, piece: &Piece) -> f64 {
+        let cosine = piece.normal.dot(self.config.climber.up());
+        libm::acos(cosine.clamp(-1.0, 1.0))
+    }
+}
