@@ -27,6 +27,13 @@ use clap::{ArgGroup, CommandFactory, Parser, error::ErrorKind};
 struct Options {
     #[command(flatten)]
     battle: BattleOptions,
+
+    /// Fight so many battles, with this seed and the next ones, each until the creature is dead; print a line for each, and
+    /// write no files.
+    #[arg(long, value_name = "COUNT", conflicts_with = "pictures")]
+    #[arg(value_parser = clap::value_parser!(u64).range(1..=10_000))]
+    fights: Option<u64>,
+
     #[command(flatten)]
     film: FilmOptions,
 }
@@ -171,6 +178,9 @@ fn main() -> ExitCode {
             .error(ErrorKind::ValueValidation, reason)
             .exit();
     }
+    if let Some(count) = options.fights {
+        return siege(&options.battle, count);
+    }
     let summary = match run(&options) {
         Ok(summary) => summary,
         Err(error) => {
@@ -191,6 +201,32 @@ fn main() -> ExitCode {
         eprintln!("battle: a check failed");
         ExitCode::FAILURE
     }
+}
+
+/// Fights many battles, and prints how each went.
+fn siege(options: &BattleOptions, count: u64) -> ExitCode {
+    let bar = indicatif::ProgressBar::new(count);
+    let fights = battle::fight_all(options, count, |done| bar.set_position(done));
+    bar.finish_and_clear();
+    let fights = match fights {
+        Ok(fights) => fights,
+        Err(error) => {
+            eprintln!("battle: {error}");
+            return ExitCode::from(2);
+        }
+    };
+    println!("{}", battle::HEADING);
+    for fight in &fights {
+        println!("{fight}");
+    }
+    let count = |is: &dyn Fn(&battle::Fight) -> bool| fights.iter().filter(|fight| is(fight)).count();
+    println!(
+        "of {} fights: {} came to the highest weak point, {} killed the creature",
+        fights.len(),
+        count(&|fight| fight.arrived.is_some()),
+        count(&|fight| fight.tally.killed > 0),
+    );
+    ExitCode::SUCCESS
 }
 
 /// The paths of all results.

@@ -1,5 +1,6 @@
 #![doc = include_str!("../README.md")]
 
+mod bot;
 mod clips;
 mod config;
 mod error;
@@ -10,6 +11,7 @@ mod report;
 mod source;
 mod survey;
 
+pub use bot::{Bot, BotConfig, Danger, View};
 pub use config::GraphConfig;
 pub use error::NavigationError;
 pub use graph::{ClimbGraph, Entry, Footing, Patch};

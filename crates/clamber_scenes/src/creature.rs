@@ -1,5 +1,11 @@
 use std::path::Path;
-use std::sync::Arc;
+use std::ops::ControlFlow;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use clamber_climber::ClimberConfig;
+use clamber_navigation::{ClimbGraph, GraphConfig, GraphSource, NavigationError};
+use clamber_surface::geometry::Similarity;
+use clamber_surface::mesh::{SurfaceKind, SurfaceTag};
 
 use clamber_colossus::{Brain, ColossusError, CreatureKind, CreatureParts};
 use clamber_gltf::{GltfError, LoadOptions};
@@ -25,7 +31,14 @@ pub struct Creature {
     pub weak_points: Vec<WeakPoint>,
     /// Speed of the walk clip, model units a second; `None` if unknown.
     pub walk_speed: Option<f64>,
+    /// The graphs that were made of it.
+    pub(crate) graphs: Graphs,
 }
+
+/// Graphs, by mesh, climber and height.
+pub(crate) type Graphs = Arc<Mutex<Vec<(GraphKey, Arc<ClimbGraph>)>>>;
+type GraphKey = (Arc<ColliderMesh>, ClimberConfig, f64);
+
 
 /// Why a creature cannot be loaded, built or posed.
 #[derive(Debug, Error)]
@@ -63,6 +76,7 @@ impl Creature {
             collider,
             weak_points: Vec::new(),
             walk_speed: None,
+            graphs: Graphs::default(),
         }
     }
 
@@ -77,6 +91,55 @@ impl Creature {
             weak_points: rig.weak_points,
             ..Self::new(name, rig.skeleton, rig.clips, rig.collider)
         })
+    }
+
+    /// The graph of its skin for a climber, when it is so many metres tall and stands on the ground. A climber grips fur and
+    /// stone, or all of it if it has no fur. It is made once for each size: clones share it.
+    ///
+    /// # Errors
+    /// As [`ClimbGraph::build`].
+    pub fn graph(
+        &self,
+        climber: &ClimberConfig,
+        height: f64,
+    ) -> Result<Arc<ClimbGraph>, NavigationError> {
+        let mut known = self.graphs.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, graph)) = known
+            .iter()
+            .find(|((mesh, other, tall), _)| {
+                Arc::ptr_eq(mesh, &self.collider) && other == climber && *tall == height
+            })
+        {
+            return Ok(Arc::clone(graph));
+        }
+        let palette = self.skeleton.palette(&self.skeleton.rest_pose())?;
+        let rest = skin(&self.collider, palette.matrices()).unwrap_or_default();
+        let low = rest.iter().map(|p| p.y).fold(f32::INFINITY, f32::min);
+        let high = rest.iter().map(|p| p.y).fold(f32::NEG_INFINITY, f32::max);
+        let scale = height / f64::from(high - low);
+        let source = GraphSource {
+            skeleton: &self.skeleton,
+            mesh: &self.collider,
+            clips: &self.clips,
+            weak_points: &self.weak_points,
+            world_from_model: Similarity::from_scale(scale),
+            ground: f64::from(low) * scale,
+        };
+        let is_fur = |tag: &SurfaceTag| tag.kind == SurfaceKind::Fur;
+        let grips = if self.collider.tags().iter().any(is_fur) {
+            vec![SurfaceKind::Fur, SurfaceKind::Stone]
+        } else {
+            vec![SurfaceKind::Skin, SurfaceKind::Fur, SurfaceKind::Stone]
+        };
+        let config = GraphConfig {
+            grips,
+            ..GraphConfig::new(*climber)
+        };
+        let graph = ClimbGraph::build(&source, &config, |_| ControlFlow::Continue(()))?;
+        let graph = Arc::new(graph);
+        let key = (Arc::clone(&self.collider), *climber, height);
+        known.push((key, Arc::clone(&graph)));
+        Ok(graph)
     }
 
     /// The creature with a brain, to live by it.

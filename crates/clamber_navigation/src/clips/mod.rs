@@ -1,6 +1,5 @@
 //! How hard each clip shakes each patch, and how it tilts it.
 
-use clamber_surface::mesh::ColliderMesh;
 use clamber_surface::rig::{Clip, Playback};
 use clamber_surface::surface::SurfaceError;
 use glam::{DVec3, Vec3};
@@ -88,6 +87,8 @@ impl ClipFacts {
         });
         let per_slice = (SLICE / TICK).round() as usize;
         let ticks = ((clip.duration() / TICK).ceil() as usize).max(1);
+        let rules = Rules::new(source, config);
+        let seats: Vec<Seat> = patches.iter().map(|patch| Seat::new(source, patch)).collect();
         let mut riders = vec![Rider::default(); patches.len()];
         let mut pose = source.skeleton.rest_pose();
         let mut palette = source.skeleton.palette(&pose)?;
@@ -98,20 +99,14 @@ impl ClipFacts {
             source.skeleton.palette_into(&pose, &mut palette)?;
             clamber_surface::skin::skin_into(source.mesh, palette.matrices(), &mut skin)
                 .map_err(SurfaceError::from)?;
-            let frame = Frame {
-                source,
-                skin: &skin,
-                mesh: source.mesh,
-            };
-            for (rider, patch) in riders.iter_mut().zip(patches) {
-                rider.tick(frame.at(patch), config);
+            for (rider, seat) in riders.iter_mut().zip(&seats) {
+                rider.tick(seat.at(&skin), tick, &rules);
             }
-            let is_last = tick == ticks;
-            if is_last || (tick + 1) % per_slice == 0 {
-                let wanted = (first + count) * patches.len();
-                if self.moments.len() < wanted {
-                    self.moments.extend(riders.iter_mut().map(Rider::moment));
-                }
+            let is_full = (tick + 1).is_multiple_of(per_slice);
+            let wanted = (first + count) * patches.len();
+            if (tick == ticks || is_full) && self.moments.len() < wanted {
+                let moments = riders.iter_mut().map(|rider| rider.moment(&rules));
+                self.moments.extend(moments);
             }
         }
         Ok(())
@@ -141,36 +136,59 @@ impl ClipFacts {
     }
 }
 
-/// A pose of the skin.
-struct Frame<'a> {
-    source: &'a GraphSource<'a>,
-    skin: &'a [Vec3],
-    mesh: &'a ColliderMesh,
+/// What a rider is subject to, in the space of the model, in which a climber may be small or large.
+struct Rules {
+    up: DVec3,
+    scale: f64,
+    /// Share of the shake that is kept from tick to tick.
+    kept: f64,
+    /// Shake up to which holding on costs no more, in the space of the model.
+    threshold: f64,
 }
 
-impl Frame<'_> {
-    /// Where a patch is in the world, and its normal.
-    fn at(&self, patch: &Patch) -> (DVec3, DVec3) {
-        let vertices = self.mesh.triangles().get(patch.triangle.index());
-        let corner = |k: usize| {
-            let vertex = vertices.map(|vertices| vertices[k].index());
-            let corner = vertex.and_then(|vertex| self.skin.get(vertex));
-            corner.copied().unwrap_or_default().as_dvec3()
-        };
-        let [a, b, c] = [corner(0), corner(1), corner(2)];
-        let [u, v, w] = patch.barycentric;
-        let place = self.source.world_from_model;
-        let normal = place.rotation * (b - a).cross(c - a);
-        (place.transform_point(a * u + b * v + c * w), normal.normalize_or_zero())
+impl Rules {
+    fn new(source: &GraphSource<'_>, config: &GraphConfig) -> Self {
+        let place = source.world_from_model;
+        let threshold = config.climber.stamina.map(|stamina| stamina.shake_threshold);
+        Self {
+            up: place.rotation.conjugate() * config.climber.up(),
+            scale: place.scale,
+            kept: libm::exp(-TICK / config.climber.shake_time),
+            threshold: threshold.unwrap_or(f64::INFINITY) / place.scale,
+        }
     }
 }
 
-/// Somebody who rides on a patch.
+/// The middle of a patch, as a point of the skin.
+struct Seat {
+    vertices: [usize; 3],
+    barycentric: [f64; 3],
+}
+
+impl Seat {
+    fn new(source: &GraphSource<'_>, patch: &Patch) -> Self {
+        let vertices = source.mesh.triangles().get(patch.triangle.index());
+        Self {
+            vertices: vertices.map_or([0; 3], |vertices| vertices.map(|vertex| vertex.index())),
+            barycentric: patch.barycentric,
+        }
+    }
+
+    /// Its place in a pose of the skin, and a vector along the normal there, in the space of the model.
+    fn at(&self, skin: &[Vec3]) -> (DVec3, DVec3) {
+        let [a, b, c] = self.vertices.map(|vertex| skin[vertex].as_dvec3());
+        let [u, v, w] = self.barycentric;
+        (a * u + b * v + c * w, (b - a).cross(c - a))
+    }
+}
+
+/// Somebody who rides on a patch, in the space of the model.
 #[derive(Clone, Copy, Debug, Default)]
 struct Rider {
-    place: Option<DVec3>,
-    velocity: Option<DVec3>,
+    place: DVec3,
+    velocity: DVec3,
     shake: DVec3,
+    /// The square of the hardest shake.
     hardest: f64,
     excess: f64,
     ticks: f64,
@@ -178,33 +196,33 @@ struct Rider {
 }
 
 impl Rider {
-    fn tick(&mut self, (place, normal): (DVec3, DVec3), config: &GraphConfig) {
-        let climber = &config.climber;
-        let velocity = self.place.map(|before| (place - before) / TICK);
-        if let (Some(velocity), Some(before)) = (velocity, self.velocity) {
-            let kept = libm::exp(-TICK / climber.shake_time);
-            self.shake = self.shake * kept + (velocity - before) / TICK * (1.0 - kept);
+    fn tick(&mut self, (place, normal): (DVec3, DVec3), tick: usize, rules: &Rules) {
+        let velocity = (place - self.place) / TICK;
+        // A velocity is known from the second tick on, an acceleration from the third.
+        if tick > 1 {
+            let change = (velocity - self.velocity) / TICK;
+            self.shake = self.shake * rules.kept + change * (1.0 - rules.kept);
         }
-        (self.place, self.velocity) = (Some(place), velocity);
-        let shake = self.shake.length();
-        let threshold = climber.stamina.map_or(f64::INFINITY, |stamina| stamina.shake_threshold);
-        self.hardest = self.hardest.max(shake);
-        self.excess += (shake - threshold).max(0.0);
-        self.lowest = if self.ticks == 0.0 {
-            normal.dot(climber.up())
-        } else {
-            self.lowest.min(normal.dot(climber.up()))
-        };
+        (self.place, self.velocity) = (place, velocity);
+        let squared = self.shake.length_squared();
+        self.hardest = self.hardest.max(squared);
+        if squared > rules.threshold * rules.threshold {
+            self.excess += squared.sqrt() - rules.threshold;
+        }
+        let upright = normal.dot(rules.up) / normal.length();
+        if self.ticks == 0.0 || upright < self.lowest {
+            self.lowest = upright;
+        }
         self.ticks += 1.0;
     }
 
     /// What was since the last time.
-    fn moment(&mut self) -> [u8; 3] {
-        let steps = |value: f64| (value / STEP).ceil().clamp(0.0, 255.0) as u8;
-        let mean = self.excess / self.ticks.max(1.0);
-        let upright = ((self.lowest + 1.0) / COSINE).floor().clamp(0.0, 254.0) as u8;
-        let moment = [steps(self.hardest), (mean / STEP).round().clamp(0.0, 255.0) as u8, upright];
+    fn moment(&mut self, rules: &Rules) -> [u8; 3] {
+        let steps = |value: f64| value * rules.scale / STEP;
+        let hardest = steps(self.hardest.sqrt()).ceil().clamp(0.0, 255.0);
+        let mean = steps(self.excess / self.ticks.max(1.0)).round().clamp(0.0, 255.0);
+        let upright = ((self.lowest + 1.0) / COSINE).floor().clamp(0.0, 254.0);
         (self.hardest, self.excess, self.ticks) = (0.0, 0.0, 0.0);
-        moment
+        [hardest as u8, mean as u8, upright as u8]
     }
 }

@@ -7,7 +7,7 @@ use clamber_fight::{Act, FighterId};
 use glam::DVec3;
 
 use super::Performer;
-use super::goals::Goal;
+use super::goals::Aim;
 use super::performer::Sight;
 use super::scene::TICK;
 
@@ -40,7 +40,7 @@ pub(super) struct Fencer {
 
 impl Fencer {
     /// The input of a stab: begins one if the blade would go where it should, and goes on with it. `None` if there is none.
-    pub(super) fn stab(&mut self, performer: &Performer<'_>, goal: &Goal) -> Option<ClimberInput> {
+    pub(super) fn stab(&mut self, performer: &Performer<'_>, aim: Aim) -> Option<ClimberInput> {
         let fighter = performer.fighter()?;
         let state = fighter.climber().state();
         let holds = |actions| ClimberInput {
@@ -60,12 +60,12 @@ impl Fencer {
             Act::Strike { .. } | Act::Plunge { .. } | Act::PullOut { .. } => press(false),
             Act::Ready => {
                 let aimed = performer.arena()?.stab_aim(FighterId(0))?;
-                let is_right = match goal.plate {
+                let is_right = match aim.plate {
                     Some(plate) => aimed.plate == Some(plate),
-                    None => aimed.plate.is_none() && aimed.weak_point == goal.weak_point,
+                    None => aimed.plate.is_none() && aimed.weak_point == aim.weak_point,
                 };
                 let is_firm = matches!(state.mode, ClimberMode::Standing | ClimberMode::Holding);
-                let can = is_right && goal.weak_point.is_some() && is_firm;
+                let can = is_right && aim.weak_point.is_some() && is_firm;
                 let can = can && state.shake.length() < CALM && state.stamina > STRONG;
                 if can { press(!was_pressed) } else { None }
             }
@@ -74,8 +74,8 @@ impl Fencer {
     }
 
     /// How far the blade would miss its weak point, and where to: a vector; `None` if there is no skin before it.
-    pub(super) fn miss(&self, performer: &Performer<'_>, goal: &Goal) -> Option<DVec3> {
-        let place = performer.life()?.weak_point(goal.weak_point?)?;
+    pub(super) fn miss(&self, performer: &Performer<'_>, aim: Aim) -> Option<DVec3> {
+        let place = performer.life()?.weak_point(aim.weak_point?)?;
         let aimed = performer.arena()?.stab_aim(FighterId(0))?;
         Some(place - aimed.place)
     }

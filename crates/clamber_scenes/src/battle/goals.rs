@@ -11,13 +11,19 @@ use crate::tour::{Ascent, Ways};
 /// How far above a weak point what covers it may be, in the units of the creature's file.
 const COVER: f32 = 1.2;
 
-/// A place to go to, and the ways there.
-#[derive(Clone, Debug)]
-pub(super) struct Goal {
+/// What to strike.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Aim {
     /// The weak point, by its index; `None` for the top.
     pub(super) weak_point: Option<usize>,
     /// The plate over the weak point, by its index.
     pub(super) plate: Option<usize>,
+}
+
+/// A place to go to, and the ways there.
+#[derive(Clone, Debug)]
+pub(super) struct Goal {
+    pub(super) aim: Aim,
     pub(super) ascent: Ascent,
 }
 
@@ -34,8 +40,7 @@ impl Goals {
             }
         }
         goals.push(Goal {
-            weak_point: None,
-            plate: None,
+            aim: Aim::default(),
             ascent: Ascent::new(creature, ways),
         });
         Self(goals)
@@ -60,14 +65,14 @@ impl Goals {
             let covers = self
                 .0
                 .iter()
-                .filter(|goal| goal.weak_point == Some(weak_point));
-            covers.filter_map(|goal| goal.plate).any(is_whole)
+                .filter(|goal| goal.aim.weak_point == Some(weak_point));
+            covers.filter_map(|goal| goal.aim.plate).any(is_whole)
         };
         let is_there = |goal: &Goal| {
-            let Some(weak_point) = goal.weak_point else {
+            let Some(weak_point) = goal.aim.weak_point else {
                 return false;
             };
-            let is_next = match goal.plate {
+            let is_next = match goal.aim.plate {
                 Some(plate) => is_whole(plate),
                 None => !is_covered(weak_point),
             };
@@ -112,8 +117,10 @@ fn around(kind: &CreatureKind, weak_point: usize, ways: &Ways) -> Vec<Goal> {
             .collect();
         if !above.is_empty() {
             goals.push(Goal {
-                weak_point: Some(weak_point),
-                plate: Some(plate),
+                aim: Aim {
+                    weak_point: Some(weak_point),
+                    plate: Some(plate),
+                },
                 ascent: Ascent::to(ways, &above),
             });
         }
@@ -126,8 +133,10 @@ fn around(kind: &CreatureKind, weak_point: usize, ways: &Ways) -> Vec<Goal> {
     let used = ways.used().filter(|vertex| is_skin(vertex));
     let here: Vec<u32> = used.filter(|vertex| near(vertex, point.radius)).collect();
     goals.push(Goal {
-        weak_point: Some(weak_point),
-        plate: None,
+        aim: Aim {
+            weak_point: Some(weak_point),
+            plate: None,
+        },
         ascent: Ascent::to(ways, &here),
     });
     goals

@@ -11,6 +11,7 @@
 pub mod bot;
 mod checks;
 mod choreography;
+mod crossing;
 mod faults;
 mod fencer;
 mod goals;
@@ -18,6 +19,7 @@ mod options;
 mod outcrop;
 mod performer;
 mod pilot;
+mod planner;
 #[cfg(feature = "record")]
 mod record;
 mod recording;
@@ -25,6 +27,7 @@ mod repeat;
 mod rides;
 mod rockfall;
 mod scene;
+mod siege;
 mod snapshot;
 mod story;
 mod summary;
@@ -34,7 +37,7 @@ mod timeline;
 use std::path::PathBuf;
 
 pub use choreography::Choreography;
-pub use options::BattleOptions;
+pub use options::{BattleOptions, PilotKind};
 pub use outcrop::mesh as outcrop;
 pub use performer::{Performer, PerformerState};
 #[cfg(feature = "record")]
@@ -43,6 +46,7 @@ pub use recording::{Recording, Sample};
 pub use rides::{Ride, RidesOptions, ride_all, table as rides_table};
 pub use rockfall::{Rockfall, RockfallReport};
 pub use scene::{Battle, CREATURE, TERRAIN, TICK};
+pub use siege::{Fight, HEADING, fight_all};
 pub use snapshot::BattleSnapshot;
 pub use story::Story;
 pub use summary::{Check, ModeTicks, StateTicks, Summary};
@@ -54,6 +58,7 @@ use crate::CreatureError;
 use clamber_climber::ClimberError;
 use clamber_colossus::{BrainError, ColossusError};
 use clamber_fight::ArenaError;
+use clamber_navigation::NavigationError;
 use clamber_surface::rig::RigError;
 use clamber_surface::surface::SurfaceError;
 use clamber_world::DebrisError;
@@ -102,6 +107,9 @@ pub enum BattleError {
         /// The creature's name.
         creature: String,
     },
+    /// The creature's skin cannot be divided into a graph.
+    #[error(transparent)]
+    Navigation(#[from] NavigationError),
     /// The physics engine rejects the outcrop's mesh.
     #[error("the outcrop cannot be added to the valley: {0}")]
     Outcrop(String),

@@ -63,6 +63,10 @@ pub struct BattleOptions {
     #[arg(long, default_value_t = 117)]
     pub seed: u64,
 
+    /// Who drives the climber in a climb.
+    #[arg(long, value_enum, default_value = "script")]
+    pub pilot: PilotKind,
+
     /// Folder for summary.json and timeline.svg.
     #[arg(long, value_name = "DIR", default_value = "target/battle")]
     pub out: PathBuf,
@@ -70,6 +74,25 @@ pub struct BattleOptions {
     /// Record the battle to a file for Foxglove, Rerun and the replay example; needs --features record.
     #[arg(long, value_name = "FILE.mcap")]
     pub record: Option<PathBuf>,
+}
+
+/// Who drives the climber in a climb.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+pub enum PilotKind {
+    /// A fixed script.
+    #[default]
+    Script,
+    /// A bot that plans its way on a graph of the creature's skin.
+    Bot,
+}
+
+impl PilotKind {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Script => "script",
+            Self::Bot => "bot",
+        }
+    }
 }
 
 pub(super) fn positive(text: &str) -> Result<f64, String> {
@@ -113,6 +136,7 @@ impl BattleOptions {
             ("seconds".to_owned(), self.seconds().to_string()),
             ("rocks".to_owned(), self.rocks.to_string()),
             ("seed".to_owned(), self.seed.to_string()),
+            ("pilot".to_owned(), self.pilot.name().to_owned()),
         ]);
         for (name, path) in [("creature", &self.creature), ("brain", &self.brain)] {
             let Some(path) = path else {

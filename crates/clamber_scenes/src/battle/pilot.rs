@@ -191,8 +191,8 @@ impl Pilot {
                     self.at_top = false;
                     (self.mounted, self.left, self.since) = (true, f32::INFINITY, seconds);
                 }
-                let goal = self.goals.get(self.goal);
-                if let Some(stab) = self.fencer.stab(performer, goal) {
+                let aim = self.goals.get(self.goal).aim;
+                if let Some(stab) = self.fencer.stab(performer, aim) {
                     self.since = seconds;
                     return stab;
                 }
@@ -263,7 +263,7 @@ impl Pilot {
             return holds(true);
         }
         let goal = self.goals.get(self.goal);
-        if self.at_top && goal.weak_point.is_none() {
+        if self.at_top && goal.aim.weak_point.is_none() {
             return holds(!stands && !is_level);
         }
         let least = if stands { RESTED } else { TIRED };
@@ -274,7 +274,7 @@ impl Pilot {
         let Some(target) = self.follow(surface, triangle, state.position, seconds) else {
             return ClimberInput::default();
         };
-        let toward = match self.fencer.miss(performer, self.goals.get(self.goal)) {
+        let toward = match self.fencer.miss(performer, self.goals.get(self.goal).aim) {
             // The blade has to come over the weak point.
             Some(miss) if self.at_top => miss,
             _ => place(surface, target) - state.position,
@@ -310,11 +310,11 @@ impl Pilot {
         let stuck = (seconds - self.since).rem_euclid(2.0 * PATIENCE) > PATIENCE;
         let ahead = if stuck { FAR_AHEAD } else { AHEAD };
         // On the top it stays; to a weak point it goes back if it is thrown aside.
-        let is_top = self.goals.get(self.goal).weak_point.is_none();
+        let is_top = self.goals.get(self.goal).aim.weak_point.is_none();
         self.at_top &= is_top;
         if self.ascent().next(here).is_none() {
             self.at_top = true;
-            if self.goals.get(self.goal).weak_point.is_none() {
+            if self.goals.get(self.goal).aim.weak_point.is_none() {
                 self.arrived.get_or_insert(seconds);
             }
         }

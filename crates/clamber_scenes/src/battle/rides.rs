@@ -115,6 +115,7 @@ impl RidesOptions {
             seed: self.seed,
             out: self.out.join(model),
             record: None,
+            ..BattleOptions::default()
         }
     }
 }

@@ -16,9 +16,10 @@ use super::bot::{Intent, Rider, RiderScene};
 use super::checks::{Watch, Watched};
 use super::faults::Moment;
 use super::pilot::{Grips, Pilot};
+use super::planner::Planner;
 use super::rockfall::Rockfall;
 use super::{
-    BattleError, BattleOptions, BattleSnapshot, Performer, Recording, Sample, Story, Tally, outcrop,
+    BattleError, BattleOptions, BattleSnapshot, Performer, PilotKind, Recording, Sample, Story, Tally, outcrop,
 };
 use crate::{Creature, valley};
 
@@ -48,6 +49,35 @@ const GROUNDED_TICKS: u32 = 60;
 const RUN_UP: f64 = 4.0;
 const ASIDE: f64 = 1.5;
 
+/// Who drives a climb.
+enum Player {
+    Script(Box<Pilot>),
+    Bot(Box<Planner>),
+}
+
+impl Player {
+    fn input(&mut self, performer: &Performer<'_>, seconds: f64) -> ClimberInput {
+        match self {
+            Self::Script(pilot) => pilot.input(performer, seconds),
+            Self::Bot(planner) => planner.input(performer, seconds),
+        }
+    }
+
+    fn begin_again(&mut self) {
+        match self {
+            Self::Script(pilot) => pilot.begin_again(),
+            Self::Bot(planner) => planner.begin_again(),
+        }
+    }
+
+    fn arrived(&self) -> Option<f64> {
+        match self {
+            Self::Script(pilot) => pilot.arrived(),
+            Self::Bot(planner) => planner.arrived(),
+        }
+    }
+}
+
 /// The running scene.
 pub struct Battle<'a> {
     performer: Performer<'a>,
@@ -59,8 +89,8 @@ pub struct Battle<'a> {
     perch: MaterialPoint,
     /// The script of a ride.
     rider: Rider,
-    /// The script of a climb; `None` in a ride.
-    pilot: Option<Pilot>,
+    /// Who drives a climb; `None` in a ride.
+    pilot: Option<Player>,
     height: f64,
     tick: u64,
     grounded: u32,
@@ -96,10 +126,15 @@ impl<'a> Battle<'a> {
         let (climber, pilot) = match story {
             Story::Climb => {
                 outcrop::insert(&mut world)?;
-                (
-                    climber_before_the_outcrop(seed)?,
-                    Some(Pilot::new(&performer)?),
-                )
+                let climber = climber_before_the_outcrop(seed)?;
+                let player = match options.pilot {
+                    PilotKind::Script => Player::Script(Box::new(Pilot::new(&performer)?)),
+                    PilotKind::Bot => {
+                        let graph = creature.graph(climber.config(), height)?;
+                        Player::Bot(Box::new(Planner::new(&performer, graph)?))
+                    }
+                };
+                (climber, Some(player))
             }
             Story::Ride => (rider_above(perch.point, DROP)?, None),
         };
@@ -411,7 +446,7 @@ impl<'a> Battle<'a> {
 
     /// When the climber first came to the creature's top, seconds; `None` if it has not, or in a ride.
     pub fn arrived(&self) -> Option<f64> {
-        self.pilot.as_ref().and_then(Pilot::arrived)
+        self.pilot.as_ref().and_then(Player::arrived)
     }
 
     /// How often the climber was dropped on the creature; 0 in a climb.

@@ -1,0 +1,39 @@
+/// How a bot plays.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct BotConfig {
+    /// It holds on while the skin shakes harder than this, metres a second squared. Default 3.
+    pub calm: f64,
+    /// It aims so far ahead on its way, metres. Default 1.2: three radii of a climber.
+    pub ahead: f64,
+    /// It plans anew if it is farther than this from its way, metres. Default 1.6.
+    pub off_its_way: f64,
+    /// It counts as stuck after it has not got on for so long, seconds. Default 1.5.
+    pub patience: f64,
+    /// It avoids a way on which it was stuck for so long, seconds. Default 10.
+    pub blocked_for: f64,
+    /// Least time between two plans that found no way, seconds. Default 0.5.
+    pub plans_every: f64,
+    /// It lets go after hanging in calm for so long, seconds. Default 2.5.
+    pub hangs_for: f64,
+    /// Seconds from the beginning of an attack until it reacts. Default 0.25.
+    pub reaction: f64,
+    /// It keeps so far away from where it means to get on while the creature is not calm, metres. Default 11.
+    pub keeps_away: f64,
+}
+
+impl Default for BotConfig {
+    fn default() -> Self {
+        Self {
+            calm: 3.0,
+            ahead: 1.2,
+            off_its_way: 1.6,
+            patience: 1.5,
+            blocked_for: 10.0,
+            plans_every: 0.5,
+            hangs_for: 2.5,
+            reaction: 0.25,
+            keeps_away: 11.0,
+        }
+    }
+}

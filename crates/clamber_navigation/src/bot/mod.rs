@@ -1,0 +1,231 @@
+//! A climber that plans.
+
+mod config;
+mod follow;
+mod ground;
+mod view;
+
+use clamber_climber::{ClimberInput, ClimberMode};
+use glam::DVec3;
+use std::sync::Arc;
+
+pub use config::BotConfig;
+pub use view::{Danger, View};
+
+use crate::{ClimbGraph, Footing, Goal, Plan, Start};
+use follow::Progress;
+use ground::Approach;
+
+/// Drives a climber to a goal on a creature, by its input alone.
+///
+/// On the ground it walks to where it can get on, keeps away while the creature attacks, and jumps. On the creature it follows a
+/// plan: it walks and climbs from patch to patch, holds on while the skin shakes, rests where the plan says so, and plans
+/// anew when it has been carried off its way, does not get on, or has fallen.
+#[derive(Clone, Debug)]
+pub struct Bot {
+    graph: Arc<ClimbGraph>,
+    config: BotConfig,
+    plan: Option<Progress>,
+    approach: Approach,
+    /// Ways that did not work, and until when they are avoided.
+    blocked: Vec<([usize; 2], f64)>,
+    /// When it last planned, seconds.
+    planned: f64,
+    /// Since when it hangs in calm, seconds.
+    hangs: Option<f64>,
+    /// Number of plans so far.
+    plans: u64,
+}
+
+impl Bot {
+    /// A bot that has not planned anything yet.
+    pub fn new(graph: Arc<ClimbGraph>, config: BotConfig) -> Self {
+        Self {
+            graph,
+            config,
+            plan: None,
+            approach: Approach::default(),
+            blocked: Vec::new(),
+            planned: f64::NEG_INFINITY,
+            hangs: None,
+            plans: 0,
+        }
+    }
+
+    /// The graph that it plans on.
+    pub fn graph(&self) -> &Arc<ClimbGraph> {
+        &self.graph
+    }
+
+    /// What it is about to do; `None` on the ground, and when no way leads to the goal.
+    pub fn plan(&self) -> Option<&Plan> {
+        self.plan.as_ref().map(|progress| &progress.plan)
+    }
+
+    /// How often it has planned.
+    pub fn plans(&self) -> u64 {
+        self.plans
+    }
+
+    /// True if it is on a patch of the goal.
+    pub fn is_there(&self, view: &View<'_>) -> bool {
+        let patch = self.patch_below(view);
+        patch.is_some_and(|patch| view.goal.patches().binary_search(&patch).is_ok())
+    }
+
+    /// It forgets its way: its goal is another one, or it was put elsewhere.
+    pub fn forget(&mut self) {
+        self.plan = None;
+        self.planned = f64::NEG_INFINITY;
+        self.approach = Approach::default();
+    }
+
+    /// The input for the next tick.
+    pub fn input(&mut self, view: &View<'_>) -> ClimberInput {
+        let state = view.climber.state();
+        if state.mode != ClimberMode::Hanging {
+            self.hangs = None;
+        }
+        let up = view.climber.config().up();
+        let holds = ClimberInput {
+            grip: true,
+            ..ClimberInput::IDLE
+        };
+        match state.mode {
+            ClimberMode::Tumbling | ClimberMode::Custom(_) => ClimberInput::IDLE,
+            ClimberMode::LedgeHanging => ClimberInput { climb: up, ..holds },
+            ClimberMode::Hanging => self.hang(view),
+            _ => match self.patch_below(view) {
+                Some(patch) => self.climb(view, patch),
+                None if view.is_on_creature() => holds,
+                None => self.come(view),
+            },
+        }
+    }
+
+    /// The patch that it is on.
+    fn patch_below(&self, view: &View<'_>) -> Option<usize> {
+        let (triangle, barycentric) = view.material()?;
+        self.graph.patch_at(triangle, barycentric)
+    }
+
+    /// Waits until the skin is calm; lets go where it cannot pull itself in.
+    fn hang(&mut self, view: &View<'_>) -> ClimberInput {
+        let seconds = view.seconds;
+        let state = view.climber.state();
+        if state.shake.length() > self.config.calm {
+            self.hangs = None;
+        }
+        let since = *self.hangs.get_or_insert(seconds);
+        ClimberInput {
+            grip: seconds - since <= self.config.hangs_for,
+            ..ClimberInput::IDLE
+        }
+    }
+
+    fn climb(&mut self, view: &View<'_>, patch: usize) -> ClimberInput {
+        self.approach.got_on();
+        let state = view.climber.state();
+        let stands = state.mode == ClimberMode::Standing;
+        let hold = ClimberInput {
+            grip: true,
+            ..ClimberInput::IDLE
+        };
+        let rest = ClimberInput::IDLE;
+        let is_shaken = state.shake.length() > self.config.calm || view.shake_ahead > self.config.calm;
+        if is_shaken {
+            if let Some(plan) = &mut self.plan {
+                plan.waits(view.seconds);
+            }
+            return hold;
+        }
+        self.follow_or_plan(view, patch);
+        let Some(progress) = &mut self.plan else {
+            // No way, or not enough strength for any: it rests if it can.
+            let is_level = self.graph.patches[patch].can_stand || stands;
+            return if is_level { rest } else { hold };
+        };
+        if let Some(wanted) = progress.rests_until() {
+            let level = view.is_level();
+            if state.stamina < wanted && (stands || level) {
+                progress.waits(view.seconds);
+                return rest;
+            }
+            progress.has_rested();
+        }
+        let Some(target) = progress.target(&self.graph, view) else {
+            return hold;
+        };
+        let toward = target.place - state.position;
+        let jumps = stands && progress.is_stuck(view.seconds, self.config.patience);
+        ClimberInput {
+            climb: toward.normalize_or(view.climber.config().up()),
+            walk: toward,
+            grip: target.footing == Footing::Holds || !stands,
+            jump: jumps && self.approach.jumps(view.seconds),
+            ..ClimberInput::IDLE
+        }
+    }
+
+    /// Goes on with its plan, or makes another one.
+    fn follow_or_plan(&mut self, view: &View<'_>, patch: usize) {
+        let seconds = view.seconds;
+        if let Some(progress) = &mut self.plan {
+            let is_on_it = progress.find(&self.graph, view, patch, self.config.off_its_way);
+            if is_on_it && !progress.is_stuck(seconds, 2.0 * self.config.patience) {
+                return;
+            }
+            if is_on_it && let Some(way) = progress.next_way() {
+                self.blocked.push((way, seconds + self.config.blocked_for));
+            }
+            self.plan = None;
+            self.planned = f64::NEG_INFINITY;
+        }
+        if seconds - self.planned < self.config.plans_every {
+            return;
+        }
+        self.planned = seconds;
+        self.plans += 1;
+        self.blocked.retain(|(_, until)| *until > seconds);
+        let state = view.climber.state();
+        let blocked: Vec<[usize; 2]> = self.blocked.iter().map(|(way, _)| *way).collect();
+        let start = |patch: usize, footing, later: f64| Start {
+            patch,
+            footing,
+            seconds: later,
+            stamina: state.stamina,
+        };
+        let footings = [Footing::Stands, Footing::Holds];
+        let mut starts: Vec<Start> = footings.map(|footing| start(patch, footing, 0.0)).to_vec();
+        for (beside, _, length) in self.graph.ways.of(patch) {
+            starts.extend(footings.map(|footing| start(beside, footing, length)));
+        }
+        let plan = self.graph.plan_around(&starts, view.goal, view.forecast, &blocked);
+        // Without the strength for it: as far as it gets.
+        let tireless: Vec<Start> = starts
+            .iter()
+            .map(|start| Start {
+                stamina: 1.0,
+                ..*start
+            })
+            .collect();
+        let plan = plan.or_else(|| {
+            self.graph
+                .plan_around(&tireless, view.goal, &crate::Forecast::still(), &blocked)
+        });
+        self.plan = plan.map(|plan| Progress::new(plan, seconds));
+    }
+
+    fn come(&mut self, view: &View<'_>) -> ClimberInput {
+        self.plan = None;
+        self.planned = f64::NEG_INFINITY;
+        self.approach.input(&self.graph, &self.config, view)
+    }
+}
+
+/// Where it goes next.
+#[derive(Clone, Copy, Debug)]
+struct Target {
+    place: DVec3,
+    footing: Footing,
+}

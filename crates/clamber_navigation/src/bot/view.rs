@@ -1,0 +1,95 @@
+use clamber_climber::Climber;
+use clamber_surface::mesh::TriangleId;
+use clamber_surface::surface::SkinnedSurface;
+use clamber_world::{MaterialPoint, Obstacle, ObstacleId};
+use glam::DVec3;
+
+use crate::graph::Patch;
+use crate::{Forecast, Goal};
+
+/// What a creature is about to do to somebody on the ground.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Danger {
+    /// It keeps still: it may be approached.
+    #[default]
+    None,
+    /// It walks about.
+    Moves,
+    /// It strikes.
+    Attacks,
+}
+
+/// What a bot sees in a tick.
+#[derive(Clone, Copy, Debug)]
+pub struct View<'a> {
+    /// Time, seconds.
+    pub seconds: f64,
+    /// The climber that it drives.
+    pub climber: &'a Climber,
+    /// The creature's obstacle id.
+    pub creature: ObstacleId,
+    /// Its skin.
+    pub surface: &'a SkinnedSurface,
+    /// Where to go.
+    pub goal: &'a Goal,
+    /// What the creature is expected to do.
+    pub forecast: &'a Forecast,
+    /// What it is about to do to somebody on the ground.
+    pub danger: Danger,
+    /// The hardest shake that the climber's place is about to get, metres a second squared.
+    pub shake_ahead: f64,
+}
+
+impl View<'_> {
+    pub(super) fn is_on_creature(&self) -> bool {
+        let support = self.climber.state().support;
+        support.is_some_and(|support| support.attachment.obstacle == self.creature)
+    }
+
+    /// The point of the skin that it stands on or holds.
+    pub(super) fn material(&self) -> Option<(TriangleId, [f32; 3])> {
+        let support = self.climber.state().support?;
+        let material = support.attachment.material;
+        let on_skin = support.attachment.obstacle == self.creature;
+        let triangle = material.triangle().filter(|_| on_skin)?;
+        Some((triangle, material.coordinates.map(|weight| weight as f32)))
+    }
+
+    /// True if what it is on is level enough to let go.
+    pub(super) fn is_level(&self) -> bool {
+        let config = self.climber.config();
+        let support = self.climber.state().support;
+        support.is_some_and(|support| {
+            let cosine = support.normal_in_world().dot(config.up());
+            cosine > libm::cos(LEVEL * config.ground.max_slope)
+        })
+    }
+
+    /// Where the climber's ball is when it is on a patch, as the creature is now.
+    pub(super) fn seat(&self, patch: &Patch) -> DVec3 {
+        let radius = self.climber.config().body.radius;
+        self.point(patch) + self.normal(patch) * radius
+    }
+
+    /// The middle of a patch, as the creature is now.
+    pub(super) fn point(&self, patch: &Patch) -> DVec3 {
+        let weights = patch.barycentric.map(|weight| weight as f32);
+        let material = MaterialPoint::on_triangle(patch.triangle, weights);
+        let motion = self.surface.motion(&material, 1.0);
+        motion.map_or(patch.point, |motion| motion.position)
+    }
+
+    fn normal(&self, patch: &Patch) -> DVec3 {
+        let vertices = self.surface.mesh().triangles().get(patch.triangle.index());
+        let Some([a, b, c]) = vertices.map(|vertices| {
+            vertices.map(|vertex| self.surface.in_model().position(vertex).unwrap_or_default())
+        }) else {
+            return patch.normal;
+        };
+        let normal = (b - a).cross(c - a).as_dvec3();
+        (self.surface.world_from_model().rotation * normal).normalize_or_zero()
+    }
+}
+
+/// It lets go on slopes up to this share of what it can stand on.
+const LEVEL: f64 = 0.8;
