@@ -2,8 +2,10 @@
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct BotConfig {
-    /// It holds on while the skin shakes harder than this, metres a second squared. Default 3.
+    /// It neither stands nor rests while the skin shakes harder than this, metres a second squared. Default 3.
     pub calm: f64,
+    /// It climbs in shakes up to this share of the one in which it can only hang. Default 0.7.
+    pub climbs_in: f64,
     /// It aims so far ahead on its way, metres. Default 1.2: three radii of a climber.
     pub ahead: f64,
     /// It plans anew if it is farther than this from its way, metres. Default 1.6.
@@ -26,6 +28,7 @@ impl Default for BotConfig {
     fn default() -> Self {
         Self {
             calm: 3.0,
+            climbs_in: 0.7,
             ahead: 1.2,
             off_its_way: 1.6,
             patience: 1.5,

@@ -1,5 +1,7 @@
 //! Following a plan while the skin moves.
 
+use glam::DVec3;
+
 use super::{Target, View};
 use crate::{ClimbGraph, Footing, Plan};
 
@@ -29,6 +31,10 @@ impl Progress {
             since: seconds,
             rested: 0,
         }
+    }
+
+    pub(super) fn describe(&self, _: &ClimbGraph, seconds: f64) -> String {
+        format!("at {}/{} far {} since {:.1} rest {:?}", self.at, self.plan.steps.len(), self.farthest, seconds - self.since, self.rests_until())
     }
 
     /// Finds the step that it is on. False if it is off its way.
@@ -115,26 +121,80 @@ impl Progress {
         Some([here, next])
     }
 
+    pub(super) fn debug(&self, graph: &ClimbGraph, view: &View<'_>) {
+        if std::env::var_os("DBG").is_none() || !self.is_stuck(view.seconds, 2.0) || self.is_stuck(view.seconds, 2.02) {
+            return;
+        }
+        let state = view.climber.state();
+        let here = state.position;
+        let gap = |p: DVec3| view.surface.in_world().closest_point(p, 1.0).map_or(9.0, |h| h.distance * if (p - h.point).dot(h.normal) < 0.0 { -1.0 } else { 1.0 });
+        eprintln!("    stuck {:?} at {here:.2} hold n {:.2} gap {:.2}", state.mode, state.support.map_or(DVec3::ZERO, |s| s.normal_in_world()), gap(here));
+        for step in self.plan.steps.iter().skip(self.at).take(4) {
+            let patch = &graph.patches()[step.patch];
+            let now = view.seat(patch);
+            let way: Vec<String> = (1..=4).map(|k| format!("{:.2}", gap(here.lerp(now, f64::from(k) / 4.0)))).collect();
+            eprintln!("      {} {:?} rest {:.2} now {:.2} n {:.1} dist {:.2} {:?} joint {:?} way {}", step.patch, step.footing, patch.seat, now, view.normal(patch), now.distance(here), patch.tag.kind, view.surface.mesh().joint_of(patch.triangle), way.join(" "));
+        }
+    }
+
     /// Where it goes: some way ahead.
     pub(super) fn target(&self, graph: &ClimbGraph, view: &View<'_>) -> Option<Target> {
-        let here = view.climber.state().position;
+        let state = view.climber.state();
+        let here = state.position;
+        let held = state.support.map_or(DVec3::ZERO, |support| support.normal_in_world());
+        let mut passed: Vec<DVec3> = Vec::new();
         let mut target = None;
         for (index, step) in self.plan.steps.iter().enumerate().skip(self.at) {
             if index > self.at && self.is_rest(index) && index > self.rested {
                 break;
             }
             let place = view.seat(&graph.patches()[step.patch]);
-            target = Some(Target {
-                place,
-                footing: step.footing,
-            });
-            if index > self.at && place.distance(here) > AHEAD {
+            if target.is_some() && !is_straight(here, place, &passed) {
                 break;
+            }
+            // Where it is already is no target.
+            if index > self.at || target.is_none() {
+                target = Some(Target {
+                    place,
+                    normal: view.normal(&graph.patches()[step.patch]),
+                    footing: step.footing,
+                });
+                // First to where it takes hold of another side.
+                let turns = target.is_some_and(|target| target.normal.dot(held) < CORNER);
+                if turns && index > self.at {
+                    break;
+                }
+            }
+            if index > self.at {
+                passed.push(place);
+                if place.distance(here) > AHEAD {
+                    break;
+                }
             }
         }
         target
     }
 }
+
+/// True if a straight way passes near places in between.
+fn is_straight(from: DVec3, to: DVec3, between: &[DVec3]) -> bool {
+    let way = to - from;
+    let squared = way.length_squared();
+    between.iter().all(|place| {
+        let share = if squared > 0.0 {
+            ((*place - from).dot(way) / squared).clamp(0.0, 1.0)
+        } else {
+            0.0
+        };
+        (from + way * share).distance(*place) <= ASIDE
+    })
+}
+
+/// Sides whose normals have a lower cosine than this meet in a corner.
+const CORNER: f64 = 0.7;
+
+/// It cuts corners by so much, metres.
+const ASIDE: f64 = 0.2;
 
 /// It aims so far ahead, metres.
 const AHEAD: f64 = 1.2;

@@ -3,6 +3,7 @@
 mod config;
 mod follow;
 mod ground;
+mod room;
 mod view;
 
 use clamber_climber::{ClimberInput, ClimberMode};
@@ -15,6 +16,7 @@ pub use view::{Danger, View};
 use crate::{ClimbGraph, Footing, Goal, Plan, Start};
 use follow::Progress;
 use ground::Approach;
+use room::Room;
 
 /// Drives a climber to a goal on a creature, by its input alone.
 ///
@@ -60,6 +62,11 @@ impl Bot {
     /// What it is about to do; `None` on the ground, and when no way leads to the goal.
     pub fn plan(&self) -> Option<&Plan> {
         self.plan.as_ref().map(|progress| &progress.plan)
+    }
+
+    #[doc(hidden)]
+    pub fn describe(&self, seconds: f64) -> String {
+        self.plan.as_ref().map_or_else(String::new, |p| p.describe(&self.graph, seconds))
     }
 
     /// How often it has planned.
@@ -132,7 +139,13 @@ impl Bot {
             ..ClimberInput::IDLE
         };
         let rest = ClimberInput::IDLE;
-        let is_shaken = state.shake.length() > self.config.calm || view.shake_ahead > self.config.calm;
+        let hangs = view.climber.config().grip.map_or(0.0, |grip| grip.hang_acceleration);
+        let most = if stands {
+            self.config.calm
+        } else {
+            self.config.climbs_in * hangs
+        };
+        let is_shaken = state.shake.length().max(view.shake_ahead) > most;
         if is_shaken {
             if let Some(plan) = &mut self.plan {
                 plan.waits(view.seconds);
@@ -156,10 +169,11 @@ impl Bot {
         let Some(target) = progress.target(&self.graph, view) else {
             return hold;
         };
+        progress.debug(&self.graph, view);
         let toward = target.place - state.position;
         let jumps = stands && progress.is_stuck(view.seconds, self.config.patience);
         ClimberInput {
-            climb: toward.normalize_or(view.climber.config().up()),
+            climb: view.against(&target).normalize_or(view.climber.config().up()),
             walk: toward,
             grip: target.footing == Footing::Holds || !stands,
             jump: jumps && self.approach.jumps(view.seconds),
@@ -188,7 +202,12 @@ impl Bot {
         self.plans += 1;
         self.blocked.retain(|(_, until)| *until > seconds);
         let state = view.climber.state();
-        let blocked: Vec<[usize; 2]> = self.blocked.iter().map(|(way, _)| *way).collect();
+        let blocked = &self.blocked;
+        let room = Room::new(view);
+        let is_open = |from: usize, to: usize| {
+            !blocked.iter().any(|(way, _)| *way == [from, to])
+                && room.is_there(&self.graph.patches[to], to)
+        };
         let start = |patch: usize, footing, later: f64| Start {
             patch,
             footing,
@@ -200,7 +219,7 @@ impl Bot {
         for (beside, _, length) in self.graph.ways.of(patch) {
             starts.extend(footings.map(|footing| start(beside, footing, length)));
         }
-        let plan = self.graph.plan_around(&starts, view.goal, view.forecast, &blocked);
+        let plan = self.graph.plan_around(&starts, view.goal, view.forecast, &is_open);
         // Without the strength for it: as far as it gets.
         let tireless: Vec<Start> = starts
             .iter()
@@ -211,7 +230,7 @@ impl Bot {
             .collect();
         let plan = plan.or_else(|| {
             self.graph
-                .plan_around(&tireless, view.goal, &crate::Forecast::still(), &blocked)
+                .plan_around(&tireless, view.goal, &crate::Forecast::still(), &is_open)
         });
         self.plan = plan.map(|plan| Progress::new(plan, seconds));
     }
@@ -227,5 +246,6 @@ impl Bot {
 #[derive(Clone, Copy, Debug)]
 struct Target {
     place: DVec3,
+    normal: DVec3,
     footing: Footing,
 }

@@ -4,6 +4,7 @@ use clamber_surface::surface::SkinnedSurface;
 use clamber_world::{MaterialPoint, Obstacle, ObstacleId};
 use glam::DVec3;
 
+use super::Target;
 use crate::graph::Patch;
 use crate::{Forecast, Goal};
 
@@ -65,10 +66,30 @@ impl View<'_> {
         })
     }
 
+    /// The way to a target. If that rises above the skin that the climber holds now, as a wall above a step, it goes against
+    /// the target's skin, so as to take hold of it.
+    pub(super) fn against(&self, target: &Target) -> DVec3 {
+        let (state, radius) = (self.climber.state(), self.climber.config().body.radius);
+        let toward = target.place - state.position;
+        let held = state.support.map_or(DVec3::ZERO, |support| support.normal_in_world());
+        let rises = (2.0 * toward.normalize_or_zero().dot(held)).clamp(0.0, 1.0);
+        toward - target.normal * (rises * radius)
+    }
+
     /// Where the climber's ball is when it is on a patch, as the creature is now.
     pub(super) fn seat(&self, patch: &Patch) -> DVec3 {
         let radius = self.climber.config().body.radius;
         self.point(patch) + self.normal(patch) * radius
+    }
+
+    /// True if a ball at a place is no deeper in the skin than a share of its radius.
+    pub(super) fn has_room(&self, place: DVec3, deep: f64) -> bool {
+        let radius = self.climber.config().body.radius;
+        let hit = self.surface.in_world().closest_point(place, radius);
+        hit.is_none_or(|hit| {
+            let is_outside = (place - hit.point).dot(hit.normal) >= 0.0;
+            is_outside && hit.distance >= radius * (1.0 - deep)
+        })
     }
 
     /// The middle of a patch, as the creature is now.
@@ -79,7 +100,8 @@ impl View<'_> {
         motion.map_or(patch.point, |motion| motion.position)
     }
 
-    fn normal(&self, patch: &Patch) -> DVec3 {
+    /// The outward normal of a patch, as the creature is now.
+    pub(super) fn normal(&self, patch: &Patch) -> DVec3 {
         let vertices = self.surface.mesh().triangles().get(patch.triangle.index());
         let Some([a, b, c]) = vertices.map(|vertices| {
             vertices.map(|vertex| self.surface.in_model().position(vertex).unwrap_or_default())

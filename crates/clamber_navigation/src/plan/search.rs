@@ -83,22 +83,22 @@ impl ClimbGraph {
     /// so that a way that would leave less than a sixteenth more may be missed. The least time to the goal at rest never
     /// exceeds the time that is needed, so what comes to the goal first is fastest.
     pub fn plan(&self, starts: &[Start], goal: &Goal, forecast: &Forecast) -> Option<Plan> {
-        self.plan_around(starts, goal, forecast, &[])
+        self.plan_around(starts, goal, forecast, &|_, _| true)
     }
 
-    /// [`ClimbGraph::plan`] without some ways.
+    /// [`ClimbGraph::plan`] on those ways only that are open, from a patch to another.
     pub(crate) fn plan_around(
         &self,
         starts: &[Start],
         goal: &Goal,
         forecast: &Forecast,
-        blocked: &[[usize; 2]],
+        is_open: &dyn Fn(usize, usize) -> bool,
     ) -> Option<Plan> {
         let mut search = Search {
             graph: self,
             goal,
             forecast,
-            blocked,
+            is_open,
             labels: Vec::new(),
             best: vec![[f64::INFINITY; LEVELS + 1]; 2 * self.patches.len()],
             open: BinaryHeap::new(),
@@ -119,8 +119,7 @@ struct Search<'a> {
     graph: &'a ClimbGraph,
     goal: &'a Goal,
     forecast: &'a Forecast,
-    /// Ways that are not taken, in this direction.
-    blocked: &'a [[usize; 2]],
+    is_open: &'a dyn Fn(usize, usize) -> bool,
     labels: Vec<Label>,
     /// Of each node and each level of stamina, when it is reached with that much.
     best: Vec<[f64; LEVELS + 1]>,
@@ -175,7 +174,7 @@ impl Search<'_> {
                     Footing::Stands => way.walks,
                     Footing::Holds => way.climbs,
                 };
-                if !leads || self.blocked.contains(&[patch, beside]) {
+                if !leads || !(self.is_open)(patch, beside) {
                     continue;
                 }
                 let went = self.go(patch, footing, (label.seconds, label.stamina), length);

@@ -93,6 +93,31 @@ impl Planner {
 
     /// The input of the tick that begins at `seconds`.
     pub(super) fn input(&mut self, performer: &Performer<'_>, seconds: f64) -> ClimberInput {
+        let input = self.input_of(performer, seconds);
+        let fine = std::env::var("FINE").ok().and_then(|f| f.parse::<f64>().ok()).is_some_and(|f| (f..f + 3.0).contains(&seconds));
+        if fine {
+            let state = performer.climber().state();
+            eprintln!("  fine {seconds:.2} {:?} {:.2} n {:.2} climb {:.2} own {:.2} shake {:.1} {}", state.mode, state.position, state.support.map_or(DVec3::ZERO, |s| s.normal_in_world()), input.climb, state.velocity - state.base_velocity, state.shake.length(), self.bot.describe(seconds));
+        }
+        if std::env::var_os("DBG").is_some() && (seconds * 60.0).round() as u64 % 30 == 0 {
+            let climber = performer.climber();
+            let state = climber.state();
+            let here = state.support.and_then(|support| {
+                let material = support.attachment.material;
+                let weights = material.coordinates.map(|weight| weight as f32);
+                self.bot.graph().patch_at(material.triangle()?, weights)
+            });
+            let target = &self.targets[self.at];
+            let left = here.map_or(f64::NAN, |here| least(&target.goal, here));
+            eprintln!("{seconds:6.1} {:12} {:9} y {:5.1} left {left:5.1} st {:.2} shake {:4.1} aim {:?}/{:?} plans {} steps {} {} {} {:?} {}",
+                performer.playing().split('/').last().unwrap_or(""), format!("{:?}", state.mode), state.position.y, state.stamina, state.shake.length(),
+                target.aim.weak_point, target.aim.plate, self.bot.plans(), self.bot.plan().map_or(0, |p| p.steps.len()),
+                if input.grip {'g'} else {'-'}, if input.jump {'j'} else {'-'}, (input.climb * 10.0).round() / 10.0, self.bot.describe(seconds)+&format!(" miss {:?} aimed {:?}", self.fencer.miss(performer, target.aim).map(|m| (m*10.0).round()/10.0), performer.arena().and_then(|a| a.stab_aim(clamber_fight::FighterId(0))).map(|a| (a.weak_point, a.plate))));
+        }
+        input
+    }
+
+    fn input_of(&mut self, performer: &Performer<'_>, seconds: f64) -> ClimberInput {
         let sight = self.look(performer.sight(), seconds);
         self.choose(performer);
         let climber = performer.climber();

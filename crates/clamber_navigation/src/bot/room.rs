@@ -1,0 +1,39 @@
+//! Whether there is room on a patch as the creature is now.
+
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+
+use super::View;
+use crate::graph::Patch;
+
+/// Patches within so many metres of the climber are looked at: the creature moves on before it comes to others.
+const LOOKS: f64 = 5.0;
+
+/// A ball that is deeper in skin than this share of its radius has no room.
+const DEEP: f64 = 0.6;
+
+/// Patches near the climber, and whether there is room on them.
+pub(super) struct Room<'a> {
+    view: &'a View<'a>,
+    known: RefCell<BTreeMap<usize, bool>>,
+}
+
+impl<'a> Room<'a> {
+    pub(super) fn new(view: &'a View<'a>) -> Self {
+        Self {
+            view,
+            known: RefCell::default(),
+        }
+    }
+
+    pub(super) fn is_there(&self, patch: &Patch, index: usize) -> bool {
+        if let Some(known) = self.known.borrow().get(&index) {
+            return *known;
+        }
+        let seat = self.view.seat(patch);
+        let is_far = seat.distance(self.view.climber.state().position) > LOOKS;
+        let is_there = is_far || self.view.has_room(seat, DEEP);
+        self.known.borrow_mut().insert(index, is_there);
+        is_there
+    }
+}
