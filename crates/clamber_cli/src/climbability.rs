@@ -78,6 +78,7 @@ pub fn print(options: &ClimbabilityOptions) -> Result<bool, ClimbabilityError> {
         skeleton: &rig.skeleton,
         mesh: &rig.collider,
         clips: &rig.clips,
+        plates: &[],
         weak_points: &rig.weak_points,
         world_from_model: Similarity::from_scale(scale),
         ground: f64::from(low) * scale,

@@ -1,7 +1,7 @@
 use std::sync::Arc;
 
 use clamber_surface::geometry::Similarity;
-use clamber_surface::mesh::ColliderMesh;
+use clamber_surface::mesh::{ColliderMesh, TriangleId};
 use clamber_surface::rig::{Clip, Skeleton, WeakPoint};
 
 /// A creature, as a file brings it: `clamber_gltf::Rig` has these fields.
@@ -13,6 +13,8 @@ pub struct GraphSource<'a> {
     pub mesh: &'a Arc<ColliderMesh>,
     /// What it moves by.
     pub clips: &'a [Clip],
+    /// Parts of the skin that can be removed one by one, such as plates of armour: the skin below them is divided as well.
+    pub plates: &'a [Vec<TriangleId>],
     /// Where it can be wounded.
     pub weak_points: &'a [WeakPoint],
     /// Where it stands, and how large it is.

@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use clamber_climber::ClimberConfig;
 use clamber_navigation::{ClimbGraph, GraphConfig, GraphSource, NavigationError};
 use clamber_surface::geometry::Similarity;
-use clamber_surface::mesh::{SurfaceKind, SurfaceTag};
+use clamber_surface::mesh::{SurfaceKind, SurfaceTag, TriangleId};
 
 use clamber_colossus::{Brain, ColossusError, CreatureKind, CreatureParts};
 use clamber_gltf::{GltfError, LoadOptions};
@@ -37,7 +37,7 @@ pub struct Creature {
 
 /// Graphs, by mesh, climber and height.
 pub(crate) type Graphs = Arc<Mutex<Vec<(GraphKey, Arc<ClimbGraph>)>>>;
-type GraphKey = (Arc<ColliderMesh>, ClimberConfig, f64);
+type GraphKey = (Arc<ColliderMesh>, ClimberConfig, f64, Vec<Vec<TriangleId>>);
 
 
 /// Why a creature cannot be loaded, built or posed.
@@ -93,7 +93,7 @@ impl Creature {
         })
     }
 
-    /// The graph of its skin for a climber, when it is so many metres tall and stands on the ground. A climber grips fur and
+    /// The graph of its skin for a climber, when it is so many metres tall, stands on the ground, and has plates. A climber grips fur and
     /// stone, or all of it if it has no fur. It is made once for each size: clones share it.
     ///
     /// # Errors
@@ -102,12 +102,14 @@ impl Creature {
         &self,
         climber: &ClimberConfig,
         height: f64,
+        plates: &[Vec<TriangleId>],
     ) -> Result<Arc<ClimbGraph>, NavigationError> {
         let mut known = self.graphs.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((_, graph)) = known
             .iter()
-            .find(|((mesh, other, tall), _)| {
-                Arc::ptr_eq(mesh, &self.collider) && other == climber && *tall == height
+            .find(|((mesh, other, tall, parts), _)| {
+                let is_same = other == climber && *tall == height && parts == plates;
+                is_same && Arc::ptr_eq(mesh, &self.collider)
             })
         {
             return Ok(Arc::clone(graph));
@@ -121,6 +123,7 @@ impl Creature {
             skeleton: &self.skeleton,
             mesh: &self.collider,
             clips: &self.clips,
+            plates,
             weak_points: &self.weak_points,
             world_from_model: Similarity::from_scale(scale),
             ground: f64::from(low) * scale,
@@ -137,7 +140,7 @@ impl Creature {
         };
         let graph = ClimbGraph::build(&source, &config, |_| ControlFlow::Continue(()))?;
         let graph = Arc::new(graph);
-        let key = (Arc::clone(&self.collider), *climber, height);
+        let key = (Arc::clone(&self.collider), *climber, height, plates.to_vec());
         known.push((key, Arc::clone(&graph)));
         Ok(graph)
     }

@@ -206,6 +206,7 @@ impl Bot {
         let room = Room::new(view);
         let is_open = |from: usize, to: usize| {
             !blocked.iter().any(|(way, _)| *way == [from, to])
+                && self.graph.is_there(to, view.surface)
                 && room.is_there(&self.graph.patches[to], to)
         };
         let start = |patch: usize, footing, later: f64| Start {

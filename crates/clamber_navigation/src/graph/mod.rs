@@ -9,6 +9,7 @@ mod ways;
 use std::ops::ControlFlow;
 
 use clamber_surface::mesh::TriangleId;
+use clamber_surface::surface::SkinnedSurface;
 
 use crate::clips::ClipFacts;
 use crate::progress::Tell;
@@ -32,6 +33,8 @@ pub struct ClimbGraph {
     pub(crate) ways: Ways,
     pub(crate) entries: Vec<Entry>,
     pub(crate) clips: ClipFacts,
+    /// One triangle of each plate.
+    plates: Vec<Option<TriangleId>>,
     locator: Locator,
 }
 
@@ -67,6 +70,7 @@ impl ClimbGraph {
             entries: entries::entries(survey, &patches, &patch_of),
             locator: Locator::new(survey, &patch_of, source.mesh),
             clips,
+            plates: source.plates.iter().map(|plate| plate.first().copied()).collect(),
             patches,
         };
         Ok((graph, patch_of))
@@ -85,6 +89,15 @@ impl ClimbGraph {
     /// The patch of a point of the skin, or the nearest one; `None` if there is none near.
     pub fn patch_at(&self, triangle: TriangleId, barycentric: [f32; 3]) -> Option<usize> {
         self.locator.find(triangle, barycentric)
+    }
+
+    /// True if a patch is there as the skin is now: its own triangle is, and the plate above it is not.
+    pub fn is_there(&self, patch: usize, surface: &SkinnedSurface) -> bool {
+        self.patches.get(patch).is_some_and(|patch| {
+            let plate = patch.below.and_then(|plate| *self.plates.get(usize::from(plate))?);
+            surface.is_enabled(patch.triangle)
+                && plate.is_none_or(|triangle| !surface.is_enabled(triangle))
+        })
     }
 
     /// Number of ways between patches, each counted there and back.

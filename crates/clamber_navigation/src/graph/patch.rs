@@ -30,6 +30,8 @@ pub struct Patch {
     pub can_stand: bool,
     /// True if a climber can hold on there at rest.
     pub can_hold: bool,
+    /// The plate that has to be removed for a climber to have room there.
+    pub below: Option<u16>,
 }
 
 /// A piece that belongs to no patch: a climber can neither stand nor hold on there.
@@ -64,7 +66,9 @@ pub(super) fn merge(survey: &Survey) -> (Vec<Patch>, Vec<u32>) {
             for beside in survey.links.of(piece) {
                 let seat = pieces[beside].seat;
                 let is_near = seat.is_some_and(|seat| seat.distance(start) <= survey.config.spacing);
-                let is_alike = patch_of[beside] == NONE && kinds[beside] == kinds[first];
+                let is_alike = patch_of[beside] == NONE
+                    && kinds[beside] == kinds[first]
+                    && pieces[beside].below == pieces[first].below;
                 if is_near && is_alike && (!kinds[first][1] || survey.can_climb(ends(piece, beside))) {
                     patch_of[beside] = id;
                     members.push(beside);
@@ -94,6 +98,7 @@ fn patch(survey: &Survey, members: &[usize], [can_stand, can_hold]: [bool; 2]) -
         area: members.iter().map(|piece| survey.pieces[*piece].area).sum(),
         can_stand,
         can_hold,
+        below: piece.below,
     }
 }
 

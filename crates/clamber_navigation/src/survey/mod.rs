@@ -57,17 +57,33 @@ impl Survey {
         let mut pieces = pieces::divide(&surface, config)?;
         let of = pieces.len();
         let lowest = source.ground + LOWEST * config.radius();
+        let above = |seat: &DVec3| seat.dot(config.climber.up()) >= lowest;
+        let find = |surface: &SkinnedSurface, piece: &Piece| {
+            seat::seat(surface, piece.point, piece.normal, config.radius()).filter(above)
+        };
+        let mut arms = vec![f64::INFINITY; of];
         for (done, piece) in pieces.iter_mut().enumerate() {
             tell.at(Stage::Seats, done, of)?;
-            let above = |seat: &DVec3| seat.dot(config.climber.up()) >= lowest;
-            let seat = seat::seat(&surface, piece.point, piece.normal, config.radius());
-            piece.seat = seat.filter(above);
+            piece.seat = find(&surface, piece);
         }
-        let mut arms = Vec::with_capacity(of);
         for (done, piece) in pieces.iter().enumerate() {
             tell.at(Stage::Arms, done, of)?;
-            let arm = piece.seat.map(|seat| arms::arm(&holds, seat, config));
-            arms.push(arm.unwrap_or(f64::INFINITY));
+            if let Some(seat) = piece.seat {
+                arms[done] = arms::arm(&holds, seat, config);
+            }
+        }
+        for (plate, triangles) in source.plates.iter().enumerate() {
+            let bare = without(&surface, triangles)?;
+            let held = without(&holds, triangles)?;
+            for (piece, arm) in pieces.iter_mut().zip(&mut arms) {
+                if piece.seat.is_some() || !bare.is_enabled(piece.triangle) {
+                    continue;
+                }
+                if let Some(seat) = find(&bare, piece) {
+                    (piece.seat, piece.below) = (Some(seat), Some(plate as u16));
+                    *arm = arms::arm(&held, seat, config);
+                }
+            }
         }
         Ok(Self {
             config: config.clone(),
@@ -114,4 +130,16 @@ impl Survey {
         let cosine = piece.normal.dot(self.config.climber.up());
         libm::acos(cosine.clamp(-1.0, 1.0))
     }
+}
+
+/// A surface without a part of it.
+fn without(
+    surface: &SkinnedSurface,
+    triangles: &[TriangleId],
+) -> Result<SkinnedSurface, NavigationError> {
+    let mut bare = surface.clone();
+    for triangle in triangles {
+        bare.disable_triangle(*triangle)?;
+    }
+    Ok(bare)
 }

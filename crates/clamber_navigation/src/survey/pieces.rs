@@ -32,6 +32,8 @@ pub(crate) struct Piece {
     pub(crate) normal: DVec3,
     /// Where the climber's ball rests on it, at rest; `None` if it has no room there.
     pub(crate) seat: Option<DVec3>,
+    /// The plate that has to be removed for the ball to have room.
+    pub(crate) below: Option<u16>,
 }
 
 /// Divides a surface, which stands at rest, into pieces. They are sorted by place, so that the numbers of triangles do not
@@ -185,6 +187,7 @@ impl Face {
             point: weighted.fold(DVec3::ZERO, |sum, part| sum + part),
             normal,
             seat: None,
+            below: None,
         }
     }
 }

@@ -102,6 +102,7 @@ impl Body {
             skeleton: &skeleton,
             mesh: &mesh,
             clips: &[],
+            plates: &[],
             weak_points: &self.weak_points,
             world_from_model: Similarity::IDENTITY,
             ground: 0.0,

@@ -10,6 +10,7 @@ use clamber_colossus::{AttackPhase, Brain, CreatureConfig};
 use clamber_fight::{
     Arena, ArenaConfig, ArenaState, CreatureId, Fighter, FighterConfig, FighterId,
 };
+use clamber_surface::mesh::TriangleId;
 use clamber_surface::rig::Palette;
 use clamber_surface::surface::SkinnedSurface;
 use clamber_world::{Obstacle, ObstacleId};
@@ -207,6 +208,12 @@ impl<'a> Performer<'a> {
     /// The creature that lives; `None` if it plays a timetable.
     pub fn life(&self) -> Option<&clamber_colossus::Creature> {
         self.arena()?.creature(GIANT)
+    }
+
+    /// The triangles of each of its plates; none if it plays a timetable.
+    pub(super) fn plates(&self) -> Vec<Vec<TriangleId>> {
+        let plates = self.life().map_or(&[][..], |life| life.kind().plates());
+        plates.iter().map(|plate| plate.triangles.clone()).collect()
     }
 
     /// Who fights; `None` if the creature plays a timetable.

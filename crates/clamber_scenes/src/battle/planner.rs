@@ -310,12 +310,19 @@ fn targets(performer: &Performer<'_>, graph: &ClimbGraph) -> Vec<Target> {
             }
         }
         let reach = (f64::from(point.radius) + BESIDE) * scale;
+        let is_skin = |patch: &usize| {
+            let triangle = graph.patches()[*patch].triangle;
+            let mut plates = kind.plates().iter();
+            !plates.any(|plate| plate.triangles.contains(&triangle))
+        };
+        let beside = graph.patches_near(place, reach);
+        let beside: Vec<usize> = beside.into_iter().filter(is_skin).collect();
         targets.push(Target {
             aim: Aim {
                 weak_point: Some(index),
                 plate: None,
             },
-            goal: graph.goal(&graph.patches_near(place, reach)),
+            goal: graph.goal(&beside),
         });
     }
     targets

@@ -130,7 +130,8 @@ impl<'a> Battle<'a> {
                 let player = match options.pilot {
                     PilotKind::Script => Player::Script(Box::new(Pilot::new(&performer)?)),
                     PilotKind::Bot => {
-                        let graph = creature.graph(climber.config(), height)?;
+                        let plates = performer.plates();
+                        let graph = creature.graph(climber.config(), height, &plates)?;
                         Player::Bot(Box::new(Planner::new(&performer, graph)?))
                     }
                 };
