@@ -2,8 +2,14 @@
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct BotConfig {
-    /// It neither stands nor rests while the skin shakes harder than this, metres a second squared. Default 3.
-    pub calm: f64,
+    /// It stands and rests in shakes up to this share of the one that throws it off. Default 0.35.
+    pub stands_in: f64,
+    /// With less stamina it rests before it goes on, until it has `rested`. Default 0.3.
+    pub tired: f64,
+    /// Default 0.9.
+    pub rested: f64,
+    /// Stamina that its plans do not count on. Default 0.2.
+    pub reserve: f64,
     /// It climbs in shakes up to this share of the one in which it can only hang. Default 0.7.
     pub climbs_in: f64,
     /// It aims so far ahead on its way, metres. Default 1.2: three radii of a climber.
@@ -27,7 +33,10 @@ pub struct BotConfig {
 impl Default for BotConfig {
     fn default() -> Self {
         Self {
-            calm: 3.0,
+            stands_in: 0.35,
+            tired: 0.3,
+            rested: 0.9,
+            reserve: 0.2,
             climbs_in: 0.7,
             ahead: 1.2,
             off_its_way: 1.6,

@@ -37,12 +37,25 @@ pub struct Bot {
     hangs: Option<f64>,
     /// Number of plans so far.
     plans: u64,
+    /// Level patches, where it rests.
+    level: Arc<Goal>,
+    /// It rests before it goes on.
+    rests: bool,
 }
 
 impl Bot {
     /// A bot that has not planned anything yet.
     pub fn new(graph: Arc<ClimbGraph>, config: BotConfig) -> Self {
+        let level: Vec<usize> = (0..graph.patches.len())
+            .filter(|patch| {
+                let patch = &graph.patches[*patch];
+                let cosine = patch.normal.dot(graph.config.climber.up());
+                patch.can_stand && cosine > libm::cos(LEVEL * graph.config.climber.ground.max_slope)
+            })
+            .collect();
         Self {
+            level: Arc::new(graph.goal(&level)),
+            rests: false,
             graph,
             config,
             plan: None,
@@ -87,10 +100,25 @@ impl Bot {
         self.approach = Approach::default();
     }
 
+    /// True if it has to rest before it goes on, or does anything that costs strength.
+    pub fn wants_rest(&mut self, view: &View<'_>) -> bool {
+        let state = view.climber.state();
+        let before = self.rests;
+        let least = if before { self.config.rested } else { self.config.tired };
+        let costs = view.climber.config().stamina.is_some_and(|stamina| stamina.refill > 0.0);
+        self.rests = costs && view.is_on_creature() && state.stamina < least;
+        if self.rests != before {
+            self.plan = None;
+            self.planned = f64::NEG_INFINITY;
+        }
+        self.rests
+    }
+
     /// The input for the next tick.
     pub fn input(&mut self, view: &View<'_>) -> ClimberInput {
+        self.wants_rest(view);
         let state = view.climber.state();
-        if state.mode != ClimberMode::Hanging {
+        if !matches!(state.mode, ClimberMode::Hanging | ClimberMode::LedgeHanging) {
             self.hangs = None;
         }
         let up = view.climber.config().up();
@@ -100,7 +128,10 @@ impl Bot {
         };
         match state.mode {
             ClimberMode::Tumbling | ClimberMode::Custom(_) => ClimberInput::IDLE,
-            ClimberMode::LedgeHanging => ClimberInput { climb: up, ..holds },
+            ClimberMode::LedgeHanging => ClimberInput {
+                climb: up,
+                ..self.hang(view)
+            },
             ClimberMode::Hanging => self.hang(view),
             _ => match self.patch_below(view) {
                 Some(patch) => self.climb(view, patch),
@@ -120,7 +151,7 @@ impl Bot {
     fn hang(&mut self, view: &View<'_>) -> ClimberInput {
         let seconds = view.seconds;
         let state = view.climber.state();
-        if state.shake.length() > self.config.calm {
+        if state.shake.length() > STILL {
             self.hangs = None;
         }
         let since = *self.hangs.get_or_insert(seconds);
@@ -140,8 +171,10 @@ impl Bot {
         };
         let rest = ClimberInput::IDLE;
         let hangs = view.climber.config().grip.map_or(0.0, |grip| grip.hang_acceleration);
-        let most = if stands {
-            self.config.calm
+        let throws = view.climber.config().ground.throw_acceleration;
+        let rests_here = self.rests && (stands || view.is_level());
+        let most = if stands || rests_here {
+            self.config.stands_in * throws
         } else {
             self.config.climbs_in * hangs
         };
@@ -152,6 +185,9 @@ impl Bot {
             }
             return hold;
         }
+        if rests_here {
+            return rest;
+        }
         self.follow_or_plan(view, patch);
         let Some(progress) = &mut self.plan else {
             // No way, or not enough strength for any: it rests if it can.
@@ -160,7 +196,7 @@ impl Bot {
         };
         if let Some(wanted) = progress.rests_until() {
             let level = view.is_level();
-            if state.stamina < wanted && (stands || level) {
+            if state.stamina < wanted + self.config.reserve && state.stamina < 1.0 && (stands || level) {
                 progress.waits(view.seconds);
                 return rest;
             }
@@ -202,6 +238,8 @@ impl Bot {
         self.plans += 1;
         self.blocked.retain(|(_, until)| *until > seconds);
         let state = view.climber.state();
+        let level = Arc::clone(&self.level);
+        let goal = if self.rests { &level } else { view.goal };
         let blocked = &self.blocked;
         let room = Room::new(view);
         let is_open = |from: usize, to: usize| {
@@ -213,14 +251,14 @@ impl Bot {
             patch,
             footing,
             seconds: later,
-            stamina: state.stamina,
+            stamina: (state.stamina - self.config.reserve).max(0.0),
         };
         let footings = [Footing::Stands, Footing::Holds];
         let mut starts: Vec<Start> = footings.map(|footing| start(patch, footing, 0.0)).to_vec();
         for (beside, _, length) in self.graph.ways.of(patch) {
             starts.extend(footings.map(|footing| start(beside, footing, length)));
         }
-        let plan = self.graph.plan_around(&starts, view.goal, view.forecast, &is_open);
+        let plan = self.graph.plan_around(&starts, goal, view.forecast, &is_open);
         // Without the strength for it: as far as it gets.
         let tireless: Vec<Start> = starts
             .iter()
@@ -231,7 +269,7 @@ impl Bot {
             .collect();
         let plan = plan.or_else(|| {
             self.graph
-                .plan_around(&tireless, view.goal, &crate::Forecast::still(), &is_open)
+                .plan_around(&tireless, goal, &crate::Forecast::still(), &is_open)
         });
         self.plan = plan.map(|plan| Progress::new(plan, seconds));
     }
@@ -242,6 +280,12 @@ impl Bot {
         self.approach.input(&self.graph, &self.config, view)
     }
 }
+
+/// It rests on slopes up to this share of those that it can stand on.
+const LEVEL: f64 = 0.6;
+
+/// In shakes beyond this it waits before it lets go, metres a second squared.
+const STILL: f64 = 3.0;
 
 /// Where it goes next.
 #[derive(Clone, Copy, Debug)]

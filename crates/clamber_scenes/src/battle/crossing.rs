@@ -14,16 +14,15 @@ const BETWEEN_JUMPS: f64 = 1.2;
 /// A climber on its way over the outcrop.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Crossing {
-    crossed: bool,
     jumped: Option<f64>,
 }
 
 impl Crossing {
-    /// The input on the way; `None` once it is over the outcrop. It runs from attacks.
+    /// The input on the way; `None` where the outcrop is not before it. It runs from attacks.
     pub(super) fn input(&mut self, climber: &Climber, seconds: f64, attacked: bool) -> Option<ClimberInput> {
         let state = climber.state();
-        self.crossed |= state.position.x > outcrop::END;
-        if self.crossed {
+        let is_before = state.position.x < outcrop::END && outcrop::is_in_line(state.position.z);
+        if !is_before {
             return None;
         }
         if state.mode == ClimberMode::Tumbling {

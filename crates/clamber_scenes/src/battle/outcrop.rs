@@ -23,8 +23,16 @@ const STEEPNESS: f64 = 1.732;
 /// Half of its width along Z, metres.
 const HALF_WIDTH: f64 = 3.5;
 
+/// Room beside it, metres.
+const BESIDE: f64 = 1.0;
+
 /// X of the end of its slope, metres.
 pub(super) const END: f64 = WALL + TOP + SLOPE;
+
+/// True if whoever walks along +X at this z comes to the outcrop, or near it.
+pub(super) fn is_in_line(z: f64) -> bool {
+    (z - MIDDLE).abs() < HALF_WIDTH + BESIDE
+}
 
 /// The outcrop's corners, in the world, and its triangles.
 pub fn mesh() -> (Vec<Vec3>, Vec<[u32; 3]>) {

@@ -74,6 +74,8 @@ pub enum PerformerState {
 pub(super) struct Sight {
     /// It stays where it is, and neither shakes nor attacks: its feet may be approached.
     pub(super) is_calm: bool,
+    /// It stays where it is.
+    pub(super) stays: bool,
     /// It raises a limb against somebody, or strikes.
     pub(super) attacks: bool,
 }
@@ -289,11 +291,13 @@ impl<'a> Performer<'a> {
                 let attacks = matches!(attack, Some(AttackPhase::WindUp | AttackPhase::Active));
                 Sight {
                     is_calm: is_quiet && !attacks,
+                    stays: life.state().speed() < 0.5,
                     attacks,
                 }
             }
             Part::Plays(play) => Sight {
                 is_calm: play.choreography.is_calm(),
+                stays: play.choreography.is_calm(),
                 attacks: false,
             },
         }

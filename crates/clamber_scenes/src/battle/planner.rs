@@ -108,11 +108,12 @@ impl Planner {
                 self.bot.graph().patch_at(material.triangle()?, weights)
             });
             let target = &self.targets[self.at];
+            let act = performer.fighter().map_or(String::new(), |f| format!("{:?}", f.act()).chars().take(40).collect());
             let left = here.map_or(f64::NAN, |here| least(&target.goal, here));
             eprintln!("{seconds:6.1} {:12} {:9} y {:5.1} left {left:5.1} st {:.2} shake {:4.1} aim {:?}/{:?} plans {} steps {} {} {} {:?} {}",
                 performer.playing().split('/').last().unwrap_or(""), format!("{:?}", state.mode), state.position.y, state.stamina, state.shake.length(),
                 target.aim.weak_point, target.aim.plate, self.bot.plans(), self.bot.plan().map_or(0, |p| p.steps.len()),
-                if input.grip {'g'} else {'-'}, if input.jump {'j'} else {'-'}, (input.climb * 10.0).round() / 10.0, self.bot.describe(seconds)+&format!(" miss {:?} aimed {:?}", self.fencer.miss(performer, target.aim).map(|m| (m*10.0).round()/10.0), performer.arena().and_then(|a| a.stab_aim(clamber_fight::FighterId(0))).map(|a| (a.weak_point, a.plate))));
+                if input.grip {'g'} else {'-'}, if input.jump {'j'} else {'-'}, (input.climb * 10.0).round() / 10.0, self.bot.describe(seconds)+&format!(" ACT {act} miss {:?} aimed {:?}", self.fencer.miss(performer, target.aim).map(|m| (m*10.0).round()/10.0), performer.arena().and_then(|a| a.stab_aim(clamber_fight::FighterId(0))).map(|a| (a.weak_point, a.plate))));
         }
         input
     }
@@ -132,7 +133,7 @@ impl Planner {
             forecast: &self.forecast,
             danger: match sight {
                 Sight { attacks: true, .. } => Danger::Attacks,
-                Sight { is_calm: true, .. } => Danger::None,
+                Sight { stays: true, .. } => Danger::None,
                 _ => Danger::Moves,
             },
             shake_ahead: 0.0,
@@ -157,7 +158,7 @@ impl Planner {
             return stab;
         }
         let is_there = self.bot.is_there(&view);
-        if !is_there {
+        if self.bot.wants_rest(&view) || !is_there {
             self.there = None;
             return self.bot.input(&view);
         }
