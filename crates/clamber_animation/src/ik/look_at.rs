@@ -14,14 +14,18 @@ pub struct LookLimits {
     pub yaw: f64,
     /// Up and down.
     pub pitch: f64,
+    /// How fast its turning may change about either axis, radians a second squared: above 0, and infinite to follow a target
+    /// wherever it goes. A gaze with a limit lags behind fast targets, and passes from one shoulder to the other in a while.
+    pub acceleration: f64,
 }
 
 impl Default for LookLimits {
-    /// 80° to either side, 60° up and down.
+    /// 80° to either side, 60° up and down, as fast as its target.
     fn default() -> Self {
         Self {
             yaw: 80f64.to_radians(),
             pitch: 60f64.to_radians(),
+            acceleration: f64::INFINITY,
         }
     }
 }
@@ -51,6 +55,31 @@ pub struct LookMemory {
     side: f64,
     /// Seconds since it changed.
     since: f64,
+    /// Where it looks, yaw and pitch in radians, and how fast these change, in a gaze with a limit; `None` before the first
+    /// time.
+    turned: Option<[Follow; 2]>,
+}
+
+/// An angle that follows another one.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+struct Follow {
+    angle: f64,
+    speed: f64,
+}
+
+impl Follow {
+    /// Turns towards a goal, as fast as it can still brake before it with half of `most`, its greatest acceleration.
+    fn step(&mut self, goal: f64, most: f64, dt: f64) {
+        if !(dt > 0.0) {
+            return;
+        }
+        let left = goal - self.angle;
+        let fastest = (most * left.abs()).sqrt().min(left.abs() / dt);
+        let change = fastest.copysign(left) - self.speed;
+        self.speed += change.clamp(-most * dt, most * dt);
+        self.angle += self.speed * dt;
+    }
 }
 
 /// The most joints from a chain's last one up to its head: they are turned by recursion.
@@ -139,7 +168,8 @@ impl LookAt {
     /// [`IkError::BadSetUp`] if the yaw is not from 0 to pi or the pitch not from 0 to a quarter turn.
     pub fn with_limits(self, limits: LookLimits) -> Result<Self, IkError> {
         use core::f64::consts::{FRAC_PI_2, PI};
-        if (0.0..=PI).contains(&limits.yaw) && (0.0..=FRAC_PI_2).contains(&limits.pitch) {
+        let in_range = (0.0..=PI).contains(&limits.yaw) && (0.0..=FRAC_PI_2).contains(&limits.pitch);
+        if in_range && limits.acceleration > 0.0 {
             Ok(Self { limits, ..self })
         } else {
             Err(IkError::BadSetUp("a look-at limit is out of range"))
@@ -225,11 +255,19 @@ impl LookAt {
                 yaw += TAU * memory.side;
             }
         }
-        if yaw.abs() <= self.limits.yaw && pitch.abs() <= self.limits.pitch {
+        let most = self.limits.acceleration;
+        if yaw.abs() <= self.limits.yaw && pitch.abs() <= self.limits.pitch && most.is_infinite() {
             return to_target;
         }
-        let yaw = yaw.clamp(-self.limits.yaw, self.limits.yaw);
-        let pitch = pitch.clamp(-self.limits.pitch, self.limits.pitch);
+        let mut yaw = yaw.clamp(-self.limits.yaw, self.limits.yaw);
+        let mut pitch = pitch.clamp(-self.limits.pitch, self.limits.pitch);
+        if most.is_finite() {
+            let start = [yaw, pitch].map(|angle| Follow { angle, speed: 0.0 });
+            let [around, up] = memory.turned.get_or_insert(start);
+            around.step(yaw, most, dt);
+            up.step(pitch, most, dt);
+            (yaw, pitch) = (around.angle, up.angle);
+        }
         let about = |axis: DVec3, angle: f64| -> DQuat { rotation_from_vector(axis * angle) };
         // Left is a positive turn about up, and up a negative one about left.
         about(up, yaw) * (about(left, -pitch) * level)

@@ -1,5 +1,6 @@
 //! The head of the pose.
 
+use clamber_animation::ik::LookMemory;
 use clamber_surface::geometry::Similarity;
 use glam::DVec3;
 
@@ -37,8 +38,10 @@ impl Creature {
                 target,
                 weight,
                 &mut self.state.look,
-                dt,
+                dt / size,
             );
+        } else {
+            self.state.look = LookMemory::default();
         }
     }
 

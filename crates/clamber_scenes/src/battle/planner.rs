@@ -98,6 +98,17 @@ impl Planner {
         if fine {
             let state = performer.climber().state();
             eprintln!("  fine {seconds:.2} {:?} {:.2} n {:.2} climb {:.2} own {:.2} shake {:.1} {}", state.mode, state.position, state.support.map_or(DVec3::ZERO, |s| s.normal_in_world()), input.climb, state.velocity - state.base_velocity, state.shake.length(), self.bot.describe(seconds));
+            let pal = performer.palette();
+            let mut line = String::new();
+            for j in [0u32, 4, 5, 6, 7, 8, 9, 10, 11, 12, 22, 23] {
+                if let Some(f) = pal.model_from_joint(clamber_surface::rig::JointId(j)) {
+                    line += &format!("{}:{:.2} ", performer.creature().skeleton.joints()[j as usize].name, f.transform_point3(glam::DVec3::new(0.0, 1.0, 0.0)));
+                }
+            }
+            let w = performer.surface().world_from_model();
+            eprintln!("   joints {line} world {:.2} {:.3} tri joint {:?}", w.translation, w.rotation, performer.surface().mesh().joint_of(clamber_surface::mesh::TriangleId(3262)));
+            let r = performer.report();
+            eprintln!("      pushed {:.2} clear {} missing {:?} changes {} support {:?} crushed {}", r.pushed_out, r.is_clear, r.events, r.mode_changes, state.support.map(|s| (s.attachment.material.key, s.attachment.material.coordinates)), state.crushed);
         }
         if std::env::var_os("DBG").is_some() && (seconds * 60.0).round() as u64 % 30 == 0 {
             let climber = performer.climber();
