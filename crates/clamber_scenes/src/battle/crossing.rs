@@ -14,16 +14,33 @@ const BETWEEN_JUMPS: f64 = 1.2;
 /// A climber on its way over the outcrop.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Crossing {
+    /// It has been over it.
+    crossed: bool,
     jumped: Option<f64>,
 }
 
 impl Crossing {
-    /// The input on the way; `None` where the outcrop is not before it. It runs from attacks.
-    pub(super) fn input(&mut self, climber: &Climber, seconds: f64, attacked: bool) -> Option<ClimberInput> {
+    /// The input on the way over it, or around it if it was over it before; `None` where it is not in the way. It waits
+    /// before it while it is attacked.
+    pub(super) fn input(
+        &mut self,
+        climber: &Climber,
+        seconds: f64,
+        attacked: bool,
+    ) -> Option<ClimberInput> {
         let state = climber.state();
         let is_before = state.position.x < outcrop::END && outcrop::is_in_line(state.position.z);
-        if !is_before {
+        self.crossed |= state.position.x >= outcrop::END;
+        if !is_before || self.crossed && attacked {
             return None;
+        }
+        if self.crossed {
+            let aside = DVec3::Z * state.position.z.signum();
+            return Some(ClimberInput {
+                walk: aside,
+                grip: state.mode == ClimberMode::Standing,
+                ..ClimberInput::IDLE
+            });
         }
         if state.mode == ClimberMode::Tumbling {
             return Some(ClimberInput::IDLE);
