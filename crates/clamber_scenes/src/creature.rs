@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use clamber_climber::ClimberConfig;
 use clamber_navigation::{ClimbGraph, GraphConfig, GraphSource, NavigationError};
 use clamber_surface::geometry::Similarity;
-use clamber_surface::mesh::{SurfaceKind, SurfaceTag, TriangleId};
+use clamber_surface::mesh::{SurfaceKind, SurfaceTag, TriangleId, VertexId};
 
 use clamber_colossus::{Brain, ColossusError, CreatureKind, CreatureParts};
 use clamber_gltf::{GltfError, LoadOptions};
@@ -114,19 +114,15 @@ impl Creature {
         {
             return Ok(Arc::clone(graph));
         }
-        let palette = self.skeleton.palette(&self.skeleton.rest_pose())?;
-        let rest = skin(&self.collider, palette.matrices()).unwrap_or_default();
-        let low = rest.iter().map(|p| p.y).fold(f32::INFINITY, f32::min);
-        let high = rest.iter().map(|p| p.y).fold(f32::NEG_INFINITY, f32::max);
-        let scale = height / f64::from(high - low);
+        let (world_from_model, ground) = self.standing(height)?;
         let source = GraphSource {
             skeleton: &self.skeleton,
             mesh: &self.collider,
             clips: &self.clips,
             plates,
             weak_points: &self.weak_points,
-            world_from_model: Similarity::from_scale(scale),
-            ground: f64::from(low) * scale,
+            world_from_model,
+            ground,
         };
         let is_fur = |tag: &SurfaceTag| tag.kind == SurfaceKind::Fur;
         let grips = if self.collider.tags().iter().any(is_fur) {
@@ -143,6 +139,34 @@ impl Creature {
         let key = (Arc::clone(&self.collider), *climber, height, plates.to_vec());
         known.push((key, Arc::clone(&graph)));
         Ok(graph)
+    }
+
+    /// Where it stands at rest when it is so many metres tall, and the height of the ground there, metres.
+    ///
+    /// # Errors
+    /// [`RigError`] if it cannot be posed.
+    pub fn standing(&self, height: f64) -> Result<(Similarity, f64), RigError> {
+        let palette = self.skeleton.palette(&self.skeleton.rest_pose())?;
+        let rest = skin(&self.collider, palette.matrices()).unwrap_or_default();
+        let low = rest.iter().map(|p| p.y).fold(f32::INFINITY, f32::min);
+        let high = rest.iter().map(|p| p.y).fold(f32::NEG_INFINITY, f32::max);
+        let scale = height / f64::from(high - low);
+        Ok((Similarity::from_scale(scale), f64::from(low) * scale))
+    }
+
+    /// Area of its skin at rest when it is so many metres tall, square metres.
+    pub fn area(&self, height: f64) -> f64 {
+        let Ok((place, _)) = self.standing(height) else {
+            return 0.0;
+        };
+        let palette = self.skeleton.palette(&self.skeleton.rest_pose());
+        let palette = palette.unwrap_or_default();
+        let rest = skin(&self.collider, palette.matrices()).unwrap_or_default();
+        let area = |corners: &[VertexId; 3]| {
+            let [a, b, c] = corners.map(|vertex| rest[vertex.index()].as_dvec3() * place.scale);
+            0.5 * (b - a).cross(c - a).length()
+        };
+        self.collider.triangles().iter().map(area).sum()
     }
 
     /// The creature with a brain, to live by it.

@@ -26,6 +26,7 @@ pub mod ball;
 pub mod battle;
 pub mod beast;
 pub mod bodies;
+pub mod climbs;
 pub mod closed;
 pub mod controllers;
 mod creature;

@@ -42,7 +42,8 @@ pub struct View<'a> {
 }
 
 impl View<'_> {
-    pub(super) fn is_on_creature(&self) -> bool {
+    /// True if the climber stands on the creature, or holds on to it.
+    pub fn is_on_creature(&self) -> bool {
         let support = self.climber.state().support;
         support.is_some_and(|support| support.attachment.obstacle == self.creature)
     }

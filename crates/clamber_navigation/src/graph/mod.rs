@@ -100,6 +100,12 @@ impl ClimbGraph {
         })
     }
 
+    /// Of each patch, whether a climber that does not tire comes there from the ground, on the creature at rest.
+    pub fn reachable(&self) -> Vec<bool> {
+        let reached = self.flood(self.entries.iter().map(|entry| entry.patch));
+        (0..self.patches.len()).map(|patch| reached.has(patch)).collect()
+    }
+
     /// Number of ways between patches, each counted there and back.
     pub fn ways(&self) -> usize {
         self.ways.len()

@@ -53,6 +53,7 @@ pub use summary::{Check, ModeTicks, StateTicks, Summary};
 pub use tally::Tally;
 
 use options::Progress;
+pub(crate) use options::positive;
 
 use crate::CreatureError;
 use clamber_climber::ClimberError;

@@ -95,7 +95,7 @@ impl PilotKind {
     }
 }
 
-pub(super) fn positive(text: &str) -> Result<f64, String> {
+pub(crate) fn positive(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(number) if number > 0.0 && number <= 1e6 => Ok(number),
         Ok(_) => Err("must be above 0 and at most 1000000".into()),

@@ -1,0 +1,58 @@
+use std::path::PathBuf;
+
+use clap::Parser;
+
+use crate::battle::{BattleError, RidesOptions};
+
+/// A bot climbs every model of a folder, from the ground to the highest place that the model's graph calls reachable, and a
+/// table shows how long it takes.
+///
+/// All skin can be gripped, as if it were fur. Exits with 1 if the bot does not come to the place on a model that can be loaded
+/// and has one.
+#[derive(Clone, Debug, Parser)]
+#[command(name = "climbs", version)]
+pub struct ClimbsOptions {
+    /// Models in .glb or .gltf files [default: all files of models/ in the folder that CLAMBER_TEST_DATA names].
+    #[arg(value_name = "FILE")]
+    pub models: Vec<PathBuf>,
+
+    /// Height of every creature.
+    #[arg(long, value_name = "METRES", default_value_t = 20.0)]
+    #[arg(value_parser = crate::battle::positive, allow_negative_numbers = true)]
+    pub height: f64,
+
+    /// Time that the bot has.
+    #[arg(long, value_name = "SECONDS", default_value_t = 120.0)]
+    #[arg(value_parser = crate::battle::positive, allow_negative_numbers = true)]
+    pub seconds: f64,
+
+    /// Play each model's first clip meanwhile [default: it stands at rest].
+    #[arg(long)]
+    pub moving: bool,
+}
+
+impl Default for ClimbsOptions {
+    fn default() -> Self {
+        Self::parse_from(["climbs"])
+    }
+}
+
+impl ClimbsOptions {
+    /// Parses the command line. For `--help` or a wrong argument it prints a message and exits.
+    pub fn from_command_line() -> Self {
+        Self::parse()
+    }
+
+    /// The models' files: those of the options, in their order, or all of the default folder, sorted.
+    ///
+    /// # Errors
+    /// [`BattleError::NoModels`] if the options name no file, and the default folder is not set, cannot be read, or has
+    /// no model.
+    pub fn files(&self) -> Result<Vec<PathBuf>, BattleError> {
+        let rides = RidesOptions {
+            models: self.models.clone(),
+            ..RidesOptions::default()
+        };
+        rides.files()
+    }
+}
