@@ -69,7 +69,10 @@ pub(super) fn merge(survey: &Survey) -> (Vec<Patch>, Vec<u32>) {
                 let is_alike = patch_of[beside] == NONE
                     && kinds[beside] == kinds[first]
                     && pieces[beside].below == pieces[first].below;
-                if is_near && is_alike && (!kinds[first][1] || survey.can_climb(ends(piece, beside))) {
+                let [stands, holds] = kinds[first];
+                let ends = ends(piece, beside);
+                let leads = (!stands || survey.can_walk(ends)) && (!holds || survey.can_climb(ends));
+                if is_near && is_alike && leads {
                     patch_of[beside] = id;
                     members.push(beside);
                 }
@@ -117,12 +120,13 @@ pub(super) fn ways(survey: &Survey, patches: &[Patch], patch_of: &[u32]) -> Ways
                 continue;
             }
             let [a, b] = [from, to].map(|patch| &patches[patch as usize]);
+            let ends = ends(piece, beside);
+            let known = found.get(&(from, to)).copied().unwrap_or_default();
             let walks = a.can_stand && b.can_stand;
             let climbs = a.can_hold && b.can_hold;
-            let known = found.get(&(from, to)).copied().unwrap_or_default();
             let way = Way {
-                walks,
-                climbs: known.climbs || climbs && survey.can_climb(ends(piece, beside)),
+                walks: known.walks || walks && survey.can_walk(ends),
+                climbs: known.climbs || climbs && survey.can_climb(ends),
             };
             if way.walks || way.climbs {
                 found.insert((from, to), way);

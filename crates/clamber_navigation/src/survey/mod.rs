@@ -20,6 +20,9 @@ pub(crate) use pieces::Piece;
 /// The ball's middle is at least so high above the ground, as a share of its radius.
 const LOWEST: f64 = 0.98;
 
+/// A way leads off the skin if it rises by more than this sine from its plane: 40 degrees.
+const OFF: f64 = 0.64;
+
 /// What is known about the skin at rest, piece by piece.
 #[derive(Clone, Debug)]
 pub(crate) struct Survey {
@@ -120,10 +123,36 @@ impl Survey {
         })
     }
 
-    /// True if hands hold something all the way between two pieces where a climber can hold on.
+    /// True if a climber gets from one of two pieces, where it can hold on, to the other and back: along the skin, with hands
+    /// that hold something all the way.
     pub(crate) fn can_climb(&self, ends: [usize; 2]) -> bool {
         let reach = self.config.reach();
-        self.arm_between(ends, reach) <= reach + EXACT
+        self.is_along(ends) && self.arm_between(ends, reach) <= reach + EXACT
+    }
+
+    /// True if the way between two pieces leads along the skin of at least one of them. From a floor no hand gets to the
+    /// ceiling, but by the wall.
+    fn is_along(&self, ends: [usize; 2]) -> bool {
+        let [from, to] = ends.map(|piece| &self.pieces[piece]);
+        let (Some(a), Some(b)) = (from.seat, to.seat) else {
+            return false;
+        };
+        let way = (b - a).normalize_or_zero();
+        let (leaves, arrives) = (way.dot(from.normal), way.dot(to.normal));
+        let there = leaves <= OFF || arrives.abs() <= OFF;
+        let back = -arrives <= OFF || leaves.abs() <= OFF;
+        there && back
+    }
+
+    /// True if a climber walks from one of two pieces, where it can stand, to the other and back.
+    pub(crate) fn can_walk(&self, ends: [usize; 2]) -> bool {
+        let climber = &self.config.climber;
+        let (Some(a), Some(b)) = (self.pieces[ends[0]].seat, self.pieces[ends[1]].seat) else {
+            return false;
+        };
+        let rise = (b - a).dot(climber.up());
+        let level = (b - a - climber.up() * rise).length();
+        rise.abs() <= climber.ground.step_height + level * libm::tan(climber.ground.max_slope)
     }
 
     fn slope(&self, piece: &Piece) -> f64 {
