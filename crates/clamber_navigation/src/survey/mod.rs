@@ -20,8 +20,8 @@ pub(crate) use pieces::Piece;
 /// The ball's middle is at least so high above the ground, as a share of its radius.
 const LOWEST: f64 = 0.98;
 
-/// A way leads off the skin if it rises by more than this sine from its plane: 40 degrees.
-const OFF: f64 = 0.64;
+/// A ball that is no farther than this share of its radius above the skin still touches it: skin is rarely flat.
+const OFF: f64 = 0.3;
 
 /// What is known about the skin at rest, piece by piece.
 #[derive(Clone, Debug)]
@@ -130,18 +130,15 @@ impl Survey {
         self.is_along(ends) && self.arm_between(ends, reach) <= reach + EXACT
     }
 
-    /// True if the way between two pieces leads along the skin of at least one of them. From a floor no hand gets to the
-    /// ceiling, but by the wall.
+    /// True if the ball comes from one of two pieces to the other along the skin: it does not have to rise off one of them to
+    /// where it does not touch the other yet. From a floor no hand gets to the ceiling, but by the wall.
     fn is_along(&self, ends: [usize; 2]) -> bool {
         let [from, to] = ends.map(|piece| &self.pieces[piece]);
         let (Some(a), Some(b)) = (from.seat, to.seat) else {
             return false;
         };
-        let way = (b - a).normalize_or_zero();
-        let (leaves, arrives) = (way.dot(from.normal), way.dot(to.normal));
-        let there = leaves <= OFF || arrives.abs() <= OFF;
-        let back = -arrives <= OFF || leaves.abs() <= OFF;
-        there && back
+        let rises = (b - a).dot(from.normal).min((a - b).dot(to.normal));
+        rises <= OFF * self.config.radius()
     }
 
     /// True if a climber walks from one of two pieces, where it can stand, to the other and back.
