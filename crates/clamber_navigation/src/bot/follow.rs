@@ -148,7 +148,25 @@ impl Progress {
             if index > self.at && self.is_rest(index) && index > self.rested {
                 break;
             }
-            let place = view.seat(&graph.patches()[step.patch]);
+            let patch = &graph.patches()[step.patch];
+            let (place, normal) = (view.seat(patch), view.normal(patch));
+            let before = self.plan.steps[index.saturating_sub(1)].patch;
+            let corner = graph.ways.corner(before, step.patch).filter(|_| index > self.at);
+            if let Some(corner) = corner
+                && step.footing == Footing::Holds
+                && normal.dot(held) < CORNER
+            {
+                let place = view.corner(corner);
+                if target.is_none() || is_straight(here, place, &passed) {
+                    return Some(Target {
+                        place,
+                        normal,
+                        footing: Footing::Holds,
+                        in_corner: true,
+                    });
+                }
+                break;
+            }
             if target.is_some() && !is_straight(here, place, &passed) {
                 break;
             }
@@ -156,11 +174,12 @@ impl Progress {
             if index > self.at || target.is_none() {
                 target = Some(Target {
                     place,
-                    normal: view.normal(&graph.patches()[step.patch]),
+                    normal,
                     footing: step.footing,
+                    in_corner: false,
                 });
                 // First to where it takes hold of another side.
-                let turns = target.is_some_and(|target| target.normal.dot(held) < CORNER);
+                let turns = normal.dot(held) < CORNER;
                 if turns && index > self.at {
                     break;
                 }

@@ -293,4 +293,6 @@ struct Target {
     place: DVec3,
     normal: DVec3,
     footing: Footing,
+    /// It takes hold of another side there.
+    in_corner: bool,
 }

@@ -5,7 +5,7 @@ use clamber_world::{MaterialPoint, Obstacle, ObstacleId};
 use glam::DVec3;
 
 use super::Target;
-use crate::graph::Patch;
+use crate::graph::{Corner, Patch};
 use crate::{Forecast, Goal};
 
 /// What a creature is about to do to somebody on the ground.
@@ -67,14 +67,16 @@ impl View<'_> {
         })
     }
 
-    /// The way to a target. If that rises above the skin that the climber holds now, as a wall above a step, it goes against
-    /// the target's skin, so as to take hold of it.
+    /// The way to a target. In a corner it goes against the skin that it is to take hold of, the more the nearer it is.
     pub(super) fn against(&self, target: &Target) -> DVec3 {
-        let (state, radius) = (self.climber.state(), self.climber.config().body.radius);
-        let toward = target.place - state.position;
-        let held = state.support.map_or(DVec3::ZERO, |support| support.normal_in_world());
-        let rises = (2.0 * toward.normalize_or_zero().dot(held)).clamp(0.0, 1.0);
-        toward - target.normal * (rises * radius)
+        let radius = self.climber.config().body.radius;
+        let toward = target.place - self.climber.state().position;
+        let near = if target.in_corner {
+            (2.0 - toward.length() / radius).clamp(0.0, 1.0)
+        } else {
+            0.0
+        };
+        toward - target.normal * (near * radius)
     }
 
     /// Where the climber's ball is when it is on a patch, as the creature is now.
@@ -101,13 +103,27 @@ impl View<'_> {
         motion.map_or(patch.point, |motion| motion.position)
     }
 
+    /// The place in a corner, as the creature is now.
+    pub(super) fn corner(&self, corner: &Corner) -> DVec3 {
+        let weights = corner.barycentric.map(|weight| weight as f32);
+        let material = MaterialPoint::on_triangle(corner.triangle, weights);
+        let motion = self.surface.motion(&material, 1.0);
+        let point = motion.map_or(DVec3::NAN, |motion| motion.position);
+        let normals = [corner.triangle, corner.other].map(|triangle| self.normal_of(triangle));
+        point + normals[0] * corner.apart[0] + normals[1] * corner.apart[1]
+    }
+
     /// The outward normal of a patch, as the creature is now.
     pub(super) fn normal(&self, patch: &Patch) -> DVec3 {
-        let vertices = self.surface.mesh().triangles().get(patch.triangle.index());
+        self.normal_of(patch.triangle)
+    }
+
+    fn normal_of(&self, triangle: TriangleId) -> DVec3 {
+        let vertices = self.surface.mesh().triangles().get(triangle.index());
         let Some([a, b, c]) = vertices.map(|vertices| {
             vertices.map(|vertex| self.surface.in_model().position(vertex).unwrap_or_default())
         }) else {
-            return patch.normal;
+            return DVec3::ZERO;
         };
         let normal = (b - a).cross(c - a).as_dvec3();
         (self.surface.world_from_model().rotation * normal).normalize_or_zero()

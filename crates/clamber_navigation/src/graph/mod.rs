@@ -23,7 +23,7 @@ pub(crate) use flood::Reachable;
 use locate::Locator;
 pub use patch::Patch;
 pub(crate) use patch::NONE;
-pub(crate) use ways::Ways;
+pub(crate) use ways::{Corner, Ways};
 
 /// Where a climber can be on a creature, and how it gets from one place to another.
 #[derive(Clone, Debug)]

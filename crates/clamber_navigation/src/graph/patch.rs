@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use clamber_surface::mesh::{SurfaceTag, TriangleId};
 use glam::DVec3;
 
-use super::ways::{Way, Ways};
+use super::ways::{Corner, Way, Ways};
 use crate::survey::Survey;
 
 /// A place on the skin where a climber can be at rest.
@@ -108,6 +108,8 @@ fn patch(survey: &Survey, members: &[usize], [can_stand, can_hold]: [bool; 2]) -
 /// The ways from patch to patch, over the links between their pieces.
 pub(super) fn ways(survey: &Survey, patches: &[Patch], patch_of: &[u32]) -> Ways {
     let mut found: BTreeMap<(u32, u32), Way> = BTreeMap::new();
+    // Of pieces on both sides of a corner, those whose seats are nearest to each other: there the ball touches both.
+    let mut nearest: BTreeMap<(u32, u32), (f64, [usize; 2])> = BTreeMap::new();
     for piece in 0..survey.pieces.len() {
         let from = patch_of[piece];
         if from == NONE {
@@ -131,9 +133,33 @@ pub(super) fn ways(survey: &Survey, patches: &[Patch], patch_of: &[u32]) -> Ways
             if way.walks || way.climbs {
                 found.insert((from, to), way);
             }
+            if climbs && survey.is_corner([piece, beside]) && survey.can_climb(ends) {
+                let apart = survey.apart([piece, beside]);
+                let known = nearest.entry((from, to)).or_insert((apart, [piece, beside]));
+                if apart < known.0 {
+                    *known = (apart, [piece, beside]);
+                }
+            }
         }
     }
-    Ways::new(patches, &found)
+    let corner = |pieces: [usize; 2]| corner(survey, pieces);
+    let corners = nearest.into_iter().map(|(ends, (_, pieces))| (ends, corner(pieces)));
+    Ways::new(patches, &found, corners.collect())
+}
+
+fn corner(survey: &Survey, pieces: [usize; 2]) -> Corner {
+    let [here, there] = pieces.map(|piece| &survey.pieces[piece]);
+    let away = here.seat.unwrap_or(here.point) - here.point;
+    // As a sum of both normals.
+    let cosine = here.normal.dot(there.normal);
+    let (a, b) = (away.dot(here.normal), away.dot(there.normal));
+    let squared = (1.0 - cosine * cosine).max(1e-3);
+    Corner {
+        triangle: here.triangle,
+        barycentric: here.barycentric,
+        other: there.triangle,
+        apart: [(a - b * cosine) / squared, (b - a * cosine) / squared],
+    }
 }
 
 fn ends(a: usize, b: usize) -> [usize; 2] {

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use clamber_surface::mesh::TriangleId;
+
 use super::Patch;
 
 /// How a climber gets from one patch to another.
@@ -13,6 +15,17 @@ pub(crate) struct Way {
     pub(crate) climbs: bool,
 }
 
+/// A place in a corner, where the climber's ball touches the skin of two patches: it gets from one to the other there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Corner {
+    /// A point of the skin of the patch with the lower number, and a triangle of the other one's.
+    pub(crate) triangle: TriangleId,
+    pub(crate) barycentric: [f64; 3],
+    pub(crate) other: TriangleId,
+    /// How far the ball is from that point, along the normals of both triangles, metres.
+    pub(crate) apart: [f64; 2],
+}
+
 /// Of each patch, the ways that lead away from it.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Ways {
@@ -22,11 +35,17 @@ pub(crate) struct Ways {
     way: Vec<Way>,
     /// Length at rest, metres.
     length: Vec<f32>,
+    /// The corners of ways that lead around one, by their ends, the lower one first.
+    corners: BTreeMap<(u32, u32), Corner>,
 }
 
 impl Ways {
-    /// From ways that lead there and back, by the lower of their ends.
-    pub(super) fn new(patches: &[Patch], found: &BTreeMap<(u32, u32), Way>) -> Self {
+    /// From ways that lead there and back, by their ends, the lower one first.
+    pub(super) fn new(
+        patches: &[Patch],
+        found: &BTreeMap<(u32, u32), Way>,
+        corners: BTreeMap<(u32, u32), Corner>,
+    ) -> Self {
         let mut beside: Vec<Vec<(u32, Way)>> = vec![Vec::new(); patches.len()];
         for (&(from, to), &way) in found {
             beside[from as usize].push((to, way));
@@ -34,6 +53,7 @@ impl Ways {
         }
         let mut ways = Self {
             start: vec![0],
+            corners,
             ..Self::default()
         };
         for (from, mut beside) in beside.into_iter().enumerate() {
@@ -53,6 +73,12 @@ impl Ways {
     pub(crate) fn of(&self, patch: usize) -> impl Iterator<Item = (usize, Way, f64)> + '_ {
         let range = self.start[patch] as usize..self.start[patch + 1] as usize;
         range.map(|at| (self.to[at] as usize, self.way[at], f64::from(self.length[at])))
+    }
+
+    /// The corner on the way between two patches, if there is one.
+    pub(crate) fn corner(&self, from: usize, to: usize) -> Option<&Corner> {
+        let ends = (from.min(to) as u32, from.max(to) as u32);
+        self.corners.get(&ends)
     }
 
     /// Number of them.

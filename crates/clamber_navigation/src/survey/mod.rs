@@ -23,6 +23,9 @@ const LOWEST: f64 = 0.98;
 /// A ball that is no farther than this share of its radius above the skin still touches it: skin is rarely flat.
 const OFF: f64 = 0.3;
 
+/// Two sides whose normals have a lower cosine than this meet in a corner.
+const CORNER: f64 = 0.7;
+
 /// What is known about the skin at rest, piece by piece.
 #[derive(Clone, Debug)]
 pub(crate) struct Survey {
@@ -139,6 +142,22 @@ impl Survey {
         };
         let rises = (b - a).dot(from.normal).min((a - b).dot(to.normal));
         rises <= OFF * self.config.radius()
+    }
+
+    /// True if the skin of two pieces, which a climber gets to and from, meets in a corner that is open to it.
+    pub(crate) fn is_corner(&self, ends: [usize; 2]) -> bool {
+        let [from, to] = ends.map(|piece| &self.pieces[piece]);
+        let between = to.point - from.point;
+        let is_bent = from.normal.dot(to.normal) < CORNER;
+        is_bent && between.dot(from.normal) - between.dot(to.normal) > 0.0
+    }
+
+    /// Distance of the seats of two pieces, metres.
+    pub(crate) fn apart(&self, ends: [usize; 2]) -> f64 {
+        match ends.map(|piece| self.pieces[piece].seat) {
+            [Some(a), Some(b)] => a.distance(b),
+            _ => f64::INFINITY,
+        }
     }
 
     /// True if a climber walks from one of two pieces, where it can stand, to the other and back.
