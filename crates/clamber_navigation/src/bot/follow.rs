@@ -51,10 +51,8 @@ impl Progress {
         let to = (self.at + ON).min(steps.len() - 1);
         let apart = |index: &usize| {
             let step = &steps[*index];
-            if step.patch == patch {
-                return 0.0;
-            }
-            view.seat(&graph.patches()[step.patch]).distance(here)
+            let apart = view.seat(&graph.patches()[step.patch]).distance(here);
+            if step.patch == patch { apart.min(ON_IT) } else { apart }
         };
         let mut nearest = (f64::INFINITY, self.at);
         for index in from..=to {
@@ -155,6 +153,7 @@ impl Progress {
             if let Some(corner) = corner
                 && step.footing == Footing::Holds
                 && normal.dot(held) < CORNER
+                && (place - here).dot(held) > RISES * view.climber.config().body.radius
             {
                 let place = view.corner(corner);
                 if target.is_none() || is_straight(here, place, &passed) {
@@ -208,6 +207,12 @@ fn is_straight(from: DVec3, to: DVec3, between: &[DVec3]) -> bool {
         (from + way * share).distance(*place) <= ASIDE
     })
 }
+
+/// Where its way rises by more than this share of its radius off the skin that it holds, it goes by the corner.
+const RISES: f64 = 0.5;
+
+/// Whoever is on a patch counts as no farther from its middle than this, metres.
+const ON_IT: f64 = 0.2;
 
 /// Sides whose normals have a lower cosine than this meet in a corner.
 const CORNER: f64 = 0.7;

@@ -87,10 +87,17 @@ impl Bot {
         self.plans
     }
 
-    /// True if it is on a patch of the goal.
+    /// True if it is on a patch of the goal, or where it would be if it were on one.
     pub fn is_there(&self, view: &View<'_>) -> bool {
-        let patch = self.patch_below(view);
-        patch.is_some_and(|patch| view.goal.patches().binary_search(&patch).is_ok())
+        let Some(patch) = self.patch_below(view) else {
+            return false;
+        };
+        let (here, radius) = (view.climber.state().position, view.climber.config().body.radius);
+        let is_near = |patch: &usize| {
+            view.seat(&self.graph.patches[*patch]).distance(here) < THERE * radius
+        };
+        let goal = view.goal.patches();
+        goal.binary_search(&patch).is_ok() || goal.iter().any(is_near)
     }
 
     /// It forgets its way: its goal is another one, or it was put elsewhere.
@@ -280,6 +287,9 @@ impl Bot {
         self.approach.input(&self.graph, &self.config, view)
     }
 }
+
+/// Whoever is nearer to where it would be on a patch than this share of its radius is there.
+const THERE: f64 = 0.5;
 
 /// It rests on slopes up to this share of those that it can stand on.
 const LEVEL: f64 = 0.6;

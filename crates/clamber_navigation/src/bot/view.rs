@@ -69,14 +69,15 @@ impl View<'_> {
 
     /// The way to a target. In a corner it goes against the skin that it is to take hold of, the more the nearer it is.
     pub(super) fn against(&self, target: &Target) -> DVec3 {
-        let radius = self.climber.config().body.radius;
-        let toward = target.place - self.climber.state().position;
-        let near = if target.in_corner {
-            (2.0 - toward.length() / radius).clamp(0.0, 1.0)
+        let (state, radius) = (self.climber.state(), self.climber.config().body.radius);
+        let toward = target.place - state.position;
+        let share = if target.in_corner {
+            2.0 - toward.length() / radius
         } else {
-            0.0
+            let held = state.support.map_or(DVec3::ZERO, |support| support.normal_in_world());
+            2.0 * toward.normalize_or_zero().dot(held)
         };
-        toward - target.normal * (near * radius)
+        toward - target.normal * (share.clamp(0.0, 1.0) * radius)
     }
 
     /// Where the climber's ball is when it is on a patch, as the creature is now.

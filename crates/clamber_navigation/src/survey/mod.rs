@@ -140,8 +140,11 @@ impl Survey {
         let (Some(a), Some(b)) = (from.seat, to.seat) else {
             return false;
         };
-        let rises = (b - a).dot(from.normal).min((a - b).dot(to.normal));
-        rises <= OFF * self.config.radius()
+        let most = OFF * self.config.radius();
+        let (leaves, arrives) = ((b - a).dot(from.normal), (a - b).dot(to.normal));
+        let touches = leaves.abs() <= most || arrives.abs() <= most;
+        // Over an edge both are below each other's plane.
+        touches || leaves < 0.0 && arrives < 0.0
     }
 
     /// True if the skin of two pieces, which a climber gets to and from, meets in a corner that is open to it.
