@@ -20,6 +20,9 @@ pub(super) struct Progress {
     since: f64,
     /// The step up to which it has rested.
     rested: usize,
+    /// When it last moved, and until when it tries something else.
+    moved: f64,
+    tries_until: f64,
 }
 
 impl Progress {
@@ -30,6 +33,8 @@ impl Progress {
             farthest: 0,
             since: seconds,
             rested: 0,
+            moved: seconds,
+            tries_until: f64::NEG_INFINITY,
         }
     }
 
@@ -109,6 +114,21 @@ impl Progress {
 
     pub(super) fn is_stuck(&self, seconds: f64, patience: f64) -> bool {
         seconds - self.since > patience
+    }
+
+    /// True for a while after it has come to rest on its way.
+    pub(super) fn tries_else(&mut self, view: &View<'_>) -> bool {
+        let (state, seconds) = (view.climber.state(), view.seconds);
+        let climbs = view.climber.config().grip.map_or(0.0, |grip| grip.climb_speed);
+        let own = (state.velocity - state.base_velocity).length();
+        if own > SLOW * climbs {
+            self.moved = seconds;
+        }
+        let is_at_rest = seconds - self.moved.max(self.since) > RESTS;
+        if is_at_rest && seconds > self.tries_until {
+            (self.tries_until, self.moved) = (seconds + TRIES, seconds + TRIES);
+        }
+        seconds < self.tries_until
     }
 
     /// The way that it is on.
@@ -213,6 +233,11 @@ const RISES: f64 = 0.5;
 
 /// Whoever is on a patch counts as no farther from its middle than this, metres.
 const ON_IT: f64 = 0.2;
+
+/// Below this share of its climbing speed, for so long, it counts as at rest; then it tries something else for a while; seconds.
+const SLOW: f64 = 0.2;
+const RESTS: f64 = 0.3;
+const TRIES: f64 = 0.5;
 
 /// Sides whose normals have a lower cosine than this meet in a corner.
 const CORNER: f64 = 0.7;

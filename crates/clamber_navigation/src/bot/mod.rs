@@ -216,7 +216,12 @@ impl Bot {
         let toward = target.place - state.position;
         let jumps = stands && progress.is_stuck(view.seconds, self.config.patience);
         ClimberInput {
-            climb: view.against(&target).normalize_or(view.climber.config().up()),
+            climb: if progress.tries_else(view) {
+                // Where the way ahead leads straight off its hold: along it, to where it touches the next.
+                -target.normal
+            } else {
+                view.against(&target).normalize_or(view.climber.config().up())
+            },
             walk: toward,
             grip: target.footing == Footing::Holds || !stands,
             jump: jumps && self.approach.jumps(view.seconds),
