@@ -64,6 +64,15 @@ impl Approach {
         self.attacked = None;
     }
 
+    /// Tries another entry than the one that it goes to.
+    pub(super) fn gives_up(&mut self, seconds: f64) {
+        if let Some(entry) = self.entry.take() {
+            self.avoided.push((entry, seconds + AVOIDS));
+        }
+        self.tries = 0;
+        self.chosen = f64::NEG_INFINITY;
+    }
+
     /// True if it jumps now: not too soon after the last jump.
     pub(super) fn jumps(&mut self, seconds: f64) -> bool {
         let jumps = seconds - self.jumped > BETWEEN_JUMPS;
@@ -121,9 +130,7 @@ impl Approach {
         if jump {
             self.tries += 1;
             if self.tries > TRIES {
-                self.avoided.push((entry, seconds + AVOIDS));
-                (self.entry, self.tries) = (None, 0);
-                self.chosen = f64::NEG_INFINITY;
+                self.gives_up(seconds);
             }
         }
         ClimberInput { walk, jump, ..grip }

@@ -162,8 +162,12 @@ impl Bot {
             self.hangs = None;
         }
         let since = *self.hangs.get_or_insert(seconds);
+        let holds = seconds - since <= self.config.hangs_for;
+        if !holds && state.mode == ClimberMode::LedgeHanging {
+            self.approach.gives_up(seconds);
+        }
         ClimberInput {
-            grip: seconds - since <= self.config.hangs_for,
+            grip: holds,
             ..ClimberInput::IDLE
         }
     }
