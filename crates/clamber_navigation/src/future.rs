@@ -1,0 +1,77 @@
+//! A creature as it will be.
+
+use std::sync::Arc;
+
+use clamber_surface::geometry::Similarity;
+use clamber_surface::mesh::ColliderMesh;
+use clamber_surface::rig::Palette;
+use clamber_surface::surface::{SkinnedSurface, SurfaceError};
+
+use crate::NavigationError;
+
+/// Tells how a creature will stand: fills in the palette of a time from now on, in seconds, and gives its place in the world
+/// then. `None` if it does not know that far ahead.
+///
+/// Its clips tell, until its brain decides on other ones.
+pub trait Future {
+    /// The pose of a time, seconds from now on, not negative.
+    fn pose(&mut self, seconds: f64, palette: &mut Palette) -> Option<Similarity>;
+}
+
+impl<F: FnMut(f64, &mut Palette) -> Option<Similarity>> Future for F {
+    fn pose(&mut self, seconds: f64, palette: &mut Palette) -> Option<Similarity> {
+        self(seconds, palette)
+    }
+}
+
+/// The skin of a creature as it will be: memory that predictions reuse.
+#[derive(Clone, Debug)]
+pub struct FutureSkin {
+    surface: SkinnedSurface,
+    palette: Palette,
+}
+
+impl FutureSkin {
+    /// Memory for the creature whose skin this is.
+    pub fn new(mesh: Arc<ColliderMesh>) -> Self {
+        Self {
+            surface: SkinnedSurface::new(mesh),
+            palette: Palette::default(),
+        }
+    }
+
+    /// The skin as posed last.
+    pub(crate) fn surface(&self) -> &SkinnedSurface {
+        &self.surface
+    }
+
+    /// Poses the skin as it will be, without motion. False if that is not known.
+    pub(crate) fn place(
+        &mut self,
+        future: &mut dyn Future,
+        seconds: f64,
+    ) -> Result<bool, NavigationError> {
+        let Some(place) = future.pose(seconds, &mut self.palette) else {
+            return Ok(false);
+        };
+        self.surface.place(&self.palette, place).map_err(check)?;
+        Ok(true)
+    }
+
+    /// Moves the skin on to where it will be. False if that is not known.
+    pub(crate) fn advance(
+        &mut self,
+        future: &mut dyn Future,
+        seconds: f64,
+    ) -> Result<bool, NavigationError> {
+        let Some(place) = future.pose(seconds, &mut self.palette) else {
+            return Ok(false);
+        };
+        self.surface.advance(&self.palette, place).map_err(check)?;
+        Ok(true)
+    }
+}
+
+fn check(error: SurfaceError) -> NavigationError {
+    NavigationError::Surface(error)
+}

@@ -1,0 +1,151 @@
+//! How long somebody stays on a creature, without doing anything.
+
+use clamber_climber::{Climber, ClimberConfig, ClimberMode};
+use clamber_world::Obstacle;
+use glam::DVec3;
+
+use crate::future::{Future, FutureSkin};
+use crate::NavigationError;
+
+/// Why somebody does not stay on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[non_exhaustive]
+pub enum ThrowOff {
+    /// The ground falls away from under its feet.
+    Thrown,
+    /// A shake knocks it down.
+    Knocked,
+    /// The ground has become too steep to stand on.
+    Slipped,
+    /// Its stamina is used up, and its grip opens.
+    Exhausted,
+}
+
+/// How a ride ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct RideEnd {
+    /// After so many seconds.
+    pub seconds: f64,
+    /// Why.
+    pub cause: ThrowOff,
+}
+
+/// A slope that is this much steeper than those that can be stood on is lost only then, radians: see
+/// `clamber_climber::ClimberMode::Standing`.
+const HYSTERESIS: f64 = 0.035;
+
+/// What a rider feels, from tick to tick.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Rider {
+    pub(crate) holds: bool,
+    pub(crate) stamina: f64,
+    pub(crate) shake: DVec3,
+    /// Velocity of its support.
+    pub(crate) velocity: Option<DVec3>,
+}
+
+impl Rider {
+    /// A tick passes, in which its support has moved at a velocity and has a normal now. Says why it does not stay on, if it
+    /// does not.
+    ///
+    /// The rules are those of `clamber_climber`, of a climber that gives no input but its grip: the acceleration of its support
+    /// is low-pass filtered, and shakes cost strength by how much they exceed a threshold, by the trapezoidal rule.
+    pub(crate) fn tick(
+        &mut self,
+        config: &ClimberConfig,
+        velocity: DVec3,
+        normal: DVec3,
+        dt: f64,
+    ) -> Option<ThrowOff> {
+        let before = self.shake;
+        let change = self.velocity.map_or(DVec3::ZERO, |before| velocity - before);
+        self.velocity = Some(velocity);
+        let kept = libm::exp(-dt / config.shake_time);
+        self.shake = before * kept + change / dt * (1.0 - kept);
+        if !self.holds {
+            let away = -self.shake.dot(normal) + config.gravity.dot(normal);
+            if away > config.ground.throw_acceleration {
+                return Some(ThrowOff::Thrown);
+            }
+            let knock = config.tumble.map_or(f64::INFINITY, |tumble| tumble.knock_acceleration);
+            if self.shake.length() > knock {
+                return Some(ThrowOff::Knocked);
+            }
+            let slope = libm::acos(normal.dot(config.up()).clamp(-1.0, 1.0));
+            if slope > config.ground.max_slope + HYSTERESIS {
+                return Some(ThrowOff::Slipped);
+            }
+        }
+        let stamina = config.stamina?;
+        let above = |shake: DVec3| (shake.length() - stamina.shake_threshold).max(0.0);
+        let beyond = 0.5 * dt * (above(before) + above(self.shake));
+        if self.holds {
+            self.stamina -= stamina.hold_drain * dt + stamina.shake_drain * beyond;
+            if self.stamina <= 0.0 {
+                self.stamina = 0.0;
+                return Some(ThrowOff::Exhausted);
+            }
+        } else if beyond == 0.0 {
+            self.stamina = (self.stamina + stamina.refill * dt).min(1.0);
+        }
+        None
+    }
+}
+
+impl FutureSkin {
+    /// How long a climber that stands on this creature, or holds on to it, stays there if it does nothing else: it holds its grip
+    /// if it does so now. `None` if it stays for `most` seconds, or for as long as the future is known, and if it is not on the
+    /// creature. `dt` is the length of a tick, seconds.
+    ///
+    /// Three vertices are skinned a tick. What pushes the climber off, such as an arm that comes over it, is not looked for.
+    ///
+    /// # Errors
+    /// [`NavigationError::Surface`] if a pose does not fit the skin, [`NavigationError::OutOfRange`] if `dt` is not positive.
+    pub fn ride(
+        &mut self,
+        climber: &Climber,
+        future: &mut dyn Future,
+        dt: f64,
+        most: f64,
+    ) -> Result<Option<RideEnd>, NavigationError> {
+        if !(dt > 0.0 && dt.is_finite()) {
+            return Err(NavigationError::OutOfRange {
+                name: "dt",
+                range: "positive and finite",
+                found: dt,
+            });
+        }
+        let (state, config) = (climber.state(), climber.config());
+        let Some(support) = state.support else {
+            return Ok(None);
+        };
+        let mut rider = Rider {
+            holds: state.mode != ClimberMode::Standing,
+            stamina: state.stamina,
+            shake: state.shake,
+            velocity: state.support_velocity,
+        };
+        let mut attachment = support.attachment;
+        if !self.place(future, 0.0)? {
+            return Ok(None);
+        }
+        let ticks = (most / dt).min(1e6) as u64;
+        for tick in 1..=ticks {
+            let seconds = tick as f64 * dt;
+            if !self.advance(future, seconds)? {
+                return Ok(None);
+            }
+            let slack = 0.1 * config.body.radius;
+            let Some(followed) = attachment.follow(self.surface() as &dyn Obstacle, dt, slack) else {
+                return Ok(None);
+            };
+            let normal = attachment.frame * support.normal;
+            let end = rider.tick(config, followed.motion.velocity, normal, dt);
+            if let Some(cause) = end {
+                return Ok(Some(RideEnd { seconds, cause }));
+            }
+        }
+        Ok(None)
+    }
+}
