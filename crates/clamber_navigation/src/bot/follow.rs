@@ -23,6 +23,8 @@ pub(super) struct Progress {
     /// When it last moved, and until when it tries something else.
     moved: f64,
     tries_until: f64,
+    /// When it was where last.
+    seen: (f64, DVec3),
 }
 
 impl Progress {
@@ -35,6 +37,7 @@ impl Progress {
             rested: 0,
             moved: seconds,
             tries_until: f64::NEG_INFINITY,
+            seen: (seconds, DVec3::ZERO),
         }
     }
 
@@ -120,10 +123,13 @@ impl Progress {
     pub(super) fn tries_else(&mut self, view: &View<'_>) -> bool {
         let (state, seconds) = (view.climber.state(), view.seconds);
         let climbs = view.climber.config().grip.map_or(0.0, |grip| grip.climb_speed);
-        let own = (state.velocity - state.base_velocity).length();
-        if own > SLOW * climbs {
+        // What it has made, which is less than its velocity where something is in its way.
+        let passed = seconds - self.seen.0;
+        let made = state.position - self.seen.1 - state.base_velocity * passed;
+        if passed > 0.0 && made.length() > SLOW * climbs * passed {
             self.moved = seconds;
         }
+        self.seen = (seconds, state.position);
         let is_at_rest = seconds - self.moved.max(self.since) > RESTS;
         if is_at_rest && seconds > self.tries_until {
             (self.tries_until, self.moved) = (seconds + TRIES, seconds + TRIES);

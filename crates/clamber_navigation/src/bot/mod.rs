@@ -218,16 +218,17 @@ impl Bot {
         };
         progress.debug(&self.graph, view);
         let toward = target.place - state.position;
+        let tries_else = progress.tries_else(view);
         let jumps = stands && progress.is_stuck(view.seconds, self.config.patience);
         ClimberInput {
-            climb: if progress.tries_else(view) {
+            climb: if tries_else {
                 // Where the way ahead leads straight off its hold: along it, to where it touches the next.
                 -target.normal
             } else {
                 view.against(&target).normalize_or(view.climber.config().up())
             },
             walk: toward,
-            grip: target.footing == Footing::Holds || !stands,
+            grip: target.footing == Footing::Holds || !stands || tries_else,
             jump: jumps && self.approach.jumps(view.seconds),
             ..ClimberInput::IDLE
         }
