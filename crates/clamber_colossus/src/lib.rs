@@ -11,7 +11,7 @@ pub mod senses;
 pub use brain::{Brain, BrainError, BrainFile, BrainProblem, BrainReport, BrainState};
 pub use creature::{
     AttackPhase, Blow, Creature, CreatureConfig, CreatureEvent, CreatureReport, CreatureState,
-    Noise, Person, Riding, Surroundings, Wound,
+    Foresight, Noise, Person, Riding, Surroundings, Wound,
 };
 pub use error::ColossusError;
 pub use kind::{

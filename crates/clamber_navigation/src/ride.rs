@@ -148,4 +148,47 @@ impl FutureSkin {
         }
         Ok(None)
     }
+
+    /// The hardest shake that a climber on this creature is about to feel where it is, within `most` seconds, in metres a second
+    /// squared; what it feels now if it is not on the creature, or the future is not known. `dt` is the time between two looks,
+    /// seconds: a tenth of a second misses shakes that are over sooner.
+    ///
+    /// # Errors
+    /// [`NavigationError::Surface`] if a pose does not fit the skin.
+    pub fn shake_ahead(
+        &mut self,
+        climber: &Climber,
+        future: &mut dyn Future,
+        dt: f64,
+        most: f64,
+    ) -> Result<f64, NavigationError> {
+        let (state, config) = (climber.state(), climber.config());
+        let now = state.shake.length();
+        let Some(support) = state.support else {
+            return Ok(now);
+        };
+        let mut rider = Rider {
+            holds: true,
+            stamina: 1.0,
+            shake: state.shake,
+            velocity: state.support_velocity,
+        };
+        let mut hardest = now;
+        let mut before = None;
+        let looks = (most / dt).clamp(0.0, 1e4) as u64;
+        for look in 0..=looks {
+            if !self.place(future, look as f64 * dt)? {
+                break;
+            }
+            let material = &support.attachment.material;
+            let Some(motion) = self.surface().motion(material, dt) else {
+                break;
+            };
+            if let Some(before) = before.replace(motion.position) {
+                rider.tick(config, (motion.position - before) / dt, support.normal_in_world(), dt);
+                hardest = hardest.max(rider.shake.length());
+            }
+        }
+        Ok(hardest)
+    }
 }

@@ -2,6 +2,7 @@
 
 mod config;
 mod feel;
+mod foresee;
 mod head;
 mod hips;
 mod hurt;
@@ -20,6 +21,7 @@ use clamber_animation::rig::{Palette, Pose};
 use clamber_surface::surface::SkinnedSurface;
 
 pub use config::CreatureConfig;
+pub use foresee::Foresight;
 pub use report::{AttackPhase, Blow, CreatureEvent, CreatureReport};
 pub use state::CreatureState;
 pub use world::{Noise, Person, Riding, Surroundings, Wound};

@@ -41,10 +41,6 @@ impl Progress {
         }
     }
 
-    pub(super) fn describe(&self, _: &ClimbGraph, seconds: f64) -> String {
-        format!("at {}/{} far {} since {:.1} rest {:?}", self.at, self.plan.steps.len(), self.farthest, seconds - self.since, self.rests_until())
-    }
-
     /// Finds the step that it is on. False if it is off its way.
     pub(super) fn find(
         &mut self,
@@ -143,22 +139,6 @@ impl Progress {
         let mut on = self.plan.steps[self.at..].iter().map(|step| step.patch);
         let next = on.find(|patch| *patch != here)?;
         Some([here, next])
-    }
-
-    pub(super) fn debug(&self, graph: &ClimbGraph, view: &View<'_>) {
-        if std::env::var_os("DBG").is_none() || !self.is_stuck(view.seconds, 2.0) || self.is_stuck(view.seconds, 2.02) {
-            return;
-        }
-        let state = view.climber.state();
-        let here = state.position;
-        let gap = |p: DVec3| view.surface.in_world().closest_point(p, 1.0).map_or(9.0, |h| h.distance * if (p - h.point).dot(h.normal) < 0.0 { -1.0 } else { 1.0 });
-        eprintln!("    stuck {:?} at {here:.2} hold n {:.2} gap {:.2}", state.mode, state.support.map_or(DVec3::ZERO, |s| s.normal_in_world()), gap(here));
-        for step in self.plan.steps.iter().skip(self.at).take(4) {
-            let patch = &graph.patches()[step.patch];
-            let now = view.seat(patch);
-            let way: Vec<String> = (1..=4).map(|k| format!("{:.2}", gap(here.lerp(now, f64::from(k) / 4.0)))).collect();
-            eprintln!("      {} {:?} rest {:.2} now {:.2} n {:.1} dist {:.2} {:?} joint {:?} way {}", step.patch, step.footing, patch.seat, now, view.normal(patch), now.distance(here), patch.tag.kind, view.surface.mesh().joint_of(patch.triangle), way.join(" "));
-        }
     }
 
     /// Where it goes: some way ahead.

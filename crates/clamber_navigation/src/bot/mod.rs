@@ -77,11 +77,6 @@ impl Bot {
         self.plan.as_ref().map(|progress| &progress.plan)
     }
 
-    #[doc(hidden)]
-    pub fn describe(&self, seconds: f64) -> String {
-        self.plan.as_ref().map_or_else(String::new, |p| p.describe(&self.graph, seconds))
-    }
-
     /// How often it has planned.
     pub fn plans(&self) -> u64 {
         self.plans
@@ -184,12 +179,12 @@ impl Bot {
         let hangs = view.climber.config().grip.map_or(0.0, |grip| grip.hang_acceleration);
         let throws = view.climber.config().ground.throw_acceleration;
         let rests_here = self.rests && (stands || view.is_level());
-        let most = if stands || rests_here {
-            self.config.stands_in * throws
+        let is_shaken = if stands || rests_here {
+            // Before it comes: hands are slower than feet.
+            state.shake.length().max(view.shake_ahead) > self.config.stands_in * throws
         } else {
-            self.config.climbs_in * hangs
+            state.shake.length() > self.config.climbs_in * hangs
         };
-        let is_shaken = state.shake.length().max(view.shake_ahead) > most;
         if is_shaken {
             if let Some(plan) = &mut self.plan {
                 plan.waits(view.seconds);
@@ -216,7 +211,6 @@ impl Bot {
         let Some(target) = progress.target(&self.graph, view) else {
             return hold;
         };
-        progress.debug(&self.graph, view);
         let toward = target.place - state.position;
         let tries_else = progress.tries_else(view);
         let jumps = stands && progress.is_stuck(view.seconds, self.config.patience);

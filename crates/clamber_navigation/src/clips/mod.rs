@@ -24,8 +24,6 @@ const COSINE: f64 = 1.0 / 127.0;
 #[derive(Clone, Debug)]
 pub(crate) struct ClipSlices {
     pub(crate) name: String,
-    /// Length, seconds.
-    pub(crate) seconds: f64,
     first: usize,
     count: usize,
 }
@@ -81,7 +79,6 @@ impl ClipFacts {
         let first = self.moments.len() / patches.len().max(1);
         self.clips.push(ClipSlices {
             name: clip.name.clone(),
-            seconds: clip.duration(),
             first,
             count,
         });

@@ -1,4 +1,4 @@
-//! The script's weapons: arrows from the ground, and stabs where it has got to.
+//! The bot's weapons: arrows from the ground, and stabs where it has got to.
 
 use clamber_climber::{ClimberInput, ClimberMode};
 use clamber_fight::actions::{BOW, STAB};
@@ -7,7 +7,7 @@ use clamber_fight::{Act, FighterId};
 use glam::DVec3;
 
 use super::Performer;
-use super::goals::Aim;
+use super::planner::Aim;
 use super::performer::Sight;
 use super::scene::TICK;
 
@@ -27,7 +27,7 @@ const STRONG: f64 = 0.15;
 /// It strikes with this charge.
 const FULL: f64 = 0.999;
 
-/// The script's memory of its weapons.
+/// Memory of its weapons.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Fencer {
     shot: u32,

@@ -5,20 +5,20 @@
 //! In a ride the creature plays its clips by a timetable, and the climber is dropped on its back. The rocks fall on the
 //! creature and roll off.
 //!
-//! A fight is a thin program over [`clamber_fight::Arena`]: the script gives the inputs. Order of a tick: the creature and
+//! A fight is a thin program over [`clamber_fight::Arena`]: a bot gives the inputs. Order of a tick: the creature and
 //! the climber step, then the physics with the rocks, and the scene checks the result.
 
 pub mod bot;
 mod checks;
 mod choreography;
 mod crossing;
+mod eyes;
 mod faults;
 mod fencer;
-mod goals;
+mod grips;
 mod options;
 mod outcrop;
 mod performer;
-mod pilot;
 mod planner;
 #[cfg(feature = "record")]
 mod record;

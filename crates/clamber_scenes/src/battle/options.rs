@@ -64,7 +64,7 @@ pub struct BattleOptions {
     pub seed: u64,
 
     /// Who drives the climber in a climb.
-    #[arg(long, value_enum, default_value = "script")]
+    #[arg(long, value_enum, default_value = "bot")]
     pub pilot: PilotKind,
 
     /// Folder for summary.json and timeline.svg.
@@ -79,17 +79,14 @@ pub struct BattleOptions {
 /// Who drives the climber in a climb.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
 pub enum PilotKind {
-    /// A fixed script.
-    #[default]
-    Script,
     /// A bot that plans its way on a graph of the creature's skin.
+    #[default]
     Bot,
 }
 
 impl PilotKind {
     fn name(self) -> &'static str {
         match self {
-            Self::Script => "script",
             Self::Bot => "bot",
         }
     }

@@ -7,8 +7,8 @@ use clamber_navigation::{Bot, BotConfig, ClimbGraph, Danger, Footing, Forecast, 
 use glam::DVec3;
 
 use super::crossing::Crossing;
+use super::eyes::Eyes;
 use super::fencer::Fencer;
-use super::goals::Aim;
 use super::performer::Sight;
 use super::scene::CREATURE;
 use super::{BattleError, Performer};
@@ -18,14 +18,23 @@ use super::{BattleError, Performer};
 const COVER: f64 = 1.2;
 const BESIDE: f64 = 0.5;
 
+/// What can be reached this far below the highest place counts as the top, as a share of the height of all that can be reached.
+const TOP: f64 = 0.03;
+
 /// Seconds for which a creature has to look calm until it is taken for calm.
 const SURE: f64 = 0.5;
 
-/// It does not go on with a goal at which it has not struck for so long, seconds.
-const GIVES_UP: f64 = 25.0;
-
 /// It moves up to its goal's weak point in a shake up to this, metres a second squared.
 const STEADY: f64 = 6.0;
+
+/// What to strike.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Aim {
+    /// The weak point, by its index; `None` for the creature's top.
+    pub(super) weak_point: Option<usize>,
+    /// The plate over the weak point, by its index.
+    pub(super) plate: Option<usize>,
+}
 
 /// A goal: what to strike, and the ways there.
 #[derive(Clone, Debug)]
@@ -44,8 +53,7 @@ pub(super) struct Planner {
     fencer: Fencer,
     crossing: Crossing,
     calm: Option<f64>,
-    /// Since when it is at its goal, seconds.
-    there: Option<f64>,
+    eyes: Eyes,
     arrived: Option<f64>,
 }
 
@@ -57,8 +65,11 @@ impl Planner {
             let mut entries = graph.entries().iter();
             entries.any(|entry| least(&target.goal, entry.patch).is_finite())
         };
-        let targets: Vec<Target> = targets.into_iter().filter(leads).collect();
+        let mut targets: Vec<Target> = targets.into_iter().filter(leads).collect();
         if targets.is_empty() {
+            targets.push(top(&graph));
+        }
+        if !targets.iter().any(leads) {
             return Err(BattleError::NoWay {
                 creature: performer.creature().name.clone(),
             });
@@ -74,7 +85,7 @@ impl Planner {
             fencer: Fencer::default(),
             crossing: Crossing::default(),
             calm: None,
-            there: None,
+            eyes: Eyes::new(performer),
             arrived: None,
         })
     }
@@ -93,45 +104,9 @@ impl Planner {
 
     /// The input of the tick that begins at `seconds`.
     pub(super) fn input(&mut self, performer: &Performer<'_>, seconds: f64) -> ClimberInput {
-        let input = self.input_of(performer, seconds);
-        let fine = std::env::var("FINE").ok().and_then(|f| f.parse::<f64>().ok()).is_some_and(|f| (f..f + 3.0).contains(&seconds));
-        if fine {
-            let state = performer.climber().state();
-            eprintln!("  fine {seconds:.2} {:?} {:.2} n {:.2} climb {:.2} own {:.2} shake {:.1} {}", state.mode, state.position, state.support.map_or(DVec3::ZERO, |s| s.normal_in_world()), input.climb, state.velocity - state.base_velocity, state.shake.length(), self.bot.describe(seconds));
-            let pal = performer.palette();
-            let mut line = String::new();
-            for j in [0u32, 4, 5, 6, 7, 8, 9, 10, 11, 12, 22, 23] {
-                if let Some(f) = pal.model_from_joint(clamber_surface::rig::JointId(j)) {
-                    line += &format!("{}:{:.2} ", performer.creature().skeleton.joints()[j as usize].name, f.transform_point3(glam::DVec3::new(0.0, 1.0, 0.0)));
-                }
-            }
-            let w = performer.surface().world_from_model();
-            eprintln!("   joints {line} world {:.2} {:.3} tri joint {:?}", w.translation, w.rotation, performer.surface().mesh().joint_of(clamber_surface::mesh::TriangleId(3262)));
-            let r = performer.report();
-            eprintln!("      pushed {:.2} clear {} missing {:?} changes {} support {:?} crushed {}", r.pushed_out, r.is_clear, r.events, r.mode_changes, state.support.map(|s| (s.attachment.material.key, s.attachment.material.coordinates)), state.crushed);
-        }
-        if std::env::var_os("DBG").is_some() && (seconds * 60.0).round() as u64 % 30 == 0 {
-            let climber = performer.climber();
-            let state = climber.state();
-            let here = state.support.and_then(|support| {
-                let material = support.attachment.material;
-                let weights = material.coordinates.map(|weight| weight as f32);
-                self.bot.graph().patch_at(material.triangle()?, weights)
-            });
-            let target = &self.targets[self.at];
-            let act = performer.fighter().map_or(String::new(), |f| format!("{:?}", f.act()).chars().take(40).collect());
-            let left = here.map_or(f64::NAN, |here| least(&target.goal, here));
-            eprintln!("{seconds:6.1} {:12} {:9} y {:5.1} left {left:5.1} st {:.2} shake {:4.1} aim {:?}/{:?} plans {} steps {} {} {} {:?} {}",
-                performer.playing().split('/').last().unwrap_or(""), format!("{:?}", state.mode), state.position.y, state.stamina, state.shake.length(),
-                target.aim.weak_point, target.aim.plate, self.bot.plans(), self.bot.plan().map_or(0, |p| p.steps.len()),
-                if input.grip {'g'} else {'-'}, if input.jump {'j'} else {'-'}, (input.climb * 10.0).round() / 10.0, self.bot.describe(seconds)+&format!(" ACT {act} miss {:?} aimed {:?}", self.fencer.miss(performer, target.aim).map(|m| (m*10.0).round()/10.0), performer.arena().and_then(|a| a.stab_aim(clamber_fight::FighterId(0))).map(|a| (a.weak_point, a.plate))));
-        }
-        input
-    }
-
-    fn input_of(&mut self, performer: &Performer<'_>, seconds: f64) -> ClimberInput {
         let sight = self.look(performer.sight(), seconds);
         self.choose(performer);
+        let shake_ahead = self.eyes.shake_ahead(performer);
         let climber = performer.climber();
         let state = climber.state();
         let target = &self.targets[self.at];
@@ -147,14 +122,13 @@ impl Planner {
                 Sight { stays: true, .. } => Danger::None,
                 _ => Danger::Moves,
             },
-            shake_ahead: 0.0,
+            shake_ahead,
         };
         let is_on_it = state
             .support
             .is_some_and(|support| support.attachment.obstacle == CREATURE);
         if !is_on_it {
-            self.there = None;
-            if let Some(input) = self.crossing.input(climber, seconds, sight.attacks) {
+                if let Some(input) = self.crossing.input(climber, seconds, sight.attacks) {
                 return input;
             }
             if state.mode == ClimberMode::Standing
@@ -165,15 +139,12 @@ impl Planner {
             return self.bot.input(&view);
         }
         if let Some(stab) = self.fencer.stab(performer, target.aim) {
-            self.there = Some(seconds);
             return stab;
         }
         let is_there = self.bot.is_there(&view);
         if self.bot.wants_rest(&view) || !is_there {
-            self.there = None;
-            return self.bot.input(&view);
+                return self.bot.input(&view);
         }
-        self.there.get_or_insert(seconds);
         if target.aim.weak_point == highest(performer) {
             self.arrived.get_or_insert(seconds);
         }
@@ -225,7 +196,6 @@ impl Planner {
         let nearest = open.iter().copied().min_by(|a, b| left(a).total_cmp(&left(b)));
         self.at = nearest.unwrap_or(0);
         self.bot.forget();
-        self.there = None;
     }
 
     /// The targets that there are now: open weak points without a cover, and plates that cover one. If there are none, those
@@ -294,6 +264,21 @@ fn place(performer: &Performer<'_>, weak_point: usize) -> DVec3 {
     frame.map_or(DVec3::ZERO, |frame| {
         frame.transform_point3(point.position.as_dvec3())
     })
+}
+
+/// The highest places that can be reached, for a creature without weak points.
+fn top(graph: &ClimbGraph) -> Target {
+    let reached = graph.reachable();
+    let height = |patch: &usize| graph.patches()[*patch].seat.y;
+    let there: Vec<usize> = (0..reached.len()).filter(|patch| reached[*patch]).collect();
+    let low = there.iter().map(height).fold(f64::INFINITY, f64::min);
+    let high = there.iter().map(height).fold(f64::NEG_INFINITY, f64::max);
+    let is_high = |patch: &usize| height(patch) >= high - TOP * (high - low);
+    let high: Vec<usize> = there.into_iter().filter(is_high).collect();
+    Target {
+        aim: Aim::default(),
+        goal: graph.goal(&high),
+    }
 }
 
 fn targets(performer: &Performer<'_>, graph: &ClimbGraph) -> Vec<Target> {

@@ -15,11 +15,11 @@ use glam::DVec3;
 use super::bot::{Intent, Rider, RiderScene};
 use super::checks::{Watch, Watched};
 use super::faults::Moment;
-use super::pilot::{Grips, Pilot};
+use super::grips::Grips;
 use super::planner::Planner;
 use super::rockfall::Rockfall;
 use super::{
-    BattleError, BattleOptions, BattleSnapshot, Performer, PilotKind, Recording, Sample, Story, Tally, outcrop,
+    BattleError, BattleOptions, BattleSnapshot, Performer, Recording, Sample, Story, Tally, outcrop,
 };
 use crate::{Creature, valley};
 
@@ -49,35 +49,6 @@ const GROUNDED_TICKS: u32 = 60;
 const RUN_UP: f64 = 4.0;
 const ASIDE: f64 = 1.5;
 
-/// Who drives a climb.
-enum Player {
-    Script(Box<Pilot>),
-    Bot(Box<Planner>),
-}
-
-impl Player {
-    fn input(&mut self, performer: &Performer<'_>, seconds: f64) -> ClimberInput {
-        match self {
-            Self::Script(pilot) => pilot.input(performer, seconds),
-            Self::Bot(planner) => planner.input(performer, seconds),
-        }
-    }
-
-    fn begin_again(&mut self) {
-        match self {
-            Self::Script(pilot) => pilot.begin_again(),
-            Self::Bot(planner) => planner.begin_again(),
-        }
-    }
-
-    fn arrived(&self) -> Option<f64> {
-        match self {
-            Self::Script(pilot) => pilot.arrived(),
-            Self::Bot(planner) => planner.arrived(),
-        }
-    }
-}
-
 /// The running scene.
 pub struct Battle<'a> {
     performer: Performer<'a>,
@@ -90,7 +61,7 @@ pub struct Battle<'a> {
     /// The script of a ride.
     rider: Rider,
     /// Who drives a climb; `None` in a ride.
-    pilot: Option<Player>,
+    pilot: Option<Box<Planner>>,
     height: f64,
     tick: u64,
     grounded: u32,
@@ -127,15 +98,10 @@ impl<'a> Battle<'a> {
             Story::Climb => {
                 outcrop::insert(&mut world)?;
                 let climber = climber_before_the_outcrop(seed)?;
-                let player = match options.pilot {
-                    PilotKind::Script => Player::Script(Box::new(Pilot::new(&performer)?)),
-                    PilotKind::Bot => {
-                        let plates = performer.plates();
-                        let graph = creature.graph(climber.config(), height, &plates)?;
-                        Player::Bot(Box::new(Planner::new(&performer, graph)?))
-                    }
-                };
-                (climber, Some(player))
+                let plates = performer.plates();
+                let graph = creature.graph(climber.config(), height, &plates)?;
+                let planner = Planner::new(&performer, graph)?;
+                (climber, Some(Box::new(planner)))
             }
             Story::Ride => (rider_above(perch.point, DROP)?, None),
         };
@@ -167,7 +133,7 @@ impl<'a> Battle<'a> {
         })
     }
 
-    /// Runs one tick, with the climber's input from the script.
+    /// Runs one tick, with the climber's input from the bot or the script of a ride.
     ///
     /// # Errors
     /// [`BattleError`] if a clip does not fit the creature.
@@ -447,7 +413,7 @@ impl<'a> Battle<'a> {
 
     /// When the climber first came to the creature's top, seconds; `None` if it has not, or in a ride.
     pub fn arrived(&self) -> Option<f64> {
-        self.pilot.as_ref().and_then(Player::arrived)
+        self.pilot.as_ref().and_then(|pilot| pilot.arrived())
     }
 
     /// How often the climber was dropped on the creature; 0 in a climb.

@@ -7,7 +7,7 @@ use std::path::Path;
 
 use clamber_climber::{Climber, ClimberConfig, ClimberEvent, StepRules};
 use clamber_navigation::{
-    Bot, BotConfig, ClimbGraph, Danger, Footing, Forecast, Goal, NavigationError, View,
+    Bot, BotConfig, ClimbGraph, Danger, Footing, Forecast, NavigationError, View,
 };
 use clamber_surface::geometry::Similarity;
 use clamber_surface::rig::Playback;
@@ -170,10 +170,6 @@ pub fn climb(file: &Path, options: &ClimbsOptions) -> Result<Climbed, ClimbError
         }
         let input = bot.input(&view);
         climbed.highest = climbed.highest.max(climber.state().position.y - scene.ground);
-        if let Some(f) = std::env::var("FINE").ok().and_then(|f| f.parse::<f64>().ok()) && (f..f + 60.0).contains(&seconds) {
-            let state = climber.state();
-            if (seconds * 60.0).round() as u64 % std::env::var("EVERY").ok().and_then(|e| e.parse().ok()).unwrap_or(1) == 0 { eprintln!("  fine {seconds:.2} {:?} {:.2} n {:.2} climb {:.2} walk {:.2} own {:.2} {}", state.mode, state.position, state.support.map_or(DVec3::ZERO, |s| s.normal_in_world()), input.climb, input.walk, state.velocity - state.base_velocity, bot.describe(seconds)); }
-        }
         climbed.plans = bot.plans();
         if climbed.times[1].is_some() {
             break;

@@ -1,10 +1,8 @@
 //! A bot grips a creature's foot and climbs to its head while the creature moves.
 
-mod ascent;
 mod route;
 mod stage;
 
-pub use ascent::Ascent;
 pub use route::{Route, Ways};
 pub use stage::{Motion, Stage};
 

@@ -119,27 +119,6 @@ impl Ways {
         Some(Route { waypoints })
     }
 
-    /// Vertices near the bottom, between 2 % and 15 % of the height.
-    pub(super) fn feet(&self) -> &[u32] {
-        &self.feet
-    }
-
-    /// Positions of all vertices at rest.
-    pub(crate) fn rest(&self) -> &[Vec3] {
-        &self.rest
-    }
-
-    /// The vertices that ways lead to from a vertex.
-    pub(super) fn neighbours(&self, vertex: u32) -> &[u32] {
-        &self.neighbours[vertex as usize]
-    }
-
-    /// The vertices with at least one way.
-    pub(crate) fn used(&self) -> impl Iterator<Item = u32> {
-        let vertices = 0..self.rest.len() as u32;
-        vertices.filter(|vertex| !self.neighbours[*vertex as usize].is_empty())
-    }
-
     /// The shortest way to every vertex from the nearest of `from`: the vertex before it, and the length of the way.
     /// The length is infinite where no way leads.
     pub(super) fn tree(&self, from: &[u32]) -> (Vec<Option<u32>>, Vec<f32>) {
