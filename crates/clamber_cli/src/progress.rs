@@ -41,10 +41,15 @@ impl Progress {
 
     /// One step more is done.
     pub(crate) fn step(&mut self) {
-        self.done += 1;
+        self.set(self.done + 1);
+    }
+
+    /// So many steps are done.
+    pub(crate) fn set(&mut self, done: usize) {
+        self.done = done;
         if let Some(bar) = &self.bar {
-            bar.inc(1);
-        } else if self.told.elapsed() >= EVERY && self.done < self.all {
+            bar.set_position(done as u64);
+        } else if self.told.elapsed() >= EVERY && (1..self.all).contains(&self.done) {
             self.told = Instant::now();
             let each = self.start.elapsed().as_secs_f64() / self.done as f64;
             let left = each * (self.all - self.done) as f64;

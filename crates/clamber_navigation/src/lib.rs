@@ -22,6 +22,6 @@ pub use graph::{ClimbGraph, Entry, Footing, Patch};
 pub use landing::{Flight, Landing};
 pub use plan::{Forecast, Goal, Plan, PlanStep, Start};
 pub use progress::{Progress, Stage};
-pub use report::{ClimbReport, Missing, PointReport};
+pub use report::{ClimbReport, ClipReport, Missing, PointReport, WayOn};
 pub use ride::{RideEnd, ThrowOff};
 pub use source::GraphSource;

@@ -13,6 +13,7 @@ use std::sync::Arc;
 pub use config::BotConfig;
 pub use view::{Danger, View};
 
+use crate::report::LEVEL;
 use crate::{ClimbGraph, Footing, Goal, Plan, Start};
 use follow::Progress;
 use ground::Approach;
@@ -294,9 +295,6 @@ impl Bot {
 
 /// Whoever is nearer to where it would be on a patch than this share of its radius is there.
 const THERE: f64 = 0.5;
-
-/// It rests on slopes up to this share of those that it can stand on.
-const LEVEL: f64 = 0.6;
 
 /// In shakes beyond this it waits before it lets go, metres a second squared.
 const STILL: f64 = 3.0;

@@ -25,7 +25,7 @@ const COSINE: f64 = 1.0 / 127.0;
 pub(crate) struct ClipSlices {
     pub(crate) name: String,
     first: usize,
-    count: usize,
+    pub(crate) count: usize,
 }
 
 /// A patch in a slice of a clip.

@@ -3,6 +3,8 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
+use clamber_climber::ClimberConfig;
+
 use super::goal::{node, of_node};
 use super::{Forecast, Goal};
 use crate::clips::{Moment, SLICE};
@@ -86,6 +88,17 @@ impl ClimbGraph {
         self.plan_around(starts, goal, forecast, &|_, _| true)
     }
 
+    /// [`ClimbGraph::plan`] for a climber whom holding on costs `strain` times as much strength.
+    pub(crate) fn plan_strained(
+        &self,
+        starts: &[Start],
+        goal: &Goal,
+        forecast: &Forecast,
+        strain: f64,
+    ) -> Option<Plan> {
+        self.search(starts, goal, forecast, &|_, _| true, strain)
+    }
+
     /// [`ClimbGraph::plan`] on those ways only that are open, from a patch to another.
     pub(crate) fn plan_around(
         &self,
@@ -94,11 +107,23 @@ impl ClimbGraph {
         forecast: &Forecast,
         is_open: &dyn Fn(usize, usize) -> bool,
     ) -> Option<Plan> {
+        self.search(starts, goal, forecast, is_open, 1.0)
+    }
+
+    fn search(
+        &self,
+        starts: &[Start],
+        goal: &Goal,
+        forecast: &Forecast,
+        is_open: &dyn Fn(usize, usize) -> bool,
+        strain: f64,
+    ) -> Option<Plan> {
         let mut search = Search {
             graph: self,
             goal,
             forecast,
             is_open,
+            strain,
             labels: Vec::new(),
             best: vec![[f64::INFINITY; LEVELS + 1]; 2 * self.patches.len()],
             open: BinaryHeap::new(),
@@ -120,6 +145,8 @@ struct Search<'a> {
     goal: &'a Goal,
     forecast: &'a Forecast,
     is_open: &'a dyn Fn(usize, usize) -> bool,
+    /// Factor on what holding on costs.
+    strain: f64,
     labels: Vec<Label>,
     /// Of each node and each level of stamina, when it is reached with that much.
     best: Vec<[f64; LEVELS + 1]>,
@@ -248,7 +275,7 @@ impl Search<'_> {
         let holds = match footing {
             Footing::Holds => true,
             Footing::Stands => {
-                let falls = falls(climber, &moment);
+                let falls = throws(climber, &moment) || slips(climber, &moment);
                 if falls && !self.graph.patches[patch].can_hold {
                     return None;
                 }
@@ -266,7 +293,7 @@ impl Search<'_> {
             return Some(((seconds + passes, 1.0), moves));
         };
         let after = if holds {
-            stamina - passes * (costs.hold_drain + costs.shake_drain * moment.excess)
+            stamina - passes * self.strain * (costs.hold_drain + costs.shake_drain * moment.excess)
         } else if moment.excess == 0.0 {
             (stamina + passes * costs.refill).min(1.0)
         } else {
@@ -304,9 +331,13 @@ fn level(stamina: f64) -> usize {
     ((stamina * LEVELS as f64 + 1e-9) as usize).min(LEVELS)
 }
 
-/// True if whoever stands there without holding on would fall.
-fn falls(climber: &clamber_climber::ClimberConfig, moment: &Moment) -> bool {
+/// True if whoever stands there without holding on is thrown or knocked down.
+pub(crate) fn throws(climber: &ClimberConfig, moment: &Moment) -> bool {
     let knock = climber.tumble.map_or(f64::INFINITY, |tumble| tumble.knock_acceleration);
-    let slope = libm::acos(moment.upright.clamp(-1.0, 1.0));
-    moment.shake > climber.ground.throw_acceleration.min(knock) || slope > climber.ground.max_slope
+    moment.shake > climber.ground.throw_acceleration.min(knock)
+}
+
+/// True if it is too steep there to stand on.
+pub(crate) fn slips(climber: &ClimberConfig, moment: &Moment) -> bool {
+    libm::acos(moment.upright.clamp(-1.0, 1.0)) > climber.ground.max_slope
 }

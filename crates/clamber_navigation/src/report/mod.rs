@@ -7,13 +7,18 @@ use std::ops::ControlFlow;
 use clamber_surface::rig::WeakPoint;
 use glam::DVec3;
 
+use crate::clips::SLICE;
 use crate::graph::{NONE, Reachable};
+use crate::plan::{slips, throws};
 use crate::progress::Tell;
 use crate::survey::Survey;
-use crate::{ClimbGraph, GraphConfig, GraphSource, NavigationError, Progress};
+use crate::{
+    ClimbGraph, Footing, Forecast, GraphConfig, GraphSource, NavigationError, Plan, Progress, Start,
+};
 
-/// What a climber can reach on a creature at rest.
+/// What a climber can reach on a creature, and how its clips treat it.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct ClimbReport {
     /// Area of the skin, square metres.
@@ -22,40 +27,89 @@ pub struct ClimbReport {
     pub grip_area: f64,
     /// Area on which a climber can stand, square metres.
     pub stand_area: f64,
-    /// Area that a climber from the ground can reach, square metres.
+    /// Area that a climber from the ground can reach on the creature at rest, square metres.
     pub reachable_area: f64,
-    /// Number of places where it gets on.
-    pub entries: usize,
+    /// Of that, area on which it can rest: it can stand there, and the slope is at most six tenths of the steepest one.
+    pub rest_area: f64,
+    /// Where it gets on, by how much it can reach from there, most first.
+    pub ways_on: Vec<WayOn>,
     /// The weak points, in their order in the file.
     pub weak_points: Vec<PointReport>,
+    /// The clips, in their order in the file.
+    pub clips: Vec<ClipReport>,
+}
+
+/// Entries from which the same skin is reached.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
+pub struct WayOn {
+    /// Number of entries.
+    pub entries: usize,
+    /// The lowest of them, at rest, in the world.
+    pub place: DVec3,
+    /// Area that is reached from them, square metres.
+    pub area: f64,
 }
 
 /// What the report says about a weak point.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct PointReport {
     /// Its name.
     pub name: String,
     /// Where it is at rest, in the world.
     pub place: DVec3,
-    /// True if a climber can get there.
+    /// True if a climber gets there from the ground on the creature at rest, with the strength that it has.
     pub reachable: bool,
-    /// What is missing if it cannot.
+    /// The time that it takes, seconds, rests included; `None` if it is not reachable.
+    pub seconds: Option<f64>,
+    /// Stamina that is left there; `None` if it is not reachable.
+    pub stamina: Option<f64>,
+    /// What is missing if it is not.
     pub missing: Option<Missing>,
 }
 
 /// What keeps a climber from a weak point.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Missing {
     /// Hands would have to reach so much farther, metres: beside the best way there is nothing to grip.
     Reach(f64),
+    /// It would have to hold on for so much longer without a rest, seconds.
+    Strength(f64),
     /// No longer arms help: there is no room, or nothing to hold on to at all.
     Way,
 }
 
+/// How a clip treats climbers where they can get to.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
+pub struct ClipReport {
+    /// Its name.
+    pub name: String,
+    /// The hardest shake, metres a second squared; 63.75 stands for all harder ones.
+    pub hardest_shake: f64,
+    /// Area from which whoever stands there slips, since it gets too steep, square metres.
+    pub slips_from: f64,
+    /// Area from which whoever stands there is thrown or knocked down, square metres.
+    pub throws_from: f64,
+    /// When that begins, seconds from the clip's beginning.
+    pub throws_at: Option<f64>,
+    /// Area on which whoever holds on in the clip's whole length, rested, loses its hold, square metres.
+    pub exhausts_on: f64,
+    /// When that happens at the earliest, seconds from the clip's beginning.
+    pub exhausts_at: Option<f64>,
+}
+
 /// A weak point is reached from seats on pieces within its radius and so many radii of the climber.
 const NEAR: f64 = 1.0;
+
+/// Rests are on slopes up to this share of the steepest that can be stood on.
+pub(crate) const LEVEL: f64 = 0.6;
 
 impl ClimbReport {
     /// Looks at a creature. `progress` is called again and again, and cancels by [`ControlFlow::Break`].
@@ -73,6 +127,7 @@ impl ClimbReport {
         let reached = graph.flood(graph.entries().iter().map(|entry| entry.patch));
         let view = View {
             survey: &survey,
+            graph: &graph,
             patch_of: &patch_of,
             reached: &reached,
         };
@@ -92,8 +147,10 @@ impl ClimbReport {
             grip_area: view.sum(|piece| config.can_grip(&survey.pieces[piece].tag)),
             stand_area: view.sum(|piece| survey.can_stand(piece)),
             reachable_area: view.sum(|piece| view.has(piece)),
-            entries: graph.entries().len(),
+            rest_area: view.sum(|piece| view.has(piece) && view.can_rest(piece)),
+            ways_on: view.ways_on(),
             weak_points,
+            clips: view.clips(),
         };
         Ok((report, graph))
     }
@@ -102,6 +159,7 @@ impl ClimbReport {
 /// The pieces of skin, and which of them are reached.
 struct View<'a> {
     survey: &'a Survey,
+    graph: &'a ClimbGraph,
     patch_of: &'a [u32],
     reached: &'a Reachable,
 }
@@ -129,13 +187,148 @@ impl View<'_> {
                 piece.seat.is_some() && piece.point.distance(place) <= within
             })
             .collect();
-        let reachable = goals.iter().any(|piece| self.has(*piece));
+        let is_reached = goals.iter().any(|piece| self.has(*piece));
+        let plan = is_reached.then(|| self.plan(&goals, 1.0)).flatten();
+        let missing = match (&plan, is_reached) {
+            (Some(_), _) => None,
+            (None, true) => Some(self.missing_strength(&goals)),
+            (None, false) => Some(self.missing(&goals)),
+        };
         PointReport {
             name: point.name.clone(),
             place,
-            reachable,
-            missing: (!reachable).then(|| self.missing(&goals)),
+            reachable: plan.is_some(),
+            seconds: plan.as_ref().map(Plan::seconds),
+            stamina: plan.as_ref().map(Plan::stamina),
+            missing,
         }
+    }
+
+    /// The fastest way from the ground to some pieces, for a climber whom holding on costs `strain` times as much.
+    fn plan(&self, goals: &[usize], strain: f64) -> Option<Plan> {
+        let patches = goals.iter().map(|piece| self.patch_of[*piece]);
+        let patches: Vec<usize> = patches
+            .filter(|patch| *patch != NONE)
+            .map(|patch| patch as usize)
+            .collect();
+        let goal = self.graph.goal(&patches);
+        let starts: Vec<Start> = self
+            .graph
+            .entries()
+            .iter()
+            .flat_map(|entry| {
+                [Footing::Stands, Footing::Holds].map(|footing| Start {
+                    patch: entry.patch,
+                    footing,
+                    seconds: 0.0,
+                    stamina: 1.0,
+                })
+            })
+            .collect();
+        self.graph.plan_strained(&starts, &goal, &Forecast::still(), strain)
+    }
+
+    /// How much longer it would have to hold on, to a tenth of a second.
+    fn missing_strength(&self, goals: &[usize]) -> Missing {
+        let stamina = self.survey.config.climber.stamina;
+        let lasts = stamina.map_or(0.0, |stamina| 1.0 / stamina.hold_drain);
+        let (mut enough, mut short) = (1e-3, 1.0);
+        if !lasts.is_finite() || self.plan(goals, enough).is_none() {
+            return Missing::Way;
+        }
+        while lasts / enough - lasts / short > 0.1 {
+            let strain = 2.0 / (1.0 / enough + 1.0 / short);
+            if self.plan(goals, strain).is_some() {
+                enough = strain;
+            } else {
+                short = strain;
+            }
+        }
+        Missing::Strength(lasts / enough - lasts)
+    }
+
+    fn can_rest(&self, piece: usize) -> bool {
+        let climber = &self.survey.config.climber;
+        let cosine = self.survey.pieces[piece].normal.dot(climber.up());
+        self.survey.can_stand(piece) && cosine >= libm::cos(LEVEL * climber.ground.max_slope)
+    }
+
+    fn ways_on(&self) -> Vec<WayOn> {
+        let mut left: Vec<usize> = self.graph.entries().iter().map(|entry| entry.patch).collect();
+        let mut ways = Vec::new();
+        let up = self.survey.config.climber.up();
+        let area: Vec<f64> = self.graph.patches().iter().map(|patch| patch.area).collect();
+        while let Some(&first) = left.first() {
+            let reached = self.graph.flood([first]);
+            let (same, others): (Vec<usize>, Vec<usize>) =
+                left.iter().partition(|patch| reached.has(**patch));
+            let places = same.iter().map(|patch| self.graph.patches()[*patch].seat);
+            let lowest = places.min_by(|a, b| a.dot(up).total_cmp(&b.dot(up)));
+            let counted = area.iter().enumerate().filter(|(patch, _)| reached.has(*patch));
+            ways.push(WayOn {
+                entries: same.len(),
+                place: lowest.unwrap_or_default(),
+                area: counted.map(|(_, area)| area).sum(),
+            });
+            left = others;
+        }
+        ways.sort_by(|a, b| b.area.total_cmp(&a.area));
+        ways
+    }
+
+    fn clips(&self) -> Vec<ClipReport> {
+        let facts = &self.graph.clips;
+        (0..facts.clips.len()).map(|clip| self.clip(clip)).collect()
+    }
+
+    fn clip(&self, clip: usize) -> ClipReport {
+        let (facts, climber) = (&self.graph.clips, &self.survey.config.climber);
+        let slices = facts.clips[clip].count;
+        let mut report = ClipReport {
+            name: facts.clips[clip].name.clone(),
+            hardest_shake: 0.0,
+            slips_from: 0.0,
+            throws_from: 0.0,
+            throws_at: None,
+            exhausts_on: 0.0,
+            exhausts_at: None,
+        };
+        let earlier = |known: &mut Option<f64>, slice: usize| {
+            let at = slice as f64 * SLICE;
+            *known = Some(known.map_or(at, |known| known.min(at)));
+        };
+        for (index, patch) in self.graph.patches().iter().enumerate() {
+            if !self.reached.has(index) {
+                continue;
+            }
+            let moments = (0..slices).map(|slice| facts.at(clip, slice as f64 * SLICE, index));
+            let moments: Vec<_> = moments.collect();
+            let hardest = moments.iter().map(|moment| moment.shake).fold(0.0, f64::max);
+            report.hardest_shake = report.hardest_shake.max(hardest);
+            if patch.can_stand {
+                let thrown = moments.iter().position(|moment| throws(climber, moment));
+                if let Some(slice) = thrown {
+                    report.throws_from += patch.area;
+                    earlier(&mut report.throws_at, slice);
+                }
+                if moments.iter().any(|moment| slips(climber, moment)) {
+                    report.slips_from += patch.area;
+                }
+            }
+            let Some(costs) = climber.stamina.filter(|_| patch.can_hold) else {
+                continue;
+            };
+            let mut left = 1.0;
+            let ends = moments.iter().position(|moment| {
+                left -= SLICE * (costs.hold_drain + costs.shake_drain * moment.excess);
+                left <= 0.0
+            });
+            if let Some(slice) = ends {
+                report.exhausts_on += patch.area;
+                earlier(&mut report.exhausts_at, slice);
+            }
+        }
+        report
     }
 
     /// How much farther hands would have to reach, to come from what is reached to one of some pieces: the way whose worst

@@ -17,7 +17,7 @@ const FILE_HEIGHT: f64 = 20.0;
 const GIANT_HEIGHT: f64 = 40.0;
 
 /// Length of a battle in each story, seconds.
-const CLIMB_SECONDS: f64 = 290.0;
+const CLIMB_SECONDS: f64 = 200.0;
 const RIDE_SECONDS: f64 = 60.0;
 
 /// A climber fights a giant that hunts it, or rides a creature that walks and shakes, while rocks fall.
@@ -49,7 +49,7 @@ pub struct BattleOptions {
     #[arg(long, value_enum)]
     pub story: Option<Story>,
 
-    /// Length of the battle [default: 290 for climb, 60 for ride].
+    /// Length of the battle [default: 200 for climb, 60 for ride].
     #[arg(long, value_name = "SECONDS")]
     #[arg(value_parser = positive, allow_negative_numbers = true)]
     pub seconds: Option<f64>,
@@ -60,7 +60,7 @@ pub struct BattleOptions {
     pub rocks: u32,
 
     /// Seed for the climber's start and the rocks' places; the same number gives the same battle.
-    #[arg(long, default_value_t = 117)]
+    #[arg(long, default_value_t = 28)]
     pub seed: u64,
 
     /// Who drives the climber in a climb.

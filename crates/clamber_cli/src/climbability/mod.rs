@@ -1,0 +1,182 @@
+//! Tells where a climber can get to on a creature.
+
+mod require;
+mod table;
+
+use std::ops::ControlFlow;
+use std::path::PathBuf;
+
+use clamber_climber::ClimberConfig;
+use clamber_gltf::GltfError;
+use clamber_navigation::{
+    ClimbReport, GraphConfig, GraphSource, NavigationError, Progress as Built, Stage,
+};
+use clamber_surface::geometry::Similarity;
+use clamber_surface::mesh::SurfaceKind;
+use clap::Args;
+use thiserror::Error;
+
+pub use require::Requirement;
+
+use crate::progress::Progress;
+
+/// Tells where a climber can get to on a creature, and what keeps it from the weak points.
+///
+/// Divides the creature's skin into patches, looks from which to which a climber walks and climbs, and plays all clips. With
+/// --require it is a check for a game's CI: it exits with 1 if a requirement does not hold, and with 2 if there is no report.
+#[derive(Args, Clone, Debug)]
+pub struct ClimbabilityOptions {
+    /// A .glb or .gltf file.
+    pub file: PathBuf,
+
+    /// Height of the creature, metres [default: as in the file].
+    #[arg(long, value_name = "METRES", value_parser = positive, allow_negative_numbers = true)]
+    pub height: Option<f64>,
+
+    /// Materials that can be gripped, separated by commas.
+    #[arg(long, value_enum, value_delimiter = ',', default_value = "fur")]
+    pub grip: Vec<Material>,
+
+    /// How far hands reach from the climber's ball, metres.
+    #[arg(long, value_name = "METRES", default_value_t = 0.35, value_parser = positive, allow_negative_numbers = true)]
+    pub reach: f64,
+
+    /// Largest side of a patch of skin, metres.
+    #[arg(long, value_name = "METRES", default_value_t = 0.4, value_parser = positive, allow_negative_numbers = true)]
+    pub spacing: f64,
+
+    /// What has to hold, such as "weak_points>=3": a number of the report, one of >=, <=, >, < and =, and a number. Numbers are
+    /// weak_points (how many are reachable), reachable (share of the skin, 0 to 1), reachable_area and rest_area (square
+    /// metres), entries. May be given more than once.
+    #[arg(long, value_name = "WHAT")]
+    pub require: Vec<Requirement>,
+
+    /// Print the report as JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(number) if number > 0.0 && number <= 1e6 => Ok(number),
+        Ok(_) => Err("must be above 0 and at most 1000000".into()),
+        Err(error) => Err(error.to_string()),
+    }
+}
+
+/// A material of the skin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Material {
+    /// Bare skin.
+    Skin,
+    /// Fur or plants.
+    Fur,
+    /// Armour or rock.
+    Stone,
+}
+
+impl Material {
+    fn kind(self) -> SurfaceKind {
+        match self {
+            Self::Skin => SurfaceKind::Skin,
+            Self::Fur => SurfaceKind::Fur,
+            Self::Stone => SurfaceKind::Stone,
+        }
+    }
+}
+
+/// Why there is no report.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum ClimbabilityError {
+    /// The file cannot be loaded.
+    #[error(transparent)]
+    Gltf(#[from] GltfError),
+    /// The graph cannot be built.
+    #[error(transparent)]
+    Navigation(#[from] NavigationError),
+    /// The creature is flat, and cannot be scaled to a height.
+    #[error("the creature has no height, so it cannot be scaled to {0} m")]
+    NoHeight(f64),
+    /// The report cannot be written as JSON.
+    #[error("the report cannot be written: {0}")]
+    Json(#[from] serde_json::Error),
+}
+
+/// Prints the report on a creature. True if all requirements hold.
+///
+/// # Errors
+/// [`ClimbabilityError`] if the file cannot be loaded, or no graph can be built.
+pub fn print(options: &ClimbabilityOptions) -> Result<bool, ClimbabilityError> {
+    let rig = clamber_gltf::load(&options.file)?;
+    let palette = rig.skeleton.palette(&rig.skeleton.rest_pose());
+    let palette = palette.map_err(NavigationError::from)?;
+    let skin = clamber_surface::skin::skin(&rig.collider, palette.matrices()).unwrap_or_default();
+    let low = skin.iter().map(|p| p.y).fold(f32::INFINITY, f32::min);
+    let high = skin.iter().map(|p| p.y).fold(f32::NEG_INFINITY, f32::max);
+    let own = f64::from(high - low);
+    let scale = options.height.map_or(1.0, |height| height / own);
+    if !(scale.is_normal() && scale > 0.0) {
+        return Err(ClimbabilityError::NoHeight(options.height.unwrap_or(own)));
+    }
+    let source = GraphSource {
+        skeleton: &rig.skeleton,
+        mesh: &rig.collider,
+        clips: &rig.clips,
+        plates: &[],
+        weak_points: &rig.weak_points,
+        world_from_model: Similarity::from_scale(scale),
+        ground: f64::from(low) * scale,
+    };
+    let mut climber = ClimberConfig::colossus_climber();
+    if let Some(grip) = &mut climber.grip {
+        grip.reach = options.reach;
+    }
+    let config = GraphConfig {
+        spacing: options.spacing,
+        grips: options.grip.iter().map(|material| material.kind()).collect(),
+        ..GraphConfig::new(climber)
+    };
+    let mut bar: Option<(Stage, Progress)> = None;
+    let built = ClimbReport::new(&source, &config, |built| {
+        show(&mut bar, built);
+        ControlFlow::Continue(())
+    });
+    if let Some((_, bar)) = &bar {
+        bar.finish();
+    }
+    let (report, _) = built?;
+    if options.json {
+        println!("{}", serde_json::to_string_pretty(&report)?);
+    } else {
+        print!("{}", table::table(&report, own * scale, source.ground));
+    }
+    let mut holds = true;
+    for requirement in &options.require {
+        let found = requirement.found(&report);
+        if !requirement.holds(found) {
+            holds = false;
+            eprintln!("clamber: {requirement} does not hold: it is {found}");
+        }
+    }
+    Ok(holds)
+}
+
+/// One bar for each stage.
+fn show(bar: &mut Option<(Stage, Progress)>, built: Built) {
+    let is_same = bar.as_ref().is_some_and(|(stage, _)| *stage == built.stage);
+    if !is_same {
+        if let Some((_, bar)) = bar.take() {
+            bar.finish();
+        }
+        let of = match built.stage {
+            Stage::Seats => "places with room",
+            Stage::Arms => "places with holds",
+            _ => "clips",
+        };
+        *bar = Some((built.stage, Progress::new(built.of, of)));
+    }
+    if let Some((_, bar)) = bar {
+        bar.set(built.done);
+    }
+}
