@@ -85,7 +85,9 @@ fn mount(rng: &mut Rng, surface: &SkinnedSurface) -> Option<Climber> {
         let place = surface.in_model().position(vertex).unwrap();
         surface.world_from_model().transform_point_f32(place)
     });
-    let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or_zero();
+    let normal = (corners[1] - corners[0])
+        .cross(corners[2] - corners[0])
+        .normalize_or_zero();
     let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
     let config = ClimberConfig::colossus_climber();
     let position = middle + normal * (config.body.radius + 0.02);
@@ -98,10 +100,16 @@ fn mount(rng: &mut Rng, surface: &SkinnedSurface) -> Option<Climber> {
     let can_grip = |_: ObstacleId, _: &Contact| true;
     let around: [(ObstacleId, &dyn Obstacle); 1] = [(CREATURE, surface)];
     for _ in 0..30 {
-        climber.step_with(&input, &around, &StepRules::gripping(&can_grip), TICK).unwrap();
+        climber
+            .step_with(&input, &around, &StepRules::gripping(&can_grip), TICK)
+            .unwrap();
     }
     let mode = climber.state().mode;
-    let wanted = if stands { ClimberMode::Standing } else { ClimberMode::Holding };
+    let wanted = if stands {
+        ClimberMode::Standing
+    } else {
+        ClimberMode::Holding
+    };
     if mode != wanted {
         return None;
     }
@@ -152,7 +160,9 @@ fn b59_throw_offs_are_foreseen() {
     let precision = f64::from(right) / f64::from(foreseen);
     let recall = f64::from(right) / f64::from(ended);
     let in_time = f64::from(timed) / f64::from(right);
-    eprintln!("{RIDES} rides, {ended} thrown off, {foreseen} foreseen, {right} right, {timed} in time, {pushed} pushed off");
+    eprintln!(
+        "{RIDES} rides, {ended} thrown off, {foreseen} foreseen, {right} right, {timed} in time, {pushed} pushed off"
+    );
     eprintln!("precision {precision:.3}, recall {recall:.3}, in time {in_time:.3}");
     assert!((0.4..=0.6).contains(&share), "{share}");
     assert!(precision >= 0.95, "{precision}");

@@ -219,7 +219,8 @@ fn siege(options: &BattleOptions, count: u64) -> ExitCode {
     for fight in &fights {
         println!("{fight}");
     }
-    let count = |is: &dyn Fn(&battle::Fight) -> bool| fights.iter().filter(|fight| is(fight)).count();
+    let count =
+        |is: &dyn Fn(&battle::Fight) -> bool| fights.iter().filter(|fight| is(fight)).count();
     println!(
         "of {} fights: {} came to the highest weak point, {} killed the creature",
         fights.len(),

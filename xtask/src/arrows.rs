@@ -3,7 +3,7 @@
 use cargo_metadata::{DependencyKind, Metadata};
 
 /// The workspace crates that each one may depend on. A crate that is not listed may not exist.
-const ALLOWED: [(&str, &[&str]); 20] = [
+const ALLOWED: [(&str, &[&str]); 21] = [
     ("clamber_oracle", &[]),
     // Only for its feature `oracle`.
     ("clamber_surface", &["clamber_oracle"]),
@@ -36,6 +36,10 @@ const ALLOWED: [(&str, &[&str]); 20] = [
             "clamber_colossus",
         ],
     ),
+    (
+        "clamber_navigation",
+        &["clamber_surface", "clamber_world", "clamber_climber"],
+    ),
     ("clamber_gltf", &["clamber_surface"]),
     ("clamber_render", &["clamber_surface", "clamber_gltf"]),
     (
@@ -59,6 +63,7 @@ const ALLOWED: [(&str, &[&str]); 20] = [
             "clamber_world",
             "clamber_mover",
             "clamber_climber",
+            "clamber_navigation",
             "clamber_gltf",
             "clamber_render",
             "clamber_record",
@@ -74,6 +79,7 @@ const ALLOWED: [(&str, &[&str]); 20] = [
             "clamber_colossus",
             "clamber_fight",
             "clamber_gltf",
+            "clamber_navigation",
             "clamber_record",
             "clamber_render",
         ],
@@ -105,8 +111,10 @@ const ALLOWED: [(&str, &[&str]); 20] = [
         &[
             "clamber_surface",
             "clamber_body",
+            "clamber_climber",
             "clamber_colossus",
             "clamber_gltf",
+            "clamber_navigation",
             "clamber_oracle",
             "clamber_record",
         ],
@@ -117,7 +125,7 @@ const ALLOWED: [(&str, &[&str]); 20] = [
 ];
 
 /// What tests and examples of a crate may use beyond that, and `clamber_oracle`.
-const ALLOWED_FOR_TESTS: [(&str, &str); 21] = [
+const ALLOWED_FOR_TESTS: [(&str, &str); 22] = [
     ("bevy_clamber", "clamber_scenes"),
     ("clamber", "clamber_scenes"),
     ("clamber_animation", "clamber_gltf"),
@@ -132,6 +140,7 @@ const ALLOWED_FOR_TESTS: [(&str, &str); 21] = [
     ("clamber_benches", "clamber_fight"),
     ("clamber_benches", "clamber_scenes"),
     ("clamber_fight", "clamber_gltf"),
+    ("clamber_navigation", "clamber_gltf"),
     ("clamber_recipes", "clamber"),
     ("clamber_fuzz", "clamber_climber"),
     ("clamber_fuzz", "clamber_colossus"),

@@ -24,6 +24,9 @@ pub use clamber_fight as fight;
 pub use clamber_gltf as gltf;
 #[doc(inline)]
 pub use clamber_mover as mover;
+#[cfg(feature = "navigation")]
+#[doc(inline)]
+pub use clamber_navigation as navigation;
 #[cfg(feature = "record")]
 #[doc(inline)]
 pub use clamber_record as record;

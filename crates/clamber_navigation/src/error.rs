@@ -21,7 +21,9 @@ pub enum NavigationError {
     #[error("the creature has no skin: none of its triangles has an area")]
     NoSkin,
     /// The skin is too large for patches of this size.
-    #[error("the skin would have {found} patches, and {most} is the limit; choose a larger spacing than {spacing} m, or a smaller scale")]
+    #[error(
+        "the skin would have {found} patches, and {most} is the limit; choose a larger spacing than {spacing} m, or a smaller scale"
+    )]
     TooManyPatches {
         /// Number of patches.
         found: u64,

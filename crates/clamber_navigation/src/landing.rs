@@ -3,8 +3,8 @@
 use clamber_climber::{Climber, ClimberInput, ClimberState, StepRules};
 use clamber_world::{Obstacle, ObstacleId};
 
-use crate::future::{Future, FutureSkin};
 use crate::NavigationError;
+use crate::future::{Future, FutureSkin};
 
 /// Where a climber that flies touches something.
 #[derive(Clone, Copy, Debug, PartialEq)]

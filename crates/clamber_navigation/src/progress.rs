@@ -36,7 +36,12 @@ pub(crate) struct Tell<'a>(pub(crate) &'a mut dyn FnMut(Progress) -> ControlFlow
 
 impl Tell<'_> {
     /// One step of many: tells only now and then.
-    pub(crate) fn at(&mut self, stage: Stage, done: usize, of: usize) -> Result<(), NavigationError> {
+    pub(crate) fn at(
+        &mut self,
+        stage: Stage,
+        done: usize,
+        of: usize,
+    ) -> Result<(), NavigationError> {
         if done.is_multiple_of(TELLS) {
             return self.now(stage, done, of);
         }
@@ -44,7 +49,12 @@ impl Tell<'_> {
     }
 
     /// A long step.
-    pub(crate) fn now(&mut self, stage: Stage, done: usize, of: usize) -> Result<(), NavigationError> {
+    pub(crate) fn now(
+        &mut self,
+        stage: Stage,
+        done: usize,
+        of: usize,
+    ) -> Result<(), NavigationError> {
         if (self.0)(Progress { stage, done, of }).is_break() {
             return Err(NavigationError::Cancelled);
         }

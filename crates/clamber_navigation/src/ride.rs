@@ -4,8 +4,8 @@ use clamber_climber::{Climber, ClimberConfig, ClimberMode};
 use clamber_world::Obstacle;
 use glam::DVec3;
 
-use crate::future::{Future, FutureSkin};
 use crate::NavigationError;
+use crate::future::{Future, FutureSkin};
 
 /// Why somebody does not stay on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -59,7 +59,9 @@ impl Rider {
         dt: f64,
     ) -> Option<ThrowOff> {
         let before = self.shake;
-        let change = self.velocity.map_or(DVec3::ZERO, |before| velocity - before);
+        let change = self
+            .velocity
+            .map_or(DVec3::ZERO, |before| velocity - before);
         self.velocity = Some(velocity);
         let kept = libm::exp(-dt / config.shake_time);
         self.shake = before * kept + change / dt * (1.0 - kept);
@@ -68,7 +70,9 @@ impl Rider {
             if away > config.ground.throw_acceleration {
                 return Some(ThrowOff::Thrown);
             }
-            let knock = config.tumble.map_or(f64::INFINITY, |tumble| tumble.knock_acceleration);
+            let knock = config
+                .tumble
+                .map_or(f64::INFINITY, |tumble| tumble.knock_acceleration);
             if self.shake.length() > knock {
                 return Some(ThrowOff::Knocked);
             }
@@ -137,7 +141,8 @@ impl FutureSkin {
                 return Ok(None);
             }
             let slack = 0.1 * config.body.radius;
-            let Some(followed) = attachment.follow(self.surface() as &dyn Obstacle, dt, slack) else {
+            let Some(followed) = attachment.follow(self.surface() as &dyn Obstacle, dt, slack)
+            else {
                 return Ok(None);
             };
             let normal = attachment.frame * support.normal;
@@ -185,7 +190,12 @@ impl FutureSkin {
                 break;
             };
             if let Some(before) = before.replace(motion.position) {
-                rider.tick(config, (motion.position - before) / dt, support.normal_in_world(), dt);
+                rider.tick(
+                    config,
+                    (motion.position - before) / dt,
+                    support.normal_in_world(),
+                    dt,
+                );
                 hardest = hardest.max(rider.shake.length());
             }
         }

@@ -23,7 +23,11 @@ fn cube(low: Vec3, high: Vec3, kinds: [clamber_surface::mesh::SurfaceKind; 6]) -
             } else {
                 (low, v, u)
             };
-            let side = Body::grid([4, 4], |s, t| from + u * s + v * t, |_, _| kinds[2 * axis + end]);
+            let side = Body::grid(
+                [4, 4],
+                |s, t| from + u * s + v * t,
+                |_, _| kinds[2 * axis + end],
+            );
             body = body.and(&side);
         }
     }
@@ -74,7 +78,10 @@ fn a_ball_is_reached_wholly_and_by_a_climber_that_cannot_climb_overhangs_up_to_i
     let (_, report) = low.report(&careful);
     // What is above the ground by a body's middle, and not steeper than the limit.
     let from = 5.0 * (0.4 - 1.0) / 5.4;
-    close(report.reachable_area, std::f64::consts::TAU * 5.0 * (5.0 - from));
+    close(
+        report.reachable_area,
+        std::f64::consts::TAU * 5.0 * (5.0 - from),
+    );
 }
 
 #[test]
@@ -100,13 +107,23 @@ fn a_torus_is_reached_where_its_hole_has_room() {
 
 #[test]
 fn the_order_of_triangles_does_not_matter() {
-    let body = ball(Vec3::Y * 5.4, 5.0, |u, v| if (8.0 * u) as u32 % 3 == 0 && v > 0.4 { Skin } else { Fur });
+    let body = ball(Vec3::Y * 5.4, 5.0, |u, v| {
+        if (8.0 * u) as u32 % 3 == 0 && v > 0.4 {
+            Skin
+        } else {
+            Fur
+        }
+    });
     let (graph, report) = body.report(&climber());
     for seed in 0..3 {
         let (other, again) = body.shuffled(seed).report(&climber());
         assert_eq!(report, again);
         let seats = |graph: &clamber_navigation::ClimbGraph| -> Vec<_> {
-            graph.patches().iter().map(|patch| (patch.point, patch.seat, patch.area)).collect()
+            graph
+                .patches()
+                .iter()
+                .map(|patch| (patch.point, patch.seat, patch.area))
+                .collect()
         };
         let (ours, theirs) = (seats(&graph), seats(&other));
         assert_eq!(ours.len(), theirs.len());
@@ -137,7 +154,9 @@ fn a_belt_of_stone_is_missed_by_as_much_as_longer_arms_need() {
         point.radius = 0.5;
         body.weak_points = vec![point];
         let (_, report) = body.report(&climber());
-        let [found] = &*report.weak_points else { panic!("{report:?}") };
+        let [found] = &*report.weak_points else {
+            panic!("{report:?}")
+        };
         let needed = (0.25 * width * width + 0.16).sqrt() - 0.4;
         match found.missing {
             Some(clamber_navigation::Missing::Reach(by)) => {

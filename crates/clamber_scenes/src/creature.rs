@@ -1,5 +1,5 @@
-use std::path::Path;
 use std::ops::ControlFlow;
+use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use clamber_climber::ClimberConfig;
@@ -38,7 +38,6 @@ pub struct Creature {
 /// Graphs, by mesh, climber and height.
 pub(crate) type Graphs = Arc<Mutex<Vec<(GraphKey, Arc<ClimbGraph>)>>>;
 type GraphKey = (Arc<ColliderMesh>, ClimberConfig, f64, Vec<Vec<TriangleId>>);
-
 
 /// Why a creature cannot be loaded, built or posed.
 #[derive(Debug, Error)]
@@ -105,13 +104,10 @@ impl Creature {
         plates: &[Vec<TriangleId>],
     ) -> Result<Arc<ClimbGraph>, NavigationError> {
         let mut known = self.graphs.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((_, graph)) = known
-            .iter()
-            .find(|((mesh, other, tall, parts), _)| {
-                let is_same = other == climber && *tall == height && parts == plates;
-                is_same && Arc::ptr_eq(mesh, &self.collider)
-            })
-        {
+        if let Some((_, graph)) = known.iter().find(|((mesh, other, tall, parts), _)| {
+            let is_same = other == climber && *tall == height && parts == plates;
+            is_same && Arc::ptr_eq(mesh, &self.collider)
+        }) {
             return Ok(Arc::clone(graph));
         }
         let (world_from_model, ground) = self.standing(height)?;
@@ -136,7 +132,12 @@ impl Creature {
         };
         let graph = ClimbGraph::build(&source, &config, |_| ControlFlow::Continue(()))?;
         let graph = Arc::new(graph);
-        let key = (Arc::clone(&self.collider), *climber, height, plates.to_vec());
+        let key = (
+            Arc::clone(&self.collider),
+            *climber,
+            height,
+            plates.to_vec(),
+        );
         known.push((key, Arc::clone(&graph)));
         Ok(graph)
     }

@@ -168,7 +168,8 @@ impl LookAt {
     /// [`IkError::BadSetUp`] if the yaw is not from 0 to pi or the pitch not from 0 to a quarter turn.
     pub fn with_limits(self, limits: LookLimits) -> Result<Self, IkError> {
         use core::f64::consts::{FRAC_PI_2, PI};
-        let in_range = (0.0..=PI).contains(&limits.yaw) && (0.0..=FRAC_PI_2).contains(&limits.pitch);
+        let in_range =
+            (0.0..=PI).contains(&limits.yaw) && (0.0..=FRAC_PI_2).contains(&limits.pitch);
         if in_range && limits.acceleration > 0.0 {
             Ok(Self { limits, ..self })
         } else {

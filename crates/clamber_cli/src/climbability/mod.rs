@@ -134,7 +134,11 @@ pub fn print(options: &ClimbabilityOptions) -> Result<bool, ClimbabilityError> {
     }
     let config = GraphConfig {
         spacing: options.spacing,
-        grips: options.grip.iter().map(|material| material.kind()).collect(),
+        grips: options
+            .grip
+            .iter()
+            .map(|material| material.kind())
+            .collect(),
         ..GraphConfig::new(climber)
     };
     let mut bar: Option<(Stage, Progress)> = None;

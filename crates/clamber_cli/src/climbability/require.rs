@@ -104,7 +104,10 @@ impl fmt::Display for Requirement {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let name = NUMBERS.iter().find(|(_, number)| *number == self.number);
         let sign = ORDERS.iter().find(|(_, order)| *order == self.order);
-        let (name, sign) = (name.map_or("", |name| name.0), sign.map_or("", |sign| sign.0));
+        let (name, sign) = (
+            name.map_or("", |name| name.0),
+            sign.map_or("", |sign| sign.0),
+        );
         write!(f, "{name}{sign}{}", self.wanted)
     }
 }
@@ -115,14 +118,25 @@ mod tests {
 
     #[test]
     fn requirements_are_read_as_they_are_written() {
-        for text in ["weak_points>=3", "reachable>0.5", "entries=4", "rest_area<=10"] {
+        for text in [
+            "weak_points>=3",
+            "reachable>0.5",
+            "entries=4",
+            "rest_area<=10",
+        ] {
             let requirement: Requirement = text.parse().unwrap();
             assert_eq!(requirement.to_string(), text);
         }
         let spaced: Requirement = " reachable_area < 12.5 ".parse().unwrap();
         assert_eq!(spaced.to_string(), "reachable_area<12.5");
         assert!(spaced.holds(12.0) && !spaced.holds(12.5));
-        for wrong in ["weak_points", "legs>=2", "entries>=many", "entries>=inf", ""] {
+        for wrong in [
+            "weak_points",
+            "legs>=2",
+            "entries>=many",
+            "entries>=inf",
+            "",
+        ] {
             assert!(wrong.parse::<Requirement>().is_err(), "{wrong}");
         }
     }

@@ -16,10 +16,17 @@ fn write(text: &mut String, report: &ClimbReport, height: f64, ground: f64) -> s
     writeln!(text, "skin              {:9.1} m2", report.area)?;
     writeln!(text, "  can be gripped  {:9.1} m2", report.grip_area)?;
     writeln!(text, "  can be stood on {:9.1} m2", report.stand_area)?;
-    writeln!(text, "  reachable       {:9.1} m2, {share:.1} %", report.reachable_area)?;
+    writeln!(
+        text,
+        "  reachable       {:9.1} m2, {share:.1} %",
+        report.reachable_area
+    )?;
     writeln!(text, "  to rest on      {:9.1} m2", report.rest_area)?;
     if report.ways_on.is_empty() {
-        writeln!(text, "ways on           none: nothing to stand on or to hold is low enough for a jump")?;
+        writeln!(
+            text,
+            "ways on           none: nothing to stand on or to hold is low enough for a jump"
+        )?;
     }
     for way in &report.ways_on {
         let [x, z] = [way.place.x, way.place.z];
@@ -46,7 +53,10 @@ fn write(text: &mut String, report: &ClimbReport, height: f64, ground: f64) -> s
 
 fn how(point: &PointReport) -> String {
     if let (Some(seconds), Some(stamina)) = (point.seconds, point.stamina) {
-        return format!("reached in {seconds:.1} s with {:.0} % of its strength left", 100.0 * stamina);
+        return format!(
+            "reached in {seconds:.1} s with {:.0} % of its strength left",
+            100.0 * stamina
+        );
     }
     match point.missing {
         Some(Missing::Reach(by)) => format!("not reachable: {by:.2} m of reach are missing"),
@@ -63,10 +73,18 @@ fn treats(clip: &ClipReport) -> String {
         let _ = write!(text, ", tips {:.0} m2 too far to stand on", clip.slips_from);
     }
     if let Some(at) = clip.throws_at {
-        let _ = write!(text, ", throws off {:.0} m2 from {at:.1} s on", clip.throws_from);
+        let _ = write!(
+            text,
+            ", throws off {:.0} m2 from {at:.1} s on",
+            clip.throws_from
+        );
     }
     if let Some(at) = clip.exhausts_at {
-        let _ = write!(text, ", exhausts on {:.0} m2 after {at:.1} s", clip.exhausts_on);
+        let _ = write!(
+            text,
+            ", exhausts on {:.0} m2 after {at:.1} s",
+            clip.exhausts_on
+        );
     }
     text
 }

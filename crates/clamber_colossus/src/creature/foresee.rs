@@ -34,7 +34,9 @@ impl Creature {
         palette: &mut Palette,
     ) -> Result<Similarity, ColossusError> {
         let (kind, state) = (&self.kind, &self.state);
-        let animator = memory.animator.get_or_insert_with(|| state.animator.clone());
+        let animator = memory
+            .animator
+            .get_or_insert_with(|| state.animator.clone());
         animator.clone_from(&state.animator);
         memory.events.clear();
         let moved = animator.advance(kind.clips(), seconds, &mut memory.events)?;

@@ -514,14 +514,13 @@ fn look(names: &Names<'_>, file: &HeadFile) -> Result<(LookAt, JointId), Colossu
     let forward = model_from_head.map_or(DVec3::Z, |frame| frame.matrix3.inverse() * DVec3::Z);
     let [yaw, pitch] = file.limits_deg.map(f64::to_radians);
     let eye = DVec3::from_array(file.eye);
-    let look = LookAt::new(names.skeleton, &chain, eye, forward, DVec3::Y)
-        .and_then(|look| {
-            look.with_limits(LookLimits {
-                yaw,
-                pitch,
-                acceleration: TURNS_HEAD,
-            })
-        });
+    let look = LookAt::new(names.skeleton, &chain, eye, forward, DVec3::Y).and_then(|look| {
+        look.with_limits(LookLimits {
+            yaw,
+            pitch,
+            acceleration: TURNS_HEAD,
+        })
+    });
     let joints = file.joints.iter().map(|(name, _)| name);
     let look = look.map_err(|error| names.limb_error("head", joints, error))?;
     Ok((look, head))

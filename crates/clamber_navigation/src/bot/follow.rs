@@ -56,7 +56,11 @@ impl Progress {
         let apart = |index: &usize| {
             let step = &steps[*index];
             let apart = view.seat(&graph.patches()[step.patch]).distance(here);
-            if step.patch == patch { apart.min(ON_IT) } else { apart }
+            if step.patch == patch {
+                apart.min(ON_IT)
+            } else {
+                apart
+            }
         };
         let mut nearest = (f64::INFINITY, self.at);
         for index in from..=to {
@@ -118,7 +122,11 @@ impl Progress {
     /// True for a while after it has come to rest on its way.
     pub(super) fn tries_else(&mut self, view: &View<'_>) -> bool {
         let (state, seconds) = (view.climber.state(), view.seconds);
-        let climbs = view.climber.config().grip.map_or(0.0, |grip| grip.climb_speed);
+        let climbs = view
+            .climber
+            .config()
+            .grip
+            .map_or(0.0, |grip| grip.climb_speed);
         // What it has made, which is less than its velocity where something is in its way.
         let passed = seconds - self.seen.0;
         let made = state.position - self.seen.1 - state.base_velocity * passed;
@@ -145,7 +153,9 @@ impl Progress {
     pub(super) fn target(&self, graph: &ClimbGraph, view: &View<'_>) -> Option<Target> {
         let state = view.climber.state();
         let here = state.position;
-        let held = state.support.map_or(DVec3::ZERO, |support| support.normal_in_world());
+        let held = state
+            .support
+            .map_or(DVec3::ZERO, |support| support.normal_in_world());
         let mut passed: Vec<DVec3> = Vec::new();
         let mut target = None;
         for (index, step) in self.plan.steps.iter().enumerate().skip(self.at) {
@@ -155,7 +165,10 @@ impl Progress {
             let patch = &graph.patches()[step.patch];
             let (place, normal) = (view.seat(patch), view.normal(patch));
             let before = self.plan.steps[index.saturating_sub(1)].patch;
-            let corner = graph.ways.corner(before, step.patch).filter(|_| index > self.at);
+            let corner = graph
+                .ways
+                .corner(before, step.patch)
+                .filter(|_| index > self.at);
             if let Some(corner) = corner
                 && step.footing == Footing::Holds
                 && normal.dot(held) < CORNER

@@ -97,7 +97,10 @@ impl Approach {
             grip: true,
             ..ClimberInput::IDLE
         };
-        if self.attacked.is_some_and(|since| seconds - since >= config.reaction) {
+        if self
+            .attacked
+            .is_some_and(|since| seconds - since >= config.reaction)
+        {
             self.free = seconds;
             let away = level(state.position - view.surface.world_from_model().translation);
             return ClimberInput {
@@ -164,7 +167,9 @@ impl Approach {
             way / climber.ground.walk_speed.max(1e-3) + left
         };
         let all = (0..graph.entries().len()).map(|entry| (cost(entry), entry));
-        let best = all.filter(|(cost, _)| cost.is_finite()).min_by(|a, b| a.0.total_cmp(&b.0));
+        let best = all
+            .filter(|(cost, _)| cost.is_finite())
+            .min_by(|a, b| a.0.total_cmp(&b.0));
         let now = self.entry.map_or(f64::INFINITY, cost);
         match best {
             Some((cost, entry)) if cost + BETTER < now || self.entry.is_none() => {

@@ -88,10 +88,12 @@ impl Bot {
         let Some(patch) = self.patch_below(view) else {
             return false;
         };
-        let (here, radius) = (view.climber.state().position, view.climber.config().body.radius);
-        let is_near = |patch: &usize| {
-            view.seat(&self.graph.patches[*patch]).distance(here) < THERE * radius
-        };
+        let (here, radius) = (
+            view.climber.state().position,
+            view.climber.config().body.radius,
+        );
+        let is_near =
+            |patch: &usize| view.seat(&self.graph.patches[*patch]).distance(here) < THERE * radius;
         let goal = view.goal.patches();
         goal.binary_search(&patch).is_ok() || goal.iter().any(is_near)
     }
@@ -107,8 +109,16 @@ impl Bot {
     pub fn wants_rest(&mut self, view: &View<'_>) -> bool {
         let state = view.climber.state();
         let before = self.rests;
-        let least = if before { self.config.rested } else { self.config.tired };
-        let costs = view.climber.config().stamina.is_some_and(|stamina| stamina.refill > 0.0);
+        let least = if before {
+            self.config.rested
+        } else {
+            self.config.tired
+        };
+        let costs = view
+            .climber
+            .config()
+            .stamina
+            .is_some_and(|stamina| stamina.refill > 0.0);
         self.rests = costs && view.is_on_creature() && state.stamina < least;
         if self.rests != before {
             self.plan = None;
@@ -177,7 +187,11 @@ impl Bot {
             ..ClimberInput::IDLE
         };
         let rest = ClimberInput::IDLE;
-        let hangs = view.climber.config().grip.map_or(0.0, |grip| grip.hang_acceleration);
+        let hangs = view
+            .climber
+            .config()
+            .grip
+            .map_or(0.0, |grip| grip.hang_acceleration);
         let throws = view.climber.config().ground.throw_acceleration;
         let rests_here = self.rests && (stands || view.is_level());
         let is_shaken = if stands || rests_here {
@@ -203,7 +217,10 @@ impl Bot {
         };
         if let Some(wanted) = progress.rests_until() {
             let level = view.is_level();
-            if state.stamina < wanted + self.config.reserve && state.stamina < 1.0 && (stands || level) {
+            if state.stamina < wanted + self.config.reserve
+                && state.stamina < 1.0
+                && (stands || level)
+            {
                 progress.waits(view.seconds);
                 return rest;
             }
@@ -220,7 +237,8 @@ impl Bot {
                 // Where the way ahead leads straight off its hold: along it, to where it touches the next.
                 -target.normal
             } else {
-                view.against(&target).normalize_or(view.climber.config().up())
+                view.against(&target)
+                    .normalize_or(view.climber.config().up())
             },
             walk: toward,
             grip: target.footing == Footing::Holds || !stands || tries_else,
@@ -270,7 +288,9 @@ impl Bot {
         for (beside, _, length) in self.graph.ways.of(patch) {
             starts.extend(footings.map(|footing| start(beside, footing, length)));
         }
-        let plan = self.graph.plan_around(&starts, goal, view.forecast, &is_open);
+        let plan = self
+            .graph
+            .plan_around(&starts, goal, view.forecast, &is_open);
         // Without the strength for it: as far as it gets.
         let tireless: Vec<Start> = starts
             .iter()

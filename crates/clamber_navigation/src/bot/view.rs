@@ -74,7 +74,9 @@ impl View<'_> {
         let share = if target.in_corner {
             2.0 - toward.length() / radius
         } else {
-            let held = state.support.map_or(DVec3::ZERO, |support| support.normal_in_world());
+            let held = state
+                .support
+                .map_or(DVec3::ZERO, |support| support.normal_in_world());
             2.0 * toward.normalize_or_zero().dot(held)
         };
         toward - target.normal * (share.clamp(0.0, 1.0) * radius)

@@ -85,7 +85,10 @@ impl ClipFacts {
         let per_slice = (SLICE / TICK).round() as usize;
         let ticks = ((clip.duration() / TICK).ceil() as usize).max(1);
         let rules = Rules::new(source, config);
-        let seats: Vec<Seat> = patches.iter().map(|patch| Seat::new(source, patch)).collect();
+        let seats: Vec<Seat> = patches
+            .iter()
+            .map(|patch| Seat::new(source, patch))
+            .collect();
         let mut riders = vec![Rider::default(); patches.len()];
         let mut pose = source.skeleton.rest_pose();
         let mut palette = source.skeleton.palette(&pose)?;
@@ -146,7 +149,10 @@ struct Rules {
 impl Rules {
     fn new(source: &GraphSource<'_>, config: &GraphConfig) -> Self {
         let place = source.world_from_model;
-        let threshold = config.climber.stamina.map(|stamina| stamina.shake_threshold);
+        let threshold = config
+            .climber
+            .stamina
+            .map(|stamina| stamina.shake_threshold);
         Self {
             up: place.rotation.conjugate() * config.climber.up(),
             scale: place.scale,
@@ -217,7 +223,9 @@ impl Rider {
     fn moment(&mut self, rules: &Rules) -> [u8; 3] {
         let steps = |value: f64| value * rules.scale / STEP;
         let hardest = steps(self.hardest.sqrt()).ceil().clamp(0.0, 255.0);
-        let mean = steps(self.excess / self.ticks.max(1.0)).round().clamp(0.0, 255.0);
+        let mean = steps(self.excess / self.ticks.max(1.0))
+            .round()
+            .clamp(0.0, 255.0);
         let upright = ((self.lowest + 1.0) / COSINE).floor().clamp(0.0, 254.0);
         (self.hardest, self.excess, self.ticks) = (0.0, 0.0, 0.0);
         [hardest as u8, mean as u8, upright as u8]

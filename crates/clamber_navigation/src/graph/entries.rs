@@ -38,7 +38,9 @@ pub(super) fn entries(survey: &Survey, patches: &[Patch], patch_of: &[u32]) -> V
     }
     let found = lowest.into_iter().enumerate();
     let found = found.filter(|(_, height)| height.is_finite());
-    found.map(|(patch, height)| Entry { patch, height }).collect()
+    found
+        .map(|(patch, height)| Entry { patch, height })
+        .collect()
 }
 
 /// How high the middle of a climber's ball may be for its hands to reach something with a jump from the ground, metres.
@@ -99,9 +101,8 @@ impl<'a> Jumps<'a> {
     fn is_free_below(&self, seat: DVec3) -> bool {
         let way = seat.dot(self.up) - self.ground - self.radius;
         let steps = (way / (STEP * self.radius)).ceil().max(1.0);
-        (1..=steps as u32).all(|step| {
-            self.is_free(seat - self.up * (way * f64::from(step) / steps))
-        })
+        (1..=steps as u32)
+            .all(|step| self.is_free(seat - self.up * (way * f64::from(step) / steps)))
     }
 
     /// True if a jump at the speed of a walk leads to a seat, on its way up or down.

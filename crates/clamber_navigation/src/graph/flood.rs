@@ -35,7 +35,10 @@ impl ClimbGraph {
             holds: none,
         };
         let mut open: Vec<usize> = Vec::new();
-        let enter = |reached: &mut Reachable, open: &mut Vec<usize>, patch: usize, [stands, holds]: [bool; 2]| {
+        let enter = |reached: &mut Reachable,
+                     open: &mut Vec<usize>,
+                     patch: usize,
+                     [stands, holds]: [bool; 2]| {
             let here = &self.patches[patch];
             // Where it can do both it does both.
             let is_both = here.can_stand && here.can_hold && (stands || holds);

@@ -21,8 +21,8 @@ pub(crate) use entries::highest_entry;
 pub use flood::Footing;
 pub(crate) use flood::Reachable;
 use locate::Locator;
-pub use patch::Patch;
 pub(crate) use patch::NONE;
+pub use patch::Patch;
 pub(crate) use ways::{Corner, Ways};
 
 /// Where a climber can be on a creature, and how it gets from one place to another.
@@ -70,7 +70,11 @@ impl ClimbGraph {
             entries: entries::entries(survey, &patches, &patch_of),
             locator: Locator::new(survey, &patch_of, source.mesh),
             clips,
-            plates: source.plates.iter().map(|plate| plate.first().copied()).collect(),
+            plates: source
+                .plates
+                .iter()
+                .map(|plate| plate.first().copied())
+                .collect(),
             patches,
         };
         Ok((graph, patch_of))
@@ -94,7 +98,9 @@ impl ClimbGraph {
     /// True if a patch is there as the skin is now: its own triangle is, and the plate above it is not.
     pub fn is_there(&self, patch: usize, surface: &SkinnedSurface) -> bool {
         self.patches.get(patch).is_some_and(|patch| {
-            let plate = patch.below.and_then(|plate| *self.plates.get(usize::from(plate))?);
+            let plate = patch
+                .below
+                .and_then(|plate| *self.plates.get(usize::from(plate))?);
             surface.is_enabled(patch.triangle)
                 && plate.is_none_or(|triangle| !surface.is_enabled(triangle))
         })
@@ -103,7 +109,9 @@ impl ClimbGraph {
     /// Of each patch, whether a climber that does not tire comes there from the ground, on the creature at rest.
     pub fn reachable(&self) -> Vec<bool> {
         let reached = self.flood(self.entries.iter().map(|entry| entry.patch));
-        (0..self.patches.len()).map(|patch| reached.has(patch)).collect()
+        (0..self.patches.len())
+            .map(|patch| reached.has(patch))
+            .collect()
     }
 
     /// Number of ways between patches, each counted there and back.

@@ -65,13 +65,15 @@ pub(super) fn merge(survey: &Survey) -> (Vec<Patch>, Vec<u32>) {
             next += 1;
             for beside in survey.links.of(piece) {
                 let seat = pieces[beside].seat;
-                let is_near = seat.is_some_and(|seat| seat.distance(start) <= survey.config.spacing);
+                let is_near =
+                    seat.is_some_and(|seat| seat.distance(start) <= survey.config.spacing);
                 let is_alike = patch_of[beside] == NONE
                     && kinds[beside] == kinds[first]
                     && pieces[beside].below == pieces[first].below;
                 let [stands, holds] = kinds[first];
                 let ends = ends(piece, beside);
-                let leads = (!stands || survey.can_walk(ends)) && (!holds || survey.can_climb(ends));
+                let leads =
+                    (!stands || survey.can_walk(ends)) && (!holds || survey.can_climb(ends));
                 if is_near && is_alike && leads {
                     patch_of[beside] = id;
                     members.push(beside);
@@ -135,7 +137,9 @@ pub(super) fn ways(survey: &Survey, patches: &[Patch], patch_of: &[u32]) -> Ways
             }
             if climbs && survey.is_corner([piece, beside]) && survey.can_climb(ends) {
                 let apart = survey.apart([piece, beside]);
-                let known = nearest.entry((from, to)).or_insert((apart, [piece, beside]));
+                let known = nearest
+                    .entry((from, to))
+                    .or_insert((apart, [piece, beside]));
                 if apart < known.0 {
                     *known = (apart, [piece, beside]);
                 }
@@ -143,7 +147,9 @@ pub(super) fn ways(survey: &Survey, patches: &[Patch], patch_of: &[u32]) -> Ways
         }
     }
     let corner = |pieces: [usize; 2]| corner(survey, pieces);
-    let corners = nearest.into_iter().map(|(ends, (_, pieces))| (ends, corner(pieces)));
+    let corners = nearest
+        .into_iter()
+        .map(|(ends, (_, pieces))| (ends, corner(pieces)));
     Ways::new(patches, &found, corners.collect())
 }
 

@@ -72,7 +72,13 @@ impl Ways {
     /// Those that lead away from a patch: where to, how, and how far it is at rest, metres.
     pub(crate) fn of(&self, patch: usize) -> impl Iterator<Item = (usize, Way, f64)> + '_ {
         let range = self.start[patch] as usize..self.start[patch + 1] as usize;
-        range.map(|at| (self.to[at] as usize, self.way[at], f64::from(self.length[at])))
+        range.map(|at| {
+            (
+                self.to[at] as usize,
+                self.way[at],
+                f64::from(self.length[at]),
+            )
+        })
     }
 
     /// The corner on the way between two patches, if there is one.

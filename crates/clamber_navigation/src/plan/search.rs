@@ -130,7 +130,9 @@ impl ClimbGraph {
         };
         for start in starts {
             let can = start.patch < self.patches.len()
-                && self.footings(start.patch).any(|footing| footing == start.footing);
+                && self
+                    .footings(start.patch)
+                    .any(|footing| footing == start.footing);
             if can && start.seconds >= 0.0 {
                 let node = node(start.patch, start.footing);
                 search.offer(node, NOTHING, start.seconds, start.stamina.clamp(0.0, 1.0));
@@ -181,7 +183,9 @@ impl Search<'_> {
             let label = self.labels[index as usize];
             let at = label.node as usize;
             let level = level(label.stamina);
-            let better = self.best[at][level + 1..].iter().any(|known| *known <= label.seconds);
+            let better = self.best[at][level + 1..]
+                .iter()
+                .any(|known| *known <= label.seconds);
             if better || self.best[at][level] < label.seconds {
                 continue;
             }
@@ -216,7 +220,12 @@ impl Search<'_> {
     /// Rests until stamina is a level higher.
     fn rest(&mut self, index: u32, patch: usize) {
         let label = self.labels[index as usize];
-        let refill = self.graph.config.climber.stamina.map_or(0.0, |stamina| stamina.refill);
+        let refill = self
+            .graph
+            .config
+            .climber
+            .stamina
+            .map_or(0.0, |stamina| stamina.refill);
         let more = (level(label.stamina) + 1) as f64 / LEVELS as f64 - label.stamina;
         if refill <= 0.0 {
             return;
@@ -333,7 +342,9 @@ fn level(stamina: f64) -> usize {
 
 /// True if whoever stands there without holding on is thrown or knocked down.
 pub(crate) fn throws(climber: &ClimberConfig, moment: &Moment) -> bool {
-    let knock = climber.tumble.map_or(f64::INFINITY, |tumble| tumble.knock_acceleration);
+    let knock = climber
+        .tumble
+        .map_or(f64::INFINITY, |tumble| tumble.knock_acceleration);
     moment.shake > climber.ground.throw_acceleration.min(knock)
 }
 

@@ -225,7 +225,8 @@ impl View<'_> {
                 })
             })
             .collect();
-        self.graph.plan_strained(&starts, &goal, &Forecast::still(), strain)
+        self.graph
+            .plan_strained(&starts, &goal, &Forecast::still(), strain)
     }
 
     /// How much longer it would have to hold on, to a tenth of a second.
@@ -254,17 +255,30 @@ impl View<'_> {
     }
 
     fn ways_on(&self) -> Vec<WayOn> {
-        let mut left: Vec<usize> = self.graph.entries().iter().map(|entry| entry.patch).collect();
+        let mut left: Vec<usize> = self
+            .graph
+            .entries()
+            .iter()
+            .map(|entry| entry.patch)
+            .collect();
         let mut ways = Vec::new();
         let up = self.survey.config.climber.up();
-        let area: Vec<f64> = self.graph.patches().iter().map(|patch| patch.area).collect();
+        let area: Vec<f64> = self
+            .graph
+            .patches()
+            .iter()
+            .map(|patch| patch.area)
+            .collect();
         while let Some(&first) = left.first() {
             let reached = self.graph.flood([first]);
             let (same, others): (Vec<usize>, Vec<usize>) =
                 left.iter().partition(|patch| reached.has(**patch));
             let places = same.iter().map(|patch| self.graph.patches()[*patch].seat);
             let lowest = places.min_by(|a, b| a.dot(up).total_cmp(&b.dot(up)));
-            let counted = area.iter().enumerate().filter(|(patch, _)| reached.has(*patch));
+            let counted = area
+                .iter()
+                .enumerate()
+                .filter(|(patch, _)| reached.has(*patch));
             ways.push(WayOn {
                 entries: same.len(),
                 place: lowest.unwrap_or_default(),
@@ -303,7 +317,10 @@ impl View<'_> {
             }
             let moments = (0..slices).map(|slice| facts.at(clip, slice as f64 * SLICE, index));
             let moments: Vec<_> = moments.collect();
-            let hardest = moments.iter().map(|moment| moment.shake).fold(0.0, f64::max);
+            let hardest = moments
+                .iter()
+                .map(|moment| moment.shake)
+                .fold(0.0, f64::max);
             report.hardest_shake = report.hardest_shake.max(hardest);
             if patch.can_stand {
                 let thrown = moments.iter().position(|moment| throws(climber, moment));
@@ -345,7 +362,11 @@ impl View<'_> {
             from: piece,
             to: piece,
         };
-        open.extend((0..settled.len()).filter(|piece| self.has(*piece)).map(first));
+        open.extend(
+            (0..settled.len())
+                .filter(|piece| self.has(*piece))
+                .map(first),
+        );
         while let Some(turn) = open.pop() {
             let Turn { arm, from, to, .. } = turn;
             if settled[to] || !survey.can_hold(to, arm) {

@@ -1,7 +1,5 @@
 //! The skin, divided into pieces at rest, and where the climber's ball rests on each.
 
-
-
 use clamber_surface::mesh::{ColliderMesh, SurfaceTag, TriangleId, VertexId};
 use clamber_surface::surface::SkinnedSurface;
 use glam::DVec3;

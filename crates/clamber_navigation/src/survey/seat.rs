@@ -15,7 +15,12 @@ const ABOVE: f64 = 0.01;
 
 /// Finds where a ball of `radius` rests at a point of the skin: above it, moved out of the skin around. `None` if it has no
 /// room within its radius, or other skin lies between it and the point.
-pub(super) fn seat(surface: &SkinnedSurface, point: DVec3, normal: DVec3, radius: f64) -> Option<DVec3> {
+pub(super) fn seat(
+    surface: &SkinnedSurface,
+    point: DVec3,
+    normal: DVec3,
+    radius: f64,
+) -> Option<DVec3> {
     let wanted = point + normal * radius;
     let mut center = wanted;
     for _ in 0..ROUNDS {
@@ -45,7 +50,13 @@ fn deepest(surface: &SkinnedSurface, center: DVec3, radius: f64) -> Option<(f64,
 }
 
 /// True if no skin lies between a point and its ball.
-fn is_seen(surface: &SkinnedSurface, point: DVec3, normal: DVec3, center: DVec3, radius: f64) -> bool {
+fn is_seen(
+    surface: &SkinnedSurface,
+    point: DVec3,
+    normal: DVec3,
+    center: DVec3,
+    radius: f64,
+) -> bool {
     let from = point + normal * (ABOVE * radius);
     let way = center - from;
     let length = way.length();

@@ -92,7 +92,11 @@ impl Body {
             joint_count: 1,
             ..MeshSource::default()
         };
-        Arc::new(ColliderMesh::build(&source, &BuildOptions::default()).unwrap().0)
+        Arc::new(
+            ColliderMesh::build(&source, &BuildOptions::default())
+                .unwrap()
+                .0,
+        )
     }
 
     /// The graph for a climber, above ground at height 0, and its report.

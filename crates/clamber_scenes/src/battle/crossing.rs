@@ -57,7 +57,9 @@ impl Crossing {
         }
         let gap = outcrop::WALL - climber.config().body.radius - state.position.x;
         let is_near = (0.0..JUMP).contains(&gap) && state.mode == ClimberMode::Standing;
-        let is_rested = self.jumped.is_none_or(|jumped| seconds - jumped > BETWEEN_JUMPS);
+        let is_rested = self
+            .jumped
+            .is_none_or(|jumped| seconds - jumped > BETWEEN_JUMPS);
         let jump = is_near && is_rested && !attacked;
         if jump {
             self.jumped = Some(seconds);

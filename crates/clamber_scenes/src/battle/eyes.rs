@@ -59,7 +59,9 @@ impl Eyes {
             let mut future = |seconds: f64, palette: &mut Palette| {
                 life.foresee(seconds, foresight, palette).ok()
             };
-            let ahead = self.skin.shake_ahead(performer.climber(), &mut future, STEP, AHEAD);
+            let ahead = self
+                .skin
+                .shake_ahead(performer.climber(), &mut future, STEP, AHEAD);
             self.shake = ahead.unwrap_or(0.0);
         }
         self.shake

@@ -7,8 +7,8 @@ use clamber_fight::{Act, FighterId};
 use glam::DVec3;
 
 use super::Performer;
-use super::planner::Aim;
 use super::performer::Sight;
+use super::planner::Aim;
 use super::scene::TICK;
 
 /// Arrows that it shoots before it comes near.

@@ -59,7 +59,10 @@ pub(super) struct Planner {
 
 impl Planner {
     /// A planner for a creature. [`BattleError::NoWay`] if no weak point and no top can be reached.
-    pub(super) fn new(performer: &Performer<'_>, graph: Arc<ClimbGraph>) -> Result<Self, BattleError> {
+    pub(super) fn new(
+        performer: &Performer<'_>,
+        graph: Arc<ClimbGraph>,
+    ) -> Result<Self, BattleError> {
         let targets = targets(performer, &graph);
         let leads = |target: &Target| {
             let mut entries = graph.entries().iter();
@@ -128,7 +131,7 @@ impl Planner {
             .support
             .is_some_and(|support| support.attachment.obstacle == CREATURE);
         if !is_on_it {
-                if let Some(input) = self.crossing.input(climber, seconds, sight.attacks) {
+            if let Some(input) = self.crossing.input(climber, seconds, sight.attacks) {
                 return input;
             }
             if state.mode == ClimberMode::Standing
@@ -143,7 +146,7 @@ impl Planner {
         }
         let is_there = self.bot.is_there(&view);
         if self.bot.wants_rest(&view) || !is_there {
-                return self.bot.input(&view);
+            return self.bot.input(&view);
         }
         if target.aim.weak_point == highest(performer) {
             self.arrived.get_or_insert(seconds);
@@ -153,7 +156,9 @@ impl Planner {
             ..ClimberInput::IDLE
         };
         let is_open = target.aim.weak_point.is_some_and(|weak_point| {
-            performer.life().is_some_and(|life| life.is_open(weak_point))
+            performer
+                .life()
+                .is_some_and(|life| life.is_open(weak_point))
         });
         if !is_open || state.shake.length() > STEADY {
             return hold;
@@ -193,7 +198,10 @@ impl Planner {
             let goal = &self.targets[*target].goal;
             here.map_or(0.0, |here| least(goal, here))
         };
-        let nearest = open.iter().copied().min_by(|a, b| left(a).total_cmp(&left(b)));
+        let nearest = open
+            .iter()
+            .copied()
+            .min_by(|a, b| left(a).total_cmp(&left(b)));
         self.at = nearest.unwrap_or(0);
         self.bot.forget();
     }

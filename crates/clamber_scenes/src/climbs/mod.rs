@@ -121,7 +121,9 @@ pub fn climb(file: &Path, options: &ClimbsOptions) -> Result<Climbed, ClimbError
     let best = best.max_by(|a, b| height(*a).total_cmp(&height(*b)));
     let area = |counts: &dyn Fn(usize) -> bool| -> f64 {
         let all = graph.patches().iter().enumerate();
-        all.filter(|(index, _)| counts(*index)).map(|(_, patch)| patch.area).sum()
+        all.filter(|(index, _)| counts(*index))
+            .map(|(_, patch)| patch.area)
+            .sum()
     };
     let mut climbed = Climbed {
         patches: graph.patches().len(),
@@ -169,7 +171,9 @@ pub fn climb(file: &Path, options: &ClimbsOptions) -> Result<Climbed, ClimbError
             climbed.times[1] = Some(seconds);
         }
         let input = bot.input(&view);
-        climbed.highest = climbed.highest.max(climber.state().position.y - scene.ground);
+        climbed.highest = climbed
+            .highest
+            .max(climber.state().position.y - scene.ground);
         climbed.plans = bot.plans();
         if climbed.times[1].is_some() {
             break;
@@ -214,7 +218,10 @@ impl Scene {
         // Farther and farther out, until there is room.
         let room = |away: &f64| {
             let place = level + out * *away + DVec3::Y * (self.ground + config.body.radius + 0.05);
-            let hit = self.surface.in_world().closest_point(place, 1.5 * config.body.radius);
+            let hit = self
+                .surface
+                .in_world()
+                .closest_point(place, 1.5 * config.body.radius);
             hit.is_none()
         };
         let away = (3..60).map(f64::from).find(room).unwrap_or(60.0);
@@ -255,7 +262,9 @@ impl Scene {
         let lost = |event: &&ClimberEvent| {
             matches!(
                 event,
-                ClimberEvent::ShakenOff { .. } | ClimberEvent::Thrown { .. } | ClimberEvent::Slipped
+                ClimberEvent::ShakenOff { .. }
+                    | ClimberEvent::Thrown { .. }
+                    | ClimberEvent::Slipped
             )
         };
         Ok(report.events.iter().filter(lost).count() as u32)

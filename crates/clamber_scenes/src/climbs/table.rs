@@ -32,9 +32,16 @@ pub fn table(climbs: &[Climb]) -> String {
             }
         };
     }
-    let climbed = climbs.iter().filter_map(|climb| climb.outcome.as_ref().ok());
+    let climbed = climbs
+        .iter()
+        .filter_map(|climb| climb.outcome.as_ref().ok());
     let loaded = climbed.clone().count();
-    let there = climbed.clone().filter(|climbed| climbed.times[1].is_some()).count();
+    let there = climbed
+        .clone()
+        .filter(|climbed| climbed.times[1].is_some())
+        .count();
     let none = climbed.filter(|climbed| climbed.heights[1] == 0.0).count();
-    format!("{table}\nthe bot comes to the highest reachable place of {there} of {loaded} models; {none} cannot be got onto\n")
+    format!(
+        "{table}\nthe bot comes to the highest reachable place of {there} of {loaded} models; {none} cannot be got onto\n"
+    )
 }
