@@ -69,10 +69,8 @@ fn ride(climber: &mut Climber, surface: &mut SkinnedSurface, play: Play<'_>) -> 
         if report.events.iter().any(ends) {
             return Some(seconds);
         }
-        if climber.state().support.is_none() {
-            // Pushed off: not a throw-off.
-            return None;
-        }
+        // Pushed off: not a throw-off.
+        climber.state().support?;
     }
     None
 }

@@ -71,7 +71,7 @@ struct Follow {
 impl Follow {
     /// Turns towards a goal, as fast as it can still brake before it with half of `most`, its greatest acceleration.
     fn step(&mut self, goal: f64, most: f64, dt: f64) {
-        if !(dt > 0.0) {
+        if dt <= 0.0 || dt.is_nan() {
             return;
         }
         let left = goal - self.angle;

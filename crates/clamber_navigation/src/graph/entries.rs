@@ -48,7 +48,7 @@ pub(crate) fn highest_entry(config: &GraphConfig) -> f64 {
     let climber = &config.climber;
     let gravity = climber.gravity.length();
     let jump = if gravity > 0.0 {
-        0.5 * climber.ground.jump_speed.powi(2) / gravity
+        0.5 * climber.ground.jump_speed * climber.ground.jump_speed / gravity
     } else {
         f64::INFINITY
     };
@@ -108,7 +108,7 @@ impl<'a> Jumps<'a> {
     /// True if a jump at the speed of a walk leads to a seat, on its way up or down.
     fn lead_forwards_to(&self, seat: DVec3) -> bool {
         let height = seat.dot(self.up) - self.ground - self.radius;
-        let under = self.rise.powi(2) - 2.0 * self.gravity * height;
+        let under = self.rise * self.rise - 2.0 * self.gravity * height;
         if self.gravity <= 0.0 || under < 0.0 {
             return false;
         }

@@ -40,7 +40,10 @@ impl Locator {
         let from = *self.start.get(triangle.index())? as usize;
         let to = *self.start.get(triangle.index() + 1)? as usize;
         let apart = |weights: &[f32; 3]| -> f32 {
-            (0..3).map(|k| (weights[k] - barycentric[k]).powi(2)).sum()
+            (0..3)
+                .map(|k| weights[k] - barycentric[k])
+                .map(|off| off * off)
+                .sum()
         };
         let pieces = self.pieces.get(from..to)?.iter();
         let nearest = pieces.min_by(|a, b| apart(&a.0).total_cmp(&apart(&b.0)))?;

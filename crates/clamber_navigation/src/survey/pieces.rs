@@ -138,7 +138,7 @@ impl Face {
             };
             let (from, to) = (self.corners[k], self.corners[(k + 1) % 3]);
             let along = to - from;
-            let angle = self.normal.angle_between(other.normal);
+            let angle = libm::acos(self.normal.dot(other.normal).clamp(-1.0, 1.0));
             let bends_out = self.normal.cross(other.normal).dot(along) > 0.0;
             if angle <= SHARP || !bends_out {
                 continue;

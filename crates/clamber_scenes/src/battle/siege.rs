@@ -32,7 +32,7 @@ impl fmt::Display for Fight {
             Some(seconds) => format!("{seconds:6.1}"),
             None => "     -".to_owned(),
         };
-        let killed = (self.tally.killed > 0).then(|| self.tally.killed as f64 * TICK);
+        let killed = (self.tally.killed > 0).then_some(self.tally.killed as f64 * TICK);
         let [ground, on, hangs] = self.shares.map(|share| 100.0 * share);
         write!(
             f,
