@@ -258,3 +258,61 @@ fn a_body_is_printed_and_drawn_and_a_file_without_one_is_told() {
         Some(2)
     );
 }
+
+/// CI holds what can be climbed on the giant: who changes it or the graph sees it here.
+#[test]
+fn the_giant_can_be_climbed() {
+    let giant = giant::path();
+    let giant = giant.to_str().unwrap();
+    let fur_and_stone = ["climbability", giant, "--grip", "fur,stone", "--json"];
+    let wanted = ["--require", "weak_points>=3", "--require", "reachable>0.85"];
+    let ended = clamber(&[&fur_and_stone[..], &wanted[..]].concat());
+    assert!(ended.status.success(), "{ended:?}");
+    let report: serde_json::Value = serde_json::from_slice(&ended.stdout).unwrap();
+    let close = |name: &str, wanted: f64| {
+        let found = report[name].as_f64().unwrap();
+        assert!(
+            (found / wanted - 1.0).abs() < 0.01,
+            "{name}: {found} for {wanted}"
+        );
+    };
+    close("area", 4102.0);
+    close("reachable_area", 3589.0);
+    close("rest_area", 523.0);
+    for (index, seconds) in [26.9, 21.7, 25.3].into_iter().enumerate() {
+        let point = &report["weak_points"][index];
+        let found = point["seconds"].as_f64().unwrap();
+        assert!((found - seconds).abs() < 1.0, "{point}: {seconds}");
+    }
+    // On fur alone there is no way up: the giant wears belts of stone.
+    let ended = clamber(&["climbability", giant, "--require", "weak_points=3"]);
+    assert_eq!(ended.status.code(), Some(1));
+    let (text, error) = (ended.stdout, String::from_utf8(ended.stderr).unwrap());
+    assert!(
+        String::from_utf8(text)
+            .unwrap()
+            .contains("m of reach are missing")
+    );
+    assert!(
+        error.contains("weak_points=3 does not hold: it is 0"),
+        "{error}"
+    );
+}
+
+#[test]
+fn climbability_refuses_what_it_does_not_know() {
+    let giant = giant::path();
+    let giant = giant.to_str().unwrap();
+    for wrong in [
+        ["--require", "legs>=2"],
+        ["--spacing", "0"],
+        ["--spacing", "5"],
+        ["--height", "-1"],
+        ["--grip", "ice"],
+    ] {
+        let ended = clamber(&[&["climbability", giant], &wrong[..]].concat());
+        let error = String::from_utf8(ended.stderr).unwrap();
+        assert_eq!(ended.status.code(), Some(2), "{wrong:?}: {error}");
+        assert!(!error.contains("panicked"), "{error}");
+    }
+}

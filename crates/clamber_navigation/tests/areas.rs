@@ -89,12 +89,17 @@ fn a_torus_is_reached_where_its_hole_has_room() {
     let torus = |ring: f32, tube: f32| {
         let place = move |u: f32, v: f32| {
             let (a, b) = (u * std::f32::consts::TAU, v * std::f32::consts::TAU);
-            let out = ring + tube * b.cos();
-            Vec3::new(out * a.cos(), 2.5 + tube * b.sin(), -out * a.sin())
+            let out = ring + tube * libm::cosf(b);
+            Vec3::new(
+                out * libm::cosf(a),
+                2.5 + tube * libm::sinf(b),
+                -out * libm::sinf(a),
+            )
         };
         Body::grid([96, 32], place, |_, _| Fur)
     };
-    let area = |ring: f64, tube: f64| 4.0 * std::f64::consts::PI.powi(2) * ring * tube;
+    let area =
+        |ring: f64, tube: f64| 4.0 * std::f64::consts::PI * std::f64::consts::PI * ring * tube;
     let (_, report) = torus(4.0, 1.5).report(&climber());
     close(report.reachable_area, area(4.0, 1.5));
     // A hole of 0.1 m radius: a ball of 0.4 m touches both sides of it from above, and what is below that never.
@@ -108,7 +113,7 @@ fn a_torus_is_reached_where_its_hole_has_room() {
 #[test]
 fn the_order_of_triangles_does_not_matter() {
     let body = ball(Vec3::Y * 5.4, 5.0, |u, v| {
-        if (8.0 * u) as u32 % 3 == 0 && v > 0.4 {
+        if ((8.0 * u) as u32).is_multiple_of(3) && v > 0.4 {
             Skin
         } else {
             Fur
@@ -142,7 +147,7 @@ fn a_belt_of_stone_is_missed_by_as_much_as_longer_arms_need() {
             let place = move |u: f32, v: f32| {
                 let around = u * std::f32::consts::TAU;
                 let height = from + (to - from) * v;
-                Vec3::new(3.0 * around.cos(), height, -3.0 * around.sin())
+                Vec3::new(3.0 * libm::cosf(around), height, -3.0 * libm::sinf(around))
             };
             Body::grid([48, rows], place, move |_, _| kind)
         };

@@ -135,8 +135,13 @@ pub(crate) fn climber() -> GraphConfig {
 pub(crate) fn ball(center: Vec3, radius: f32, kind: impl Fn(f32, f32) -> SurfaceKind) -> Body {
     let place = |u: f32, v: f32| {
         let (around, down) = (u * std::f32::consts::TAU, v * std::f32::consts::PI);
-        let level = down.sin();
-        center + Vec3::new(level * around.cos(), down.cos(), level * around.sin()) * radius
+        let level = libm::sinf(down);
+        center
+            + Vec3::new(
+                level * libm::cosf(around),
+                libm::cosf(down),
+                level * libm::sinf(around),
+            ) * radius
     };
     Body::grid([64, 32], place, kind)
 }

@@ -1,0 +1,152 @@
+//! B62: more stamina, reach or fur never takes a place away, and no way is faster than the least time says.
+
+mod support;
+
+use std::collections::BTreeSet;
+
+use clamber_navigation::{ClimbGraph, Footing, Forecast, GraphConfig, Start};
+use clamber_surface::mesh::SurfaceKind::{Fur, Skin, Stone};
+use fastrand::Rng;
+use glam::Vec3;
+use support::{Body, ball, climber};
+
+/// A ball on a pillar, both patched with stone at random.
+fn patched(seed: u64, fur: f32) -> Body {
+    let mut rng = Rng::with_seed(seed);
+    let noise: Vec<f32> = (0..400).map(|_| rng.f32()).collect();
+    let kind = |u: f32, v: f32| {
+        let cell = (u * 20.0) as usize % 20 * 20 + (v * 20.0) as usize % 20;
+        if noise[cell] < fur { Fur } else { Stone }
+    };
+    let pillar = |u: f32, v: f32| {
+        let around = u * std::f32::consts::TAU;
+        Vec3::new(1.5 * libm::cosf(around), 9.0 * v, -1.5 * libm::sinf(around))
+    };
+    ball(Vec3::Y * 11.5, 4.0, kind).and(&Body::grid([24, 24], pillar, kind))
+}
+
+/// Where the reachable patches of a graph are, to a tenth of a millimetre.
+fn places(graph: &ClimbGraph, reached: &[bool]) -> BTreeSet<[i64; 3]> {
+    let patches = graph.patches().iter().zip(reached);
+    let places = patches.filter(|(_, reached)| **reached);
+    places
+        .map(|(patch, _)| (patch.point * 1e4).round().as_i64vec3().to_array())
+        .collect()
+}
+
+fn area(graph: &ClimbGraph) -> f64 {
+    let reached = graph.reachable();
+    let patches = graph.patches().iter().zip(&reached);
+    patches
+        .filter(|(_, reached)| **reached)
+        .map(|(patch, _)| patch.area)
+        .sum()
+}
+
+#[test]
+fn more_reach_and_more_fur_never_take_anything_away() {
+    let mut grew = 0;
+    for seed in 0..2 {
+        let mut before = (0.0, 0.0);
+        for step in 0..3 {
+            let mut config = climber();
+            config.climber.grip.as_mut().unwrap().reach = 0.15 + 0.15 * f64::from(step);
+            let reach = area(&patched(seed, 0.6).report(&config).0);
+            let fur = area(&patched(seed, 0.4 + 0.15 * step as f32).report(&climber()).0);
+            // Areas are sums of the same pieces in another order.
+            assert!(
+                reach >= before.0 - 1e-9,
+                "{seed}, reach: {reach} after {}",
+                before.0
+            );
+            assert!(
+                fur >= before.1 - 1e-9,
+                "{seed}, fur: {fur} after {}",
+                before.1
+            );
+            grew += u32::from(reach > before.0 + 1.0) + u32::from(fur > before.1 + 1.0);
+            before = (reach, fur);
+        }
+    }
+    assert!(grew >= 8, "it grew only {grew} times");
+}
+
+fn entries(graph: &ClimbGraph, stamina: f64) -> Vec<Start> {
+    let footings = [Footing::Stands, Footing::Holds];
+    let all = graph.entries().iter().flat_map(|entry| {
+        footings.map(|footing| Start {
+            patch: entry.patch,
+            footing,
+            seconds: 0.0,
+            stamina,
+        })
+    });
+    all.collect()
+}
+
+#[test]
+fn more_stamina_never_takes_anything_away() {
+    // Skin that cannot be gripped, but for a wall of fur: the way up is too long without a rest for who is weak.
+    let wall = |u: f32, v: f32| Vec3::new(8.0 * (u - 0.5), 30.0 * v, 0.0);
+    let kind = |u: f32, _: f32| if (0.3..0.7).contains(&u) { Fur } else { Skin };
+    let (graph, _) = Body::grid([16, 60], wall, kind).report(&climber());
+    let reachable = |stamina: f64| {
+        let starts = entries(&graph, stamina);
+        let is_reached = |patch: usize| {
+            let goal = graph.goal(&[patch]);
+            graph.plan(&starts, &goal, &Forecast::still()).is_some()
+        };
+        let reached: Vec<bool> = (0..graph.patches().len()).map(is_reached).collect();
+        places(&graph, &reached)
+    };
+    let sets = [0.1, 0.2, 0.35, 0.5].map(reachable);
+    for pair in sets.windows(2) {
+        assert!(pair[0].is_subset(&pair[1]) && pair[0].len() < pair[1].len());
+    }
+}
+
+#[test]
+fn no_plan_is_faster_than_the_least_time() {
+    let (graph, _) = patched(3, 0.75).report(&GraphConfig {
+        spacing: 0.5,
+        ..climber()
+    });
+    let mut rng = Rng::with_seed(62);
+    let (mut pairs, mut rests) = (0, 0);
+    while pairs < 10_000 {
+        let goal = graph.goal(&[rng.usize(0..graph.patches().len())]);
+        for _ in 0..250 {
+            let patch = rng.usize(0..graph.patches().len());
+            let footing = if rng.bool() {
+                Footing::Stands
+            } else {
+                Footing::Holds
+            };
+            let start = Start {
+                patch,
+                footing,
+                seconds: 0.0,
+                stamina: 0.05 + 0.95 * rng.f64(),
+            };
+            let least = goal.least_seconds(patch, footing);
+            let plan = graph.plan(&[start], &goal, &Forecast::still());
+            pairs += 1;
+            let Some(plan) = plan else {
+                continue;
+            };
+            assert!(
+                least <= plan.seconds() + 1e-9,
+                "{least} for {}",
+                plan.seconds()
+            );
+            rests += u32::from(plan.seconds() > least + 1e-6);
+            for pair in plan.steps.windows(2) {
+                // Never up by more than the time between allows, and never down: consistent.
+                let [a, b] = [&pair[0], &pair[1]];
+                let [from, to] = [a, b].map(|step| goal.least_seconds(step.patch, step.footing));
+                assert!(from <= to + (b.seconds - a.seconds) + 1e-9);
+            }
+        }
+    }
+    assert!(rests > 100, "only {rests} plans have to rest");
+}
