@@ -7,6 +7,9 @@ use std::process::ExitCode;
 
 use clamber_scenes::climbs::{Climb, ClimbsOptions, climb_all, table};
 
+/// Share of the models that the bot has to climb: 20 of 27.
+const ENOUGH: f64 = 0.74;
+
 fn main() -> ExitCode {
     let options = ClimbsOptions::from_command_line();
     let progress = |climb: &Climb, done: usize, of: usize| {
@@ -21,11 +24,11 @@ fn main() -> ExitCode {
     match climb_all(&options, progress) {
         Ok(climbs) => {
             println!("{}", table(&climbs));
-            let fails = |climb: &Climb| {
-                let climbed = climb.outcome.as_ref();
-                climbed.is_ok_and(|climbed| climbed.heights[1] > 0.0 && climbed.times[1].is_none())
-            };
-            if climbs.iter().any(fails) {
+            let climbed = climbs
+                .iter()
+                .filter_map(|climb| climb.outcome.as_ref().ok());
+            let there = climbed.clone().filter(|climbed| climbed.times[1].is_some());
+            if (there.count() as f64) < ENOUGH * climbed.count() as f64 {
                 return ExitCode::FAILURE;
             }
             ExitCode::SUCCESS
