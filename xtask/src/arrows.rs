@@ -125,7 +125,7 @@ const ALLOWED: [(&str, &[&str]); 21] = [
 ];
 
 /// What tests and examples of a crate may use beyond that, and `clamber_oracle`.
-const ALLOWED_FOR_TESTS: [(&str, &str); 22] = [
+const ALLOWED_FOR_TESTS: [(&str, &str); 23] = [
     ("bevy_clamber", "clamber_scenes"),
     ("clamber", "clamber_scenes"),
     ("clamber_animation", "clamber_gltf"),
@@ -138,6 +138,7 @@ const ALLOWED_FOR_TESTS: [(&str, &str); 22] = [
     ("clamber_benches", "clamber_body"),
     ("clamber_benches", "clamber_colossus"),
     ("clamber_benches", "clamber_fight"),
+    ("clamber_benches", "clamber_navigation"),
     ("clamber_benches", "clamber_scenes"),
     ("clamber_fight", "clamber_gltf"),
     ("clamber_navigation", "clamber_gltf"),

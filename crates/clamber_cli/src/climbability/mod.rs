@@ -1,5 +1,6 @@
 //! Tells where a climber can get to on a creature.
 
+mod picture;
 mod require;
 mod table;
 
@@ -54,6 +55,11 @@ pub struct ClimbabilityOptions {
     /// Print the report as JSON.
     #[arg(long)]
     pub json: bool,
+
+    /// File for a picture from four sides: coloured from dark blue to yellow by how long it takes to get there, grey where no
+    /// climber gets to, with red discs for weak points.
+    #[arg(long, value_name = "FILE.png")]
+    pub picture: Option<PathBuf>,
 }
 
 fn positive(text: &str) -> Result<f64, String> {
@@ -98,6 +104,14 @@ pub enum ClimbabilityError {
     /// The creature is flat, and cannot be scaled to a height.
     #[error("the creature has no height, so it cannot be scaled to {0} m")]
     NoHeight(f64),
+    /// The picture cannot be written.
+    #[error("cannot write {path}: {error}")]
+    Picture {
+        /// The file.
+        path: PathBuf,
+        /// The reason.
+        error: std::io::Error,
+    },
     /// The report cannot be written as JSON.
     #[error("the report cannot be written: {0}")]
     Json(#[from] serde_json::Error),
@@ -149,11 +163,21 @@ pub fn print(options: &ClimbabilityOptions) -> Result<bool, ClimbabilityError> {
     if let Some((_, bar)) = &bar {
         bar.finish();
     }
-    let (report, _) = built?;
+    let (report, graph) = built?;
     if options.json {
         println!("{}", serde_json::to_string_pretty(&report)?);
     } else {
         print!("{}", table::table(&report, own * scale, source.ground));
+    }
+    if let Some(path) = &options.picture {
+        let place = |p: &glam::Vec3| source.world_from_model.transform_point(p.as_dvec3());
+        let skin: Vec<glam::DVec3> = skin.iter().map(place).collect();
+        let longest = picture::draw(path, &rig.collider, &skin, &graph, &report);
+        let longest = longest.map_err(|error| ClimbabilityError::Picture {
+            path: path.clone(),
+            error,
+        })?;
+        eprintln!("{}: dark blue is the ground, yellow {longest:.1} s from it", path.display());
     }
     let mut holds = true;
     for requirement in &options.require {

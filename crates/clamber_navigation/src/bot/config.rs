@@ -12,9 +12,9 @@ pub struct BotConfig {
     pub reserve: f64,
     /// It climbs in shakes up to this share of the one in which it can only hang. Default 0.7.
     pub climbs_in: f64,
-    /// It aims so far ahead on its way, metres. Default 1.2: three radii of a climber.
+    /// It aims so many radii of the climber ahead on its way. Default 3.
     pub ahead: f64,
-    /// It plans anew if it is farther than this from its way, metres. Default 1.6.
+    /// It plans anew if it is farther from its way than so many radii. Default 4.
     pub off_its_way: f64,
     /// It counts as stuck after it has not got on for so long, seconds. Default 1.5.
     pub patience: f64,
@@ -26,7 +26,7 @@ pub struct BotConfig {
     pub hangs_for: f64,
     /// Seconds from the beginning of an attack until it reacts. Default 0.25.
     pub reaction: f64,
-    /// It keeps so far away from where it means to get on while the creature is not calm, metres. Default 11.
+    /// It keeps so many radii away from where it means to get on while the creature walks about. Default 27.5.
     pub keeps_away: f64,
 }
 
@@ -38,14 +38,14 @@ impl Default for BotConfig {
             rested: 0.9,
             reserve: 0.2,
             climbs_in: 0.7,
-            ahead: 1.2,
-            off_its_way: 1.6,
+            ahead: 3.0,
+            off_its_way: 4.0,
             patience: 1.5,
             blocked_for: 10.0,
             plans_every: 0.5,
             hangs_for: 2.5,
             reaction: 0.25,
-            keeps_away: 11.0,
+            keeps_away: 27.5,
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Target, View};
+use super::{BotConfig, Target, View};
 use crate::{ClimbGraph, Footing, Plan};
 
 /// It looks for itself on so many steps of its plan, before and after the one that it was on.
@@ -47,9 +47,10 @@ impl Progress {
         graph: &ClimbGraph,
         view: &View<'_>,
         patch: usize,
-        off_its_way: f64,
+        config: &BotConfig,
     ) -> bool {
         let here = view.climber.state().position;
+        let radius = view.climber.config().body.radius;
         let steps = &self.plan.steps;
         let from = self.at.saturating_sub(BACK);
         let to = (self.at + ON).min(steps.len() - 1);
@@ -57,7 +58,7 @@ impl Progress {
             let step = &steps[*index];
             let apart = view.seat(&graph.patches()[step.patch]).distance(here);
             if step.patch == patch {
-                apart.min(ON_IT)
+                apart.min(ON_IT * radius)
             } else {
                 apart
             }
@@ -77,7 +78,7 @@ impl Progress {
         if self.at > self.farthest {
             (self.farthest, self.since) = (self.at, view.seconds);
         }
-        nearest.0 <= off_its_way
+        nearest.0 <= config.off_its_way * radius
     }
 
     /// True if a step is a rest.
@@ -150,9 +151,14 @@ impl Progress {
     }
 
     /// Where it goes: some way ahead.
-    pub(super) fn target(&self, graph: &ClimbGraph, view: &View<'_>) -> Option<Target> {
+    pub(super) fn target(
+        &self,
+        graph: &ClimbGraph,
+        view: &View<'_>,
+        config: &BotConfig,
+    ) -> Option<Target> {
         let state = view.climber.state();
-        let here = state.position;
+        let (here, radius) = (state.position, view.climber.config().body.radius);
         let held = state
             .support
             .map_or(DVec3::ZERO, |support| support.normal_in_world());
@@ -172,10 +178,10 @@ impl Progress {
             if let Some(corner) = corner
                 && step.footing == Footing::Holds
                 && normal.dot(held) < CORNER
-                && (place - here).dot(held) > RISES * view.climber.config().body.radius
+                && (place - here).dot(held) > RISES * radius
             {
                 let place = view.corner(corner);
-                if target.is_none() || is_straight(here, place, &passed) {
+                if target.is_none() || is_straight(here, place, &passed, ASIDE * radius) {
                     return Some(Target {
                         place,
                         normal,
@@ -185,7 +191,7 @@ impl Progress {
                 }
                 break;
             }
-            if target.is_some() && !is_straight(here, place, &passed) {
+            if target.is_some() && !is_straight(here, place, &passed, ASIDE * radius) {
                 break;
             }
             // Where it is already is no target.
@@ -204,7 +210,7 @@ impl Progress {
             }
             if index > self.at {
                 passed.push(place);
-                if place.distance(here) > AHEAD {
+                if place.distance(here) > config.ahead * radius {
                     break;
                 }
             }
@@ -214,7 +220,7 @@ impl Progress {
 }
 
 /// True if a straight way passes near places in between.
-fn is_straight(from: DVec3, to: DVec3, between: &[DVec3]) -> bool {
+fn is_straight(from: DVec3, to: DVec3, between: &[DVec3], aside: f64) -> bool {
     let way = to - from;
     let squared = way.length_squared();
     between.iter().all(|place| {
@@ -223,15 +229,15 @@ fn is_straight(from: DVec3, to: DVec3, between: &[DVec3]) -> bool {
         } else {
             0.0
         };
-        (from + way * share).distance(*place) <= ASIDE
+        (from + way * share).distance(*place) <= aside
     })
 }
 
 /// Where its way rises by more than this share of its radius off the skin that it holds, it goes by the corner.
 const RISES: f64 = 0.5;
 
-/// Whoever is on a patch counts as no farther from its middle than this, metres.
-const ON_IT: f64 = 0.2;
+/// Whoever is on a patch counts as no farther from its middle than so many radii.
+const ON_IT: f64 = 0.5;
 
 /// Below this share of its climbing speed, for so long, it counts as at rest; then it tries something else for a while; seconds.
 const SLOW: f64 = 0.2;
@@ -241,8 +247,5 @@ const TRIES: f64 = 0.5;
 /// Sides whose normals have a lower cosine than this meet in a corner.
 const CORNER: f64 = 0.7;
 
-/// It cuts corners by so much, metres.
-const ASIDE: f64 = 0.2;
-
-/// It aims so far ahead, metres.
-const AHEAD: f64 = 1.2;
+/// It cuts corners by so many radii.
+const ASIDE: f64 = 0.5;

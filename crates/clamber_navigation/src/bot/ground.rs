@@ -14,6 +14,9 @@ const NEAR: f64 = 2.2;
 const KEPT: f64 = 0.5;
 const PUZZLED: f64 = 0.3;
 
+/// It keeps its distance to so many radii.
+const SWAY: f64 = 0.5;
+
 /// Least time between two jumps, seconds.
 const BETWEEN_JUMPS: f64 = 1.2;
 
@@ -119,10 +122,10 @@ impl Approach {
         let toward = level(view.point(patch) - state.position);
         let keeps = match view.danger {
             Danger::None => 0.0,
-            _ => config.keeps_away,
+            _ => config.keeps_away * view.climber.config().body.radius,
         };
         let away = toward.length() - keeps;
-        let ahead = if away.abs() > 0.2 { away.signum() } else { 0.0 };
+        let ahead = if away.abs() > SWAY * view.climber.config().body.radius { away.signum() } else { 0.0 };
         let walk = toward.normalize_or_zero() * ahead;
         if walk == DVec3::ZERO || state.velocity.length() > KEPT {
             self.free = seconds;

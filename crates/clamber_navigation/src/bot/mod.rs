@@ -157,7 +157,7 @@ impl Bot {
     /// The patch that it is on.
     fn patch_below(&self, view: &View<'_>) -> Option<usize> {
         let (triangle, barycentric) = view.material()?;
-        self.graph.patch_at(triangle, barycentric)
+        self.graph.patch_near(triangle, barycentric)
     }
 
     /// Waits until the skin is calm; lets go where it cannot pull itself in.
@@ -226,7 +226,7 @@ impl Bot {
             }
             progress.has_rested();
         }
-        let Some(target) = progress.target(&self.graph, view) else {
+        let Some(target) = progress.target(&self.graph, view, &self.config) else {
             return hold;
         };
         let toward = target.place - state.position;
@@ -251,7 +251,7 @@ impl Bot {
     fn follow_or_plan(&mut self, view: &View<'_>, patch: usize) {
         let seconds = view.seconds;
         if let Some(progress) = &mut self.plan {
-            let is_on_it = progress.find(&self.graph, view, patch, self.config.off_its_way);
+            let is_on_it = progress.find(&self.graph, view, patch, &self.config);
             if is_on_it && !progress.is_stuck(seconds, 2.0 * self.config.patience) {
                 return;
             }

@@ -11,18 +11,29 @@ use crate::survey::Survey;
 pub(super) struct Locator {
     /// Those of triangle t are `start[t]..start[t + 1]`.
     start: Vec<u32>,
-    pieces: Vec<([f32; 3], u32)>,
+    pieces: Vec<Place>,
+}
+
+/// A piece, and its patch, or the nearest one.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    weights: [f32; 3],
+    patch: u32,
+    is_on_it: bool,
 }
 
 impl Locator {
     /// A piece without a patch takes the nearest patch at rest.
     pub(super) fn new(survey: &Survey, patch_of: &[u32], mesh: &ColliderMesh) -> Self {
         let nearest = nearest(survey, patch_of);
-        let mut of: Vec<Vec<([f32; 3], u32)>> = vec![Vec::new(); mesh.triangles().len()];
-        for (piece, patch) in survey.pieces.iter().zip(&nearest) {
+        let mut of: Vec<Vec<Place>> = vec![Vec::new(); mesh.triangles().len()];
+        for ((piece, patch), own) in survey.pieces.iter().zip(&nearest).zip(patch_of) {
             if *patch != NONE {
-                let weights = piece.barycentric.map(|weight| weight as f32);
-                of[piece.triangle.index()].push((weights, *patch));
+                of[piece.triangle.index()].push(Place {
+                    weights: piece.barycentric.map(|weight| weight as f32),
+                    patch: *patch,
+                    is_on_it: own == patch,
+                });
             }
         }
         let mut locator = Self {
@@ -36,18 +47,19 @@ impl Locator {
         locator
     }
 
-    pub(super) fn find(&self, triangle: TriangleId, barycentric: [f32; 3]) -> Option<usize> {
+    /// The patch of a point, and whether the point is on it or just near.
+    pub(super) fn find(&self, triangle: TriangleId, barycentric: [f32; 3]) -> Option<(usize, bool)> {
         let from = *self.start.get(triangle.index())? as usize;
         let to = *self.start.get(triangle.index() + 1)? as usize;
-        let apart = |weights: &[f32; 3]| -> f32 {
+        let apart = |place: &Place| -> f32 {
             (0..3)
-                .map(|k| weights[k] - barycentric[k])
+                .map(|k| place.weights[k] - barycentric[k])
                 .map(|off| off * off)
                 .sum()
         };
-        let pieces = self.pieces.get(from..to)?.iter();
-        let nearest = pieces.min_by(|a, b| apart(&a.0).total_cmp(&apart(&b.0)))?;
-        Some(nearest.1 as usize)
+        let places = self.pieces.get(from..to)?.iter();
+        let nearest = places.min_by(|a, b| apart(a).total_cmp(&apart(b)))?;
+        Some((nearest.patch as usize, nearest.is_on_it))
     }
 }
 

@@ -90,20 +90,15 @@ impl ClimbGraph {
         &self.entries
     }
 
-    /// The patch of a point of the skin, or the nearest one; `None` if there is none near.
-    pub fn patch_at(&self, triangle: TriangleId, barycentric: [f32; 3]) -> Option<usize> {
-        self.locator.find(triangle, barycentric)
+    /// The patch of a point of the skin; `None` where a climber can neither stand nor hold on at rest.
+    pub fn patch_of(&self, triangle: TriangleId, barycentric: [f32; 3]) -> Option<usize> {
+        let (patch, is_on_it) = self.locator.find(triangle, barycentric)?;
+        is_on_it.then_some(patch)
     }
 
-    /// True if a patch is there as the skin is now: its own triangle is, and the plate above it is not.
-    pub fn is_there(&self, patch: usize, surface: &SkinnedSurface) -> bool {
-        self.patches.get(patch).is_some_and(|patch| {
-            let plate = patch
-                .below
-                .and_then(|plate| *self.plates.get(usize::from(plate))?);
-            surface.is_enabled(patch.triangle)
-                && plate.is_none_or(|triangle| !surface.is_enabled(triangle))
-        })
+    /// The patch of a point of the skin, or the nearest one at rest; `None` if there is none within two metres.
+    pub fn patch_near(&self, triangle: TriangleId, barycentric: [f32; 3]) -> Option<usize> {
+        Some(self.locator.find(triangle, barycentric)?.0)
     }
 
     /// Of each patch, whether a climber that does not tire comes there from the ground, on the creature at rest.

@@ -192,7 +192,7 @@ impl Planner {
         let here = support.and_then(|support| {
             let material = support.attachment.material;
             let weights = material.coordinates.map(|weight| weight as f32);
-            self.bot.graph().patch_at(material.triangle()?, weights)
+            self.bot.graph().patch_near(material.triangle()?, weights)
         });
         let left = |target: &usize| {
             let goal = &self.targets[*target].goal;

@@ -1,0 +1,88 @@
+//! Where somebody who flies comes down is where the prediction said, while the giant moves.
+
+#![allow(clippy::unwrap_used, reason = "a test")]
+
+use std::sync::Arc;
+
+use clamber::climber::{Climber, ClimberConfig, ClimberInput, StepRules};
+use clamber::rig::{Palette, Playback};
+use clamber::surface::SkinnedSurface;
+use clamber::world::{Contact, HalfSpace, Obstacle, ObstacleId};
+use clamber_navigation::{Flight, FutureSkin};
+use clamber_scenes::giant;
+use fastrand::Rng;
+use glam::DVec3;
+
+const TICK: f64 = 1.0 / 60.0;
+const GROUND: ObstacleId = ObstacleId(0);
+const GIANT: ObstacleId = ObstacleId(1);
+
+#[test]
+fn landings_are_foreseen_on_moving_skin() {
+    let creature = giant::giant().unwrap();
+    let (place, ground) = creature.standing(40.0).unwrap();
+    let floor = HalfSpace::below(ground);
+    let mut rng = Rng::with_seed(28);
+    let mut skin = FutureSkin::new(Arc::clone(&creature.collider));
+    let can_grip = |obstacle: ObstacleId, _: &Contact| obstacle == GIANT;
+    let rules = StepRules::gripping(&can_grip);
+    let (mut on_skin, mut elsewhere) = (0, 0);
+    for _ in 0..200 {
+        let clip = &creature.clips[rng.usize(0..creature.clips.len())];
+        let from = rng.f64() * clip.duration();
+        let pose = |seconds: f64, palette: &mut Palette| {
+            let mut pose = creature.skeleton.rest_pose();
+            clip.sample_into(from + seconds, Playback::Clamp, &mut pose).ok()?;
+            creature.skeleton.palette_into(&pose, palette).ok()?;
+            Some(place)
+        };
+        let aside = DVec3::new(rng.f64() - 0.5, 0.0, rng.f64() - 0.5) * 16.0;
+        let above = aside + DVec3::Y * (ground + 30.0 + 15.0 * rng.f64());
+        let mut climber = Climber::new(ClimberConfig::colossus_climber(), above).unwrap();
+        let input = ClimberInput {
+            grip: rng.bool(),
+            ..ClimberInput::IDLE
+        };
+        let others: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &floor)];
+        let flight = Flight {
+            climber: &climber,
+            input: &input,
+            rules: &rules,
+            creature: GIANT,
+            others: &others,
+        };
+        let mut future = pose;
+        let said = skin.landing(&flight, &mut future, TICK, 6.0).unwrap();
+        // As if it kept still.
+        let mut still = |_: f64, palette: &mut Palette| pose(0.0, palette);
+        let still = skin.landing(&flight, &mut still, TICK, 6.0).unwrap();
+
+        let mut surface = SkinnedSurface::new(Arc::clone(&creature.collider));
+        let mut palette = Palette::default();
+        pose(0.0, &mut palette).unwrap();
+        surface.place(&palette, place).unwrap();
+        let mut is = None;
+        for tick in 1..=360 {
+            let seconds = f64::from(tick) * TICK;
+            pose(seconds, &mut palette).unwrap();
+            surface.advance(&palette, place).unwrap();
+            let around: [(ObstacleId, &dyn Obstacle); 2] = [(GROUND, &floor), (GIANT, &surface)];
+            climber.step_with(&input, &around, &rules, TICK).unwrap();
+            if climber.state().support.is_some() {
+                is = Some((seconds, *climber.state()));
+                break;
+            }
+        }
+        assert_eq!(said.map(|said| (said.seconds, said.state)), is);
+        let Some((_, state)) = is else {
+            continue;
+        };
+        let support = state.support.unwrap().attachment.obstacle;
+        on_skin += u32::from(support == GIANT);
+        let apart = still.map_or(f64::INFINITY, |still| still.state.position.distance(state.position));
+        elsewhere += u32::from(apart > 0.1);
+    }
+    eprintln!("{on_skin} of 200 come down on the giant, {elsewhere} elsewhere than if it kept still");
+    assert!(on_skin > 80, "{on_skin}");
+    assert!(elsewhere > 20, "{elsewhere}: the pose of now would do");
+}
