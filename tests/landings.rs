@@ -32,7 +32,8 @@ fn landings_are_foreseen_on_moving_skin() {
         let from = rng.f64() * clip.duration();
         let pose = |seconds: f64, palette: &mut Palette| {
             let mut pose = creature.skeleton.rest_pose();
-            clip.sample_into(from + seconds, Playback::Clamp, &mut pose).ok()?;
+            clip.sample_into(from + seconds, Playback::Clamp, &mut pose)
+                .ok()?;
             creature.skeleton.palette_into(&pose, palette).ok()?;
             Some(place)
         };
@@ -79,10 +80,14 @@ fn landings_are_foreseen_on_moving_skin() {
         };
         let support = state.support.unwrap().attachment.obstacle;
         on_skin += u32::from(support == GIANT);
-        let apart = still.map_or(f64::INFINITY, |still| still.state.position.distance(state.position));
+        let apart = still.map_or(f64::INFINITY, |still| {
+            still.state.position.distance(state.position)
+        });
         elsewhere += u32::from(apart > 0.1);
     }
-    eprintln!("{on_skin} of 200 come down on the giant, {elsewhere} elsewhere than if it kept still");
+    eprintln!(
+        "{on_skin} of 200 come down on the giant, {elsewhere} elsewhere than if it kept still"
+    );
     assert!(on_skin > 80, "{on_skin}");
     assert!(elsewhere > 20, "{elsewhere}: the pose of now would do");
 }

@@ -54,7 +54,12 @@ fn run(brief: bool) -> Result<(), Failure> {
     cells.push("the graph of the giant, s", seconds, Bound::Most(20.0));
     cells.value("patches", graph.patches().len() as f64);
     plans(&creature, &graph, if brief { 10 } else { 500 }, &mut cells)?;
-    climb(&creature, &graph, if brief { 300 } else { 3600 }, &mut cells)?;
+    climb(
+        &creature,
+        &graph,
+        if brief { 300 } else { 3600 },
+        &mut cells,
+    )?;
     predictions(&creature, if brief { 3 } else { 200 }, &mut cells)?;
     cells.finish("planning", brief)
 }
@@ -102,8 +107,16 @@ fn plans(
         }
     }
     cells.value("a goal, median, ms", quantile(&mut goals, 0.5));
-    cells.push("a plan, median, ms", quantile(&mut times, 0.5), Bound::Most(50.0));
-    cells.push("a plan, slowest, ms", quantile(&mut times, 1.0), Bound::Most(50.0));
+    cells.push(
+        "a plan, median, ms",
+        quantile(&mut times, 0.5),
+        Bound::Most(50.0),
+    );
+    cells.push(
+        "a plan, slowest, ms",
+        quantile(&mut times, 1.0),
+        Bound::Most(50.0),
+    );
     cells.value("share of plans found", found as f64 / times.len() as f64);
     Ok(())
 }
@@ -171,7 +184,11 @@ fn climb(
     let medians = [quantile(&mut thinks, 0.5), quantile(&mut steps, 0.5)];
     cells.value("a bot's tick, median, us", medians[0]);
     cells.value("its climber's tick, median, us", medians[1]);
-    cells.push("bot / climber, medians", medians[0] / medians[1], Bound::Most(1.0));
+    cells.push(
+        "bot / climber, medians",
+        medians[0] / medians[1],
+        Bound::Most(1.0),
+    );
     cells.value("bot / climber, means, with its plans", means[0] / means[1]);
     cells.value("plans", bot.plans() as f64);
     Ok(())
@@ -188,9 +205,15 @@ fn predictions(creature: &Creature, count: usize, cells: &mut Cells) -> Result<(
         Some(place)
     };
     let mut surface = SkinnedSurface::new(Arc::clone(&creature.collider));
-    surface.place(&creature.skeleton.palette(&creature.skeleton.rest_pose())?, place)?;
+    surface.place(
+        &creature.skeleton.palette(&creature.skeleton.rest_pose())?,
+        place,
+    )?;
     let mut skin = FutureSkin::new(Arc::clone(&creature.collider));
-    let mut climber = Climber::new(ClimberConfig::colossus_climber(), DVec3::new(0.0, 41.0, -1.0))?;
+    let mut climber = Climber::new(
+        ClimberConfig::colossus_climber(),
+        DVec3::new(0.0, 41.0, -1.0),
+    )?;
     let can_grip = |_: ObstacleId, _: &Contact| true;
     let rules = StepRules::gripping(&can_grip);
     let grip = ClimberInput {

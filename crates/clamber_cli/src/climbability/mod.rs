@@ -177,7 +177,10 @@ pub fn print(options: &ClimbabilityOptions) -> Result<bool, ClimbabilityError> {
             path: path.clone(),
             error,
         })?;
-        eprintln!("{}: dark blue is the ground, yellow {longest:.1} s from it", path.display());
+        eprintln!(
+            "{}: dark blue is the ground, yellow {longest:.1} s from it",
+            path.display()
+        );
     }
     let mut holds = true;
     for requirement in &options.require {

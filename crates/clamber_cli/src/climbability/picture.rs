@@ -94,7 +94,8 @@ pub(super) fn draw(
     let ground = graph.goal(&entries);
     let reachable = graph.reachable();
     let seconds = |patch: usize| {
-        let [stands, holds] = [Footing::Stands, Footing::Holds].map(|footing| ground.least_seconds(patch, footing));
+        let [stands, holds] =
+            [Footing::Stands, Footing::Holds].map(|footing| ground.least_seconds(patch, footing));
         stands.min(holds)
     };
     let longest = (0..reachable.len())
@@ -138,7 +139,9 @@ pub(super) fn draw(
             }
             let [a, b, c] = corners.map(at);
             // In pieces, since a triangle may have many patches.
-            let parts = ((b - a).length().max((c - a).length()) / 6.0).ceil().clamp(1.0, 64.0);
+            let parts = ((b - a).length().max((c - a).length()) / 6.0)
+                .ceil()
+                .clamp(1.0, 64.0);
             let n = parts as u32;
             for i in 0..n {
                 for j in 0..n - i {

@@ -125,7 +125,11 @@ impl Approach {
             _ => config.keeps_away * view.climber.config().body.radius,
         };
         let away = toward.length() - keeps;
-        let ahead = if away.abs() > SWAY * view.climber.config().body.radius { away.signum() } else { 0.0 };
+        let ahead = if away.abs() > SWAY * view.climber.config().body.radius {
+            away.signum()
+        } else {
+            0.0
+        };
         let walk = toward.normalize_or_zero() * ahead;
         if walk == DVec3::ZERO || state.velocity.length() > KEPT {
             self.free = seconds;

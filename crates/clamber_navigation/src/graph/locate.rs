@@ -48,7 +48,11 @@ impl Locator {
     }
 
     /// The patch of a point, and whether the point is on it or just near.
-    pub(super) fn find(&self, triangle: TriangleId, barycentric: [f32; 3]) -> Option<(usize, bool)> {
+    pub(super) fn find(
+        &self,
+        triangle: TriangleId,
+        barycentric: [f32; 3],
+    ) -> Option<(usize, bool)> {
         let from = *self.start.get(triangle.index())? as usize;
         let to = *self.start.get(triangle.index() + 1)? as usize;
         let apart = |place: &Place| -> f32 {

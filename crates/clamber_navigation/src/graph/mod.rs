@@ -101,6 +101,17 @@ impl ClimbGraph {
         Some(self.locator.find(triangle, barycentric)?.0)
     }
 
+    /// True if a patch is there as the skin is now: its own triangle is, and the plate above it is not.
+    pub fn is_there(&self, patch: usize, surface: &SkinnedSurface) -> bool {
+        self.patches.get(patch).is_some_and(|patch| {
+            let plate = patch
+                .below
+                .and_then(|plate| *self.plates.get(usize::from(plate))?);
+            surface.is_enabled(patch.triangle)
+                && plate.is_none_or(|triangle| !surface.is_enabled(triangle))
+        })
+    }
+
     /// Of each patch, whether a climber that does not tire comes there from the ground, on the creature at rest.
     pub fn reachable(&self) -> Vec<bool> {
         let reached = self.flood(self.entries.iter().map(|entry| entry.patch));
