@@ -5,7 +5,7 @@ use std::sync::Arc;
 use clamber_surface::geometry::Similarity;
 use clamber_surface::mesh::ColliderMesh;
 use clamber_surface::rig::Palette;
-use clamber_surface::surface::{SkinnedSurface, SurfaceError};
+use clamber_surface::surface::SkinnedSurface;
 
 use crate::NavigationError;
 
@@ -54,7 +54,7 @@ impl FutureSkin {
         let Some(place) = future.pose(seconds, &mut self.palette) else {
             return Ok(false);
         };
-        self.surface.place(&self.palette, place).map_err(check)?;
+        self.surface.place(&self.palette, place)?;
         Ok(true)
     }
 
@@ -67,11 +67,19 @@ impl FutureSkin {
         let Some(place) = future.pose(seconds, &mut self.palette) else {
             return Ok(false);
         };
-        self.surface.advance(&self.palette, place).map_err(check)?;
+        self.surface.advance(&self.palette, place)?;
         Ok(true)
     }
 }
 
-fn check(error: SurfaceError) -> NavigationError {
-    NavigationError::Surface(error)
+/// Refuses a time between two looks, seconds, that is not positive.
+pub(crate) fn check_step(dt: f64) -> Result<(), NavigationError> {
+    if dt > 0.0 && dt.is_finite() {
+        return Ok(());
+    }
+    Err(NavigationError::OutOfRange {
+        name: "dt",
+        range: "positive and finite",
+        found: dt,
+    })
 }

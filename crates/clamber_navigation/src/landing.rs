@@ -4,7 +4,7 @@ use clamber_climber::{Climber, ClimberInput, ClimberState, StepRules};
 use clamber_world::{Obstacle, ObstacleId};
 
 use crate::NavigationError;
-use crate::future::{Future, FutureSkin};
+use crate::future::{Future, FutureSkin, check_step};
 
 /// Where a climber that flies touches something.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,8 +37,8 @@ impl FutureSkin {
     /// `dt` is the length of a tick, seconds.
     ///
     /// # Errors
-    /// [`NavigationError::Climber`] if the climber refuses the input or `dt`, [`NavigationError::Surface`] if a pose does not
-    /// fit the skin.
+    /// [`NavigationError::Climber`] if the climber refuses the input, [`NavigationError::Surface`] if a pose does not fit the
+    /// skin, [`NavigationError::OutOfRange`] if `dt` is not positive.
     pub fn landing(
         &mut self,
         flight: &Flight<'_>,
@@ -46,6 +46,7 @@ impl FutureSkin {
         dt: f64,
         most: f64,
     ) -> Result<Option<Landing>, NavigationError> {
+        check_step(dt)?;
         let mut flies = flight.climber.clone();
         if !self.place(future, 0.0)? {
             return Ok(None);

@@ -5,7 +5,7 @@ use clamber_world::Obstacle;
 use glam::DVec3;
 
 use crate::NavigationError;
-use crate::future::{Future, FutureSkin};
+use crate::future::{Future, FutureSkin, check_step};
 
 /// Why somebody does not stay on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -113,13 +113,7 @@ impl FutureSkin {
         dt: f64,
         most: f64,
     ) -> Result<Option<RideEnd>, NavigationError> {
-        if !(dt > 0.0 && dt.is_finite()) {
-            return Err(NavigationError::OutOfRange {
-                name: "dt",
-                range: "positive and finite",
-                found: dt,
-            });
-        }
+        check_step(dt)?;
         let (state, config) = (climber.state(), climber.config());
         let Some(support) = state.support else {
             return Ok(None);
@@ -159,7 +153,7 @@ impl FutureSkin {
     /// seconds: a tenth of a second misses shakes that are over sooner.
     ///
     /// # Errors
-    /// [`NavigationError::Surface`] if a pose does not fit the skin.
+    /// [`NavigationError::Surface`] if a pose does not fit the skin, [`NavigationError::OutOfRange`] if `dt` is not positive.
     pub fn shake_ahead(
         &mut self,
         climber: &Climber,
@@ -167,6 +161,7 @@ impl FutureSkin {
         dt: f64,
         most: f64,
     ) -> Result<f64, NavigationError> {
+        check_step(dt)?;
         let (state, config) = (climber.state(), climber.config());
         let now = state.shake.length();
         let Some(support) = state.support else {

@@ -31,7 +31,7 @@ pub(crate) struct ClipSlices {
 /// A patch in a slice of a clip.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Moment {
-    /// The hardest shake, metres a second squared: never too low, unless it is beyond 63.75.
+    /// The hardest shake at the ends of ticks, metres a second squared, rounded up; 63.75 stands for all harder ones.
     pub(crate) shake: f64,
     /// By how much the shake exceeds what holding on costs no more for, on average, metres a second squared.
     pub(crate) excess: f64,
