@@ -54,6 +54,8 @@ pub(super) struct Planner {
     crossing: Crossing,
     calm: Option<f64>,
     eyes: Eyes,
+    /// The highest weak point at rest.
+    highest: Option<usize>,
     arrived: Option<f64>,
 }
 
@@ -89,6 +91,7 @@ impl Planner {
             crossing: Crossing::default(),
             calm: None,
             eyes: Eyes::new(performer),
+            highest: highest(performer),
             arrived: None,
         })
     }
@@ -148,7 +151,7 @@ impl Planner {
         if self.bot.wants_rest(&view) || !is_there {
             return self.bot.input(&view);
         }
-        if target.aim.weak_point == highest(performer) {
+        if target.aim.weak_point == self.highest {
             self.arrived.get_or_insert(seconds);
         }
         let hold = ClimberInput {
