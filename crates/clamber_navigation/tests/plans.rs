@@ -150,3 +150,50 @@ fn no_plan_is_faster_than_the_least_time() {
     }
     assert!(rests > 100, "only {rests} plans have to rest");
 }
+
+#[test]
+fn a_plan_is_found_wherever_stamina_is_enough() {
+    // Ledges to rest on, and long ways of fur between them.
+    let stairs = |u: f32, v: f32| {
+        let (up, step) = (v * 12.0, libm::floorf(v * 12.0 / 4.0));
+        let out = if up - 4.0 * step < 1.0 {
+            up - 4.0 * step
+        } else {
+            1.0
+        };
+        Vec3::new(
+            10.0 * (u - 0.5),
+            4.0 * step + (up - 4.0 * step - 1.0).max(0.0) * 4.0 / 3.0,
+            -2.0 * (step + out),
+        )
+    };
+    let (graph, _) = Body::grid([12, 48], stairs, |_, _| Fur).report(&climber());
+    let mut rng = Rng::with_seed(63);
+    let (mut found, mut refused) = (0, 0);
+    for _ in 0..20 {
+        let goal = graph.goal(&[rng.usize(0..graph.patches().len())]);
+        for _ in 0..100 {
+            let patch = rng.usize(0..graph.patches().len());
+            let start = Start {
+                patch,
+                footing: Footing::Holds,
+                seconds: 0.0,
+                stamina: rng.f64() * rng.f64(),
+            };
+            let needs = goal.least_stamina(patch, Footing::Holds);
+            let plan = graph.plan(&[start], &goal, &Forecast::still());
+            assert_eq!(
+                plan.is_some(),
+                start.stamina > needs,
+                "{} of {needs}",
+                start.stamina
+            );
+            found += u32::from(plan.is_some());
+            refused += u32::from(plan.is_none() && needs.is_finite());
+        }
+    }
+    assert!(
+        found > 500 && refused > 100,
+        "{found} found, {refused} refused"
+    );
+}

@@ -112,17 +112,16 @@ impl ClipFacts {
         Ok(())
     }
 
-    /// A patch at a time of a clip, seconds; the clip goes on from its beginning.
-    pub(crate) fn at(&self, clip: usize, seconds: f64, patch: usize) -> Moment {
-        let Some(clip) = self.clips.get(clip) else {
-            return Moment {
-                upright: 1.0,
-                ..Moment::default()
-            };
-        };
-        let slice = ((seconds / SLICE) as usize) % clip.count;
-        let at = (clip.first + slice) * self.patches + patch;
-        let [shake, excess, upright] = self.moments.get(at).copied().unwrap_or([0, 0, 254]);
+    /// The number of a slice of a clip among those of all clips; the clip goes on from its beginning.
+    pub(crate) fn slice(&self, clip: usize, slice: usize) -> Option<usize> {
+        let clip = self.clips.get(clip)?;
+        Some(clip.first + slice % clip.count)
+    }
+
+    /// A patch in a slice, of those of all clips.
+    pub(crate) fn at(&self, slice: usize, patch: usize) -> Moment {
+        let moment = self.moments.get(slice * self.patches + patch);
+        let [shake, excess, upright] = moment.copied().unwrap_or([0, 0, 254]);
         Moment {
             shake: f64::from(shake) * STEP,
             excess: f64::from(excess) * STEP,

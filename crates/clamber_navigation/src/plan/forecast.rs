@@ -1,21 +1,17 @@
 //! What the creature is expected to do.
 
 use crate::ClimbGraph;
-use crate::clips::Moment;
+use crate::clips::{Moment, SLICE};
 
 /// What the creature is expected to do: clips, one after the other, and all of them again and again.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Forecast {
-    parts: Vec<Part>,
-    seconds: f64,
+    /// Numbers of slices of clips.
+    slices: Vec<u32>,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Part {
-    clip: usize,
-    from: f64,
-    seconds: f64,
-}
+/// A clip is expected for no longer than this, seconds.
+const LONGEST: f64 = 3600.0;
 
 impl Forecast {
     /// It keeps still.
@@ -23,41 +19,32 @@ impl Forecast {
         Self::default()
     }
 
-    /// And then it plays a clip, from a time of it on and for so long, both in seconds. A clip that the graph does not know,
-    /// and a time that is not positive, change nothing.
+    /// And then it plays a clip, from a time of it on and for so long, both in seconds and rounded to halves of one; an hour at
+    /// most. A clip that the graph does not know, and a time that is not positive, change nothing.
     #[must_use]
     pub fn then(mut self, graph: &ClimbGraph, clip: &str, from: f64, seconds: f64) -> Self {
+        let in_slices = |seconds: f64| (seconds.min(LONGEST) / SLICE).round() as usize;
         if let Some(clip) = graph.clips.find(clip)
             && from >= 0.0
             && seconds > 0.0
-            && seconds.is_finite()
         {
-            self.parts.push(Part {
-                clip,
-                from,
-                seconds,
-            });
-            self.seconds += seconds;
+            let first = in_slices(from);
+            let slices = first..first + in_slices(seconds).max(1);
+            let slices = slices.filter_map(|slice| graph.clips.slice(clip, slice));
+            self.slices.extend(slices.map(|slice| slice as u32));
         }
         self
     }
 
-    /// What happens at a patch after so many seconds.
-    pub(super) fn at(&self, graph: &ClimbGraph, seconds: f64, patch: usize) -> Moment {
-        let mut left = if self.seconds > 0.0 {
-            seconds.rem_euclid(self.seconds)
-        } else {
-            0.0
-        };
-        for part in &self.parts {
-            if left < part.seconds {
-                return graph.clips.at(part.clip, part.from + left, patch);
-            }
-            left -= part.seconds;
+    /// What happens at a patch after so many slices.
+    pub(super) fn at(&self, graph: &ClimbGraph, slice: usize, patch: usize) -> Moment {
+        if self.slices.is_empty() {
+            return Moment {
+                upright: graph.patches[patch].normal.dot(graph.config.climber.up()),
+                ..Moment::default()
+            };
         }
-        Moment {
-            upright: graph.patches[patch].normal.dot(graph.config.climber.up()),
-            ..Moment::default()
-        }
+        let slice = self.slices[slice % self.slices.len()];
+        graph.clips.at(slice as usize, patch)
     }
 }

@@ -7,12 +7,27 @@ use glam::DVec3;
 
 use crate::{ClimbGraph, Footing};
 
-/// A goal: some patches, and for each place the least time to the nearest of them.
+/// A goal: some patches, and for each place what it takes at least to come to the nearest of them.
 #[derive(Clone, Debug)]
 pub struct Goal {
     patches: Vec<usize>,
-    /// Of each node, seconds; infinite where no way leads to the goal.
-    seconds: Vec<f64>,
+    /// Of each node.
+    least: Vec<Least>,
+    /// Factor on what holding on costs.
+    pub(super) strain: f64,
+    /// What holding on costs, and standing brings, a second.
+    drain: f64,
+    refill: f64,
+}
+
+/// What it takes at least to come from a node to the goal; infinite if there is no way.
+#[derive(Clone, Copy, Debug)]
+struct Least {
+    seconds: f64,
+    /// Seconds for which it holds on.
+    holds: f64,
+    /// Stamina, with rests; infinite if a whole stamina is not enough.
+    stamina: f64,
 }
 
 impl Goal {
@@ -24,14 +39,40 @@ impl Goal {
     /// The least time from a patch to the goal on a creature at rest, seconds, for a climber that does not tire; infinite if
     /// no way leads there.
     pub fn least_seconds(&self, patch: usize, footing: Footing) -> f64 {
-        let seconds = self.seconds.get(node(patch, footing));
-        seconds.copied().unwrap_or(f64::INFINITY)
+        let least = self.least.get(node(patch, footing));
+        least.map_or(f64::INFINITY, |least| least.seconds)
     }
 
-    pub(super) fn at(&self, node: usize) -> f64 {
-        self.seconds[node]
+    /// The stamina from which on a climber comes from a patch to the goal on a creature at rest, 0 to 1, if it rests wherever it
+    /// can; infinite if no stamina is enough.
+    pub fn least_stamina(&self, patch: usize, footing: Footing) -> f64 {
+        let least = self.least.get(node(patch, footing));
+        least.map_or(f64::INFINITY, |least| least.stamina)
+    }
+
+    /// No less than the time to the goal with some stamina, rests included; infinite if that is not enough.
+    ///
+    /// It holds on for some seconds at least. What that costs beyond its stamina is brought by standing.
+    pub(super) fn at(&self, node: usize, stamina: f64) -> f64 {
+        let least = &self.least[node];
+        if stamina < least.stamina - ROUNDING {
+            return f64::INFINITY;
+        }
+        let lacks = self.drain * least.holds - stamina;
+        if lacks > 0.0 && self.refill > 0.0 {
+            return least.seconds.max(least.holds + lacks / self.refill);
+        }
+        least.seconds
+    }
+
+    /// True if a node is at the goal.
+    pub(super) fn has(&self, node: usize) -> bool {
+        self.least[node].seconds == 0.0
     }
 }
+
+/// Sums of stamina in another order differ by less than this.
+const ROUNDING: f64 = 1e-9;
 
 /// A patch and a footing, as a number.
 pub(super) fn node(patch: usize, footing: Footing) -> usize {
@@ -57,6 +98,11 @@ impl ClimbGraph {
 
     /// The goal to come to one of some patches. Numbers that are none of a patch are left out.
     pub fn goal(&self, patches: &[usize]) -> Goal {
+        self.goal_strained(patches, 1.0)
+    }
+
+    /// [`ClimbGraph::goal`] for a climber whom holding on costs `strain` times as much strength.
+    pub(crate) fn goal_strained(&self, patches: &[usize], strain: f64) -> Goal {
         let mut patches: Vec<usize> = patches
             .iter()
             .copied()
@@ -64,31 +110,69 @@ impl ClimbGraph {
             .collect();
         patches.sort_unstable();
         patches.dedup();
-        let mut seconds = vec![f64::INFINITY; 2 * self.patches.len()];
+        let costs = self.config.climber.stamina;
+        let drain = costs.map_or(0.0, |costs| strain * costs.hold_drain);
+        let refill = costs.map_or(0.0, |costs| costs.refill);
+        let is_hold = |footing| f64::from(u8::from(footing == Footing::Holds));
+        let needs = |beyond: f64, footing, passed: f64| {
+            let need = beyond + drain * passed * is_hold(footing);
+            match footing {
+                _ if need > 1.0 + ROUNDING => f64::INFINITY,
+                // It rests here until it has what the way on needs.
+                Footing::Stands if refill > 0.0 => 0.0,
+                _ => need,
+            }
+        };
+        let seconds = self.backwards(&patches, |beyond, _, passed| beyond + passed);
+        let holds = self.backwards(&patches, |beyond, footing, passed| {
+            beyond + passed * is_hold(footing)
+        });
+        let stamina = self.backwards(&patches, needs);
+        let least = seconds.into_iter().zip(holds).zip(stamina);
+        let least = least.map(|((seconds, holds), stamina)| Least {
+            seconds,
+            holds,
+            stamina,
+        });
+        Goal {
+            least: least.collect(),
+            patches,
+            strain,
+            drain,
+            refill,
+        }
+    }
+
+    /// Of each node, the least that some cost comes to on a way to some patches. `cost` tells it for a way that takes a footing
+    /// for some seconds, from what it is beyond that.
+    ///
+    /// Dijkstra's search (1959), from the goal backwards: ways lead back as well as there. A cost that gets less on its way, as
+    /// what a rest leaves to be needed, has its node looked at again.
+    fn backwards(&self, patches: &[usize], cost: impl Fn(f64, Footing, f64) -> f64) -> Vec<f64> {
+        let mut least = vec![f64::INFINITY; 2 * self.patches.len()];
         let mut open = BinaryHeap::new();
-        for patch in &patches {
+        for patch in patches {
             for footing in self.footings(*patch) {
                 let node = node(*patch, footing);
-                seconds[node] = 0.0;
+                least[node] = 0.0;
                 open.push(Reverse((0u64, node)));
             }
         }
-        // Dijkstra 1959, from the goal backwards: ways lead back as well as there. Times are not negative, so that their bits
-        // have their order.
+        // Costs are not negative, so that their bits have their order.
         while let Some(Reverse((bits, at))) = open.pop() {
-            let so_far = f64::from_bits(bits);
-            if so_far > seconds[at] {
+            let beyond = f64::from_bits(bits);
+            if beyond > least[at] {
                 continue;
             }
             let (patch, footing) = of_node(at);
-            let mut offer = |to: usize, time: f64| {
-                if time < seconds[to] {
-                    seconds[to] = time;
-                    open.push(Reverse((time.to_bits(), to)));
+            let mut offer = |to: usize, cost: f64| {
+                if cost < least[to] {
+                    least[to] = cost;
+                    open.push(Reverse((cost.to_bits(), to)));
                 }
             };
             for other in self.footings(patch) {
-                offer(node(patch, other), so_far);
+                offer(node(patch, other), cost(beyond, other, 0.0));
             }
             for (beside, way, length) in self.ways.of(patch) {
                 let leads = match footing {
@@ -96,11 +180,12 @@ impl ClimbGraph {
                     Footing::Holds => way.climbs,
                 };
                 if leads {
-                    offer(node(beside, footing), so_far + length / self.speed(footing));
+                    let passed = length / self.speed(footing);
+                    offer(node(beside, footing), cost(beyond, footing, passed));
                 }
             }
         }
-        Goal { patches, seconds }
+        least
     }
 
     /// How a climber can be on a patch.

@@ -59,8 +59,12 @@ impl Plan {
     }
 }
 
-/// Stamina is compared in so many steps: of two ways to a place that are as many steps high, the faster one is kept.
+/// Stamina is compared in so many steps, the last of which is a whole one: of two ways to a place that are as many steps high,
+/// the faster one is kept.
 const LEVELS: usize = 16;
+
+/// Sums in another order differ by less than this.
+const ROUNDING: f64 = 1e-9;
 
 /// A search looks at no more ways than this.
 const MOST: usize = 2_000_000;
@@ -82,21 +86,11 @@ impl ClimbGraph {
     ///
     /// A label-setting search with a resource (Desrochers and Soumis 1988) in the order of A* (Hart, Nilsson and Raphael 1968):
     /// of two ways to a patch, one that is neither faster nor leaves more stamina is dropped. Stamina is compared in 16 steps,
-    /// so that a way that would leave less than a sixteenth more may be missed. The least time to the goal at rest never
-    /// exceeds the time that is needed, so what comes to the goal first is fastest.
+    /// so that a way that would leave less than a fifteenth more may be missed. The least time to the goal at rest, rests
+    /// included, never exceeds the time that is needed, so what comes to the goal first is fastest; and where stamina does not
+    /// last at rest it never lasts, so that such ways are not looked at.
     pub fn plan(&self, starts: &[Start], goal: &Goal, forecast: &Forecast) -> Option<Plan> {
         self.plan_around(starts, goal, forecast, &|_, _| true)
-    }
-
-    /// [`ClimbGraph::plan`] for a climber whom holding on costs `strain` times as much strength.
-    pub(crate) fn plan_strained(
-        &self,
-        starts: &[Start],
-        goal: &Goal,
-        forecast: &Forecast,
-        strain: f64,
-    ) -> Option<Plan> {
-        self.search(starts, goal, forecast, &|_, _| true, strain)
     }
 
     /// [`ClimbGraph::plan`] on those ways only that are open, from a patch to another.
@@ -107,25 +101,13 @@ impl ClimbGraph {
         forecast: &Forecast,
         is_open: &dyn Fn(usize, usize) -> bool,
     ) -> Option<Plan> {
-        self.search(starts, goal, forecast, is_open, 1.0)
-    }
-
-    fn search(
-        &self,
-        starts: &[Start],
-        goal: &Goal,
-        forecast: &Forecast,
-        is_open: &dyn Fn(usize, usize) -> bool,
-        strain: f64,
-    ) -> Option<Plan> {
         let mut search = Search {
             graph: self,
             goal,
             forecast,
             is_open,
-            strain,
             labels: Vec::new(),
-            best: vec![[f64::INFINITY; LEVELS + 1]; 2 * self.patches.len()],
+            best: vec![[f32::INFINITY; LEVELS]; 2 * self.patches.len()],
             open: BinaryHeap::new(),
         };
         for start in starts {
@@ -135,7 +117,13 @@ impl ClimbGraph {
                     .any(|footing| footing == start.footing);
             if can && start.seconds >= 0.0 {
                 let node = node(start.patch, start.footing);
-                search.offer(node, NOTHING, start.seconds, start.stamina.clamp(0.0, 1.0));
+                let tires = self.config.climber.stamina.is_some();
+                let stamina = if tires {
+                    start.stamina.clamp(0.0, 1.0)
+                } else {
+                    1.0
+                };
+                search.offer(node, NOTHING, start.seconds, stamina);
             }
         }
         search.run()
@@ -147,27 +135,30 @@ struct Search<'a> {
     goal: &'a Goal,
     forecast: &'a Forecast,
     is_open: &'a dyn Fn(usize, usize) -> bool,
-    /// Factor on what holding on costs.
-    strain: f64,
     labels: Vec<Label>,
-    /// Of each node and each level of stamina, when it is reached with that much.
-    best: Vec<[f64; LEVELS + 1]>,
+    /// Of each node and each level of stamina, when it is reached with that much or more.
+    best: Vec<[f32; LEVELS]>,
     /// Labels by when they come to the goal at the earliest.
     open: BinaryHeap<Reverse<(u64, u32)>>,
 }
 
 impl Search<'_> {
     fn offer(&mut self, node: usize, before: u32, seconds: f64, stamina: f64) {
-        let left = self.goal.at(node);
-        if !(left.is_finite() && seconds.is_finite()) || self.labels.len() >= MOST {
+        let (level, time) = (level(stamina), seconds as f32);
+        let best = self.best.get(node).map_or(0.0, |best| best[level]);
+        if best <= time || self.labels.len() >= MOST {
             return;
         }
-        let best = &mut self.best[node];
-        let level = level(stamina);
-        if best[level..].iter().any(|known| *known <= seconds) {
+        let left = self.goal.at(node, stamina);
+        if !(left.is_finite() && seconds.is_finite()) {
             return;
         }
-        best[level] = seconds;
+        for best in self.best[node][..=level].iter_mut().rev() {
+            if *best <= time {
+                break;
+            }
+            *best = time;
+        }
         let label = self.labels.len() as u32;
         self.labels.push(Label {
             node: node as u32,
@@ -183,22 +174,25 @@ impl Search<'_> {
             let label = self.labels[index as usize];
             let at = label.node as usize;
             let level = level(label.stamina);
-            let better = self.best[at][level + 1..]
-                .iter()
-                .any(|known| *known <= label.seconds);
-            if better || self.best[at][level] < label.seconds {
+            let time = label.seconds as f32;
+            let best = &self.best[at];
+            let more = best.get(level + 1).is_some_and(|more| *more <= time);
+            if more || best[level] < time {
                 continue;
             }
             let (patch, footing) = of_node(at);
-            if self.goal.at(at) == 0.0 {
+            if self.goal.has(at) {
                 return Some(self.plan(index));
             }
             let graph = self.graph;
             for other in graph.footings(patch).filter(|other| *other != footing) {
                 self.offer(node(patch, other), index, label.seconds, label.stamina);
             }
+            let Some(stay) = self.stay(patch, footing, label.seconds) else {
+                continue;
+            };
             if footing == Footing::Stands && label.stamina < 1.0 {
-                self.rest(index, patch);
+                self.rest(index, stay);
             }
             for (beside, way, length) in graph.ways.of(patch) {
                 let leads = match footing {
@@ -208,7 +202,7 @@ impl Search<'_> {
                 if !leads || !(self.is_open)(patch, beside) {
                     continue;
                 }
-                let went = self.go(patch, footing, (label.seconds, label.stamina), length);
+                let went = self.go((label.seconds, label.stamina), stay, length);
                 if let Some((seconds, stamina)) = went {
                     self.offer(node(beside, footing), index, seconds, stamina);
                 }
@@ -218,7 +212,7 @@ impl Search<'_> {
     }
 
     /// Rests until stamina is a level higher.
-    fn rest(&mut self, index: u32, patch: usize) {
+    fn rest(&mut self, index: u32, first: Stay) {
         let label = self.labels[index as usize];
         let refill = self
             .graph
@@ -226,42 +220,38 @@ impl Search<'_> {
             .climber
             .stamina
             .map_or(0.0, |stamina| stamina.refill);
-        let more = (level(label.stamina) + 1) as f64 / LEVELS as f64 - label.stamina;
         if refill <= 0.0 {
             return;
         }
-        let mut time = (label.seconds, label.stamina);
-        let wanted = (label.stamina + more).min(1.0);
+        let next_level = (level(label.stamina) + 1) as f64 / (LEVELS - 1) as f64;
+        let wanted = next_level.min(1.0);
+        let (mut time, mut known) = ((label.seconds, label.stamina), Some(first));
         for _ in 0..MOST_SLICES {
             let rests = (wanted - time.1) / refill;
-            if rests <= 1e-9 {
+            if rests <= ROUNDING {
                 self.offer(label.node as usize, index, time.0, wanted);
                 return;
             }
-            match self.pass(patch, Footing::Stands, time, rests) {
-                Some((next, _)) => time = next,
+            let stay = known.take().or_else(|| self.stay_on(first, time.0));
+            match stay.and_then(|stay| stay.pass(time, rests)) {
+                Some(next) => time = next,
                 None => return,
             }
         }
     }
 
     /// Goes so many metres; gives when it is there, and its stamina. `None` if it falls on the way.
-    fn go(
-        &self,
-        patch: usize,
-        footing: Footing,
-        mut time: (f64, f64),
-        length: f64,
-    ) -> Option<(f64, f64)> {
-        let speed = self.graph.speed(footing);
-        let mut left = length;
+    fn go(&self, mut time: (f64, f64), first: Stay, length: f64) -> Option<(f64, f64)> {
+        let speed = self.graph.speed(first.footing);
+        let (mut left, mut known) = (length, Some(first));
         for _ in 0..MOST_SLICES {
             let wanted = left / speed;
-            if wanted <= 1e-9 {
-                return Some(time);
-            }
-            let (next, moves) = self.pass(patch, footing, time, wanted)?;
-            if moves {
+            let stay = known.take().or_else(|| self.stay_on(first, time.0))?;
+            let next = stay.pass(time, wanted)?;
+            if stay.moves {
+                if wanted <= stay.lasts {
+                    return Some(next);
+                }
                 left -= speed * (next.0 - time.0);
             }
             time = next;
@@ -269,18 +259,16 @@ impl Search<'_> {
         None
     }
 
-    /// Lets time pass, at most to the end of the slice: gives the time and the stamina then, and whether it could move.
-    fn pass(
-        &self,
-        patch: usize,
-        footing: Footing,
-        (seconds, stamina): (f64, f64),
-        wanted: f64,
-    ) -> Option<((f64, f64), bool)> {
+    /// The next slice of a stay.
+    fn stay_on(&self, stay: Stay, seconds: f64) -> Option<Stay> {
+        self.stay(stay.patch, stay.footing, seconds)
+    }
+
+    /// What it is like on a patch from a time on, to the end of the slice. `None` if it falls.
+    fn stay(&self, patch: usize, footing: Footing, seconds: f64) -> Option<Stay> {
         let climber = &self.graph.config.climber;
-        let moment = self.forecast.at(self.graph, seconds, patch);
-        let whole = SLICE - seconds.rem_euclid(SLICE);
-        let whole = if whole < 1e-9 { SLICE } else { whole };
+        let slice = (seconds / SLICE + ROUNDING) as usize;
+        let moment = self.forecast.at(self.graph, slice, patch);
         let holds = match footing {
             Footing::Holds => true,
             Footing::Stands => {
@@ -291,24 +279,27 @@ impl Search<'_> {
                 falls
             }
         };
-        let moves = if footing == Footing::Holds {
-            let hangs = climber.grip.map_or(0.0, |grip| grip.hang_acceleration);
-            moment.shake <= hangs
-        } else {
-            !holds
-        };
-        let passes = if moves { wanted.min(whole) } else { whole };
-        let Some(costs) = climber.stamina else {
-            return Some(((seconds + passes, 1.0), moves));
-        };
-        let after = if holds {
-            stamina - passes * self.strain * (costs.hold_drain + costs.shake_drain * moment.excess)
-        } else if moment.excess == 0.0 {
-            (stamina + passes * costs.refill).min(1.0)
-        } else {
-            stamina
-        };
-        (after > 0.0).then_some(((seconds + passes, after), moves))
+        let hangs = climber.grip.map_or(0.0, |grip| grip.hang_acceleration);
+        let costs = climber.stamina.map_or(0.0, |costs| {
+            if holds {
+                self.goal.strain * (costs.hold_drain + costs.shake_drain * moment.excess)
+            } else if moment.excess == 0.0 {
+                -costs.refill
+            } else {
+                0.0
+            }
+        });
+        Some(Stay {
+            patch,
+            footing,
+            lasts: (slice + 1) as f64 * SLICE - seconds,
+            moves: if footing == Footing::Holds {
+                moment.shake <= hangs
+            } else {
+                !holds
+            },
+            costs,
+        })
     }
 
     fn plan(&self, last: u32) -> Plan {
@@ -333,11 +324,38 @@ impl Search<'_> {
     }
 }
 
+/// What it is like on a patch for a while.
+#[derive(Clone, Copy, Debug)]
+struct Stay {
+    patch: usize,
+    footing: Footing,
+    /// For so long, seconds.
+    lasts: f64,
+    /// True if it can move.
+    moves: bool,
+    /// Stamina that it costs a second; negative if it refills.
+    costs: f64,
+}
+
+impl Stay {
+    /// Lets time pass, as much as is wanted, or all of it if it cannot move: gives the time and the stamina then.
+    /// `None` if that is more than it has.
+    fn pass(&self, (seconds, stamina): (f64, f64), wanted: f64) -> Option<(f64, f64)> {
+        let passes = if self.moves {
+            wanted.min(self.lasts)
+        } else {
+            self.lasts
+        };
+        let after = (stamina - passes * self.costs).min(1.0);
+        (after > 0.0).then_some((seconds + passes, after))
+    }
+}
+
 /// A step takes at most so many slices.
 const MOST_SLICES: usize = 256;
 
 fn level(stamina: f64) -> usize {
-    ((stamina * LEVELS as f64 + 1e-9) as usize).min(LEVELS)
+    ((stamina * (LEVELS - 1) as f64 + ROUNDING) as usize).min(LEVELS - 1)
 }
 
 /// True if whoever stands there without holding on is thrown or knocked down.

@@ -211,7 +211,7 @@ impl View<'_> {
             .filter(|patch| *patch != NONE)
             .map(|patch| patch as usize)
             .collect();
-        let goal = self.graph.goal(&patches);
+        let goal = self.graph.goal_strained(&patches, strain);
         let starts: Vec<Start> = self
             .graph
             .entries()
@@ -225,8 +225,7 @@ impl View<'_> {
                 })
             })
             .collect();
-        self.graph
-            .plan_strained(&starts, &goal, &Forecast::still(), strain)
+        self.graph.plan(&starts, &goal, &Forecast::still())
     }
 
     /// How much longer it would have to hold on, to a tenth of a second.
@@ -315,7 +314,8 @@ impl View<'_> {
             if !self.reached.has(index) {
                 continue;
             }
-            let moments = (0..slices).map(|slice| facts.at(clip, slice as f64 * SLICE, index));
+            let numbers = (0..slices).filter_map(|slice| facts.slice(clip, slice));
+            let moments = numbers.map(|slice| facts.at(slice, index));
             let moments: Vec<_> = moments.collect();
             let hardest = moments
                 .iter()
