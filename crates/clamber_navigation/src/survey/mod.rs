@@ -20,8 +20,10 @@ pub(crate) use pieces::Piece;
 /// The ball's middle is at least so high above the ground, as a share of its radius.
 const LOWEST: f64 = 0.98;
 
-/// A ball that is no farther than this share of its radius above the skin still touches it: skin is rarely flat.
+/// A ball that is no farther than this share of its radius above the skin still touches it: skin is rarely flat. In a corner
+/// it has to be nearer, since its hands let go of one side there.
 const OFF: f64 = 0.3;
+const OFF_IN_CORNER: f64 = 0.1;
 
 /// Two sides whose normals have a lower cosine than this meet in a corner.
 const CORNER: f64 = 0.7;
@@ -140,7 +142,8 @@ impl Survey {
         let (Some(a), Some(b)) = (from.seat, to.seat) else {
             return false;
         };
-        let most = OFF * self.config.radius();
+        let bends = from.normal.dot(to.normal) < CORNER;
+        let most = if bends { OFF_IN_CORNER } else { OFF } * self.config.radius();
         let (leaves, arrives) = ((b - a).dot(from.normal), (a - b).dot(to.normal));
         let touches = leaves.abs() <= most || arrives.abs() <= most;
         // Over an edge both are below each other's plane.
