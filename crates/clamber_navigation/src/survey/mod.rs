@@ -28,6 +28,10 @@ const OFF_IN_CORNER: f64 = 0.1;
 /// Two sides whose normals have a lower cosine than this meet in a corner.
 const CORNER: f64 = 0.7;
 
+/// Between sides whose normals have a lower cosine than this no input leads: who climbs along one does not push against the
+/// other.
+const OPPOSITE: f64 = -0.87;
+
 /// What is known about the skin at rest, piece by piece.
 #[derive(Clone, Debug)]
 pub(crate) struct Survey {
@@ -142,20 +146,39 @@ impl Survey {
         let (Some(a), Some(b)) = (from.seat, to.seat) else {
             return false;
         };
-        let bends = from.normal.dot(to.normal) < CORNER;
-        let most = if bends { OFF_IN_CORNER } else { OFF } * self.config.radius();
         let (leaves, arrives) = ((b - a).dot(from.normal), (a - b).dot(to.normal));
-        let touches = leaves.abs() <= most || arrives.abs() <= most;
         // Over an edge both are below each other's plane.
-        touches || leaves < 0.0 && arrives < 0.0
+        if leaves < 0.0 && arrives < 0.0 {
+            return true;
+        }
+        let radius = self.config.radius();
+        let cosine = from.normal.dot(to.normal);
+        if cosine >= CORNER {
+            return leaves.abs().min(arrives.abs()) <= OFF * radius;
+        }
+        if cosine < OPPOSITE {
+            return false;
+        }
+        // In a corner the skin of one side goes on to where the ball touches the other one.
+        let most = OFF_IN_CORNER * radius;
+        let goes_on = |seat: DVec3, side: &Piece| {
+            let surface = self.surface.in_world();
+            surface.intersects_ray(seat, -side.normal, (1.0 + OFF) * radius)
+        };
+        leaves.abs() <= most && goes_on(b, from) || arrives.abs() <= most && goes_on(a, to)
+    }
+
+    /// True if two pieces do not face the same way.
+    pub(crate) fn bends(&self, ends: [usize; 2]) -> bool {
+        let [from, to] = ends.map(|piece| self.pieces[piece].normal);
+        from.dot(to) < CORNER
     }
 
     /// True if the skin of two pieces, which a climber gets to and from, meets in a corner that is open to it.
     pub(crate) fn is_corner(&self, ends: [usize; 2]) -> bool {
         let [from, to] = ends.map(|piece| &self.pieces[piece]);
         let between = to.point - from.point;
-        let is_bent = from.normal.dot(to.normal) < CORNER;
-        is_bent && between.dot(from.normal) - between.dot(to.normal) > 0.0
+        self.bends(ends) && between.dot(from.normal) - between.dot(to.normal) > 0.0
     }
 
     /// Distance of the seats of two pieces, metres.
