@@ -8,8 +8,8 @@ use crate::NavigationError;
 pub struct GraphConfig {
     /// The climber's body and abilities.
     pub climber: ClimberConfig,
-    /// Largest side of a patch of skin, metres, positive. Default 0.4, the radius of a climber. Smaller patches follow
-    /// narrow ways better, and cost more.
+    /// Largest side of a patch of skin, metres, positive, at most 1.4 radii of the climber. Default: its radius. Smaller
+    /// patches follow narrow ways better, and cost more.
     pub spacing: f64,
     /// Materials that can be gripped. Default: fur.
     pub grips: Vec<SurfaceKind>,
@@ -20,7 +20,7 @@ impl GraphConfig {
     pub fn new(climber: ClimberConfig) -> Self {
         Self {
             climber,
-            spacing: 0.4,
+            spacing: climber.body.radius,
             grips: vec![SurfaceKind::Fur],
         }
     }

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::view::Spot;
 use super::{BotConfig, Target, View};
 use crate::{ClimbGraph, Footing, Plan};
 
@@ -25,6 +26,8 @@ pub(super) struct Progress {
     tries_until: f64,
     /// When it was where last.
     seen: (f64, DVec3),
+    /// Where it passes on its way to its target: memory that is used again.
+    passed: Vec<DVec3>,
 }
 
 impl Progress {
@@ -38,6 +41,7 @@ impl Progress {
             moved: seconds,
             tries_until: f64::NEG_INFINITY,
             seen: (seconds, DVec3::ZERO),
+            passed: Vec::new(),
         }
     }
 
@@ -56,7 +60,7 @@ impl Progress {
         let to = (self.at + ON).min(steps.len() - 1);
         let apart = |index: &usize| {
             let step = &steps[*index];
-            let apart = view.seat(&graph.patches()[step.patch]).distance(here);
+            let apart = view.spot(&graph.patches()[step.patch]).seat.distance(here);
             if step.patch == patch {
                 apart.min(ON_IT * radius)
             } else {
@@ -152,7 +156,7 @@ impl Progress {
 
     /// Where it goes: some way ahead.
     pub(super) fn target(
-        &self,
+        &mut self,
         graph: &ClimbGraph,
         view: &View<'_>,
         config: &BotConfig,
@@ -162,14 +166,18 @@ impl Progress {
         let held = state
             .support
             .map_or(DVec3::ZERO, |support| support.normal_in_world());
-        let mut passed: Vec<DVec3> = Vec::new();
+        self.passed.clear();
         let mut target = None;
         for (index, step) in self.plan.steps.iter().enumerate().skip(self.at) {
             if index > self.at && self.is_rest(index) && index > self.rested {
                 break;
             }
             let patch = &graph.patches()[step.patch];
-            let (place, normal) = (view.seat(patch), view.normal(patch));
+            let Spot {
+                seat: place,
+                normal,
+                ..
+            } = view.spot(patch);
             let before = self.plan.steps[index.saturating_sub(1)].patch;
             let corner = graph
                 .ways
@@ -180,8 +188,8 @@ impl Progress {
                 && normal.dot(held) < CORNER
                 && (place - here).dot(held) > RISES * radius
             {
-                let place = view.corner(corner);
-                if target.is_none() || is_straight(here, place, &passed, ASIDE * radius) {
+                let place = view.corner(corner).unwrap_or(place);
+                if target.is_none() || is_straight(here, place, &self.passed, ASIDE * radius) {
                     return Some(Target {
                         place,
                         normal,
@@ -191,7 +199,7 @@ impl Progress {
                 }
                 break;
             }
-            if target.is_some() && !is_straight(here, place, &passed, ASIDE * radius) {
+            if target.is_some() && !is_straight(here, place, &self.passed, ASIDE * radius) {
                 break;
             }
             // Where it is already is no target.
@@ -209,7 +217,7 @@ impl Progress {
                 }
             }
             if index > self.at {
-                passed.push(place);
+                self.passed.push(place);
                 if place.distance(here) > config.ahead * radius {
                     break;
                 }

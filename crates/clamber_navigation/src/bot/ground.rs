@@ -10,8 +10,8 @@ use crate::{ClimbGraph, Footing};
 /// It jumps within so many radii of where it gets on, seen from above.
 const NEAR: f64 = 2.2;
 
-/// It counts as blocked if it wants to walk but moves more slowly than `KEPT`, metres a second, for `PUZZLED` seconds.
-const KEPT: f64 = 0.5;
+/// It counts as blocked if it wants to walk but moves at less than this share of its walking speed for `PUZZLED` seconds.
+const KEPT: f64 = 0.15;
 const PUZZLED: f64 = 0.3;
 
 /// It keeps its distance to so many radii.
@@ -119,7 +119,7 @@ impl Approach {
             return grip;
         };
         let patch = &graph.patches()[graph.entries()[entry].patch];
-        let toward = level(view.point(patch) - state.position);
+        let toward = level(view.spot(patch).point - state.position);
         let keeps = match view.danger {
             Danger::None => 0.0,
             _ => config.keeps_away * view.climber.config().body.radius,
@@ -131,7 +131,8 @@ impl Approach {
             0.0
         };
         let walk = toward.normalize_or_zero() * ahead;
-        if walk == DVec3::ZERO || state.velocity.length() > KEPT {
+        let kept = KEPT * view.climber.config().ground.walk_speed;
+        if walk == DVec3::ZERO || state.velocity.length() > kept {
             self.free = seconds;
         }
         let near = toward.length() < NEAR * view.climber.config().body.radius;
@@ -164,7 +165,7 @@ impl Approach {
             if !left.is_finite() || avoided {
                 return f64::INFINITY;
             }
-            let place = view.point(patch);
+            let place = view.spot(patch).point;
             let height = place.dot(climber.up()) - feet;
             if height > highest {
                 return f64::INFINITY;

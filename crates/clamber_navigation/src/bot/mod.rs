@@ -92,8 +92,9 @@ impl Bot {
             view.climber.state().position,
             view.climber.config().body.radius,
         );
-        let is_near =
-            |patch: &usize| view.seat(&self.graph.patches[*patch]).distance(here) < THERE * radius;
+        let is_near = |patch: &usize| {
+            view.spot(&self.graph.patches[*patch]).seat.distance(here) < THERE * radius
+        };
         let goal = view.goal.patches();
         goal.binary_search(&patch).is_ok() || goal.iter().any(is_near)
     }
@@ -119,7 +120,14 @@ impl Bot {
             .config()
             .stamina
             .is_some_and(|stamina| stamina.refill > 0.0);
-        self.rests = costs && view.is_on_creature() && state.stamina < least;
+        // Where no shakes are expected it goes on if its strength is enough.
+        let goes_on = !before
+            && view.forecast.is_still()
+            && self.patch_below(view).is_some_and(|patch| {
+                let needs = view.goal.least_stamina(patch, Footing::Holds);
+                state.stamina >= needs + SPARE
+            });
+        self.rests = costs && view.is_on_creature() && state.stamina < least && !goes_on;
         if self.rests != before {
             self.plan = None;
             self.planned = f64::NEG_INFINITY;
@@ -164,7 +172,9 @@ impl Bot {
     fn hang(&mut self, view: &View<'_>) -> ClimberInput {
         let seconds = view.seconds;
         let state = view.climber.state();
-        if state.shake.length() > STILL {
+        let grip = view.climber.config().grip;
+        let still = grip.map_or(0.0, |grip| STILL * grip.hang_acceleration);
+        if state.shake.length() > still {
             self.hangs = None;
         }
         let since = *self.hangs.get_or_insert(seconds);
@@ -316,8 +326,11 @@ impl Bot {
 /// Whoever is nearer to where it would be on a patch than this share of its radius is there.
 const THERE: f64 = 0.5;
 
-/// In shakes beyond this it waits before it lets go, metres a second squared.
-const STILL: f64 = 3.0;
+/// In shakes beyond this share of the one in which it can only hang it waits before it lets go.
+const STILL: f64 = 0.2;
+
+/// Stamina that it has to spare where it goes on without a rest.
+const SPARE: f64 = 0.05;
 
 /// Where it goes next.
 #[derive(Clone, Copy, Debug)]

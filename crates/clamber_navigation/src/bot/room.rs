@@ -6,8 +6,8 @@ use std::collections::BTreeMap;
 use super::View;
 use crate::graph::Patch;
 
-/// Patches within so many metres of the climber are looked at: the creature moves on before it comes to others.
-const LOOKS: f64 = 5.0;
+/// Patches within so many radii of the climber are looked at: the creature moves on before it comes to others.
+const LOOKS: f64 = 12.5;
 
 /// A ball that is deeper in skin than this share of its radius has no room.
 const DEEP: f64 = 0.6;
@@ -30,8 +30,10 @@ impl<'a> Room<'a> {
         if let Some(known) = self.known.borrow().get(&index) {
             return *known;
         }
-        let seat = self.view.seat(patch);
-        let is_far = seat.distance(self.view.climber.state().position) > LOOKS;
+        let seat = self.view.spot(patch).seat;
+        let climber = self.view.climber;
+        let looks = LOOKS * climber.config().body.radius;
+        let is_far = seat.distance(climber.state().position) > looks;
         let is_there = is_far || self.view.has_room(seat, DEEP);
         self.known.borrow_mut().insert(index, is_there);
         is_there

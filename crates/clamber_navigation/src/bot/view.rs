@@ -1,7 +1,7 @@
 use clamber_climber::Climber;
 use clamber_surface::mesh::TriangleId;
 use clamber_surface::surface::SkinnedSurface;
-use clamber_world::{MaterialPoint, Obstacle, ObstacleId};
+use clamber_world::ObstacleId;
 use glam::DVec3;
 
 use super::Target;
@@ -82,10 +82,30 @@ impl View<'_> {
         toward - target.normal * (share.clamp(0.0, 1.0) * radius)
     }
 
-    /// Where the climber's ball is when it is on a patch, as the creature is now.
-    pub(super) fn seat(&self, patch: &Patch) -> DVec3 {
-        let radius = self.climber.config().body.radius;
-        self.point(patch) + self.normal(patch) * radius
+    /// A patch, as the creature is now.
+    pub(super) fn spot(&self, patch: &Patch) -> Spot {
+        let weights = patch.barycentric;
+        self.spot_on(patch.triangle, weights).unwrap_or(Spot {
+            point: patch.point,
+            normal: DVec3::ZERO,
+            seat: patch.point,
+        })
+    }
+
+    /// A point of the skin, by a triangle and the weights of its corners.
+    fn spot_on(&self, triangle: TriangleId, weights: [f64; 3]) -> Option<Spot> {
+        let vertices = *self.surface.mesh().triangles().get(triangle.index())?;
+        let [a, b, c] = vertices.map(|vertex| self.surface.in_model().position(vertex));
+        let [a, b, c] = [a?, b?, c?].map(|corner| corner.as_dvec3());
+        let place = self.surface.world_from_model();
+        let [u, v, w] = weights;
+        let point = place.transform_point(a * u + b * v + c * w);
+        let normal = (place.rotation * (b - a).cross(c - a)).normalize_or_zero();
+        Some(Spot {
+            point,
+            normal,
+            seat: point + normal * self.climber.config().body.radius,
+        })
     }
 
     /// True if a ball at a place is no deeper in the skin than a share of its radius.
@@ -98,39 +118,22 @@ impl View<'_> {
         })
     }
 
-    /// The middle of a patch, as the creature is now.
-    pub(super) fn point(&self, patch: &Patch) -> DVec3 {
-        let weights = patch.barycentric.map(|weight| weight as f32);
-        let material = MaterialPoint::on_triangle(patch.triangle, weights);
-        let motion = self.surface.motion(&material, 1.0);
-        motion.map_or(patch.point, |motion| motion.position)
-    }
-
     /// The place in a corner, as the creature is now.
-    pub(super) fn corner(&self, corner: &Corner) -> DVec3 {
-        let weights = corner.barycentric.map(|weight| weight as f32);
-        let material = MaterialPoint::on_triangle(corner.triangle, weights);
-        let motion = self.surface.motion(&material, 1.0);
-        let point = motion.map_or(DVec3::NAN, |motion| motion.position);
-        let normals = [corner.triangle, corner.other].map(|triangle| self.normal_of(triangle));
-        point + normals[0] * corner.apart[0] + normals[1] * corner.apart[1]
+    pub(super) fn corner(&self, corner: &Corner) -> Option<DVec3> {
+        let here = self.spot_on(corner.triangle, corner.barycentric)?;
+        let there = self.spot_on(corner.other, [1.0, 0.0, 0.0])?;
+        Some(here.point + here.normal * corner.apart[0] + there.normal * corner.apart[1])
     }
+}
 
-    /// The outward normal of a patch, as the creature is now.
-    pub(super) fn normal(&self, patch: &Patch) -> DVec3 {
-        self.normal_of(patch.triangle)
-    }
-
-    fn normal_of(&self, triangle: TriangleId) -> DVec3 {
-        let vertices = self.surface.mesh().triangles().get(triangle.index());
-        let Some([a, b, c]) = vertices.map(|vertices| {
-            vertices.map(|vertex| self.surface.in_model().position(vertex).unwrap_or_default())
-        }) else {
-            return DVec3::ZERO;
-        };
-        let normal = (b - a).cross(c - a).as_dvec3();
-        (self.surface.world_from_model().rotation * normal).normalize_or_zero()
-    }
+/// A place on the skin, as the creature is now.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Spot {
+    pub(super) point: DVec3,
+    /// Outward; zero where the skin has no area.
+    pub(super) normal: DVec3,
+    /// Where the climber's ball is when it is there.
+    pub(super) seat: DVec3,
 }
 
 /// It lets go on slopes up to this share of what it can stand on.

@@ -67,12 +67,13 @@ impl Locator {
     }
 }
 
-/// Pieces farther from any patch than this belong to none, metres.
-const FAR: f64 = 2.0;
+/// Pieces farther from any patch than so many radii of the climber belong to none.
+const FAR: f64 = 5.0;
 
 fn nearest(survey: &Survey, patch_of: &[u32]) -> Vec<u32> {
     // The cells of a grid, sorted, with the pieces in them that have a patch.
-    let cell = |point: DVec3| (point / FAR).floor().as_i64vec3().to_array();
+    let far = FAR * survey.config.radius();
+    let cell = |point: DVec3| (point / far).floor().as_i64vec3().to_array();
     let mut cells: Vec<([i64; 3], usize)> = (0..patch_of.len())
         .filter(|piece| patch_of[*piece] != NONE)
         .map(|piece| (cell(survey.pieces[piece].point), piece))
@@ -85,7 +86,7 @@ fn nearest(survey: &Survey, patch_of: &[u32]) -> Vec<u32> {
         }
         let here = &survey.pieces[piece];
         let middle = cell(here.point);
-        let mut best = (FAR, NONE);
+        let mut best = (far, NONE);
         for k in 0..27 {
             let beside = [k % 3, k / 3 % 3, k / 9];
             let at: [i64; 3] = std::array::from_fn(|axis| middle[axis] + beside[axis] - 1);

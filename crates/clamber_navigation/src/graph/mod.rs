@@ -96,7 +96,8 @@ impl ClimbGraph {
         is_on_it.then_some(patch)
     }
 
-    /// The patch of a point of the skin, or the nearest one at rest; `None` if there is none within two metres.
+    /// The patch of a point of the skin, or the nearest one at rest; `None` if there is none within five radii of the
+    /// climber.
     pub fn patch_near(&self, triangle: TriangleId, barycentric: [f32; 3]) -> Option<usize> {
         Some(self.locator.find(triangle, barycentric)?.0)
     }

@@ -19,6 +19,11 @@ impl Forecast {
         Self::default()
     }
 
+    /// True if it keeps still.
+    pub fn is_still(&self) -> bool {
+        self.slices.is_empty()
+    }
+
     /// And then it plays a clip, from a time of it on and for so long, both in seconds and rounded to halves of one; an hour at
     /// most. A clip that the graph does not know, and a time that is not positive, change nothing.
     #[must_use]

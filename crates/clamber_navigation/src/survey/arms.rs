@@ -5,17 +5,17 @@ use glam::DVec3;
 
 use crate::GraphConfig;
 
-/// Hands are looked for within so many metres more than the climber's reach, at least.
-const BEYOND: f64 = 1.0;
+/// Something to grip is looked for within twice a climber's reach and so many of its radii.
+const BEYOND: f64 = 2.5;
 
-/// How far a hand has to reach from a ball, metres; infinite if there is nothing to grip within twice the climber's reach and a
-/// metre. `holds` is the skin that can be gripped.
+/// How far a hand has to reach from a ball, metres; infinite if there is nothing to grip within twice the climber's reach and
+/// some of its radii. `holds` is the skin that can be gripped.
 pub(super) fn arm(holds: &SkinnedSurface, seat: DVec3, config: &GraphConfig) -> f64 {
     if config.reach() < 0.0 {
         return f64::INFINITY;
     }
     let radius = config.radius();
-    let longest = radius + 2.0 * config.reach() + BEYOND;
+    let longest = radius + 2.0 * config.reach() + BEYOND * radius;
     let hit = holds.in_world().closest_point(seat, longest);
     hit.map_or(f64::INFINITY, |hit| (hit.distance - radius).max(0.0))
 }

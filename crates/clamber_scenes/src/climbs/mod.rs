@@ -21,9 +21,6 @@ pub use table::table;
 
 use crate::{Creature, CreatureError};
 
-/// Length of a tick, seconds.
-const TICK: f64 = 1.0 / 60.0;
-
 const GROUND: ObstacleId = ObstacleId(0);
 const CREATURE: ObstacleId = ObstacleId(1);
 
@@ -84,6 +81,14 @@ pub struct Climbed {
     pub falls: u32,
 }
 
+impl Climbed {
+    /// How many times the least time it took, from where it got on; `None` if it did not come there.
+    pub fn ratio(&self) -> Option<f64> {
+        let [on, there] = self.times;
+        Some((there? - on?) / self.least)
+    }
+}
+
 /// Climbs every model. Calls `watch` after each climb, with the number of climbs done and of all climbs.
 ///
 /// # Errors
@@ -112,9 +117,21 @@ pub fn climb_all(
 /// [`ClimbError`] if it cannot be loaded, posed, or divided into a graph.
 pub fn climb(file: &Path, options: &ClimbsOptions) -> Result<Climbed, ClimbError> {
     let creature = Creature::load(file)?;
-    let config = ClimberConfig::colossus_climber();
+    climb_by(ClimberConfig::colossus_climber(), &creature, options)
+}
+
+/// Climbs a creature with a climber of one's own.
+///
+/// # Errors
+/// [`ClimbError`] if the creature cannot be posed or divided into a graph, or the climber's numbers are out of range.
+pub fn climb_by(
+    config: ClimberConfig,
+    creature: &Creature,
+    options: &ClimbsOptions,
+) -> Result<Climbed, ClimbError> {
+    let tick_length = 1.0 / options.rate;
     let graph = creature.graph(&config, options.height, &[])?;
-    let mut scene = Scene::new(&creature, options)?;
+    let mut scene = Scene::new(creature, options)?;
     let reached = graph.reachable();
     let height = |patch: usize| graph.patches()[patch].seat.y - scene.ground;
     let best = (0..reached.len()).filter(|patch| reached[*patch]);
@@ -151,9 +168,9 @@ pub fn climb(file: &Path, options: &ClimbsOptions) -> Result<Climbed, ClimbError
     let mut bot = Bot::new(std::sync::Arc::clone(&graph), BotConfig::default());
     let mut climber = scene.climber(config, &graph, first)?;
     let forecast = Forecast::still();
-    for tick in 0..(options.seconds / TICK) as u64 {
-        let seconds = tick as f64 * TICK;
-        scene.advance(&creature, seconds, options)?;
+    for tick in 0..(options.seconds * options.rate) as u64 {
+        let seconds = tick as f64 * tick_length;
+        scene.advance(creature, seconds, options)?;
         let view = View {
             seconds,
             climber: &climber,
@@ -178,7 +195,7 @@ pub fn climb(file: &Path, options: &ClimbsOptions) -> Result<Climbed, ClimbError
         if climbed.times[1].is_some() {
             break;
         }
-        climbed.falls += scene.step(&mut climber, &input)?;
+        climbed.falls += scene.step(&mut climber, &input, tick_length)?;
     }
     Ok(climbed)
 }
@@ -217,16 +234,17 @@ impl Scene {
         let level = patch.seat * DVec3::new(1.0, 0.0, 1.0);
         // Farther and farther out, until there is room.
         let room = |away: &f64| {
-            let place = level + out * *away + DVec3::Y * (self.ground + config.body.radius + 0.05);
+            let place = level + out * *away + DVec3::Y * (self.ground + 1.1 * config.body.radius);
             let hit = self
                 .surface
                 .in_world()
                 .closest_point(place, 1.5 * config.body.radius);
             hit.is_none()
         };
-        let away = (3..60).map(f64::from).find(room).unwrap_or(60.0);
+        let away = (3..60).map(|step| 2.5 * config.body.radius * f64::from(step));
+        let away = away.clone().find(room).or(away.last()).unwrap_or(0.0);
         let feet = level + out * away + DVec3::Y * self.ground;
-        let position = feet + DVec3::Y * (config.body.radius + 0.05);
+        let position = feet + DVec3::Y * (1.1 * config.body.radius);
         Ok(Climber::new(config, position)?)
     }
 
@@ -253,12 +271,13 @@ impl Scene {
         &self,
         climber: &mut Climber,
         input: &clamber_climber::ClimberInput,
+        tick: f64,
     ) -> Result<u32, ClimbError> {
         let obstacles: [(ObstacleId, &dyn Obstacle); 2] =
             [(GROUND, &self.floor), (CREATURE, &self.surface)];
         let can_grip = |obstacle: ObstacleId, _: &clamber_world::Contact| obstacle == CREATURE;
         let rules = StepRules::gripping(&can_grip);
-        let report = climber.step_with(input, &obstacles, &rules, TICK)?;
+        let report = climber.step_with(input, &obstacles, &rules, tick)?;
         let lost = |event: &&ClimberEvent| {
             matches!(
                 event,

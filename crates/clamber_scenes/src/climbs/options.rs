@@ -25,6 +25,11 @@ pub struct ClimbsOptions {
     #[arg(value_parser = crate::battle::positive, allow_negative_numbers = true)]
     pub seconds: f64,
 
+    /// Ticks a second.
+    #[arg(long, value_name = "HERTZ", default_value_t = 60.0)]
+    #[arg(value_parser = crate::battle::positive, allow_negative_numbers = true)]
+    pub rate: f64,
+
     /// Play each model's first clip meanwhile [default: it stands at rest].
     #[arg(long)]
     pub moving: bool,

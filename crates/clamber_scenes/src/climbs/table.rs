@@ -5,8 +5,8 @@ use super::Climb;
 /// The climbs as a Markdown table.
 pub fn table(climbs: &[Climb]) -> String {
     let mut table = String::from(
-        "| model | patches | reachable | highest, m | least, s | got on, s | there, s | came up to, m | plans | falls |\n\
-         |---|---|---|---|---|---|---|---|---|---|\n",
+        "| model | patches | reachable | highest, m | least, s | got on, s | there, s | of the least | came up to, m | plans | falls |\n\
+         |---|---|---|---|---|---|---|---|---|---|---|\n",
     );
     for Climb { model, outcome } in climbs {
         // Writing to a string cannot fail.
@@ -18,13 +18,16 @@ pub fn table(climbs: &[Climb]) -> String {
                 };
                 writeln!(
                     table,
-                    "| {model} | {} | {:.1} % | {:.1} | {:.1} | {} | {} | {:.1} | {} | {} |",
+                    "| {model} | {} | {:.1} % | {:.1} | {:.1} | {} | {} | {} | {:.1} | {} | {} |",
                     climbed.patches,
                     100.0 * climbed.reachable,
                     climbed.heights[1],
                     climbed.least,
                     time(climbed.times[0]),
                     time(climbed.times[1]),
+                    climbed
+                        .ratio()
+                        .map_or_else(|| "-".to_owned(), |ratio| format!("{ratio:.2}")),
                     climbed.highest,
                     climbed.plans,
                     climbed.falls,
