@@ -1,6 +1,6 @@
 //! What do the graph of the giant, a plan on it, and a bot cost?
 //!
-//! - The graph, on one core: once.
+//! - The graph, on one core: once, and once more from its file.
 //! - Plans from random reachable patches with random stamina to each weak point, in the weather of a giant that shakes itself
 //!   every other time: the median, and the slowest one.
 //! - A bot that climbs the giant at rest: its tick beside its climber's, median and mean, plans included in the mean.
@@ -11,6 +11,7 @@
 //! Run it with `cargo bench -p clamber_benches --bench planning`; briefly with `-- --test`.
 
 use std::error::Error;
+use std::ops::ControlFlow;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::Instant;
@@ -21,7 +22,8 @@ use clamber::rig::{Palette, Playback};
 use clamber::surface::SkinnedSurface;
 use clamber::world::{Contact, HalfSpace, Obstacle, ObstacleId};
 use clamber_navigation::{
-    Bot, BotConfig, ClimbGraph, Danger, Flight, Footing, Forecast, FutureSkin, Start, View,
+    Bot, BotConfig, ClimbGraph, Danger, Flight, Footing, Forecast, FutureSkin, GraphConfig,
+    GraphOrigin, GraphSource, Start, View,
 };
 use clamber_scenes::measure::{Bound, Cells, is_brief, quantile};
 use clamber_scenes::{Creature, giant};
@@ -53,6 +55,7 @@ fn run(brief: bool) -> Result<(), Failure> {
     let seconds = start.elapsed().as_secs_f64();
     cells.push("the graph of the giant, s", seconds, Bound::Most(20.0));
     cells.value("patches", graph.patches().len() as f64);
+    cells.value("the graph from its file, s", read(&creature)?);
     plans(&creature, &graph, if brief { 10 } else { 500 }, &mut cells)?;
     climb(
         &creature,
@@ -62,6 +65,32 @@ fn run(brief: bool) -> Result<(), Failure> {
     )?;
     predictions(&creature, if brief { 3 } else { 200 }, &mut cells)?;
     cells.finish("planning", brief)
+}
+
+/// Seconds until the graph of the giant is there, if it is in a file.
+fn read(creature: &Creature) -> Result<f64, Failure> {
+    let (world_from_model, ground) = creature.standing(HEIGHT)?;
+    let source = GraphSource {
+        skeleton: &creature.skeleton,
+        mesh: &creature.collider,
+        clips: &creature.clips,
+        plates: &[],
+        weak_points: &creature.weak_points,
+        world_from_model,
+        ground,
+    };
+    let config = GraphConfig::new(ClimberConfig::colossus_climber());
+    let folder = std::env::temp_dir().join("clamber_planning");
+    let get = || ClimbGraph::cached(&folder, &source, &config, |_| ControlFlow::Continue(()));
+    get()?;
+    let start = Instant::now();
+    let cached = get()?;
+    let seconds = start.elapsed().as_secs_f64();
+    std::fs::remove_dir_all(&folder)?;
+    match cached.origin {
+        GraphOrigin::Read => Ok(seconds),
+        other => Err(format!("the graph is not read: {other:?}").into()),
+    }
 }
 
 fn plans(

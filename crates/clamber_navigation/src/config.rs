@@ -5,6 +5,7 @@ use crate::NavigationError;
 
 /// Who climbs, and how finely the skin is divided.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "cache", derive(serde::Serialize, serde::Deserialize))]
 pub struct GraphConfig {
     /// The climber's body and abilities.
     pub climber: ClimberConfig,

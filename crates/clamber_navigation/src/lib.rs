@@ -1,6 +1,8 @@
 #![doc = include_str!("../README.md")]
 
 mod bot;
+#[cfg(feature = "cache")]
+mod cache;
 mod clips;
 mod config;
 mod error;
@@ -15,6 +17,8 @@ mod source;
 mod survey;
 
 pub use bot::{Bot, BotConfig, Danger, View};
+#[cfg(feature = "cache")]
+pub use cache::{CachedGraph, GraphOrigin};
 pub use config::GraphConfig;
 pub use error::NavigationError;
 pub use future::{Future, FutureSkin};

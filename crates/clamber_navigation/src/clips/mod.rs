@@ -22,6 +22,7 @@ const COSINE: f64 = 1.0 / 127.0;
 
 /// A clip, by its slices.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "cache", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct ClipSlices {
     pub(crate) name: String,
     first: usize,
@@ -41,6 +42,7 @@ pub(crate) struct Moment {
 
 /// All clips of a creature.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "cache", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct ClipFacts {
     pub(crate) clips: Vec<ClipSlices>,
     patches: usize,
@@ -127,6 +129,17 @@ impl ClipFacts {
             excess: f64::from(excess) * STEP,
             upright: f64::from(upright) * COSINE - 1.0,
         }
+    }
+
+    /// True if it knows every slice of every clip for so many patches.
+    #[cfg(feature = "cache")]
+    pub(crate) fn is_sound(&self, patches: usize) -> bool {
+        let slices = self.clips.iter().try_fold(0usize, |first, clip| {
+            let is_next = clip.first == first && clip.count > 0;
+            first.checked_add(clip.count).filter(|_| is_next)
+        });
+        let wanted = slices.and_then(|slices| slices.checked_mul(patches));
+        self.patches == patches && wanted == Some(self.moments.len())
     }
 
     /// The clip of a name.

@@ -10,6 +10,7 @@ use crate::survey::Survey;
 /// A place where a climber gets on from the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "cache", derive(serde::Serialize, serde::Deserialize))]
 pub struct Entry {
     /// The patch.
     pub patch: usize,

@@ -8,7 +8,8 @@ use crate::survey::Survey;
 
 /// Of each triangle, its pieces and their patches.
 #[derive(Clone, Debug)]
-pub(super) struct Locator {
+#[cfg_attr(feature = "cache", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Locator {
     /// Those of triangle t are `start[t]..start[t + 1]`.
     start: Vec<u32>,
     pieces: Vec<Place>,
@@ -16,6 +17,7 @@ pub(super) struct Locator {
 
 /// A piece, and its patch, or the nearest one.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "cache", derive(serde::Serialize, serde::Deserialize))]
 struct Place {
     weights: [f32; 3],
     patch: u32,
@@ -45,6 +47,14 @@ impl Locator {
             locator.start.push(locator.pieces.len() as u32);
         }
         locator
+    }
+
+    /// True if it finds so many patches on a mesh of so many triangles.
+    #[cfg(feature = "cache")]
+    pub(crate) fn is_sound(&self, patches: usize, triangles: usize) -> bool {
+        let mut found = self.pieces.iter();
+        crate::cache::divides(&self.start, triangles, self.pieces.len())
+            && found.all(|place| (place.patch as usize) < patches)
     }
 
     /// The patch of a point, and whether the point is on it or just near.

@@ -27,6 +27,7 @@ pub(crate) use ways::{Corner, Ways};
 
 /// Where a climber can be on a creature, and how it gets from one place to another.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "cache", derive(serde::Serialize, serde::Deserialize))]
 pub struct ClimbGraph {
     pub(crate) config: GraphConfig,
     pub(crate) patches: Vec<Patch>,
@@ -34,8 +35,8 @@ pub struct ClimbGraph {
     pub(crate) entries: Vec<Entry>,
     pub(crate) clips: ClipFacts,
     /// One triangle of each plate.
-    plates: Vec<Option<TriangleId>>,
-    locator: Locator,
+    pub(crate) plates: Vec<Option<TriangleId>>,
+    pub(crate) locator: Locator,
 }
 
 impl ClimbGraph {

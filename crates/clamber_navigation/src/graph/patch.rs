@@ -11,6 +11,7 @@ use crate::survey::Survey;
 /// A place on the skin where a climber can be at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "cache", derive(serde::Serialize, serde::Deserialize))]
 pub struct Patch {
     /// The triangle in its middle.
     pub triangle: TriangleId,

@@ -8,6 +8,7 @@ use super::Patch;
 
 /// How a climber gets from one patch to another.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "cache", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Way {
     /// It walks.
     pub(crate) walks: bool,
@@ -17,6 +18,7 @@ pub(crate) struct Way {
 
 /// A place in a corner, where the climber's ball touches the skin of two patches: it gets from one to the other there.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "cache", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Corner {
     /// A point of the skin of the patch with the lower number, and a triangle of the other one's.
     pub(crate) triangle: TriangleId,
@@ -28,6 +30,7 @@ pub(crate) struct Corner {
 
 /// Of each patch, the ways that lead away from it.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "cache", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Ways {
     /// Those of patch p are `start[p]..start[p + 1]`.
     start: Vec<u32>,
@@ -85,6 +88,21 @@ impl Ways {
     pub(crate) fn corner(&self, from: usize, to: usize) -> Option<&Corner> {
         let ends = (from.min(to) as u32, from.max(to) as u32);
         self.corners.get(&ends)
+    }
+
+    /// True if they lead from and to so many patches, over a mesh of so many triangles.
+    #[cfg(feature = "cache")]
+    pub(crate) fn is_sound(&self, patches: usize, triangles: usize) -> bool {
+        let corner = |corner: &Corner| {
+            let ends = [corner.triangle, corner.other];
+            ends.iter().all(|triangle| triangle.index() < triangles)
+        };
+        crate::cache::divides(&self.start, patches, self.to.len())
+            && self.way.len() == self.to.len()
+            && self.length.len() == self.to.len()
+            && self.length.iter().all(|length| *length >= 0.0)
+            && self.to.iter().all(|to| (*to as usize) < patches)
+            && self.corners.values().all(corner)
     }
 
     /// Number of them.

@@ -101,8 +101,17 @@ impl Body {
 
     /// The graph for a climber, above ground at height 0, and its report.
     pub(crate) fn report(&self, config: &GraphConfig) -> (ClimbGraph, ClimbReport) {
+        let go_on = |_| ControlFlow::Continue(());
+        let (report, graph) = self
+            .with_source(|source| ClimbReport::new(source, config, go_on))
+            .unwrap();
+        (graph, report)
+    }
+
+    /// What a function makes of it, above ground at height 0.
+    pub(crate) fn with_source<T>(&self, make: impl FnOnce(&GraphSource<'_>) -> T) -> T {
         let (mesh, skeleton) = (self.mesh(), skeleton());
-        let source = GraphSource {
+        make(&GraphSource {
             skeleton: &skeleton,
             mesh: &mesh,
             clips: &[],
@@ -110,10 +119,7 @@ impl Body {
             weak_points: &self.weak_points,
             world_from_model: Similarity::IDENTITY,
             ground: 0.0,
-        };
-        let (report, graph) =
-            ClimbReport::new(&source, config, |_| ControlFlow::Continue(())).unwrap();
-        (graph, report)
+        })
     }
 }
 

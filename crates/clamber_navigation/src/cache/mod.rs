@@ -1,0 +1,154 @@
+//! Graphs in files: built once for each creature.
+
+mod key;
+mod sound;
+
+pub(crate) use sound::divides;
+
+use std::io;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+
+use xxhash_rust::xxh3::xxh3_128;
+
+use crate::{ClimbGraph, GraphConfig, GraphSource, NavigationError, Progress};
+
+/// A graph, and where it comes from.
+#[derive(Debug)]
+#[non_exhaustive]
+pub struct CachedGraph {
+    /// The graph.
+    pub graph: ClimbGraph,
+    /// Its file.
+    pub file: PathBuf,
+    /// Whether it was read.
+    pub origin: GraphOrigin,
+}
+
+/// Where a graph comes from.
+#[derive(Debug)]
+#[non_exhaustive]
+pub enum GraphOrigin {
+    /// It was read from its file.
+    Read,
+    /// It was built, and is in its file now.
+    Built,
+    /// It was built, and its file could not be written: next time it is built again.
+    NotSaved(io::Error),
+}
+
+impl ClimbGraph {
+    /// The graph of a creature, from a file in `folder` if there is one, or as [`ClimbGraph::build`] builds it. What it builds
+    /// it writes into the folder, which it creates, for the next time.
+    ///
+    /// The file's name is a hash of the skin, skeleton, clips, plates, place and configuration, and of this crate's version: a
+    /// creature that has changed gets a file of its own. Files that are not used any more are never removed. A file that is
+    /// damaged is built and written anew. Two programs may use a folder at the same time.
+    ///
+    /// `progress` is called only by a build. A build takes seconds, so do it on a thread of its own:
+    ///
+    /// ```no_run
+    /// use std::ops::ControlFlow;
+    /// use std::sync::Arc;
+    /// use std::sync::atomic::{AtomicBool, Ordering};
+    ///
+    /// use clamber_climber::ClimberConfig;
+    /// use clamber_navigation::{ClimbGraph, GraphConfig, GraphSource};
+    /// use clamber_surface::geometry::Similarity;
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let rig = clamber_gltf::load("colossus.glb")?;
+    /// let cancelled = Arc::new(AtomicBool::new(false));
+    /// let asked = Arc::clone(&cancelled);
+    /// let build = std::thread::spawn(move || {
+    ///     let source = GraphSource {
+    ///         skeleton: &rig.skeleton,
+    ///         mesh: &rig.collider,
+    ///         clips: &rig.clips,
+    ///         plates: &[],
+    ///         weak_points: &rig.weak_points,
+    ///         world_from_model: Similarity::IDENTITY,
+    ///         ground: 0.0,
+    ///     };
+    ///     let config = GraphConfig::new(ClimberConfig::colossus_climber());
+    ///     let folder = "cache/climbing".as_ref();
+    ///     ClimbGraph::cached(folder, &source, &config, |_| {
+    ///         if asked.load(Ordering::Relaxed) {
+    ///             return ControlFlow::Break(());
+    ///         }
+    ///         ControlFlow::Continue(())
+    ///     })
+    /// });
+    /// // The game goes on. It asks `build.is_finished()` in each frame, and sets `cancelled` if the player leaves.
+    /// cancelled.store(false, Ordering::Relaxed);
+    /// let cached = build.join().map_err(|_| "the build panicked")??;
+    /// println!("{} patches, {:?}", cached.graph.patches().len(), cached.origin);
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    /// As [`ClimbGraph::build`]. A folder that cannot be written is no error: see [`GraphOrigin::NotSaved`].
+    pub fn cached(
+        folder: &Path,
+        source: &GraphSource<'_>,
+        config: &GraphConfig,
+        progress: impl FnMut(Progress) -> ControlFlow<()>,
+    ) -> Result<CachedGraph, NavigationError> {
+        config.check()?;
+        let key = key::key(source, config);
+        let file = folder.join(format!("{key:032x}.climbgraph"));
+        let known = std::fs::read(&file).ok();
+        if let Some(graph) = known.and_then(|bytes| read(&bytes, key, source)) {
+            return Ok(CachedGraph {
+                graph,
+                file,
+                origin: GraphOrigin::Read,
+            });
+        }
+        let graph = Self::build(source, config, progress)?;
+        let origin = match save(&graph, key, folder, &file) {
+            Ok(()) => GraphOrigin::Built,
+            Err(error) => GraphOrigin::NotSaved(error),
+        };
+        Ok(CachedGraph {
+            graph,
+            file,
+            origin,
+        })
+    }
+}
+
+/// What a file begins with: a name, then the key, and a hash of the rest.
+const MAGIC: &[u8; 16] = b"clamber graph 1\n";
+
+fn save(graph: &ClimbGraph, key: u128, folder: &Path, file: &Path) -> io::Result<()> {
+    let rest = postcard::to_stdvec(graph).map_err(io::Error::other)?;
+    let mut bytes = MAGIC.to_vec();
+    bytes.extend(key.to_le_bytes());
+    bytes.extend(xxh3_128(&rest).to_le_bytes());
+    bytes.extend(rest);
+    std::fs::create_dir_all(folder)?;
+    // Under a name of its own first: nobody reads half a file.
+    let half = file.with_extension(format!("{}.part", std::process::id()));
+    let written = std::fs::write(&half, bytes).and_then(|()| std::fs::rename(&half, file));
+    if written.is_err() {
+        let _ = std::fs::remove_file(&half);
+    }
+    written
+}
+
+/// The graph of a file; `None` if the file is damaged, or of another creature.
+fn read(bytes: &[u8], key: u128, source: &GraphSource<'_>) -> Option<ClimbGraph> {
+    let rest = bytes.strip_prefix(MAGIC)?;
+    let (found, rest) = rest.split_first_chunk::<16>()?;
+    let (hash, rest) = rest.split_first_chunk::<16>()?;
+    let is_whole = *found == key.to_le_bytes() && *hash == xxh3_128(rest).to_le_bytes();
+    if !is_whole {
+        return None;
+    }
+    let graph: ClimbGraph = postcard::from_bytes(rest).ok()?;
+    graph
+        .is_sound(source.mesh.triangles().len())
+        .then_some(graph)
+}

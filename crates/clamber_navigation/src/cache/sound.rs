@@ -1,0 +1,34 @@
+//! Whether a graph from a file can be used: none of its numbers lead out of its lists.
+
+use crate::ClimbGraph;
+
+impl ClimbGraph {
+    /// True if it fits a mesh of so many triangles, and itself.
+    pub(super) fn is_sound(&self, triangles: usize) -> bool {
+        let patches = self.patches.len();
+        let is_there = |triangle: usize| triangle < triangles;
+        let parts = [
+            self.config.check().is_ok(),
+            self.patches
+                .iter()
+                .all(|patch| is_there(patch.triangle.index())),
+            self.entries.iter().all(|entry| entry.patch < patches),
+            self.plates
+                .iter()
+                .flatten()
+                .all(|triangle| is_there(triangle.index())),
+            self.ways.is_sound(patches, triangles),
+            self.locator.is_sound(patches, triangles),
+            self.clips.is_sound(patches),
+        ];
+        parts.into_iter().all(|part| part)
+    }
+}
+
+/// True if `start` divides a list of so many items into so many ranges.
+pub(crate) fn divides(start: &[u32], ranges: usize, items: usize) -> bool {
+    start.len() == ranges + 1
+        && start.first() == Some(&0)
+        && start.last().is_some_and(|last| *last as usize == items)
+        && start.is_sorted()
+}
