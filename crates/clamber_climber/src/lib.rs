@@ -28,6 +28,7 @@ pub use event::{ClimberEvent, Push, StepReport};
 pub use glam;
 pub use input::{Blow, ClimberInput};
 pub use obstacle::ClimberObstacle;
+pub use shake::Shake;
 pub use state::{ClimberMode, ClimberState, MEMORY, Support, TRANSITIONS};
 pub use step::{
     CustomMode, FlyingMemory, HangingMemory, LedgeHangingMemory, ModeContext, NextMode,

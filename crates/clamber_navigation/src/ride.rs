@@ -1,6 +1,6 @@
 //! How long somebody stays on a creature, without doing anything.
 
-use clamber_climber::{Climber, ClimberConfig, ClimberMode};
+use clamber_climber::{Climber, ClimberConfig, ClimberMode, Shake};
 use clamber_world::Obstacle;
 use glam::DVec3;
 
@@ -31,16 +31,12 @@ pub struct RideEnd {
     pub cause: ThrowOff,
 }
 
-/// A slope that is this much steeper than those that can be stood on is lost only then, radians: see
-/// `clamber_climber::ClimberMode::Standing`.
-const HYSTERESIS: f64 = 0.035;
-
 /// What a rider feels, from tick to tick.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Rider {
     pub(crate) holds: bool,
     pub(crate) stamina: f64,
-    pub(crate) shake: DVec3,
+    pub(crate) shake: Shake,
     /// Velocity of its support.
     pub(crate) velocity: Option<DVec3>,
 }
@@ -63,27 +59,26 @@ impl Rider {
             .velocity
             .map_or(DVec3::ZERO, |before| velocity - before);
         self.velocity = Some(velocity);
-        let kept = libm::exp(-dt / config.shake_time);
-        self.shake = before * kept + change / dt * (1.0 - kept);
+        self.shake.step(change, config.shake_time, dt);
+        let shake = self.shake.acceleration;
         if !self.holds {
-            let away = -self.shake.dot(normal) + config.gravity.dot(normal);
+            let away = -shake.dot(normal) + config.gravity.dot(normal);
             if away > config.ground.throw_acceleration {
                 return Some(ThrowOff::Thrown);
             }
             let knock = config
                 .tumble
                 .map_or(f64::INFINITY, |tumble| tumble.knock_acceleration);
-            if self.shake.length() > knock {
+            if shake.length() > knock {
                 return Some(ThrowOff::Knocked);
             }
             let slope = libm::acos(normal.dot(config.up()).clamp(-1.0, 1.0));
-            if slope > config.ground.max_slope + HYSTERESIS {
+            if slope > config.ground.stays_on_slope() {
                 return Some(ThrowOff::Slipped);
             }
         }
         let stamina = config.stamina?;
-        let above = |shake: DVec3| (shake.length() - stamina.shake_threshold).max(0.0);
-        let beyond = 0.5 * dt * (above(before) + above(self.shake));
+        let beyond = self.shake.excess(&before, stamina.shake_threshold, dt);
         if self.holds {
             self.stamina -= stamina.hold_drain * dt + stamina.shake_drain * beyond;
             if self.stamina <= 0.0 {
@@ -121,7 +116,9 @@ impl FutureSkin {
         let mut rider = Rider {
             holds: state.mode != ClimberMode::Standing,
             stamina: state.stamina,
-            shake: state.shake,
+            shake: Shake {
+                acceleration: state.shake,
+            },
             velocity: state.support_velocity,
         };
         let mut attachment = support.attachment;
@@ -170,7 +167,9 @@ impl FutureSkin {
         let mut rider = Rider {
             holds: true,
             stamina: 1.0,
-            shake: state.shake,
+            shake: Shake {
+                acceleration: state.shake,
+            },
             velocity: state.support_velocity,
         };
         let mut hardest = now;
@@ -191,7 +190,7 @@ impl FutureSkin {
                     support.normal_in_world(),
                     dt,
                 );
-                hardest = hardest.max(rider.shake.length());
+                hardest = hardest.max(rider.shake.acceleration.length());
             }
         }
         Ok(hardest)

@@ -44,7 +44,16 @@ pub struct GroundConfig {
     pub throw_acceleration: f64,
 }
 
+/// A standing climber stays on slopes up to this many radians steeper than those on which it lands: 2 degrees, more
+/// than the wobble of a breathing animal, so that the mode does not flicker.
+const SLOPE_HYSTERESIS: f64 = 0.035;
+
 impl GroundConfig {
+    /// Steepest slope that a climber which stands already stays on, radians from level.
+    pub fn stays_on_slope(&self) -> f64 {
+        self.max_slope + SLOPE_HYSTERESIS
+    }
+
     pub(super) const DEFAULT: Self = Self {
         max_slope: 50.0 * DEGREE,
         walk_speed: 3.0,

@@ -12,7 +12,7 @@ fn held(velocity: impl Fn(f64) -> DVec3, threshold: f64, budget: f64, hz: f64) -
         let at = |tick: usize| velocity(tick as f64 / hz);
         let before = shake;
         shake.step(at(tick + 1) - at(tick), TIME_CONSTANT, 1.0 / hz);
-        let more = excess(&before, &shake, threshold, 1.0 / hz);
+        let more = shake.excess(&before, threshold, 1.0 / hz);
         peak = peak.max(shake.acceleration.length());
         if spent + more >= budget {
             return ((tick as f64 + (budget - spent) / more) / hz, peak);
@@ -151,8 +151,8 @@ fn the_excess_is_the_mean_over_both_ends_of_the_tick() {
     ];
     for (threshold, expected) in cases {
         for found in [
-            excess(&low, &high, threshold, 0.5),
-            excess(&high, &low, threshold, 0.5),
+            high.excess(&low, threshold, 0.5),
+            low.excess(&high, threshold, 0.5),
         ] {
             assert!(
                 (found - expected).abs() < 1e-15,
@@ -179,6 +179,6 @@ fn invalid_arguments_change_nothing() {
     }
     shake.step(DVec3::X, 0.0, 0.5);
     assert_eq!(shake.acceleration, DVec3::X * 2.0);
-    assert_eq!(excess(&before, &shake, f64::NAN, 0.1), 0.0);
-    assert_eq!(excess(&before, &shake, 0.0, f64::NAN), 0.0);
+    assert_eq!(shake.excess(&before, f64::NAN, 0.1), 0.0);
+    assert_eq!(shake.excess(&before, 0.0, f64::NAN), 0.0);
 }

@@ -4,7 +4,7 @@ use clamber_world::{ObstacleId, PointMotion};
 use glam::DVec3;
 
 use super::{NextMode, Tick};
-use crate::shake::{Shake, excess};
+use crate::Shake;
 use crate::{ClimberEvent, ClimberMode};
 
 /// How long it grips nothing after its stamina was used up, seconds.
@@ -112,8 +112,9 @@ impl Tick<'_> {
             return;
         };
         let dt = self.dt();
-        let shakes = [shake_before, self.state.shake].map(|acceleration| Shake { acceleration });
-        let beyond = excess(&shakes[0], &shakes[1], stamina.shake_threshold, dt);
+        let [before, after] =
+            [shake_before, self.state.shake].map(|acceleration| Shake { acceleration });
+        let beyond = after.excess(&before, stamina.shake_threshold, dt);
         if self.state.mode.is_holding() {
             let spent = stamina.hold_drain * dt + stamina.shake_drain * beyond;
             self.state.stamina = (self.state.stamina - spent).max(0.0);

@@ -3,12 +3,12 @@
 use clamber_mover::{Ground, GroundProbe, Touch};
 use glam::DVec3;
 
-use super::{SLOPE_HYSTERESIS, Tick};
+use super::Tick;
 
 impl Tick<'_> {
     /// The steepest slope that a standing climber stays on, radians.
     pub(super) fn standing_slope(&self) -> f64 {
-        self.config.ground.max_slope + SLOPE_HYSTERESIS
+        self.config.ground.stays_on_slope()
     }
 
     /// A probe for ground up to `reach` below the feet, for the body at its current height.

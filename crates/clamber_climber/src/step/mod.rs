@@ -36,10 +36,6 @@ use carrying::Carried;
 /// Most changes of mode in a tick. Further changes follow in the next tick.
 const MOST_CHANGES: u32 = 4;
 
-/// A standing climber stays on slopes up to this many radians steeper than those on which it lands: 2 degrees, more
-/// than the wobble of a breathing animal, so that the mode does not flicker.
-const SLOPE_HYSTERESIS: f64 = 0.035;
-
 /// Least share of a direction that is level, for a climber to face it. Less is rounding: the normal of level skin, for example.
 const LEVEL: f64 = 1e-6;
 

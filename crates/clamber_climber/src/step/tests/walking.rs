@@ -5,7 +5,6 @@ use clamber_surface::mesh::TriangleId;
 use glam::{DAffine3, DVec3};
 
 use super::*;
-use crate::step::SLOPE_HYSTERESIS;
 
 #[test]
 fn walks_at_its_speed_along_the_surface() {
@@ -73,7 +72,7 @@ fn ground_that_ends_or_is_removed_is_left() {
     );
     // It rolled around the edge, down to the steepest slope that it stands on, before it left the ground.
     let speed = climber.state().velocity.x;
-    let least = 3.0 * libm::cos(ClimberConfig::walker().ground.max_slope + SLOPE_HYSTERESIS);
+    let least = 3.0 * libm::cos(ClimberConfig::walker().ground.stays_on_slope());
     assert!((least..=3.0).contains(&speed), "keeps its speed: {speed}");
 
     let mut climber = landed(1.0, 0.5, 0.0, &ground);
