@@ -13,6 +13,8 @@ mod effects;
 mod film;
 #[cfg(all(feature = "render", feature = "gltf", feature = "rapier"))]
 mod overlays;
+#[cfg(all(feature = "render", feature = "gltf", feature = "rapier"))]
+mod plans;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -162,6 +164,10 @@ enum OverlayKind {
     Rocks,
     /// The soles of the creature's feet: blue where they stand, orange in the air.
     Feet,
+    /// The way that the bot follows, with a yellow dot for each rest and magenta ones for its goal.
+    Plan,
+    /// The skin by how long it takes from there to the bot's goal: from red to blue, which is half a minute and more.
+    Ways,
     /// Text: the creature's state, moods and senses.
     Brain,
     /// Text: time, the climber's action, stamina and health, shake, speeds, share of vertices skinned, rocks.

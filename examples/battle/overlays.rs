@@ -14,8 +14,8 @@ use clamber_scenes::battle::{Battle, CREATURE, TICK};
 use clamber_scenes::part_bounds::{JointMaps, PartBounds};
 use glam::{DVec3, Vec3};
 
-use crate::OverlayKind;
 use crate::colors::{MAGENTA, ORANGE, SKY_BLUE, VERMILION, WHITE, YELLOW, opaque, seen_through};
+use crate::{OverlayKind, plans};
 
 /// Number of points of the climber's path that are drawn.
 const WAY: usize = 90;
@@ -114,6 +114,8 @@ impl Overlays {
                 OverlayKind::Sweeps => self.sweeps(&mut over, battle, eye),
                 OverlayKind::Rocks => rocks(&mut over, battle),
                 OverlayKind::Feet => feet(&mut over, battle),
+                OverlayKind::Plan => plans::plan(&mut over, battle, eye, self.nearer),
+                OverlayKind::Ways => plans::ways(&mut over, battle, eye, self.nearer),
                 // Text is written after the picture is drawn.
                 OverlayKind::State | OverlayKind::Brain => {}
             }
@@ -217,7 +219,7 @@ pub(crate) fn nearer(place: DVec3, eye: DVec3, by: f64) -> DVec3 {
 }
 
 /// Draws a dot that has about the same size at any distance.
-fn dot(over: &mut Overlay, at: DVec3, eye: DVec3, size: f64, color: [f32; 3]) {
+pub(crate) fn dot(over: &mut Overlay, at: DVec3, eye: DVec3, size: f64, color: [f32; 3]) {
     let radius = (at - eye).length() * DOT * size;
     for side in 0..8u32 {
         let sign = |bit: u32| {
@@ -360,7 +362,7 @@ fn clusters(over: &mut Overlay, battle: &Battle<'_>, eye: DVec3, by: f64) {
 }
 
 /// The corners of a triangle in world space.
-fn posed(surface: &SkinnedSurface, triangle: TriangleId) -> Option<[DVec3; 3]> {
+pub(crate) fn posed(surface: &SkinnedSurface, triangle: TriangleId) -> Option<[DVec3; 3]> {
     let corners = surface.mesh().triangles().get(triangle.index())?;
     let [a, b, c] = corners.map(|vertex| surface.in_model().position(vertex));
     let root = surface.world_from_model();

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{self, BufWriter};
 use std::path::Path;
 
-use clamber_navigation::{ClimbGraph, ClimbReport, Footing};
+use clamber_navigation::{ClimbGraph, ClimbReport};
 use clamber_surface::mesh::{ColliderMesh, TriangleId};
 use glam::{DVec2, DVec3};
 
@@ -93,11 +93,7 @@ pub(super) fn draw(
     let entries: Vec<usize> = graph.entries().iter().map(|entry| entry.patch).collect();
     let ground = graph.goal(&entries);
     let reachable = graph.reachable();
-    let seconds = |patch: usize| {
-        let [stands, holds] =
-            [Footing::Stands, Footing::Holds].map(|footing| ground.least_seconds(patch, footing));
-        stands.min(holds)
-    };
+    let seconds = |patch: usize| ground.least_seconds_from(patch);
     let longest = (0..reachable.len())
         .filter(|patch| reachable[*patch])
         .map(seconds)

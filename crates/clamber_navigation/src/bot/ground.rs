@@ -4,8 +4,8 @@ use clamber_climber::{ClimberInput, ClimberMode};
 use glam::DVec3;
 
 use super::{BotConfig, Danger, View};
+use crate::ClimbGraph;
 use crate::graph::highest_entry;
-use crate::{ClimbGraph, Footing};
 
 /// It jumps within so many radii of where it gets on, seen from above.
 const NEAR: f64 = 2.2;
@@ -158,9 +158,7 @@ impl Approach {
         let cost = |entry: usize| {
             let at = graph.entries()[entry];
             let patch = &graph.patches()[at.patch];
-            let footings = [Footing::Stands, Footing::Holds];
-            let left = footings.map(|footing| view.goal.least_seconds(at.patch, footing));
-            let left = left[0].min(left[1]);
+            let left = view.goal.least_seconds_from(at.patch);
             let avoided = self.avoided.iter().any(|(other, _)| *other == entry);
             if !left.is_finite() || avoided {
                 return f64::INFINITY;

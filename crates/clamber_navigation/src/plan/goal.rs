@@ -43,6 +43,13 @@ impl Goal {
         least.map_or(f64::INFINITY, |least| least.seconds)
     }
 
+    /// [`Goal::least_seconds`] from a patch, with the footing from which it is less.
+    pub fn least_seconds_from(&self, patch: usize) -> f64 {
+        let footings = [Footing::Stands, Footing::Holds];
+        let [stands, holds] = footings.map(|footing| self.least_seconds(patch, footing));
+        stands.min(holds)
+    }
+
     /// The stamina from which on a climber comes from a patch to the goal on a creature at rest, 0 to 1, if it rests wherever it
     /// can; infinite if no stamina is enough.
     pub fn least_stamina(&self, patch: usize, footing: Footing) -> f64 {

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use clamber_climber::{ClimberInput, ClimberMode};
-use clamber_navigation::{Bot, BotConfig, ClimbGraph, Danger, Footing, Forecast, Goal, View};
+use clamber_navigation::{Bot, BotConfig, ClimbGraph, Danger, Forecast, Goal, View};
 use glam::DVec3;
 
 use super::crossing::Crossing;
@@ -68,7 +68,7 @@ impl Planner {
         let targets = targets(performer, &graph);
         let leads = |target: &Target| {
             let mut entries = graph.entries().iter();
-            entries.any(|entry| least(&target.goal, entry.patch).is_finite())
+            entries.any(|entry| target.goal.least_seconds_from(entry.patch).is_finite())
         };
         let mut targets: Vec<Target> = targets.into_iter().filter(leads).collect();
         if targets.is_empty() {
@@ -99,6 +99,11 @@ impl Planner {
     /// When it first came to the highest weak point, seconds; `None` if it has not.
     pub(super) fn arrived(&self) -> Option<f64> {
         self.arrived
+    }
+
+    /// The bot, and its goal.
+    pub(super) fn bot(&self) -> (&Bot, &Goal) {
+        (&self.bot, &self.targets[self.at].goal)
     }
 
     /// It is put back to the start.
@@ -199,7 +204,7 @@ impl Planner {
         });
         let left = |target: &usize| {
             let goal = &self.targets[*target].goal;
-            here.map_or(0.0, |here| least(goal, here))
+            here.map_or(0.0, |here| goal.least_seconds_from(here))
         };
         let nearest = open
             .iter()
@@ -246,12 +251,6 @@ impl Planner {
         let open: Vec<usize> = next.iter().copied().filter(is_open).collect();
         if open.is_empty() { next } else { open }
     }
-}
-
-fn least(goal: &Goal, patch: usize) -> f64 {
-    let footings = [Footing::Stands, Footing::Holds];
-    let [stands, holds] = footings.map(|footing| goal.least_seconds(patch, footing));
-    stands.min(holds)
 }
 
 /// The highest weak point at rest.

@@ -4,6 +4,7 @@ use clamber_climber::{
     Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberState, GripConfig, StepReport,
 };
 use clamber_fight::{Arena, ArenaEvent, CreatureId, creature_obstacle};
+use clamber_navigation::{Bot, Goal};
 use clamber_surface::rig::Palette;
 use clamber_surface::surface::{Diagnostics, SkinnedSurface};
 use clamber_world::rapier3d::dynamics::RigidBodySet;
@@ -414,6 +415,11 @@ impl<'a> Battle<'a> {
     /// When the climber first came to the creature's top, seconds; `None` if it has not, or in a ride.
     pub fn arrived(&self) -> Option<f64> {
         self.pilot.as_ref().and_then(|pilot| pilot.arrived())
+    }
+
+    /// The bot that drives the climber, and its goal; `None` in a ride.
+    pub fn bot(&self) -> Option<(&Bot, &Goal)> {
+        self.pilot.as_ref().map(|pilot| pilot.bot())
     }
 
     /// How often the climber was dropped on the creature; 0 in a climb.

@@ -6,9 +6,7 @@ mod table;
 use std::path::Path;
 
 use clamber_climber::{Climber, ClimberConfig, ClimberEvent, StepRules};
-use clamber_navigation::{
-    Bot, BotConfig, ClimbGraph, Danger, Footing, Forecast, NavigationError, View,
-};
+use clamber_navigation::{Bot, BotConfig, ClimbGraph, Danger, Forecast, NavigationError, View};
 use clamber_surface::geometry::Similarity;
 use clamber_surface::rig::Playback;
 use clamber_surface::surface::{SkinnedSurface, SurfaceError};
@@ -156,11 +154,7 @@ pub fn climb_by(
         return Ok(climbed);
     };
     let goal = graph.goal(&[best]);
-    let least = |patch: usize| {
-        let footings = [Footing::Stands, Footing::Holds];
-        let [stands, holds] = footings.map(|footing| goal.least_seconds(patch, footing));
-        stands.min(holds)
-    };
+    let least = |patch: usize| goal.least_seconds_from(patch);
     let entries = graph.entries().iter().map(|entry| entry.patch);
     let first = entries.min_by(|a, b| least(*a).total_cmp(&least(*b)));
     let first = first.unwrap_or(best);
