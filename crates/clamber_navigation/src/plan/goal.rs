@@ -57,9 +57,19 @@ impl Goal {
         least.map_or(f64::INFINITY, |least| least.stamina)
     }
 
-    /// No less than the time to the goal with some stamina, rests included; infinite if that is not enough.
+    /// The least time from a patch to the goal on a creature at rest for a climber with some stamina, 0 to 1, rests included,
+    /// seconds; infinite if that stamina is not enough. No plan is faster.
     ///
-    /// It holds on for some seconds at least. What that costs beyond its stamina is brought by standing.
+    /// It holds on for some seconds at least, on whichever way that is. What that costs beyond its stamina is brought by
+    /// standing, for so much longer.
+    pub fn least_seconds_with(&self, patch: usize, footing: Footing, stamina: f64) -> f64 {
+        let node = node(patch, footing);
+        if node < self.least.len() {
+            return self.at(node, stamina);
+        }
+        f64::INFINITY
+    }
+
     pub(super) fn at(&self, node: usize, stamina: f64) -> f64 {
         let least = &self.least[node];
         if stamina < least.stamina - ROUNDING {
