@@ -55,8 +55,11 @@ fn landings_are_foreseen_on_moving_skin() {
         let mut future = pose;
         for wrong in [0.0, -1.0, f64::NAN, f64::INFINITY] {
             assert!(skin.landing(&flight, &mut future, wrong, 6.0).is_err());
-            assert!(skin.shake_ahead(&climber, &mut future, wrong, 6.0).is_err());
-            assert!(skin.ride(&climber, &mut future, wrong, 6.0).is_err());
+            assert!(
+                skin.shake_ahead(&climber, GIANT, &mut future, wrong, 6.0)
+                    .is_err()
+            );
+            assert!(skin.ride(&climber, GIANT, &mut future, wrong, 6.0).is_err());
         }
         let said = skin.landing(&flight, &mut future, TICK, 6.0).unwrap();
         // As if it kept still.

@@ -271,7 +271,7 @@ fn predictions(creature: &Creature, count: usize, cells: &mut Cells) -> Result<(
     times.clear();
     for _ in 0..count {
         let begin = Instant::now();
-        skin.ride(&climber, &mut future, TICK, 10.0)?;
+        skin.ride(&climber, GIANT, &mut future, TICK, 10.0)?;
         times.push(begin.elapsed().as_secs_f64() * 1e6);
     }
     cells.value("a ride of 10 s, median, us", quantile(&mut times, 0.5));

@@ -1,7 +1,7 @@
 //! How long somebody stays on a creature, without doing anything.
 
-use clamber_climber::{Climber, ClimberConfig, ClimberMode, Shake};
-use clamber_world::Obstacle;
+use clamber_climber::{Climber, ClimberConfig, ClimberMode, Shake, Support};
+use clamber_world::{Obstacle, ObstacleId};
 use glam::DVec3;
 
 use crate::NavigationError;
@@ -95,7 +95,7 @@ impl Rider {
 impl FutureSkin {
     /// How long a climber that stands on this creature, or holds on to it, stays there if it does nothing else: it holds its grip
     /// if it does so now. `None` if it stays for `most` seconds, or for as long as the future is known, and if it is not on the
-    /// creature. `dt` is the length of a tick, seconds.
+    /// creature, whose obstacle id is `creature`. `dt` is the length of a tick, seconds; a million ticks at most are looked at.
     ///
     /// Three vertices are skinned a tick. What pushes the climber off, such as an arm that comes over it, is not looked for.
     ///
@@ -104,13 +104,15 @@ impl FutureSkin {
     pub fn ride(
         &mut self,
         climber: &Climber,
+        creature: ObstacleId,
         future: &mut dyn Future,
         dt: f64,
         most: f64,
     ) -> Result<Option<RideEnd>, NavigationError> {
         check_step(dt)?;
         let (state, config) = (climber.state(), climber.config());
-        let Some(support) = state.support else {
+        let on_it = |support: &Support| support.attachment.obstacle == creature;
+        let Some(support) = state.support.filter(on_it) else {
             return Ok(None);
         };
         let mut rider = Rider {
@@ -125,7 +127,7 @@ impl FutureSkin {
         if !self.place(future, 0.0)? {
             return Ok(None);
         }
-        let ticks = (most / dt).min(1e6) as u64;
+        let ticks = (most / dt).clamp(0.0, 1e6) as u64;
         for tick in 1..=ticks {
             let seconds = tick as f64 * dt;
             if !self.advance(future, seconds)? {
@@ -146,7 +148,7 @@ impl FutureSkin {
     }
 
     /// The hardest shake that a climber on this creature is about to feel where it is, within `most` seconds, in metres a second
-    /// squared; what it feels now if it is not on the creature, or the future is not known. `dt` is the time between two looks,
+    /// squared; what it feels now if it is not on the creature, whose obstacle id is `creature`, or the future is not known. `dt` is the time between two looks,
     /// seconds: a tenth of a second misses shakes that are over sooner.
     ///
     /// # Errors
@@ -154,6 +156,7 @@ impl FutureSkin {
     pub fn shake_ahead(
         &mut self,
         climber: &Climber,
+        creature: ObstacleId,
         future: &mut dyn Future,
         dt: f64,
         most: f64,
@@ -161,7 +164,8 @@ impl FutureSkin {
         check_step(dt)?;
         let (state, config) = (climber.state(), climber.config());
         let now = state.shake.length();
-        let Some(support) = state.support else {
+        let on_it = |support: &Support| support.attachment.obstacle == creature;
+        let Some(support) = state.support.filter(on_it) else {
             return Ok(now);
         };
         let mut rider = Rider {

@@ -151,3 +151,19 @@ fn a_cancelled_build_leaves_no_file() {
     assert!(matches!(cancelled, Err(NavigationError::Cancelled)));
     assert!(!folder.exists());
 }
+
+#[test]
+fn many_may_use_a_folder_at_the_same_time() {
+    let folder = folder("shared");
+    let told: Vec<String> = std::thread::scope(|scope| {
+        let all: Vec<_> = (0..4)
+            .map(|_| scope.spawn(|| told(&cached(&folder, &body(), &climber()).graph)))
+            .collect();
+        all.into_iter().map(|one| one.join().unwrap()).collect()
+    });
+    assert!(told.iter().all(|other| *other == told[0]));
+    // No half a file is left.
+    assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 1);
+    let again = cached(&folder, &body(), &climber());
+    assert!(matches!(again.origin, GraphOrigin::Read));
+}

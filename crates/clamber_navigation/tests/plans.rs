@@ -203,3 +203,70 @@ fn a_plan_is_found_wherever_stamina_is_enough() {
         "{found} found, {refused} refused"
     );
 }
+
+/// Level ground, a metre above the floor, of skin that cannot be gripped.
+fn table() -> Body {
+    let place = |u: f32, v: f32| Vec3::new(6.0 * (u - 0.5), 1.0, -6.0 * (v - 0.5));
+    Body::grid([12, 12], place, |_, _| Skin)
+}
+
+fn start(patch: usize, stamina: f64) -> Start {
+    Start {
+        patch,
+        footing: Footing::Stands,
+        seconds: 0.0,
+        stamina,
+    }
+}
+
+#[test]
+fn whoever_has_no_strength_walks() {
+    let mut config = climber();
+    config.climber.stamina.as_mut().unwrap().refill = 0.0;
+    let (graph, _) = table().report(&config);
+    let last = graph.patches().len() - 1;
+    let goal = graph.goal(&[last]);
+    assert_eq!(goal.least_stamina(0, Footing::Stands), 0.0);
+    let plan = graph.plan(&[start(0, 0.0)], &goal, &Forecast::still());
+    assert!(plan.unwrap().seconds() > 1.0);
+}
+
+#[test]
+fn whoever_cannot_walk_needs_no_strength_in_vain() {
+    let mut config = climber();
+    config.climber.ground.walk_speed = 0.0;
+    let (graph, _) = table().report(&config);
+    let goal = graph.goal(&[0]);
+    let last = graph.patches().len() - 1;
+    assert_eq!(goal.least_seconds(last, Footing::Stands), f64::INFINITY);
+    assert_eq!(goal.least_stamina(last, Footing::Stands), f64::INFINITY);
+    assert_eq!(
+        graph.plan(&[start(last, 1.0)], &goal, &Forecast::still()),
+        None
+    );
+}
+
+#[test]
+fn starts_and_goals_that_make_no_sense_lead_nowhere() {
+    let (graph, _) = table().report(&climber());
+    let (larger, _) = ball(Vec3::Y * 3.0, 3.0, |_, _| Fur).report(&climber());
+    let (goal, still) = (graph.goal(&[0]), Forecast::still());
+    for odd in [1e7, 1e20, 1e300, -1.0, f64::NAN, f64::INFINITY] {
+        let seconds = Start {
+            seconds: odd,
+            ..start(1, 1.0)
+        };
+        assert_eq!(graph.plan(&[seconds], &goal, &still), None, "{odd} s");
+    }
+    assert_eq!(graph.plan(&[start(1, f64::NAN)], &goal, &still), None);
+    assert_eq!(graph.plan(&[start(usize::MAX, 1.0)], &goal, &still), None);
+    assert_eq!(larger.plan(&[start(1, 1.0)], &goal, &still), None);
+    assert_eq!(
+        goal.least_seconds(usize::MAX, Footing::Holds),
+        f64::INFINITY
+    );
+    assert_eq!(
+        graph.plan(&[start(1, 1.0)], &graph.goal(&[usize::MAX]), &still),
+        None
+    );
+}

@@ -21,7 +21,7 @@ const SWAY: f64 = 0.5;
 const BETWEEN_JUMPS: f64 = 1.2;
 
 /// Jumps at an entry before it tries another one, and for how long it then avoids it, seconds.
-const TRIES: u32 = 2;
+const TRIES: u32 = 3;
 const AVOIDS: f64 = 20.0;
 
 /// It chooses an entry anew every so many seconds.
@@ -140,7 +140,7 @@ impl Approach {
         let jump = state.mode == ClimberMode::Standing && wants && self.jumps(seconds);
         if jump {
             self.tries += 1;
-            if self.tries > TRIES {
+            if self.tries >= TRIES {
                 self.gives_up(seconds);
             }
         }

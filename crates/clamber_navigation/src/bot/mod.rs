@@ -14,7 +14,7 @@ pub use config::BotConfig;
 pub use view::{Danger, View};
 
 use crate::report::LEVEL;
-use crate::{ClimbGraph, Footing, Goal, Plan, Start};
+use crate::{ClimbGraph, Footing, Forecast, Goal, Plan, Start};
 use follow::Progress;
 use ground::Approach;
 use room::Room;
@@ -93,7 +93,8 @@ impl Bot {
             view.climber.config().body.radius,
         );
         let is_near = |patch: &usize| {
-            view.spot(&self.graph.patches[*patch]).seat.distance(here) < THERE * radius
+            let patch = self.graph.patches.get(*patch);
+            patch.is_some_and(|patch| view.spot(patch).seat.distance(here) < THERE * radius)
         };
         let goal = view.goal.patches();
         goal.binary_search(&patch).is_ok() || goal.iter().any(is_near)
@@ -104,6 +105,8 @@ impl Bot {
         self.plan = None;
         self.planned = f64::NEG_INFINITY;
         self.approach = Approach::default();
+        self.blocked.clear();
+        self.hangs = None;
     }
 
     /// True if it has to rest before it goes on, or does anything that costs strength.
@@ -124,8 +127,9 @@ impl Bot {
         let goes_on = !before
             && view.forecast.is_still()
             && self.patch_below(view).is_some_and(|patch| {
-                let needs = view.goal.least_stamina(patch, Footing::Holds);
-                state.stamina >= needs + SPARE
+                let footings = [Footing::Stands, Footing::Holds];
+                let needs = footings.map(|footing| view.goal.least_stamina(patch, footing));
+                state.stamina >= needs[0].min(needs[1]) + SPARE
             });
         self.rests = costs && view.is_on_creature() && state.stamina < least && !goes_on;
         if self.rests != before {
@@ -295,8 +299,12 @@ impl Bot {
         };
         let footings = [Footing::Stands, Footing::Holds];
         let mut starts: Vec<Start> = footings.map(|footing| start(patch, footing, 0.0)).to_vec();
-        for (beside, _, length) in self.graph.ways.of(patch) {
-            starts.extend(footings.map(|footing| start(beside, footing, length)));
+        for (beside, way, length) in self.graph.ways.of(patch) {
+            for (leads, footing) in [way.walks, way.climbs].into_iter().zip(footings) {
+                if leads && is_open(patch, beside) {
+                    starts.push(start(beside, footing, length / self.graph.speed(footing)));
+                }
+            }
         }
         let plan = self
             .graph
@@ -309,10 +317,14 @@ impl Bot {
                 ..*start
             })
             .collect();
-        let plan = plan.or_else(|| {
-            self.graph
-                .plan_around(&tireless, goal, &crate::Forecast::still(), &is_open)
-        });
+        let still = Forecast::still();
+        let plan = plan
+            .or_else(|| self.graph.plan_around(&tireless, goal, &still, &is_open))
+            // Nowhere to rest.
+            .or_else(|| {
+                self.graph
+                    .plan_around(&tireless, view.goal, &still, &is_open)
+            });
         self.plan = plan.map(|plan| Progress::new(plan, seconds));
     }
 

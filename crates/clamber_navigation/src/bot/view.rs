@@ -88,7 +88,7 @@ impl View<'_> {
         self.spot_on(patch.triangle, weights).unwrap_or(Spot {
             point: patch.point,
             normal: DVec3::ZERO,
-            seat: patch.point,
+            seat: patch.seat,
         })
     }
 

@@ -6,6 +6,9 @@ use xxhash_rust::xxh3::Xxh3;
 
 use crate::{GraphConfig, GraphSource};
 
+/// To be raised when graphs of the same creature change.
+const FORMAT: u32 = 1;
+
 /// Takes text.
 struct Digest(Xxh3);
 
@@ -33,7 +36,7 @@ pub(super) fn key(source: &GraphSource<'_>, config: &GraphConfig) -> u128 {
     // A digest takes all text.
     let _ = write!(
         digest,
-        "{version} {config:?} {world_from_model:?} {ground:?} "
+        "{version} {FORMAT} {config:?} {world_from_model:?} {ground:?} "
     );
     let _ = write!(digest, "{skeleton:?} {clips:?} {plates:?} ");
     let _ = write!(digest, "{:?} {:?} ", mesh.triangles(), mesh.tags());

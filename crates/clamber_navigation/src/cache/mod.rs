@@ -5,9 +5,11 @@ mod sound;
 
 pub(crate) use sound::divides;
 
-use std::io;
+use std::fs::File;
+use std::io::{self, Write as _};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use xxhash_rust::xxh3::xxh3_128;
 
@@ -99,7 +101,7 @@ impl ClimbGraph {
         let key = key::key(source, config);
         let file = folder.join(format!("{key:032x}.climbgraph"));
         let known = std::fs::read(&file).ok();
-        if let Some(graph) = known.and_then(|bytes| read(&bytes, key, source)) {
+        if let Some(graph) = known.and_then(|bytes| read(&bytes, key, source, config)) {
             return Ok(CachedGraph {
                 graph,
                 file,
@@ -130,8 +132,12 @@ fn save(graph: &ClimbGraph, key: u128, folder: &Path, file: &Path) -> io::Result
     bytes.extend(rest);
     std::fs::create_dir_all(folder)?;
     // Under a name of its own first: nobody reads half a file.
-    let half = file.with_extension(format!("{}.part", std::process::id()));
-    let written = std::fs::write(&half, bytes).and_then(|()| std::fs::rename(&half, file));
+    static COUNT: AtomicU64 = AtomicU64::new(0);
+    let count = COUNT.fetch_add(1, Ordering::Relaxed);
+    let half = file.with_extension(format!("{}-{count}.part", std::process::id()));
+    let written = File::create_new(&half)
+        .and_then(|mut file| file.write_all(&bytes))
+        .and_then(|()| std::fs::rename(&half, file));
     if written.is_err() {
         let _ = std::fs::remove_file(&half);
     }
@@ -139,7 +145,12 @@ fn save(graph: &ClimbGraph, key: u128, folder: &Path, file: &Path) -> io::Result
 }
 
 /// The graph of a file; `None` if the file is damaged, or of another creature.
-fn read(bytes: &[u8], key: u128, source: &GraphSource<'_>) -> Option<ClimbGraph> {
+fn read(
+    bytes: &[u8],
+    key: u128,
+    source: &GraphSource<'_>,
+    config: &GraphConfig,
+) -> Option<ClimbGraph> {
     let rest = bytes.strip_prefix(MAGIC)?;
     let (found, rest) = rest.split_first_chunk::<16>()?;
     let (hash, rest) = rest.split_first_chunk::<16>()?;
@@ -148,7 +159,6 @@ fn read(bytes: &[u8], key: u128, source: &GraphSource<'_>) -> Option<ClimbGraph>
         return None;
     }
     let graph: ClimbGraph = postcard::from_bytes(rest).ok()?;
-    graph
-        .is_sound(source.mesh.triangles().len())
-        .then_some(graph)
+    let fits = graph.config == *config && graph.is_sound(source.mesh.triangles().len());
+    fits.then_some(graph)
 }

@@ -8,7 +8,6 @@ impl ClimbGraph {
         let patches = self.patches.len();
         let is_there = |triangle: usize| triangle < triangles;
         let parts = [
-            self.config.check().is_ok(),
             self.patches
                 .iter()
                 .all(|patch| is_there(patch.triangle.index())),

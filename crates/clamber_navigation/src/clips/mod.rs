@@ -17,8 +17,11 @@ const TICK: f64 = 1.0 / 60.0;
 /// Shakes are stored in steps of this size, metres a second squared; the largest stands for all larger ones.
 const STEP: f64 = 0.25;
 
+/// The hardest shake that is told apart from harder ones, metres a second squared.
+pub(crate) const HARDEST: f64 = 255.0 * STEP;
+
 /// Tilts are stored in steps of this size, in cosines.
-const COSINE: f64 = 1.0 / 127.0;
+pub(crate) const COSINE: f64 = 1.0 / 127.0;
 
 /// A clip, by its slices.
 #[derive(Clone, Debug)]
@@ -32,7 +35,7 @@ pub(crate) struct ClipSlices {
 /// A patch in a slice of a clip.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Moment {
-    /// The hardest shake at the ends of ticks, metres a second squared, rounded up; 63.75 stands for all harder ones.
+    /// The hardest shake at the ends of ticks, metres a second squared, rounded up; infinite from [`HARDEST`] on.
     pub(crate) shake: f64,
     /// By how much the shake exceeds what holding on costs no more for, on average, metres a second squared.
     pub(crate) excess: f64,
@@ -78,7 +81,8 @@ impl ClipFacts {
         patches: &[Patch],
     ) -> Result<(), NavigationError> {
         let count = ((clip.duration() / SLICE).ceil() as usize).max(1);
-        let first = self.moments.len() / patches.len().max(1);
+        let last = self.clips.last();
+        let first = last.map_or(0, |last| last.first + last.count);
         self.clips.push(ClipSlices {
             name: clip.name.clone(),
             first,
@@ -120,12 +124,23 @@ impl ClipFacts {
         Some(clip.first + slice % clip.count)
     }
 
+    /// How long a clip is, in whole slices, seconds.
+    pub(crate) fn seconds(&self, clip: usize) -> f64 {
+        self.clips
+            .get(clip)
+            .map_or(SLICE, |clip| clip.count as f64 * SLICE)
+    }
+
     /// A patch in a slice, of those of all clips.
     pub(crate) fn at(&self, slice: usize, patch: usize) -> Moment {
         let moment = self.moments.get(slice * self.patches + patch);
         let [shake, excess, upright] = moment.copied().unwrap_or([0, 0, 254]);
         Moment {
-            shake: f64::from(shake) * STEP,
+            shake: if shake == u8::MAX {
+                f64::INFINITY
+            } else {
+                f64::from(shake) * STEP
+            },
             excess: f64::from(excess) * STEP,
             upright: f64::from(upright) * COSINE - 1.0,
         }

@@ -100,7 +100,10 @@ impl Ways {
         crate::cache::divides(&self.start, patches, self.to.len())
             && self.way.len() == self.to.len()
             && self.length.len() == self.to.len()
-            && self.length.iter().all(|length| *length >= 0.0)
+            && self
+                .length
+                .iter()
+                .all(|length| *length >= 0.0 && length.is_finite())
             && self.to.iter().all(|to| (*to as usize) < patches)
             && self.corners.values().all(corner)
     }

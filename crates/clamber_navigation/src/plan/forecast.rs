@@ -25,20 +25,28 @@ impl Forecast {
     }
 
     /// And then it plays a clip, from a time of it on and for so long, both in seconds and rounded to halves of one; an hour at
-    /// most. A clip that the graph does not know, and a time that is not positive, change nothing.
+    /// most. The clip is looped, and counts as whole halves of a second long. A clip that the graph does not know, and a time
+    /// that is not positive, change nothing. A forecast is of use on its own graph only: another one takes it for something
+    /// else.
     #[must_use]
     pub fn then(mut self, graph: &ClimbGraph, clip: &str, from: f64, seconds: f64) -> Self {
         let in_slices = |seconds: f64| (seconds.min(LONGEST) / SLICE).round() as usize;
         if let Some(clip) = graph.clips.find(clip)
-            && from >= 0.0
+            && (0.0..f64::INFINITY).contains(&from)
             && seconds > 0.0
         {
+            let from = from % graph.clips.seconds(clip);
             let first = in_slices(from);
             let slices = first..first + in_slices(seconds).max(1);
             let slices = slices.filter_map(|slice| graph.clips.slice(clip, slice));
             self.slices.extend(slices.map(|slice| slice as u32));
         }
         self
+    }
+
+    /// Number of slices after which it begins again.
+    pub(super) fn len(&self) -> usize {
+        self.slices.len()
     }
 
     /// What happens at a patch after so many slices.

@@ -39,7 +39,7 @@ impl Goal {
     /// The least time from a patch to the goal on a creature at rest, seconds, for a climber that does not tire; infinite if
     /// no way leads there.
     pub fn least_seconds(&self, patch: usize, footing: Footing) -> f64 {
-        let least = self.least.get(node(patch, footing));
+        let least = self.of(patch, footing);
         least.map_or(f64::INFINITY, |least| least.seconds)
     }
 
@@ -53,7 +53,7 @@ impl Goal {
     /// The stamina from which on a climber comes from a patch to the goal on a creature at rest, 0 to 1, if it rests wherever it
     /// can; infinite if no stamina is enough.
     pub fn least_stamina(&self, patch: usize, footing: Footing) -> f64 {
-        let least = self.least.get(node(patch, footing));
+        let least = self.of(patch, footing);
         least.map_or(f64::INFINITY, |least| least.stamina)
     }
 
@@ -63,11 +63,20 @@ impl Goal {
     /// It holds on for some seconds at least, on whichever way that is. What that costs beyond its stamina is brought by
     /// standing, for so much longer.
     pub fn least_seconds_with(&self, patch: usize, footing: Footing, stamina: f64) -> f64 {
-        let node = node(patch, footing);
-        if node < self.least.len() {
-            return self.at(node, stamina);
+        if self.of(patch, footing).is_some() {
+            return self.at(node(patch, footing), stamina);
         }
         f64::INFINITY
+    }
+
+    fn of(&self, patch: usize, footing: Footing) -> Option<&Least> {
+        let node = patch.checked_mul(2)? + usize::from(footing == Footing::Holds);
+        self.least.get(node)
+    }
+
+    /// True if it is a goal on this graph, or on one with as many patches.
+    pub(super) fn is_of(&self, graph: &ClimbGraph) -> bool {
+        self.least.len() == 2 * graph.patches.len()
     }
 
     pub(super) fn at(&self, node: usize, stamina: f64) -> f64 {
@@ -84,7 +93,7 @@ impl Goal {
 
     /// True if a node is at the goal.
     pub(super) fn has(&self, node: usize) -> bool {
-        self.least[node].seconds == 0.0
+        self.patches.binary_search(&(node / 2)).is_ok()
     }
 }
 
@@ -130,9 +139,12 @@ impl ClimbGraph {
         let costs = self.config.climber.stamina;
         let drain = costs.map_or(0.0, |costs| strain * costs.hold_drain);
         let refill = costs.map_or(0.0, |costs| costs.refill);
-        let is_hold = |footing| f64::from(u8::from(footing == Footing::Holds));
+        let held = |footing, passed: f64| match footing {
+            Footing::Stands => 0.0,
+            Footing::Holds => passed,
+        };
         let needs = |beyond: f64, footing, passed: f64| {
-            let need = beyond + drain * passed * is_hold(footing);
+            let need = beyond + drain * held(footing, passed);
             match footing {
                 _ if need > 1.0 + ROUNDING => f64::INFINITY,
                 // It rests here until it has what the way on needs.
@@ -142,7 +154,7 @@ impl ClimbGraph {
         };
         let seconds = self.backwards(&patches, |beyond, _, passed| beyond + passed);
         let holds = self.backwards(&patches, |beyond, footing, passed| {
-            beyond + passed * is_hold(footing)
+            beyond + held(footing, passed)
         });
         let stamina = self.backwards(&patches, needs);
         let least = seconds.into_iter().zip(holds).zip(stamina);
@@ -196,8 +208,8 @@ impl ClimbGraph {
                     Footing::Stands => way.walks,
                     Footing::Holds => way.climbs,
                 };
-                if leads {
-                    let passed = length / self.speed(footing);
+                let passed = length / self.speed(footing);
+                if leads && passed.is_finite() {
                     offer(node(beside, footing), cost(beyond, footing, passed));
                 }
             }
@@ -214,7 +226,7 @@ impl ClimbGraph {
     }
 
     /// How fast it gets on, metres a second.
-    pub(super) fn speed(&self, footing: Footing) -> f64 {
+    pub(crate) fn speed(&self, footing: Footing) -> f64 {
         let climber = &self.config.climber;
         match footing {
             Footing::Stands => climber.ground.walk_speed,

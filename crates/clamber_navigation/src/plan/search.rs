@@ -7,7 +7,7 @@ use clamber_climber::ClimberConfig;
 
 use super::goal::{node, of_node};
 use super::{Forecast, Goal};
-use crate::clips::{Moment, SLICE};
+use crate::clips::{COSINE, Moment, SLICE};
 use crate::{ClimbGraph, Footing};
 
 /// Where a plan begins.
@@ -69,6 +69,9 @@ const ROUNDING: f64 = 1e-9;
 /// A search looks at no more ways than this.
 const MOST: usize = 2_000_000;
 
+/// No plan begins later than this, seconds.
+const LATEST: f64 = 1e6;
+
 /// A way to a place.
 #[derive(Clone, Copy, Debug)]
 struct Label {
@@ -86,9 +89,13 @@ impl ClimbGraph {
     ///
     /// A label-setting search with a resource (Desrochers and Soumis 1988) in the order of A* (Hart, Nilsson and Raphael 1968):
     /// of two ways to a patch, one that is neither faster nor leaves more stamina is dropped. Stamina is compared in 16 steps,
-    /// so that a way that would leave less than a fifteenth more may be missed. The least time to the goal at rest, rests
-    /// included, never exceeds the time that is needed, so what comes to the goal first is fastest; and where stamina does not
-    /// last at rest it never lasts, so that such ways are not looked at.
+    /// so that a way that would leave less than a fifteenth more may be missed, and in a forecast with shakes one that comes
+    /// later and fresher. The least time to the goal at rest, rests included, never exceeds the time that is needed, so what
+    /// comes to the goal first is fastest; and where stamina does not last at rest it never lasts, so that such ways are not
+    /// looked at.
+    ///
+    /// Starts whose numbers are not finite or that are later than a million seconds are left out. A search gives up after two
+    /// million ways. A goal of another graph is never reached.
     pub fn plan(&self, starts: &[Start], goal: &Goal, forecast: &Forecast) -> Option<Plan> {
         self.plan_around(starts, goal, forecast, &|_, _| true)
     }
@@ -101,6 +108,9 @@ impl ClimbGraph {
         forecast: &Forecast,
         is_open: &dyn Fn(usize, usize) -> bool,
     ) -> Option<Plan> {
+        if !goal.is_of(self) {
+            return None;
+        }
         let mut search = Search {
             graph: self,
             goal,
@@ -115,7 +125,7 @@ impl ClimbGraph {
                 && self
                     .footings(start.patch)
                     .any(|footing| footing == start.footing);
-            if can && start.seconds >= 0.0 {
+            if can && (0.0..=LATEST).contains(&start.seconds) && start.stamina.is_finite() {
                 let node = node(start.patch, start.footing);
                 let tires = self.config.climber.stamina.is_some();
                 let stamina = if tires {
@@ -191,6 +201,7 @@ impl Search<'_> {
             let Some(stay) = self.stay(patch, footing, label.seconds) else {
                 continue;
             };
+            let here = (label.seconds, label.stamina);
             if footing == Footing::Stands && label.stamina < 1.0 {
                 self.rest(index, stay);
             }
@@ -202,7 +213,11 @@ impl Search<'_> {
                 if !leads || !(self.is_open)(patch, beside) {
                     continue;
                 }
-                let went = self.go((label.seconds, label.stamina), stay, length);
+                let went = if footing == Footing::Stands && !graph.patches[beside].can_hold {
+                    self.wait_and_go(here, stay, beside, length)
+                } else {
+                    self.go(here, stay, length)
+                };
                 if let Some((seconds, stamina)) = went {
                     self.offer(node(beside, footing), index, seconds, stamina);
                 }
@@ -259,6 +274,25 @@ impl Search<'_> {
         None
     }
 
+    /// [`Search::go`] to a patch where it can only stand: as soon as whoever comes there is not thrown or slips.
+    fn wait_and_go(
+        &self,
+        mut time: (f64, f64),
+        mut stay: Stay,
+        to: usize,
+        length: f64,
+    ) -> Option<(f64, f64)> {
+        for _ in 0..=self.forecast.len() {
+            let went = self.go(time, stay, length)?;
+            if self.stay(to, stay.footing, went.0).is_some() {
+                return Some(went);
+            }
+            time = stay.pass(time, stay.lasts)?;
+            stay = self.stay_on(stay, time.0)?;
+        }
+        None
+    }
+
     /// The next slice of a stay.
     fn stay_on(&self, stay: Stay, seconds: f64) -> Option<Stay> {
         self.stay(stay.patch, stay.footing, seconds)
@@ -292,7 +326,11 @@ impl Search<'_> {
         Some(Stay {
             patch,
             footing,
-            lasts: (slice + 1) as f64 * SLICE - seconds,
+            lasts: if self.forecast.is_still() {
+                f64::INFINITY
+            } else {
+                (slice as f64 + 1.0) * SLICE - seconds
+            },
             moves: if footing == Footing::Holds {
                 moment.shake <= hangs
             } else {
@@ -347,7 +385,7 @@ impl Stay {
             self.lasts
         };
         let after = (stamina - passes * self.costs).min(1.0);
-        (after > 0.0).then_some((seconds + passes, after))
+        (self.costs <= 0.0 || after > 0.0).then_some((seconds + passes, after))
     }
 }
 
@@ -358,15 +396,16 @@ fn level(stamina: f64) -> usize {
     ((stamina * (LEVELS - 1) as f64 + ROUNDING) as usize).min(LEVELS - 1)
 }
 
-/// True if whoever stands there without holding on is thrown or knocked down.
+/// True if whoever stands there without holding on is thrown or knocked down. As if it shook straight up and down.
 pub(crate) fn throws(climber: &ClimberConfig, moment: &Moment) -> bool {
     let knock = climber
         .tumble
         .map_or(f64::INFINITY, |tumble| tumble.knock_acceleration);
-    moment.shake > climber.ground.throw_acceleration.min(knock)
+    let weight = climber.gravity.length() * moment.upright;
+    moment.shake > (climber.ground.throw_acceleration + weight).min(knock)
 }
 
-/// True if it is too steep there to stand on.
+/// True if it is too steep there to stand on: surely so, since slopes are stored in steps.
 pub(crate) fn slips(climber: &ClimberConfig, moment: &Moment) -> bool {
-    libm::acos(moment.upright.clamp(-1.0, 1.0)) > climber.ground.max_slope
+    moment.upright + COSINE < libm::cos(climber.ground.stays_on_slope())
 }

@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 use clamber_surface::rig::WeakPoint;
 use glam::DVec3;
 
-use crate::clips::SLICE;
+use crate::clips::{HARDEST, SLICE};
 use crate::graph::{NONE, Reachable};
 use crate::plan::{slips, throws};
 use crate::progress::Tell;
@@ -321,7 +321,7 @@ impl View<'_> {
                 .iter()
                 .map(|moment| moment.shake)
                 .fold(0.0, f64::max);
-            report.hardest_shake = report.hardest_shake.max(hardest);
+            report.hardest_shake = report.hardest_shake.max(hardest).min(HARDEST);
             if patch.can_stand {
                 let thrown = moments.iter().position(|moment| throws(climber, moment));
                 if let Some(slice) = thrown {

@@ -8,7 +8,7 @@ use clamber_navigation::FutureSkin;
 use clamber_surface::rig::Palette;
 
 use super::Performer;
-use super::scene::TICK;
+use super::scene::{CREATURE, TICK};
 
 /// It takes so long to see what a creature has begun, seconds.
 const REACTION: f64 = 0.25;
@@ -59,9 +59,9 @@ impl Eyes {
             let mut future = |seconds: f64, palette: &mut Palette| {
                 life.foresee(seconds, foresight, palette).ok()
             };
-            let ahead = self
-                .skin
-                .shake_ahead(performer.climber(), &mut future, STEP, AHEAD);
+            let ahead =
+                self.skin
+                    .shake_ahead(performer.climber(), CREATURE, &mut future, STEP, AHEAD);
             self.shake = ahead.unwrap_or(0.0);
         }
         self.shake
