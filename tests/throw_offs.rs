@@ -144,7 +144,7 @@ fn b59_throw_offs_are_foreseen() {
         rides += 1;
         let mut future = |seconds: f64, palette: &mut Palette| play.pose(seconds, palette);
         let said = skin
-            .ride(&climber, GIANT, &mut future, TICK, SECONDS)
+            .ride(&climber, CREATURE, &mut future, TICK, SECONDS)
             .unwrap();
         let is = ride(&mut climber, &mut surface, play);
         pushed += u32::from(is.is_none() && climber.state().support.is_none());

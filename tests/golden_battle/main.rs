@@ -16,7 +16,7 @@ use clamber_scenes::giant::giant;
 const RIDE: u64 = 0x6351_eeeb_c831_48b1;
 
 /// Hash of the climb.
-const CLIMB: u64 = 0x42c7_d4bf_fc59_b701;
+const CLIMB: u64 = 0x89cf_73e8_934d_c346;
 
 /// A tick of a battle: the climber's fields, the creature's pose and the rocks.
 fn add(run: &mut GoldenRun, battle: &Battle<'_>) {

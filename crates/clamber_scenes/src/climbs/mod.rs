@@ -235,8 +235,8 @@ impl Scene {
                 .closest_point(place, 1.5 * config.body.radius);
             hit.is_none()
         };
-        let away = (3..60).map(|step| 2.5 * config.body.radius * f64::from(step));
-        let away = away.clone().find(room).or(away.last()).unwrap_or(0.0);
+        let away = |step: u32| 2.5 * config.body.radius * f64::from(step);
+        let away = (3..60).map(away).find(room).unwrap_or(away(60));
         let feet = level + out * away + DVec3::Y * self.ground;
         let position = feet + DVec3::Y * (1.1 * config.body.radius);
         Ok(Climber::new(config, position)?)
