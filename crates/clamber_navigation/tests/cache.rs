@@ -1,5 +1,7 @@
 //! Graphs in files are the same as built ones, and damaged files are built anew.
 
+#![allow(clippy::unwrap_used, reason = "a test")]
+
 mod support;
 
 use std::ops::ControlFlow;
