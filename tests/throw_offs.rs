@@ -145,7 +145,8 @@ fn b59_throw_offs_are_foreseen() {
         let mut future = |seconds: f64, palette: &mut Palette| play.pose(seconds, palette);
         let said = skin
             .ride(&climber, CREATURE, &mut future, TICK, SECONDS)
-            .unwrap();
+            .unwrap()
+            .end();
         let is = ride(&mut climber, &mut surface, play);
         pushed += u32::from(is.is_none() && climber.state().support.is_none());
         ended += u32::from(is.is_some());

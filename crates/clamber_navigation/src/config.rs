@@ -12,7 +12,8 @@ pub struct GraphConfig {
     /// Largest side of a patch of skin, metres, positive, at most 1.4 radii of the climber. Default: its radius. Smaller
     /// patches follow narrow ways better, and cost more.
     pub spacing: f64,
-    /// Materials that can be gripped. Default: fur.
+    /// Materials that can be gripped. Default: fur. The climber's own steps do not know of it: give them the same rule, as
+    /// `StepRules::gripping(&|_, contact| config.can_grip(&contact.tag))`, or it does not find the holds that the graph promises.
     pub grips: Vec<SurfaceKind>,
 }
 
@@ -26,7 +27,8 @@ impl GraphConfig {
         }
     }
 
-    pub(crate) fn can_grip(&self, tag: &SurfaceTag) -> bool {
+    /// True if skin with this tag can be gripped.
+    pub fn can_grip(&self, tag: &SurfaceTag) -> bool {
         self.grips.contains(&tag.kind)
     }
 

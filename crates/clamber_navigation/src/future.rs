@@ -14,7 +14,7 @@ use crate::NavigationError;
 ///
 /// Its clips tell, until its brain decides on other ones.
 pub trait Future {
-    /// The pose of a time, seconds from now on, not negative.
+    /// The pose of a time, seconds from now on, not negative. That of time 0 is the pose that the creature has now.
     fn pose(&mut self, seconds: f64, palette: &mut Palette) -> Option<Similarity>;
 }
 

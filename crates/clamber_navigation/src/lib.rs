@@ -27,5 +27,5 @@ pub use landing::{Flight, Landing};
 pub use plan::{Forecast, Goal, Plan, PlanStep, Start};
 pub use progress::{Progress, Stage};
 pub use report::{ClimbReport, ClipReport, Missing, PointReport, WayOn};
-pub use ride::{RideEnd, ThrowOff};
+pub use ride::{Ride, RideEnd, ThrowOff};
 pub use source::GraphSource;

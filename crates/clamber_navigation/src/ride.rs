@@ -31,6 +31,28 @@ pub struct RideEnd {
     pub cause: ThrowOff,
 }
 
+/// What becomes of a ride.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Ride {
+    /// It ends.
+    Ends(RideEnd),
+    /// The climber stays on for as long as was asked.
+    Stays,
+    /// Nobody knows: the future is not known that far, the climber is not on the creature, or the creature that it is on jumps
+    /// from its present pose to another one.
+    Unknown,
+}
+
+impl Ride {
+    /// How it ends, if it does.
+    pub fn end(self) -> Option<RideEnd> {
+        match self {
+            Self::Ends(end) => Some(end),
+            _ => None,
+        }
+    }
+}
+
 /// What a rider feels, from tick to tick.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Rider {
@@ -93,9 +115,12 @@ impl Rider {
 }
 
 impl FutureSkin {
-    /// How long a climber that stands on this creature, or holds on to it, stays there if it does nothing else: it holds its grip
-    /// if it does so now. `None` if it stays for `most` seconds, or for as long as the future is known, and if it is not on the
-    /// creature, whose obstacle id is `creature`. `dt` is the length of a tick, seconds; a million ticks at most are looked at.
+    /// How long a climber that stands on this creature, or holds on to it, stays there within `most` seconds if it does nothing
+    /// else: it holds its grip if it does so now. `creature` is the creature's obstacle id, `dt` the length of a tick, seconds;
+    /// a million ticks at most are looked at.
+    ///
+    /// The future has to begin with the pose that the creature has now: a clip that begins has to fade in, as it does on the
+    /// creature. The example `plans` shows how.
     ///
     /// Three vertices are skinned a tick. What pushes the climber off, such as an arm that comes over it, is not looked for.
     ///
@@ -108,12 +133,12 @@ impl FutureSkin {
         future: &mut dyn Future,
         dt: f64,
         most: f64,
-    ) -> Result<Option<RideEnd>, NavigationError> {
+    ) -> Result<Ride, NavigationError> {
         check_step(dt)?;
         let (state, config) = (climber.state(), climber.config());
         let on_it = |support: &Support| support.attachment.obstacle == creature;
         let Some(support) = state.support.filter(on_it) else {
-            return Ok(None);
+            return Ok(Ride::Unknown);
         };
         let mut rider = Rider {
             holds: state.mode != ClimberMode::Standing,
@@ -125,31 +150,32 @@ impl FutureSkin {
         };
         let mut attachment = support.attachment;
         if !self.place(future, 0.0)? {
-            return Ok(None);
+            return Ok(Ride::Unknown);
         }
         let ticks = (most / dt).clamp(0.0, 1e6) as u64;
         for tick in 1..=ticks {
             let seconds = tick as f64 * dt;
             if !self.advance(future, seconds)? {
-                return Ok(None);
+                return Ok(Ride::Unknown);
             }
             let slack = 0.1 * config.body.radius;
             let Some(followed) = attachment.follow(self.surface() as &dyn Obstacle, dt, slack)
             else {
-                return Ok(None);
+                return Ok(Ride::Unknown);
             };
             let normal = attachment.frame * support.normal;
             let end = rider.tick(config, followed.motion.velocity, normal, dt);
             if let Some(cause) = end {
-                return Ok(Some(RideEnd { seconds, cause }));
+                return Ok(Ride::Ends(RideEnd { seconds, cause }));
             }
         }
-        Ok(None)
+        Ok(Ride::Stays)
     }
 
     /// The hardest shake that a climber on this creature is about to feel where it is, within `most` seconds, in metres a second
     /// squared; what it feels now if it is not on the creature, whose obstacle id is `creature`, or the future is not known. `dt` is the time between two looks,
-    /// seconds: a tenth of a second misses shakes that are over sooner.
+    /// seconds. A tenth of a second is enough for a giant: it misses only shakes that are over sooner. Half a second ahead is what
+    /// a bot needs to take hold.
     ///
     /// # Errors
     /// [`NavigationError::Surface`] if a pose does not fit the skin, [`NavigationError::OutOfRange`] if `dt` is not positive.

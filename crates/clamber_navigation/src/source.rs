@@ -13,12 +13,13 @@ pub struct GraphSource<'a> {
     pub mesh: &'a Arc<ColliderMesh>,
     /// What it moves by.
     pub clips: &'a [Clip],
-    /// Parts of the skin that can be removed one by one, such as plates of armour: the skin below them is divided as well.
+    /// Parts of the skin that can be removed one by one, such as plates of armour: the skin below them is divided as well. None is
+    /// a good answer; those of a living creature are `clamber_colossus::CreatureKind::plates`.
     pub plates: &'a [Vec<TriangleId>],
     /// Where it can be wounded.
     pub weak_points: &'a [WeakPoint],
     /// Where it stands, and how large it is.
     pub world_from_model: Similarity,
-    /// Height of the ground that it stands on, in the world, metres.
+    /// Height of the ground that it stands on, in the world, metres: 0 for most files, whose feet stand at the origin.
     pub ground: f64,
 }

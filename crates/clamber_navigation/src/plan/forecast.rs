@@ -3,7 +3,8 @@
 use crate::ClimbGraph;
 use crate::clips::{Moment, SLICE};
 
-/// What the creature is expected to do: clips, one after the other, and all of them again and again.
+/// What the creature is expected to do from the beginning of a plan on: clips, one after the other, and all of them again and
+/// again.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Forecast {
     /// Numbers of slices of clips.

@@ -114,6 +114,9 @@ pub(crate) const LEVEL: f64 = 0.6;
 impl ClimbReport {
     /// Looks at a creature. `progress` is called again and again, and cancels by [`ControlFlow::Break`].
     ///
+    /// It takes as long as building the graph, which it gives as well. A report is for studios and their CI; a game takes
+    /// the graph alone, by `ClimbGraph::cached`.
+    ///
     /// # Errors
     /// As [`ClimbGraph::build`].
     pub fn new(
