@@ -19,7 +19,7 @@ mod plans;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use clamber_scenes::battle::{self, BattleError, BattleOptions, Summary};
+use clamber_scenes::battle::{self, BattleError, BattleOptions, Summary, TICK};
 use clap::{ArgGroup, CommandFactory, Parser, error::ErrorKind};
 
 /// A climber against a giant of stone and fur, which notices, hunts and strikes it, and shakes itself once it is climbed.
@@ -227,11 +227,14 @@ fn siege(options: &BattleOptions, count: u64) -> ExitCode {
     }
     let count =
         |is: &dyn Fn(&battle::Fight) -> bool| fights.iter().filter(|fight| is(fight)).count();
+    let killed = fights.iter().filter(|fight| fight.tally.killed > 0);
+    let times = killed.map(|fight| fight.tally.killed as f64 * TICK);
+    let mean = times.clone().sum::<f64>() / times.clone().count().max(1) as f64;
     println!(
-        "of {} fights: {} came to the highest weak point, {} killed the creature",
+        "of {} fights: {} came to the highest weak point, {} killed the creature, after {mean:.1} s on average",
         fights.len(),
         count(&|fight| fight.arrived.is_some()),
-        count(&|fight| fight.tally.killed > 0),
+        times.count(),
     );
     ExitCode::SUCCESS
 }

@@ -38,8 +38,8 @@ pub enum Ride {
     Ends(RideEnd),
     /// The climber stays on for as long as was asked.
     Stays,
-    /// Nobody knows: the future is not known that far, the climber is not on the creature, or the creature that it is on jumps
-    /// from its present pose to another one.
+    /// It cannot be told: the future is not known that far, the climber is not on the creature, or the future does not begin
+    /// with the creature's present pose.
     Unknown,
 }
 
@@ -173,9 +173,10 @@ impl FutureSkin {
     }
 
     /// The hardest shake that a climber on this creature is about to feel where it is, within `most` seconds, in metres a second
-    /// squared; what it feels now if it is not on the creature, whose obstacle id is `creature`, or the future is not known. `dt` is the time between two looks,
-    /// seconds. A tenth of a second is enough for a giant: it misses only shakes that are over sooner. Half a second ahead is what
-    /// a bot needs to take hold.
+    /// squared; what it feels now if it is not on the creature, whose obstacle id is `creature`, or the future is not known.
+    ///
+    /// `dt` is the time between two looks, seconds. A tenth of a second is enough for a giant: it misses only shakes that are
+    /// over sooner. Half a second ahead is what a bot needs to take hold.
     ///
     /// # Errors
     /// [`NavigationError::Surface`] if a pose does not fit the skin, [`NavigationError::OutOfRange`] if `dt` is not positive.

@@ -124,14 +124,16 @@ impl Bot {
             .stamina
             .is_some_and(|stamina| stamina.refill > 0.0);
         // Where no shakes are expected it goes on if its strength is enough.
-        let goes_on = !before
-            && view.forecast.is_still()
-            && self.patch_below(view).is_some_and(|patch| {
-                let footings = [Footing::Stands, Footing::Holds];
-                let needs = footings.map(|footing| view.goal.least_stamina(patch, footing));
-                state.stamina >= needs[0].min(needs[1]) + SPARE
-            });
-        self.rests = costs && view.is_on_creature() && state.stamina < least && !goes_on;
+        let goes_on = || {
+            !before
+                && view.forecast.is_still()
+                && self.patch_below(view).is_some_and(|patch| {
+                    let footings = [Footing::Stands, Footing::Holds];
+                    let needs = footings.map(|footing| view.goal.least_stamina(patch, footing));
+                    state.stamina >= needs[0].min(needs[1]) + SPARE
+                })
+        };
+        self.rests = costs && view.is_on_creature() && state.stamina < least && !goes_on();
         if self.rests != before {
             self.plan = None;
             self.planned = f64::NEG_INFINITY;

@@ -40,8 +40,8 @@ pub enum GraphOrigin {
 }
 
 impl ClimbGraph {
-    /// The graph of a creature, from a file in `folder` if there is one, or as [`ClimbGraph::build`] builds it. What it builds
-    /// it writes into the folder, which it creates, for the next time.
+    /// The graph of a creature, from its file in `folder`. Without a file the graph is built, as by [`ClimbGraph::build`], and
+    /// written there for the next time. The folder is created if it is missing.
     ///
     /// The file's name is a hash of the skin, skeleton, clips, plates, place and configuration, and of this crate's version: a
     /// creature that has changed gets a file of its own. Files that are not used any more are never removed. A file that is
@@ -135,9 +135,11 @@ fn save(graph: &ClimbGraph, key: u128, folder: &Path, file: &Path) -> io::Result
     static COUNT: AtomicU64 = AtomicU64::new(0);
     let count = COUNT.fetch_add(1, Ordering::Relaxed);
     let half = file.with_extension(format!("{}-{count}.part", std::process::id()));
-    let written = File::create_new(&half)
-        .and_then(|mut file| file.write_all(&bytes))
-        .and_then(|()| std::fs::rename(&half, file));
+    // A file of this name that is there already is somebody else's.
+    let mut part = File::create_new(&half)?;
+    let written = part.write_all(&bytes);
+    drop(part);
+    let written = written.and_then(|()| std::fs::rename(&half, file));
     if written.is_err() {
         let _ = std::fs::remove_file(&half);
     }

@@ -26,7 +26,7 @@ impl Forecast {
     }
 
     /// And then it plays a clip, from a time of it on and for so long, both in seconds and rounded to halves of one; an hour at
-    /// most. The clip is looped, and counts as whole halves of a second long. A clip that the graph does not know, and a time
+    /// most. The clip is looped, with its length rounded up to half seconds. A clip that the graph does not know, and a time
     /// that is not positive, change nothing. A forecast is of use on its own graph only: another one takes it for something
     /// else.
     #[must_use]

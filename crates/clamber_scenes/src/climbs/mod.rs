@@ -80,7 +80,7 @@ pub struct Climbed {
 }
 
 impl Climbed {
-    /// How many times the least time it took, from where it got on; `None` if it did not come there.
+    /// How many times the least time from the ground it took after it had got on; `None` if it did not come there.
     pub fn ratio(&self) -> Option<f64> {
         let [on, there] = self.times;
         Some((there? - on?) / self.least)
