@@ -83,13 +83,14 @@ impl Spheres {
     }
 
     /// x, y, z and radius of all lanes.
-    pub(crate) fn rows(&self) -> [&[f32; LANES]; 4] {
-        [&self.x, &self.y, &self.z, &self.radius]
-    }
-
-    /// [`Spheres::rows`], to be written.
     pub(crate) fn rows_mut(&mut self) -> [&mut [f32; LANES]; 4] {
         [&mut self.x, &mut self.y, &mut self.z, &mut self.radius]
+    }
+}
+
+impl Default for Spheres {
+    fn default() -> Self {
+        Self::ZERO
     }
 }
 

@@ -20,7 +20,9 @@ pub(crate) use first_contact::{
 };
 pub(crate) use point::closest_point;
 pub(crate) use segment::{closest_to_segment, nearest_to_axis};
-pub(crate) use sheared_ray::{ShearedRay, intersect_sheared};
+pub(crate) use sheared_ray::ShearedRay;
+#[cfg(test)]
+pub(crate) use sheared_ray::intersect_sheared;
 
 use glam::{DVec3, Vec3};
 

@@ -1,24 +1,17 @@
 //! One pose of a surface, with caches of what queries have computed: bounds of nodes, skinned clusters.
 
-mod cache;
+mod memo;
 mod whole;
 
 use glam::Vec3;
 
-use self::cache::Cache;
+use self::memo::Memo;
 use crate::bounds::{JointTable, RootBox, Spheres, root_box, spheres};
 use crate::geometry::{Affine, Sphere};
-use crate::mesh::clusters::{Cluster, ROW};
-use crate::mesh::hierarchy::{Child, LANES};
+use crate::mesh::hierarchy::Child;
 use crate::mesh::{ColliderMesh, PartId};
 use crate::simd::SimdLevel;
-use crate::skin::{ClusterPositions, skin_cluster, skin_vertex};
-
-/// How many numbers a node's bounds take in the cache: x, y, z and radius of every lane.
-const NODE: usize = 4 * LANES;
-
-/// How many numbers a row of slots takes in the cache: x, y, z of every slot.
-const ROW_OF_POSITIONS: usize = 3 * ROW;
+use crate::skin::{SkinnedCluster, skin_vertex};
 
 /// A palette, with the bounds and positions that were requested under it so far.
 #[derive(Debug)]
@@ -27,10 +20,8 @@ pub(crate) struct PosedMesh {
     table: JointTable,
     root: RootBox,
     level: SimdLevel,
-    /// The epoch of the current palette. Every new palette gets a new one, which invalidates older cache entries.
-    epoch: u64,
-    nodes: Cache,
-    clusters: Cache,
+    nodes: Memo<Spheres>,
+    clusters: Memo<SkinnedCluster>,
 }
 
 impl PosedMesh {
@@ -50,9 +41,8 @@ impl PosedMesh {
             table: JointTable::default(),
             root: RootBox::default(),
             level,
-            epoch: 0,
-            nodes: Cache::new(0, 0),
-            clusters: Cache::new(0, 0),
+            nodes: Memo::new(0),
+            clusters: Memo::new(0),
         };
         pose.grow(mesh);
         pose.renew(mesh);
@@ -61,11 +51,8 @@ impl PosedMesh {
 
     /// Grows the caches to the mesh's node and cluster counts.
     fn grow(&mut self, mesh: &ColliderMesh) {
-        let (nodes, clusters) = (mesh.hierarchy().nodes.len(), mesh.clusters());
-        let rows = clusters.vertices.len() / ROW;
-        self.nodes.grow(nodes, nodes * NODE);
-        self.clusters
-            .grow(clusters.clusters.len(), rows * ROW_OF_POSITIONS);
+        self.nodes.grow(mesh.hierarchy().nodes.len());
+        self.clusters.grow(mesh.clusters().clusters.len());
     }
 
     /// Updates the pose after an edit of the mesh in which some clusters died and others were appended. What was
@@ -90,7 +77,8 @@ impl PosedMesh {
     fn renew(&mut self, mesh: &ColliderMesh) {
         self.table.update(&self.palette);
         self.root = root_box(mesh.joint_balls(), &self.table);
-        self.epoch += 1;
+        self.nodes.forget_all();
+        self.clusters.forget_all();
     }
 
     pub(crate) fn palette(&self) -> &[Affine] {
@@ -108,18 +96,13 @@ impl PosedMesh {
     }
 
     /// Spheres that hold the children of a node.
-    pub(crate) fn spheres(&self, mesh: &ColliderMesh, node: u32) -> Spheres {
+    #[cfg_attr(not(unoptimized), inline(always))]
+    pub(crate) fn spheres(&self, mesh: &ColliderMesh, node: u32) -> &Spheres {
         let index = node as usize;
-        let mut found = Spheres::ZERO;
-        let parts = found.rows_mut().map(|row| &mut row[..]);
-        if self.nodes.recall(index, self.epoch, index * NODE, parts) {
-            return found;
-        }
-        let hierarchy = mesh.hierarchy();
-        found = spheres(self.level, hierarchy, &hierarchy.nodes[index], &self.table);
-        let parts = found.rows().map(|row| &row[..]);
-        self.nodes.keep(index, self.epoch, index * NODE, parts);
-        found
+        self.nodes.get(index, |found| {
+            let hierarchy = mesh.hierarchy();
+            *found = spheres(self.level, hierarchy, &hierarchy.nodes[index], &self.table);
+        })
     }
 
     /// A bounding sphere for every part that has triangles.
@@ -137,44 +120,40 @@ impl PosedMesh {
         })
     }
 
-    /// Writes the positions of a cluster's slots to `out`.
-    pub(crate) fn positions(&self, mesh: &ColliderMesh, cluster: u32, out: &mut ClusterPositions) {
+    /// A cluster as this pose skins it.
+    #[cfg_attr(not(unoptimized), inline(always))]
+    pub(crate) fn cluster(&self, mesh: &ColliderMesh, cluster: u32) -> &SkinnedCluster {
         let index = cluster as usize;
-        let clusters = mesh.clusters();
-        let cluster = &clusters.clusters[index];
-        let (slots, first) = (cluster.rows() * ROW, first_number(cluster));
-        let parts = out.0.each_mut().map(|axis| &mut axis[..slots]);
-        if !self.clusters.recall(index, self.epoch, first, parts) {
-            skin_cluster(self.level, clusters, cluster, &self.palette, out);
-            let parts = out.0.each_ref().map(|axis| &axis[..slots]);
-            self.clusters.keep(index, self.epoch, first, parts);
-        }
+        self.clusters.get(index, |found| {
+            let clusters = mesh.clusters();
+            found.skin(
+                self.level,
+                clusters,
+                &clusters.clusters[index],
+                &self.palette,
+            );
+        })
     }
 
     /// Clusters that were requested in this pose.
     pub(crate) fn asked_clusters(&self) -> impl Iterator<Item = usize> {
-        self.clusters.asked(self.epoch)
+        self.clusters.asked()
     }
 
     /// Nodes whose bounds were requested in this pose.
     pub(crate) fn asked_nodes(&self) -> impl Iterator<Item = usize> {
-        self.nodes.asked(self.epoch)
+        self.nodes.asked()
     }
 
     /// Clusters that were skinned in this pose, requested or not.
     pub(crate) fn skinned_clusters(&self) -> impl Iterator<Item = usize> {
-        self.clusters.filled(self.epoch)
+        self.clusters.filled()
     }
 
     /// Size of palette and caches in bytes.
     pub(crate) fn memory(&self) -> usize {
         size_of_val(&self.palette[..]) + self.nodes.memory() + self.clusters.memory()
     }
-}
-
-/// Where a cluster's positions begin in the cache.
-fn first_number(cluster: &Cluster) -> usize {
-    cluster.first_row as usize * ROW_OF_POSITIONS
 }
 
 #[cfg(test)]

@@ -155,9 +155,8 @@ fn every_vertex_lies_in_every_bound_above_it_in_a_long_search() {
 fn requested_entries_stay_marked_when_everything_is_filled() {
     let mesh = tube(9, 24);
     let mut pose = PosedMesh::at_rest(&mesh, SimdLevel::best());
-    let mut out = ClusterPositions::ZERO;
     for cluster in [3, 5] {
-        pose.positions(&mesh, cluster, &mut out);
+        pose.cluster(&mesh, cluster);
     }
     pose.spheres(&mesh, 0);
     pose.fill(&mesh);
@@ -167,12 +166,12 @@ fn requested_entries_stay_marked_when_everything_is_filled() {
         assert_eq!(pose.asked_clusters().count(), 2);
         // Further requests do not count.
         for cluster in [3, 5] {
-            pose.positions(&mesh, cluster, &mut out);
+            pose.cluster(&mesh, cluster);
         }
     }
     let all = mesh.clusters().clusters.len();
     assert_eq!(pose.skinned_clusters().count(), all);
-    pose.positions(&mesh, 4, &mut out);
+    pose.cluster(&mesh, 4);
     assert_eq!(pose.asked_clusters().count(), 3);
     pose.spheres(&mesh, 1);
     assert_eq!(pose.asked_nodes().collect::<Vec<_>>(), [0, 1]);

@@ -1,60 +1,48 @@
 //! Eager evaluation: computes all positions and bounds before they are requested.
 
-use super::{NODE, PosedMesh, ROW, first_number};
+use super::PosedMesh;
 use crate::bounds::Spheres;
 use crate::mesh::ColliderMesh;
+use crate::mesh::clusters::ROW;
 use crate::mesh::hierarchy::Child;
-use crate::skin::{ClusterPositions, skin_cluster};
+use crate::skin::ClusterPositions;
 
 impl PosedMesh {
     /// Skins every cluster and fits every bound to the skinned positions, children before parents.
     pub(crate) fn fill(&mut self, mesh: &ColliderMesh) {
         let nodes = &mesh.hierarchy().nodes;
-        let mut positions = ClusterPositions::ZERO;
         for (index, node) in nodes.iter().enumerate().rev() {
             let mut spheres = Spheres::ZERO;
             for lane in 0..usize::from(node.lanes) {
                 let sphere = match node.child(lane) {
-                    Child::Cluster(cluster)
-                        if mesh.clusters().clusters[cluster as usize].is_dead() =>
-                    {
-                        EMPTY
-                    }
-                    Child::Cluster(cluster) => {
-                        self.fill_cluster(mesh, cluster as usize, &mut positions);
-                        let rows = mesh.clusters().clusters[cluster as usize].rows();
-                        around_positions(&positions, rows * ROW)
-                    }
-                    Child::Node(child) => around_spheres(
-                        &self.refitted(child as usize),
-                        usize::from(nodes[child as usize].lanes),
-                    ),
+                    Child::Cluster(cluster) => self.fill_cluster(mesh, cluster as usize),
+                    Child::Node(child) => self.nodes.peek(child as usize).map(|spheres| {
+                        around_spheres(spheres, usize::from(nodes[child as usize].lanes))
+                    }),
                 };
+                let sphere = sphere.unwrap_or(EMPTY);
                 for (row, number) in spheres.rows_mut().into_iter().zip(sphere) {
                     row[lane] = number;
                 }
             }
-            let parts = spheres.rows().map(|row| &row[..]);
-            self.nodes
-                .keep_ahead(index, self.epoch, index * NODE, parts);
+            self.nodes.fill_ahead(index, |found| *found = spheres);
         }
     }
 
-    /// The spheres that [`PosedMesh::fill`] computed for a node.
-    fn refitted(&mut self, node: usize) -> Spheres {
-        let mut found = Spheres::ZERO;
-        let parts = found.rows_mut().map(|row| &mut row[..]);
-        self.nodes.peek(node * NODE, parts);
-        found
-    }
-
-    fn fill_cluster(&mut self, mesh: &ColliderMesh, index: usize, out: &mut ClusterPositions) {
+    /// Skins a cluster and returns a sphere around it; `None` if it is dead.
+    fn fill_cluster(&mut self, mesh: &ColliderMesh, index: usize) -> Option<[f32; 4]> {
         let clusters = mesh.clusters();
         let cluster = &clusters.clusters[index];
-        skin_cluster(self.level, clusters, cluster, &self.palette, out);
-        let (slots, first) = (cluster.rows() * ROW, first_number(cluster));
-        let parts = out.0.each_ref().map(|axis| &axis[..slots]);
-        self.clusters.keep_ahead(index, self.epoch, first, parts);
+        if cluster.is_dead() {
+            return None;
+        }
+        let mut sphere = EMPTY;
+        let (level, palette) = (self.level, &self.palette);
+        self.clusters.fill_ahead(index, |found| {
+            found.skin(level, clusters, cluster, palette);
+            sphere = around_positions(&found.positions, cluster.rows() * ROW);
+        });
+        Some(sphere)
     }
 }
 

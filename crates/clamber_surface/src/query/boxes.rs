@@ -1,12 +1,15 @@
 //! Triangles that enter a box over the tick.
 
+use fearless_simd::{Simd, dispatch};
 use glam::Vec3;
 
 use super::cluster::PosedCluster;
+use super::instance::Instance;
 use super::traverse::traverse;
 use super::{ModelSpace, broad, root};
 use crate::mesh::TriangleId;
 use crate::mesh::hierarchy::LANES;
+use crate::pose::PosedMesh;
 
 /// A triangle that moves from the previous pose to the current one, in the current model frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,17 +53,35 @@ impl ModelSpace<'_> {
         if !is_box || !root::overlaps(&bounds, sides[0], sides[1]) {
             return;
         }
-        let mut posed = PosedCluster::new(instance, poses);
+        dispatch!(instance.simd_level.level(), simd => {
+            instance.descend_box(simd, poses, sides, &mut visit);
+        });
+    }
+}
+
+impl Instance {
+    #[cfg_attr(not(unoptimized), inline(always))]
+    fn descend_box<S: Simd>(
+        &self,
+        simd: S,
+        poses: [&PosedMesh; 2],
+        sides: [[f32; 3]; 2],
+        visit: &mut dyn FnMut(&MovingTriangle),
+    ) {
         traverse::<false>(
-            instance.mesh.hierarchy(),
+            self.mesh.hierarchy(),
             0.0,
+            #[cfg_attr(not(unoptimized), inline(always))]
             |node, _| {
-                let near = broad::near_box(&instance.spheres(poses, node), sides);
-                (near, [0.0; LANES])
+                let spheres = poses.map(|pose| pose.spheres(&self.mesh, node));
+                (broad::near_box(spheres, sides), [0.0; LANES])
             },
-            &mut |cluster, limit| {
-                if posed.visit(cluster) {
-                    for triangle in posed.enabled(posed.in_box(sides)) {
+            #[cfg_attr(not(unoptimized), inline(always))]
+            |cluster, limit| {
+                if let Some(posed) = PosedCluster::visit(self, poses, cluster)
+                    && posed.enters(sides)
+                {
+                    for triangle in posed.in_box(simd, sides).iter() {
                         let [previous, current] = posed.corners(triangle);
                         visit(&MovingTriangle {
                             triangle: posed.id(triangle),

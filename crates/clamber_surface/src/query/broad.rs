@@ -4,6 +4,7 @@
 //! touch. A distance whose square overflows is beyond any reach whose square does not. Squares that underflow do no
 //! harm, since every sphere has a radius of at least 2^-56.
 
+use fearless_simd::{Simd, f32x8, mask32x8, prelude::*};
 use glam::Vec3;
 
 use super::probe::{Probe, Sweep};
@@ -24,6 +25,242 @@ const LONG: f32 = (1u64 << 60) as f32;
 /// One bit per lane.
 pub(super) type LaneMask = u8;
 
+/// A number per lane.
+type Lanes<S> = f32x8<S>;
+
+#[cfg_attr(not(unoptimized), inline(always))]
+fn load<S: Simd>(simd: S, lanes: &[f32; LANES]) -> Lanes<S> {
+    Lanes::<S>::simd_from(simd, *lanes)
+}
+
+/// A point per lane, less a point that all share.
+#[cfg_attr(not(unoptimized), inline(always))]
+fn centers_from<S: Simd>(simd: S, spheres: &Spheres, origin: Vec3) -> [Lanes<S>; 3] {
+    [
+        load(simd, &spheres.x) - origin.x,
+        load(simd, &spheres.y) - origin.y,
+        load(simd, &spheres.z) - origin.z,
+    ]
+}
+
+#[cfg_attr(not(unoptimized), inline(always))]
+fn dot<S: Simd>([x, y, z]: [Lanes<S>; 3], [a, b, c]: [Lanes<S>; 3]) -> Lanes<S> {
+    x * a + y * b + z * c
+}
+
+/// The sums of absolute coordinates.
+#[cfg_attr(not(unoptimized), inline(always))]
+fn sizes<S: Simd>([x, y, z]: [Lanes<S>; 3]) -> Lanes<S> {
+    x.abs() + y.abs() + z.abs()
+}
+
+/// The larger number, by comparison; `b` where either is NaN.
+#[cfg_attr(not(unoptimized), inline(always))]
+fn larger<S: Simd>(a: Lanes<S>, b: Lanes<S>) -> Lanes<S> {
+    a.simd_gt(b).select(a, b)
+}
+
+/// The smaller number, by comparison; `b` where either is NaN.
+#[cfg_attr(not(unoptimized), inline(always))]
+fn less<S: Simd>(a: Lanes<S>, b: Lanes<S>) -> Lanes<S> {
+    a.simd_lt(b).select(a, b)
+}
+
+/// The lanes that are not in `beyond`.
+#[cfg_attr(not(unoptimized), inline(always))]
+fn others<S: Simd>(beyond: mask32x8<S>) -> LaneMask {
+    !(beyond.to_bitmask() as LaneMask)
+}
+
+/// Lanes whose sphere may hold something within the probe's reach, before the probe moves.
+#[cfg_attr(not(unoptimized), inline(always))]
+pub(super) fn near<S: Simd, const N: usize>(
+    simd: S,
+    spheres: &Spheres,
+    probe: &Probe<N>,
+) -> LaneMask {
+    let (distance_sq, lost) = from_core(simd, spheres, probe);
+    let reach = load(simd, &spheres.radius) + probe.reach + lost;
+    others(distance_sq.simd_gt(reach * reach * (1.0 + SLACK)))
+}
+
+/// Per lane a lower bound of the distance from a probe's core, before it moves, to the contents of the sphere. For a
+/// capsule it is 0 if the sphere is [`LONG`] away, or if the capsule's segment is that long: where a product overflows,
+/// the position on the segment is arbitrary.
+#[cfg_attr(not(unoptimized), inline(always))]
+pub(super) fn distances<S: Simd, const N: usize>(
+    simd: S,
+    spheres: &Spheres,
+    probe: &Probe<N>,
+) -> [f32; LANES] {
+    let (distance_sq, lost) = from_core(simd, spheres, probe);
+    let farthest = Lanes::<S>::splat(simd, SQUARE_OVERFLOWS);
+    let apart = less(distance_sq.sqrt(), farthest);
+    let radius = load(simd, &spheres.radius);
+    let gap = apart * (1.0 - SLACK) - radius * (1.0 + SLACK) - lost;
+    *larger(gap, Lanes::<S>::splat(simd, 0.0))
+}
+
+/// Squared distances of the centres from a probe's core, before it moves, and the allowance for rounding in the
+/// distances: infinite from [`LONG`] on.
+#[cfg_attr(not(unoptimized), inline(always))]
+fn from_core<S: Simd, const N: usize>(
+    simd: S,
+    spheres: &Spheres,
+    probe: &Probe<N>,
+) -> (Lanes<S>, Lanes<S>) {
+    let [a, b] = probe.segment();
+    let number = |x: f32| Lanes::<S>::splat(simd, x);
+    let mut from = centers_from(simd, spheres, a);
+    let mut lost = number(0.0);
+    if N == 2 {
+        let axis = b - a;
+        let length_sq = axis.length_squared();
+        let inverse = if length_sq > 0.0 {
+            1.0 / length_sq
+        } else {
+            0.0
+        };
+        let apart = sizes(from) + taxicab(axis);
+        let apart = apart
+            .simd_lt(number(LONG))
+            .select(apart, number(f32::INFINITY));
+        lost = apart * SLACK;
+        let along = (from[0] * axis.x + from[1] * axis.y + from[2] * axis.z) * inverse;
+        let along = less(larger(along, number(0.0)), number(1.0));
+        // Rounding in the position is harmless: a point that is off by rounding is hardly farther.
+        from[0] -= along * axis.x;
+        from[1] -= along * axis.y;
+        from[2] -= along * axis.z;
+    }
+    (dot(from, from), lost)
+}
+
+/// Lanes whose distance is at most `reach`.
+#[cfg_attr(not(unoptimized), inline(always))]
+pub(super) fn within<S: Simd>(simd: S, distances: &[f32; LANES], reach: f32) -> LaneMask {
+    let reach = Lanes::<S>::splat(simd, reach);
+    load(simd, distances).simd_le(reach).to_bitmask() as LaneMask
+}
+
+/// Lanes whose sphere a ray meets within `limit`, and per lane a lower bound of the distance along the ray to the
+/// contents of the sphere.
+///
+/// Computed from the perpendicular from the centre to the ray, which stays precise far from the origin, where the usual
+/// discriminant does not.
+#[cfg_attr(not(unoptimized), inline(always))]
+pub(super) fn along_ray<S: Simd>(
+    simd: S,
+    spheres: &Spheres,
+    ray: &Ray,
+    limit: f32,
+) -> (LaneMask, [f32; LANES]) {
+    let direction = ray.direction();
+    let from = centers_from(simd, spheres, ray.origin());
+    let along = from[0] * direction.x + from[1] * direction.y + from[2] * direction.z;
+    let aside = [
+        from[0] - along * direction.x,
+        from[1] - along * direction.y,
+        from[2] - along * direction.z,
+    ];
+    let radius = load(simd, &spheres.radius);
+    // The errors of the direction and of the triangle test are shares of this distance.
+    let reach = radius + (sizes(from) + radius) * SLACK;
+    let (first, last) = (along - reach, along + reach);
+    let beyond = dot(aside, aside).simd_gt(reach * reach * (1.0 + SLACK))
+        | first.simd_gt(Lanes::<S>::splat(simd, limit))
+        | last.simd_lt(Lanes::<S>::splat(simd, 0.0));
+    (others(beyond), *larger(first, Lanes::<S>::splat(simd, 0.0)))
+}
+
+/// Lanes whose contents a sweep may touch up to the time `limit`, and per lane a lower bound of the time of the first
+/// touch.
+///
+/// The contents of a sphere move on straight lines between the two poses. At time t they are within `(1 - t) r0 + t r1`
+/// of `(1 - t) c0 + t c1`: at most the larger radius. Relative to that centre the core moves on straight lines as well.
+#[cfg_attr(not(unoptimized), inline(always))]
+pub(super) fn along<S: Simd, const N: usize, const P: usize>(
+    simd: S,
+    spheres: [&Spheres; P],
+    sweep: &Sweep<N>,
+    limit: f32,
+) -> (LaneMask, [f32; LANES]) {
+    let ends = [spheres[0], spheres[P - 1]];
+    let mut during;
+    let ends = if P == 1 || sweep.span.is_whole() {
+        ends
+    } else {
+        during = ends.map(Spheres::clone);
+        let [first, last] = &mut during;
+        sweep.span.spheres([first, last]);
+        during.each_ref()
+    };
+    if N == 1 {
+        along_line(simd, ends, &sweep.probe, limit)
+    } else {
+        along_strip(ends, &sweep.probe, limit)
+    }
+}
+
+/// [`along`] for a swept sphere, by the perpendicular from a bounding sphere's centre to the path of the swept sphere's
+/// centre.
+#[cfg_attr(not(unoptimized), inline(always))]
+fn along_line<S: Simd, const N: usize>(
+    simd: S,
+    [start, end]: [&Spheres; 2],
+    probe: &Probe<N>,
+    limit: f32,
+) -> (LaneMask, [f32; LANES]) {
+    let (center, motion) = (probe.ends[0], probe.motions[0]);
+    let number = |x: f32| Lanes::<S>::splat(simd, x);
+    let zero = number(0.0);
+    let limit = number(limit);
+    let centers = |spheres: &Spheres| {
+        [
+            load(simd, &spheres.x),
+            load(simd, &spheres.y),
+            load(simd, &spheres.z),
+        ]
+    };
+    let ([x, y, z], [end_x, end_y, end_z]) = (centers(start), centers(end));
+    let from = [
+        number(center.x) - x,
+        number(center.y) - y,
+        number(center.z) - z,
+    ];
+    let way = [
+        (x - end_x) + motion.x,
+        (y - end_y) + motion.y,
+        (z - end_z) + motion.z,
+    ];
+    let length_sq = dot(way, way);
+    let moves = length_sq.simd_gt(number(f32::MIN_POSITIVE));
+    let inverse = moves.select(number(1.0) / length_sq, zero);
+    let closest = -dot(from, way) * inverse;
+    let time = less(larger(closest, zero), limit);
+    // Rounding in the time is harmless: a time that is off by rounding is hardly farther.
+    let nearest = [
+        from[0] + way[0] * time,
+        from[1] + way[1] * time,
+        from[2] + way[2] * time,
+    ];
+    let radius = larger(load(simd, &start.radius), load(simd, &end.radius));
+    let apart = sizes(from) + taxicab(motion) + radius + sizes(way);
+    let apart = apart
+        .simd_lt(number(LONG))
+        .select(apart, number(f32::INFINITY));
+    let reach = radius + probe.reach + (apart + probe.reach) * SLACK;
+    let begin = closest - reach * inverse.sqrt();
+    let first = moves.select(begin * (1.0 - SLACK) - SLACK, zero);
+    let first = larger(first, zero);
+    let beyond =
+        dot(nearest, nearest).simd_gt(reach * reach * (1.0 + SLACK)) | first.simd_gt(limit);
+    (others(beyond), *first)
+}
+
+/// Iterations of [`nearest_direction`]. More of them would hardly change the direction.
+const ROUNDS: usize = 3;
+
 #[cfg_attr(not(unoptimized), inline(always))]
 fn lanes(test: impl Fn(usize) -> bool) -> LaneMask {
     // Integers as wide as the numbers compared: otherwise the compiler splits the vectors.
@@ -34,179 +271,10 @@ fn lanes(test: impl Fn(usize) -> bool) -> LaneMask {
     bits.into_iter().fold(0, |found, bit| found | bit) as LaneMask
 }
 
-/// Lanes whose sphere may hold something within the probe's reach, before the probe moves.
-pub(super) fn near<const N: usize>(spheres: &Spheres, probe: &Probe<N>) -> LaneMask {
-    let (distance_sq, lost) = from_core(spheres, probe);
-    let mut reach_sq = [0.0; LANES];
-    for lane in 0..LANES {
-        let reach = spheres.radius[lane] + probe.reach + lost[lane];
-        reach_sq[lane] = reach * reach * (1.0 + SLACK);
-    }
-    #[expect(clippy::neg_cmp_op_on_partial_ord, reason = "NaN must touch")]
-    lanes(|lane| !(distance_sq[lane] > reach_sq[lane]))
-}
-
-/// Per lane a lower bound of the distance from a probe's core, before it moves, to the contents of the sphere. For a
-/// capsule it is 0 if the sphere is [`LONG`] away, or if the capsule's segment is that long: where a product overflows,
-/// the position on the segment is arbitrary.
-pub(super) fn distances<const N: usize>(spheres: &Spheres, probe: &Probe<N>) -> [f32; LANES] {
-    let (distance_sq, lost) = from_core(spheres, probe);
-    let mut found = [0.0; LANES];
-    for (lane, found) in found.iter_mut().enumerate() {
-        let apart = distance_sq[lane].sqrt();
-        let apart = if apart < SQUARE_OVERFLOWS {
-            apart
-        } else {
-            SQUARE_OVERFLOWS
-        };
-        let gap = apart * (1.0 - SLACK) - spheres.radius[lane] * (1.0 + SLACK) - lost[lane];
-        *found = if gap > 0.0 { gap } else { 0.0 };
-    }
-    found
-}
-
-/// Squared distances of the centres from a probe's core, before it moves, and the allowance for rounding in the
-/// distances: infinite from [`LONG`] on.
-#[cfg_attr(not(unoptimized), inline(always))]
-fn from_core<const N: usize>(spheres: &Spheres, probe: &Probe<N>) -> ([f32; LANES], [f32; LANES]) {
-    let [a, b] = probe.segment();
-    let axis = b - a;
-    let length_sq = axis.length_squared();
-    let inverse = if length_sq > 0.0 {
-        1.0 / length_sq
-    } else {
-        0.0
-    };
-    let size = taxicab(axis);
-    let [mut distance_sq, mut lost] = [[0.0; LANES]; 2];
-    for lane in 0..LANES {
-        let mut dx = spheres.x[lane] - a.x;
-        let mut dy = spheres.y[lane] - a.y;
-        let mut dz = spheres.z[lane] - a.z;
-        if N == 2 {
-            let apart = dx.abs() + dy.abs() + dz.abs() + size;
-            lost[lane] = SLACK * if apart < LONG { apart } else { f32::INFINITY };
-            let along = (dx * axis.x + dy * axis.y + dz * axis.z) * inverse;
-            let along = if along > 0.0 { along } else { 0.0 };
-            let along = if along < 1.0 { along } else { 1.0 };
-            // Rounding in the position is harmless: a point that is off by rounding is hardly farther.
-            dx -= axis.x * along;
-            dy -= axis.y * along;
-            dz -= axis.z * along;
-        }
-        distance_sq[lane] = dx * dx + dy * dy + dz * dz;
-    }
-    (distance_sq, lost)
-}
-
-/// Lanes whose distance is at most `reach`.
-pub(super) fn within(distances: &[f32; LANES], reach: f32) -> LaneMask {
-    lanes(|lane| distances[lane] <= reach)
-}
-
-/// Lanes whose sphere a ray meets within `limit`, and per lane a lower bound of the distance along the ray to the
-/// contents of the sphere.
-///
-/// Computed from the perpendicular from the centre to the ray, which stays precise far from the origin, where the usual
-/// discriminant does not.
-pub(super) fn along_ray(spheres: &Spheres, ray: &Ray, limit: f32) -> (LaneMask, [f32; LANES]) {
-    let (origin, direction) = (ray.origin(), ray.direction());
-    let [mut distance_sq, mut reach_sq] = [[0.0; LANES]; 2];
-    let [mut first, mut last] = [[0.0; LANES]; 2];
-    for lane in 0..LANES {
-        let dx = spheres.x[lane] - origin.x;
-        let dy = spheres.y[lane] - origin.y;
-        let dz = spheres.z[lane] - origin.z;
-        let along = dx * direction.x + dy * direction.y + dz * direction.z;
-        let ox = dx - direction.x * along;
-        let oy = dy - direction.y * along;
-        let oz = dz - direction.z * along;
-        distance_sq[lane] = ox * ox + oy * oy + oz * oz;
-        // The errors of the direction and of the triangle test are shares of this distance.
-        let apart = dx.abs() + dy.abs() + dz.abs();
-        let reach = spheres.radius[lane] + SLACK * (apart + spheres.radius[lane]);
-        reach_sq[lane] = reach * reach * (1.0 + SLACK);
-        first[lane] = along - reach;
-        last[lane] = along + reach;
-    }
-    #[expect(clippy::neg_cmp_op_on_partial_ord, reason = "NaN must touch")]
-    let met = lanes(|lane| {
-        !(distance_sq[lane] > reach_sq[lane]) && !(first[lane] > limit) && !(last[lane] < 0.0)
-    });
-    (met, first)
-}
-
-/// Lanes whose contents a sweep may touch up to the time `limit`, and per lane a lower bound of the time of the first
-/// touch.
-///
-/// The contents of a sphere move on straight lines between the two poses. At time t they are within `(1 - t) r0 + t r1`
-/// of `(1 - t) c0 + t c1`: at most the larger radius. Relative to that centre the core moves on straight lines as well.
-pub(super) fn along<const N: usize, const P: usize>(
-    spheres: &[Spheres; P],
-    sweep: &Sweep<N>,
-    limit: f32,
-) -> (LaneMask, [f32; LANES]) {
-    let ends = [&spheres[0], &spheres[P - 1]];
-    if N == 1 {
-        along_line(ends, &sweep.probe, limit)
-    } else {
-        along_strip(ends, &sweep.probe, limit)
-    }
-}
-
-/// [`along`] for a swept sphere, by the perpendicular from a bounding sphere's centre to the path of the swept sphere's
-/// centre.
-fn along_line<const N: usize>(
-    [start, end]: [&Spheres; 2],
-    probe: &Probe<N>,
-    limit: f32,
-) -> (LaneMask, [f32; LANES]) {
-    let (center, motion) = (probe.ends[0], probe.motions[0]);
-    let [mut distance_sq, mut reach_sq, mut first] = [[0.0; LANES]; 3];
-    for lane in 0..LANES {
-        let (x, y, z) = (
-            center.x - start.x[lane],
-            center.y - start.y[lane],
-            center.z - start.z[lane],
-        );
-        let (dx, dy, dz) = (
-            motion.x + (start.x[lane] - end.x[lane]),
-            motion.y + (start.y[lane] - end.y[lane]),
-            motion.z + (start.z[lane] - end.z[lane]),
-        );
-        let length_sq = dx * dx + dy * dy + dz * dz;
-        let moves = length_sq > f32::MIN_POSITIVE;
-        let inverse = if moves { 1.0 / length_sq } else { 0.0 };
-        let closest = -(x * dx + y * dy + z * dz) * inverse;
-        let time = if closest > 0.0 { closest } else { 0.0 };
-        let time = if time < limit { time } else { limit };
-        // Rounding in the time is harmless: a time that is off by rounding is hardly farther.
-        let (ox, oy, oz) = (x + dx * time, y + dy * time, z + dz * time);
-        distance_sq[lane] = ox * ox + oy * oy + oz * oz;
-        let size = x.abs() + y.abs() + z.abs() + taxicab(motion) + radius(start, end, lane);
-        let apart = size + dx.abs() + dy.abs() + dz.abs();
-        let apart = if apart < LONG { apart } else { f32::INFINITY };
-        let reach = radius(start, end, lane) + probe.reach + SLACK * (apart + probe.reach);
-        reach_sq[lane] = reach * reach * (1.0 + SLACK);
-        let begin = closest - reach * inverse.sqrt();
-        first[lane] = if moves {
-            begin * (1.0 - SLACK) - SLACK
-        } else {
-            0.0
-        };
-    }
-    let first = first.map(|time| if time > 0.0 { time } else { 0.0 });
-    #[expect(clippy::neg_cmp_op_on_partial_ord, reason = "NaN must touch")]
-    let near = lanes(|lane| !(distance_sq[lane] > reach_sq[lane]) && !(first[lane] > limit));
-    (near, first)
-}
-
-/// Iterations of [`nearest_direction`]. More of them would hardly change the direction.
-const ROUNDS: usize = 3;
-
 /// [`along`] for a swept capsule, by two directions: one for the whole path and one for its beginning. The segment's
 /// path has four corners. If all of them are farther along a direction than the radii, nothing is touched, however the
 /// direction was found.
+#[cfg_attr(not(unoptimized), inline(always))]
 fn along_strip<const N: usize>(
     [start, end]: [&Spheres; 2],
     probe: &Probe<N>,
@@ -239,7 +307,8 @@ fn along_strip<const N: usize>(
             until(near, near_later, reach[lane]),
             until(far, far_later, reach[lane]),
         );
-        first[lane] = begin * limit * (1.0 - SLACK);
+        let begin = begin * limit * (1.0 - SLACK);
+        first[lane] = if begin > 0.0 { begin } else { 0.0 };
     }
     #[expect(clippy::neg_cmp_op_on_partial_ord, reason = "NaN must touch")]
     let near = lanes(|lane| !(gap[lane] > reach[lane]) && !(first[lane] > limit));
@@ -248,6 +317,7 @@ fn along_strip<const N: usize>(
 
 /// Approximate unit direction from the origin to the nearest point of the parallelogram with a corner at `corner`; zero
 /// if that point is the origin.
+#[cfg_attr(not(unoptimized), inline(always))]
 fn nearest_direction(corner: Vec3, side: Vec3, other: Vec3) -> Vec3 {
     let [inverse, inverse_of_other] = [side, other].map(|side| {
         let length_sq = side.length_squared();
@@ -300,7 +370,8 @@ fn taxicab(v: Vec3) -> f32 {
 
 /// Lanes whose contents may enter the box between two poses. The contents stay in the box around the spheres at both
 /// poses.
-pub(super) fn near_box([start, end]: &[Spheres; 2], [low, high]: [[f32; 3]; 2]) -> LaneMask {
+#[cfg_attr(not(unoptimized), inline(always))]
+pub(super) fn near_box([start, end]: [&Spheres; 2], [low, high]: [[f32; 3]; 2]) -> LaneMask {
     let mut beyond = [false; LANES];
     for (axis, (first, last)) in axes(start).into_iter().zip(axes(end)).enumerate() {
         for lane in 0..LANES {

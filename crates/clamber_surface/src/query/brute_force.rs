@@ -48,9 +48,9 @@ impl<'a> BruteForce<'a> {
     pub fn cast_ray(&self, ray: &Ray, max_distance: f32) -> Option<SurfaceHit> {
         let sheared = ShearedRay::new(ray);
         let mut best = Best::within(length(max_distance)?);
-        for (triangle, _, corners) in self.triangles() {
+        for (triangle, part, corners) in self.triangles() {
             if let Some(found) = sheared.intersect(corners, best.limit()) {
-                best.offer(FoundPoint { triangle, found });
+                best.offer(FoundPoint { triangle, found }, part, || corners);
             }
         }
         best.hit(self.instance, ray.origin())
@@ -92,11 +92,9 @@ impl<'a> BruteForce<'a> {
 
     fn closest<const N: usize>(&self, probe: &Probe<N>, reach: f64) -> Option<SurfaceHit> {
         let mut best = Best::within(reach);
-        for (triangle, _, corners) in self.triangles() {
-            best.offer(FoundPoint {
-                triangle,
-                found: probe.closest(corners),
-            });
+        for (triangle, part, corners) in self.triangles() {
+            let found = probe.closest(corners);
+            best.offer(FoundPoint { triangle, found }, part, || corners);
         }
         best.hit(self.instance, probe.middle())
     }

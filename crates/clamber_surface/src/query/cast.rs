@@ -6,9 +6,10 @@
 //! contact](crate::geometry::triangle::first_contact) is computed, eight triangles at a time. If only the first contact
 //! of all is asked for, every stage stops at the earliest contact found so far.
 
+use fearless_simd::{Simd, dispatch};
 use glam::Vec3;
 
-use super::cluster::{PosedCluster, by_eight};
+use super::cluster::PosedCluster;
 use super::hit::{Earliest, First, sort_by_time};
 use super::instance::Instance;
 use super::probe::{Sweep, with_probe};
@@ -225,26 +226,15 @@ impl Instance {
         let mut earliest = Earliest::default();
         // The triangle that is touched by then may be one that `counts` rejects.
         let every_one_counts = counts.is_none();
-        self.visit_contacts::<true, N, P>(
-            poses,
-            sweep,
-            |posed| {
-                if every_one_counts {
-                    posed.touched_by(&sweep.probe).into()
-                } else {
-                    f64::INFINITY
-                }
-            },
-            |first| {
-                let is_counted = counts.as_mut().is_none_or(|counts| {
-                    self.sweep_hit(sweep, first).is_some_and(|hit| counts(&hit))
-                });
-                if is_counted {
-                    earliest.offer(first);
-                }
-                earliest.limit()
-            },
-        );
+        self.visit_contacts::<true, N, P>(poses, sweep, every_one_counts, &mut |first| {
+            let is_counted = counts
+                .as_mut()
+                .is_none_or(|counts| self.sweep_hit(sweep, first).is_some_and(|hit| counts(&hit)));
+            if is_counted {
+                earliest.offer(first);
+            }
+            earliest.limit()
+        });
         earliest.hit(self, sweep)
     }
 
@@ -256,62 +246,89 @@ impl Instance {
         hits: &mut Vec<SweepHit>,
     ) {
         if let Some(sweep) = &near(poses, sweep) {
-            self.visit_contacts::<false, N, P>(
-                poses,
-                sweep,
-                |_| f64::INFINITY,
-                |first| {
-                    hits.extend(self.sweep_hit(sweep, first));
-                    1.0
-                },
-            );
+            self.visit_contacts::<false, N, P>(poses, sweep, false, &mut |first| {
+                hits.extend(self.sweep_hit(sweep, first));
+                1.0
+            });
         }
     }
 
     /// Calls `visit` with the first contact of every triangle that is touched before contacts stop mattering. `visit`
-    /// returns the last time that still matters. Within a cluster, `touched_by` gives another upper limit of that time.
-    fn visit_contacts<'a, const EARLIEST_FIRST: bool, const N: usize, const P: usize>(
-        &'a self,
-        poses: [&'a PosedMesh; P],
+    /// returns the last time that still matters. If `every_one_counts`, nothing matters that is later than a touch of a
+    /// vertex.
+    fn visit_contacts<const EARLIEST_FIRST: bool, const N: usize, const P: usize>(
+        &self,
+        poses: [&PosedMesh; P],
         sweep: &Sweep<N>,
-        touched_by: impl Fn(&PosedCluster<'a, P>) -> f64,
-        mut visit: impl FnMut(First) -> f64,
+        every_one_counts: bool,
+        visit: &mut dyn FnMut(First) -> f64,
     ) {
-        let mut posed = PosedCluster::during(self, poses, sweep.span);
+        dispatch!(self.simd_level.level(), simd => {
+            self.descend_cast::<_, EARLIEST_FIRST, N, P>(simd, poses, sweep, every_one_counts, visit);
+        });
+    }
+
+    #[cfg_attr(not(unoptimized), inline(always))]
+    fn descend_cast<S: Simd, const EARLIEST_FIRST: bool, const N: usize, const P: usize>(
+        &self,
+        simd: S,
+        poses: [&PosedMesh; P],
+        sweep: &Sweep<N>,
+        every_one_counts: bool,
+        visit: &mut dyn FnMut(First) -> f64,
+    ) {
+        let path = sweep.bounds();
         let (mut tested, mut steps) = (0, 0);
         traverse::<EARLIEST_FIRST>(
             self.mesh.hierarchy(),
             1.0,
+            #[cfg_attr(not(unoptimized), inline(always))]
             |node, limit| {
-                let mut spheres = self.spheres(poses, node);
-                if let ([first, .., last], false) = (&mut spheres[..], sweep.span.is_whole()) {
-                    sweep.span.spheres([first, last]);
-                }
-                broad::along(&spheres, sweep, round_up_to_f32(limit))
+                let spheres = poses.map(|pose| pose.spheres(&self.mesh, node));
+                broad::along(simd, spheres, sweep, limit)
             },
-            &mut |cluster, mut limit| {
-                if !posed.visit(cluster) {
+            #[cfg_attr(not(unoptimized), inline(always))]
+            |cluster, limit| {
+                let Some(posed) = PosedCluster::visit(self, poses, cluster) else {
+                    return Some(limit);
+                };
+                if !posed.enters(path) {
                     return Some(limit);
                 }
-                let mut until = limit.min(touched_by(&posed));
-                let survivors = posed.near(&sweep.probe, round_up_to_f32(until));
-                by_eight(posed.enabled(survivors), |batch| {
-                    let corners = posed.batch(batch);
-                    let level = posed.level();
-                    let found = first_contact_of_eight(level, &corners, &sweep.core, until);
-                    tested += batch.len();
-                    steps = steps.max(found.steps);
-                    for (lane, triangle) in batch.iter().enumerate() {
-                        if let Some(contact) = found.get(lane) {
-                            limit = visit(First {
-                                triangle: posed.id(*triangle),
-                                corners: [corners[0].get(lane), corners[P - 1].get(lane)],
-                                contact,
-                            });
-                            until = until.min(limit);
-                        }
-                    }
-                });
+                let mut ends;
+                let posed = if P == 1 || sweep.span.is_whole() {
+                    posed
+                } else {
+                    ends = Default::default();
+                    posed.during(&sweep.span, &mut ends)
+                };
+                let mut limit = limit;
+                let mut until = limit;
+                if every_one_counts {
+                    until = until.min(posed.touched_by(simd, &sweep.probe).into());
+                }
+                posed
+                    .near(simd, &sweep.probe, round_up_to_f32(until))
+                    .by_eight(
+                        #[cfg_attr(not(unoptimized), inline(always))]
+                        |batch| {
+                            let corners = posed.batch(batch);
+                            let found =
+                                first_contact_of_eight(posed.level(), &corners, &sweep.core, until);
+                            tested += batch.len();
+                            steps = steps.max(found.steps);
+                            for (lane, triangle) in batch.iter().enumerate() {
+                                if let Some(contact) = found.get(lane) {
+                                    limit = visit(First {
+                                        triangle: posed.id(usize::from(*triangle)),
+                                        corners: [corners[0].get(lane), corners[P - 1].get(lane)],
+                                        contact,
+                                    });
+                                    until = until.min(limit);
+                                }
+                            }
+                        },
+                    );
                 Some(limit)
             },
         );

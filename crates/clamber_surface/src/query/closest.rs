@@ -1,6 +1,7 @@
+use fearless_simd::{Simd, dispatch};
 use glam::Vec3;
 
-use super::cluster::{PosedCluster, by_eight};
+use super::cluster::PosedCluster;
 use super::hit::{Best, FoundPoint, capsule_hit};
 use super::instance::Instance;
 use super::probe::{BLUR, Probe, with_probe};
@@ -38,34 +39,55 @@ impl Instance {
         if !root::overlaps(self.current.root(), low, high) {
             return None;
         }
-        let mut posed = PosedCluster::new(self, [&self.current]);
+        dispatch!(self.simd_level.level(), simd => {
+            self.descend_closest(simd, probe, [size, blur], &mut best);
+        });
+        best.hit(self, probe.middle())
+    }
+
+    #[cfg_attr(not(unoptimized), inline(always))]
+    fn descend_closest<S: Simd, const N: usize>(
+        &self,
+        simd: S,
+        probe: &Probe<N>,
+        [size, blur]: [f64; 2],
+        best: &mut Best,
+    ) {
         let mut tested = 0;
         traverse::<true>(
             self.mesh.hierarchy(),
-            reach + blur,
+            best.limit() + blur,
+            #[cfg_attr(not(unoptimized), inline(always))]
             |node, limit| {
                 let spheres = self.current.spheres(&self.mesh, node);
-                let distances = broad::distances(&spheres, probe);
-                (broad::within(&distances, round_up_to_f32(limit)), distances)
+                let distances = broad::distances(simd, spheres, probe);
+                (broad::within(simd, &distances, limit), distances)
             },
-            &mut |cluster, limit| {
-                if !posed.visit(cluster) {
+            #[cfg_attr(not(unoptimized), inline(always))]
+            |cluster, limit| {
+                let Some(posed) = PosedCluster::visit(self, [&self.current], cluster) else {
+                    return Some(limit);
+                };
+                if !posed.comes_within(probe, round_up_to_f32(limit)) {
                     return Some(limit);
                 }
                 // No triangle farther than the nearest vertex matters, except for rounding in its measured distance.
                 let (point, lost) = probe.facing(posed.somewhere()[0]);
-                let vertex = f64::from(posed.nearest_vertex(point)) + lost;
+                let vertex = f64::from(posed.nearest_vertex(simd, point)) + lost;
                 let near = best.limit().min(vertex + BLUR * size) + blur;
-                by_eight(
-                    posed.enabled(posed.near(&probe.reaching(near), 0.0)),
+                let survivors = posed.near(simd, &probe.reaching(near), 0.0);
+                survivors.by_eight(
+                    #[cfg_attr(not(unoptimized), inline(always))]
                     |batch| {
                         tested += batch.len();
-                        let points = probe.closest_of_eight(posed.level(), &posed.batch(batch)[0]);
+                        let corners = posed.batch(batch);
+                        let points = probe.closest_of_eight(posed.level(), &corners[0]);
                         for (lane, triangle) in batch.iter().enumerate() {
-                            best.offer(FoundPoint {
-                                triangle: posed.id(*triangle),
+                            let candidate = FoundPoint {
+                                triangle: posed.id(usize::from(*triangle)),
                                 found: points.get(lane),
-                            });
+                            };
+                            best.offer(candidate, posed.part(), || corners[0].get(lane));
                         }
                     },
                 );
@@ -73,6 +95,5 @@ impl Instance {
             },
         );
         self.count_tested(tested, 0);
-        best.hit(self, probe.middle())
     }
 }

@@ -1,3 +1,4 @@
+use fearless_simd::Simd;
 use glam::Vec3;
 
 use super::broad::SLACK;
@@ -11,61 +12,67 @@ use crate::mesh::clusters::{BLOCK, Cluster, CornerBlock, MAX_SLOTS};
 use crate::mesh::{PartId, TriangleId};
 use crate::pose::PosedMesh;
 use crate::simd::SimdLevel;
-use crate::skin::ClusterPositions;
+use crate::skin::{ClusterPositions, SkinnedCluster};
 
 /// Number of vertices whose mean tells where a cluster is.
 const SAMPLES: usize = 8;
 
-/// A cluster as skinned in one pose (P = 1), or in the two poses that it moves between (P = 2), with its positions
-/// copied from their caches.
+/// A cluster as skinned in one pose (P = 1), or at the two ends of a motion (P = 2).
 pub(super) struct PosedCluster<'a, const P: usize> {
     instance: &'a Instance,
-    poses: [&'a PosedMesh; P],
     cluster: &'a Cluster,
     corners: &'a [CornerBlock],
     triangles: &'a [TriangleId],
-    positions: [ClusterPositions; P],
-    /// The part of the motion between two poses.
-    span: Span,
+    skinned: [&'a SkinnedCluster; P],
 }
 
 impl<'a, const P: usize> PosedCluster<'a, P> {
-    /// Holds no cluster yet: call [`PosedCluster::visit`] first. Made once per query, since it is large.
-    pub(super) fn new(instance: &'a Instance, poses: [&'a PosedMesh; P]) -> Self {
-        Self::during(instance, poses, Span::WHOLE)
-    }
-
-    /// The same for a part of the motion between two poses: the cluster moves from where it is at the start of the span to
-    /// where it is at its end.
-    pub(super) fn during(instance: &'a Instance, poses: [&'a PosedMesh; P], span: Span) -> Self {
-        Self {
-            span,
-            instance,
-            poses,
-            cluster: &Cluster::NONE,
-            corners: &[],
-            triangles: &[],
-            positions: [ClusterPositions::ZERO; P],
-        }
-    }
-
-    /// Loads a cluster; false if it is dead or its part is disabled.
-    pub(super) fn visit(&mut self, index: u32) -> bool {
-        let (instance, mesh) = (self.instance, &self.instance.mesh);
+    /// A cluster in the given poses; `None` if it is dead or its part is disabled.
+    #[cfg_attr(not(unoptimized), inline(always))]
+    pub(super) fn visit(
+        instance: &'a Instance,
+        poses: [&'a PosedMesh; P],
+        index: u32,
+    ) -> Option<Self> {
+        let mesh = &instance.mesh;
         let clusters = mesh.clusters();
-        self.cluster = &clusters.clusters[index as usize];
-        if self.cluster.is_dead() || !instance.part_enabled[self.cluster.part.index()] {
-            return false;
+        let cluster = &clusters.clusters[index as usize];
+        let is_there = !cluster.is_dead() && instance.part_enabled[cluster.part.index()];
+        is_there.then(|| Self {
+            instance,
+            cluster,
+            corners: cluster.corners(clusters),
+            triangles: cluster.triangles(clusters),
+            skinned: poses.map(|pose| pose.cluster(mesh, index)),
+        })
+    }
+
+    /// The same for a part of the motion: the cluster moves from where it is at the start of the span to where it is at
+    /// its end. `ends` takes its positions there.
+    pub(super) fn during<'b>(
+        self,
+        span: &Span,
+        ends: &'b mut [SkinnedCluster; 2],
+    ) -> PosedCluster<'b, P>
+    where
+        'a: 'b,
+    {
+        let [first, last] = ends;
+        first.clone_from(self.skinned[0]);
+        last.clone_from(self.skinned[P - 1]);
+        span.positions(
+            [&mut first.positions, &mut last.positions],
+            self.cluster.rows(),
+        );
+        let mut skinned = [&*first; P];
+        skinned[P - 1] = last;
+        PosedCluster {
+            instance: self.instance,
+            cluster: self.cluster,
+            corners: self.corners,
+            triangles: self.triangles,
+            skinned,
         }
-        self.corners = self.cluster.corners(clusters);
-        self.triangles = self.cluster.triangles(clusters);
-        for (pose, positions) in self.poses.iter().zip(&mut self.positions) {
-            pose.positions(mesh, index, positions);
-        }
-        if let ([first, .., last], false) = (&mut self.positions[..], self.span.is_whole()) {
-            self.span.positions([first, last], self.cluster.rows());
-        }
-        true
     }
 
     pub(super) fn level(&self) -> SimdLevel {
@@ -80,30 +87,76 @@ impl<'a, const P: usize> PosedCluster<'a, P> {
         self.triangles[triangle]
     }
 
+    fn positions(&self) -> [&'a ClusterPositions; P] {
+        self.skinned.map(|skinned| &skinned.positions)
+    }
+
+    /// False only if nothing of the cluster comes into a box, at the ends of its motion or between them.
+    #[cfg_attr(not(unoptimized), inline(always))]
+    pub(super) fn enters(&self, [low, high]: [[f32; 3]; 2]) -> bool {
+        let (first, last) = (self.skinned[0], self.skinned[P - 1]);
+        let mut beyond = false;
+        for axis in 0..3 {
+            beyond |= (first.low[axis] > high[axis]) & (last.low[axis] > high[axis]);
+            beyond |= (first.high[axis] < low[axis]) & (last.high[axis] < low[axis]);
+        }
+        !beyond
+    }
+
+    /// False only if nothing of the cluster comes within a distance of a probe's core before it moves. For a capsule, that
+    /// is measured from the box around its segment.
+    #[cfg_attr(not(unoptimized), inline(always))]
+    pub(super) fn comes_within<const N: usize>(&self, probe: &Probe<N>, distance: f32) -> bool {
+        let [a, b] = probe.segment();
+        let ([first, last], skinned) = ([a.min(b), a.max(b)], self.skinned[0]);
+        let mut square = 0.0;
+        for axis in 0..3 {
+            // Differences of f32 have an error of half a unit in the last place.
+            let below = skinned.low[axis] - last[axis];
+            let above = first[axis] - skinned.high[axis];
+            let apart = if below > above { below } else { above };
+            let apart = if apart > 0.0 { apart } else { 0.0 };
+            square += apart * apart;
+        }
+        let reach = distance * (1.0 + SLACK);
+        // Squares that overflow are beyond any reach whose square does not; so are those of NaN, which do not occur.
+        square <= reach * reach || square <= f32::MIN_POSITIVE
+    }
+
     /// Triangles that a probe may touch up to the time `until`, by their number in the cluster.
-    pub(super) fn near<const N: usize>(&self, probe: &Probe<N>, until: f32) -> Survivors {
+    #[cfg_attr(not(unoptimized), inline(always))]
+    pub(super) fn near<S: Simd, const N: usize>(
+        &self,
+        simd: S,
+        probe: &Probe<N>,
+        until: f32,
+    ) -> Survivors {
         let mut targets = self.somewhere();
         targets[P - 1] = targets[0] + (targets[P - 1] - targets[0]) * until;
         let planes = Planes::facing(probe, until, targets);
-        let (positions, rows) = (self.positions.each_ref(), self.cluster.rows());
-        narrow::within_planes(self.level(), positions, rows, self.corners, &planes, until)
+        let rows = self.cluster.rows();
+        let survivors =
+            narrow::within_planes(simd, self.positions(), rows, self.corners, &planes, until);
+        self.enabled(survivors)
     }
 
     /// Triangles whose bounding boxes over the motion overlap a box.
-    pub(super) fn in_box(&self, sides: [[f32; 3]; 2]) -> Survivors {
-        let (positions, rows) = (self.positions.each_ref(), self.cluster.rows());
-        narrow::in_box(self.level(), positions, rows, self.corners, sides)
+    #[cfg_attr(not(unoptimized), inline(always))]
+    pub(super) fn in_box<S: Simd>(&self, simd: S, sides: [[f32; 3]; 2]) -> Survivors {
+        let rows = self.cluster.rows();
+        let survivors = narrow::in_box(simd, self.positions(), rows, self.corners, sides);
+        self.enabled(survivors)
     }
 
     /// A time by which one of the triangles is touched. Infinite if some triangles are hidden, since the vertex that is
     /// touched may belong to those alone.
-    pub(super) fn touched_by<const N: usize>(&self, probe: &Probe<N>) -> f32 {
+    #[cfg_attr(not(unoptimized), inline(always))]
+    pub(super) fn touched_by<S: Simd, const N: usize>(&self, simd: S, probe: &Probe<N>) -> f32 {
         if !self.is_whole() {
             return f32::INFINITY;
         }
         let ball = self.facing_ball(probe);
-        let (positions, rows) = (self.positions.each_ref(), self.cluster.rows());
-        narrow::touched_by(self.level(), positions, rows, &ball)
+        narrow::touched_by(simd, self.positions(), self.cluster.rows(), &ball)
     }
 
     /// The ball on the capsule's segment that is about nearest to the cluster at the start.
@@ -124,13 +177,14 @@ impl<'a, const P: usize> PosedCluster<'a, P> {
         }
     }
 
-    /// The survivors that are enabled, by number in the cluster.
-    pub(super) fn enabled(&self, survivors: Survivors) -> impl Iterator<Item = usize> {
-        let beyond = self.triangles.len();
+    /// The survivors that exist and are enabled.
+    #[cfg_attr(not(unoptimized), inline(always))]
+    fn enabled(&self, mut survivors: Survivors) -> Survivors {
+        survivors.truncate(self.triangles.len());
+        if self.instance.hidden_triangles > 0 {
+            survivors.retain(|triangle| self.instance.shows(self.triangles[triangle]));
+        }
         survivors
-            .iter()
-            .take_while(move |triangle| *triangle < beyond)
-            .filter(|triangle| self.instance.shows(self.triangles[*triangle]))
     }
 
     /// True if all triangles of the cluster are enabled.
@@ -140,10 +194,11 @@ impl<'a, const P: usize> PosedCluster<'a, P> {
     }
 
     /// A point near the cluster's middle in each pose: the mean of a few vertices.
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(super) fn somewhere(&self) -> [Vec3; P] {
         let slots = usize::from(self.cluster.slots);
         let mut means = [Vec3::ZERO; P];
-        for (mean, positions) in means.iter_mut().zip(&self.positions) {
+        for (mean, positions) in means.iter_mut().zip(self.positions()) {
             for k in 0..SAMPLES {
                 *mean += position(positions, k * slots / SAMPLES);
             }
@@ -153,30 +208,35 @@ impl<'a, const P: usize> PosedCluster<'a, P> {
     }
 
     /// The corners of a triangle in each pose.
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(super) fn corners(&self, triangle: usize) -> [[Vec3; 3]; P] {
         let mut corners = [[Vec3::ZERO; 3]; P];
-        for (corners, positions) in corners.iter_mut().zip(&self.positions) {
+        for (corners, positions) in corners.iter_mut().zip(self.positions()) {
             *corners = self.corners_in(positions, triangle);
         }
         corners
     }
 
-    /// The corners of a triangle, looked up in the given positions of the slots.
-    #[inline]
-    pub(super) fn corners_in(&self, positions: &ClusterPositions, triangle: usize) -> [Vec3; 3] {
+    #[cfg_attr(not(unoptimized), inline(always))]
+    fn corners_in(&self, positions: &ClusterPositions, triangle: usize) -> [Vec3; 3] {
         let CornerBlock([a, b, c]) = &self.corners[triangle / BLOCK];
         let slot = |corners: &[u8; BLOCK]| usize::from(corners[triangle % BLOCK]) % MAX_SLOTS;
-        [slot(a), slot(b), slot(c)].map(|slot| position(positions, slot))
+        [
+            position(positions, slot(a)),
+            position(positions, slot(b)),
+            position(positions, slot(c)),
+        ]
     }
 
     /// The corners of up to eight triangles in each pose; unused lanes repeat the first triangle.
-    pub(super) fn batch(&self, triangles: &[usize]) -> [Corners8; P] {
+    #[cfg_attr(not(unoptimized), inline(always))]
+    pub(super) fn batch(&self, triangles: &[u8]) -> [Corners8; P] {
         let mut batches = [Corners8::default(); P];
-        for (batch, positions) in batches.iter_mut().zip(&self.positions) {
+        for (batch, positions) in batches.iter_mut().zip(self.positions()) {
             for lane in 0..EIGHT {
                 let triangle = triangles.get(lane).or(triangles.first());
                 if let Some(triangle) = triangle {
-                    batch.set(lane, self.corners_in(positions, *triangle));
+                    batch.set(lane, self.corners_in(positions, usize::from(*triangle)));
                 }
             }
         }
@@ -185,56 +245,39 @@ impl<'a, const P: usize> PosedCluster<'a, P> {
 }
 
 impl PosedCluster<'_, 1> {
-    /// Triangles that a ray may meet up to the distance `limit`; `sheared` receives the sheared positions.
-    pub(super) fn along_ray(
-        &self,
-        ray: &ShearedRay,
-        limit: f32,
-        sheared: &mut ClusterPositions,
-    ) -> Survivors {
-        narrow::along_ray(
-            self.level(),
-            &self.positions[0],
-            self.cluster.rows(),
-            self.corners,
-            ray,
-            limit,
-            sheared,
-        )
+    /// False only if a ray passes by the box around the cluster.
+    #[cfg_attr(not(unoptimized), inline(always))]
+    pub(super) fn may_meet(&self, ray: &ShearedRay, limit: f32) -> bool {
+        let [skinned] = self.skinned;
+        ray.may_meet_box(skinned.low, skinned.high, limit)
+    }
+
+    /// Triangles that a ray may meet up to the distance `limit`.
+    #[cfg_attr(not(unoptimized), inline(always))]
+    pub(super) fn along_ray<S: Simd>(&self, simd: S, ray: &ShearedRay, limit: f32) -> Survivors {
+        let [positions] = self.positions();
+        let rows = self.cluster.rows();
+        let survivors = narrow::along_ray(simd, positions, rows, self.corners, ray, limit);
+        self.enabled(survivors)
     }
 
     /// An upper bound of the distance from a point to the nearest vertex. Infinite if some triangles are hidden, since
     /// that vertex may belong to those alone.
-    pub(super) fn nearest_vertex(&self, point: Vec3) -> f32 {
+    #[cfg_attr(not(unoptimized), inline(always))]
+    pub(super) fn nearest_vertex<S: Simd>(&self, simd: S, point: Vec3) -> f32 {
         if !self.is_whole() {
             return f32::INFINITY;
         }
-        let rows = self.cluster.rows();
-        narrow::nearest_vertex(self.level(), &self.positions[0], rows, point.to_array())
+        let ([positions], rows) = (self.positions(), self.cluster.rows());
+        narrow::nearest_vertex(simd, positions, rows, point.to_array())
     }
 }
 
-#[inline]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn position(positions: &ClusterPositions, slot: usize) -> Vec3 {
     Vec3::new(
         positions.0[0][slot],
         positions.0[1][slot],
         positions.0[2][slot],
     )
-}
-
-/// Calls `test` with up to eight items at a time, in order.
-pub(super) fn by_eight(mut items: impl Iterator<Item = usize>, mut test: impl FnMut(&[usize])) {
-    let mut batch = [0; EIGHT];
-    loop {
-        let mut count = 0;
-        for (place, item) in batch.iter_mut().zip(&mut items) {
-            *place = item;
-            count += 1;
-        }
-        if count == 0 {
-            return;
-        }
-        test(&batch[..count]);
-    }
 }

@@ -107,7 +107,8 @@ pub(super) fn sort_by_distance(hits: &mut [SurfaceHit]) {
 /// tested does not matter.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Best {
-    nearest: Option<FoundPoint>,
+    /// With the triangle's part and corners.
+    nearest: Option<(FoundPoint, PartId, [Vec3; 3])>,
     limit: f64,
 }
 
@@ -125,22 +126,28 @@ impl Best {
         self.limit
     }
 
-    pub(super) fn offer(&mut self, candidate: FoundPoint) {
+    /// Takes a triangle, of a part and with corners, if it is the nearest.
+    #[cfg_attr(not(unoptimized), inline(always))]
+    pub(super) fn offer(
+        &mut self,
+        candidate: FoundPoint,
+        part: PartId,
+        corners: impl FnOnce() -> [Vec3; 3],
+    ) {
         let nearer = match &self.nearest {
-            Some(best) => candidate.compare(best).is_lt(),
+            Some((best, ..)) => candidate.compare(best).is_lt(),
             None => candidate.found.distance <= self.limit,
         };
         if nearer {
             self.limit = candidate.found.distance;
-            self.nearest = Some(candidate);
+            self.nearest = Some((candidate, part, corners()));
         }
     }
 
     /// The best as a hit; `origin` is the query's origin, as for [`Instance::hit`].
     pub(super) fn hit(&self, instance: &Instance, origin: Vec3) -> Option<SurfaceHit> {
-        let nearest = self.nearest?;
-        let part = instance.mesh.part_of(nearest.triangle)?;
-        Some(instance.hit(nearest, part, instance.corners(nearest.triangle), origin))
+        let (nearest, part, corners) = self.nearest?;
+        Some(instance.hit(nearest, part, corners, origin))
     }
 }
 

@@ -42,7 +42,7 @@ impl ModelSpace<'_> {
         };
         let mut crossings = 0;
         let instance = self.instance;
-        instance.visit_ray(&ray, f64::INFINITY, |posed, triangle, _| {
+        instance.visit_ray(&ray, f64::INFINITY, &mut |posed, triangle, _| {
             let [corners] = posed.corners(triangle);
             let outward = instance.outward_normal(corners, posed.part());
             let along = outward.map_or(0.0, |normal| normal.dot(direction.as_dvec3()));

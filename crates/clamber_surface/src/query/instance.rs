@@ -4,7 +4,6 @@ use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
 
 use glam::{DVec3, Vec3};
 
-use crate::bounds::Spheres;
 use crate::geometry::triangle::scaled_normal;
 use crate::mesh::{ColliderMesh, PartId, TriangleId, VertexId};
 use crate::pose::PosedMesh;
@@ -73,19 +72,6 @@ impl Instance {
     /// The corners of a triangle now.
     pub(crate) fn corners(&self, triangle: TriangleId) -> [Vec3; 3] {
         self.corners_in(&self.current, triangle)
-    }
-
-    /// Bounding spheres of the children of a node, in each pose.
-    pub(super) fn spheres<const P: usize>(
-        &self,
-        poses: [&PosedMesh; P],
-        node: u32,
-    ) -> [Spheres; P] {
-        let mut found = [Spheres::ZERO; P];
-        for (found, pose) in found.iter_mut().zip(poses) {
-            *found = pose.spheres(&self.mesh, node);
-        }
-        found
     }
 
     /// The outward unit normal of a posed triangle; `None` if it has no area.

@@ -6,13 +6,12 @@
 //! 3.12). Codes are computed for as many vertices at once as a SIMD register holds, and looked up for 32 triangles at
 //! once. A vertex that moves is beyond a plane if it is so at both ends of its path.
 
-use fearless_simd::{Level, Select, Simd, SimdBase, SimdFloat, SimdMask, dispatch, u8x32};
+use fearless_simd::{Level, Select, Simd, SimdBase, SimdFloat, SimdMask, u8x32};
 
 use super::broad::SLACK;
 use super::planes::Planes;
-use crate::geometry::triangle::ShearedRay;
+use crate::geometry::triangle::{EIGHT, ShearedRay};
 use crate::mesh::clusters::{BLOCK, CornerBlock, MAX_SLOTS, MAX_TRIANGLES, ROW};
-use crate::simd::SimdLevel;
 use crate::skin::ClusterPositions;
 
 /// The triangles of a cluster that are not ruled out, one bit each.
@@ -20,18 +19,65 @@ use crate::skin::ClusterPositions;
 pub(super) struct Survivors([u32; MAX_TRIANGLES / BLOCK]);
 
 impl Survivors {
+    /// Drops all from `count` on.
+    #[cfg_attr(not(unoptimized), inline(always))]
+    pub(super) fn truncate(&mut self, count: usize) {
+        for (block, bits) in self.0.iter_mut().enumerate() {
+            let left = count.saturating_sub(block * BLOCK);
+            if left < BLOCK {
+                *bits &= (1 << left) - 1;
+            }
+        }
+    }
+
+    /// Keeps those that `keeps` accepts.
+    #[inline(never)]
+    pub(super) fn retain(&mut self, keeps: impl Fn(usize) -> bool) {
+        for triangle in (*self).iter() {
+            if !keeps(triangle) {
+                self.0[triangle / BLOCK] &= !(1 << (triangle % BLOCK));
+            }
+        }
+    }
+
     /// Triangles by ascending number.
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(super) fn iter(self) -> impl Iterator<Item = usize> {
-        self.0
-            .into_iter()
-            .enumerate()
-            .flat_map(|(block, mut bits)| {
-                std::iter::from_fn(move || {
-                    let bit = bits.trailing_zeros() as usize;
-                    bits &= bits.wrapping_sub(1);
-                    (bit < BLOCK).then_some(block * BLOCK + bit)
-                })
-            })
+        let Self(mut blocks) = self;
+        let mut block = 0;
+        std::iter::from_fn(
+            #[cfg_attr(not(unoptimized), inline(always))]
+            move || {
+                while block < blocks.len() {
+                    let bits = &mut blocks[block];
+                    if *bits != 0 {
+                        let bit = bits.trailing_zeros() as usize;
+                        *bits &= *bits - 1;
+                        return Some(block * BLOCK + bit);
+                    }
+                    block += 1;
+                }
+                None
+            },
+        )
+    }
+
+    /// Calls `test` with up to eight triangles at a time, in order.
+    #[cfg_attr(not(unoptimized), inline(always))]
+    pub(super) fn by_eight(self, mut test: impl FnMut(&[u8])) {
+        let mut batch = [0; EIGHT];
+        let mut count = 0;
+        for triangle in self.iter() {
+            batch[count % EIGHT] = triangle as u8;
+            count += 1;
+            if count == EIGHT {
+                test(&batch);
+                count = 0;
+            }
+        }
+        if count > 0 {
+            test(&batch[..count.min(EIGHT)]);
+        }
     }
 }
 
@@ -39,61 +85,57 @@ impl Survivors {
 type Codes = [u8; MAX_SLOTS];
 
 /// Triangles that no plane rules out up to the time `until`.
-pub(super) fn within_planes<const P: usize>(
-    level: SimdLevel,
+#[cfg_attr(not(unoptimized), inline(always))]
+pub(super) fn within_planes<S: Simd, const P: usize>(
+    simd: S,
     positions: [&ClusterPositions; P],
     rows: usize,
     corners: &[CornerBlock],
     planes: &Planes<P>,
     until: f32,
 ) -> Survivors {
-    dispatch!(level.level(), simd => {
-        let codes = plane_codes(simd, positions, rows, planes, until);
-        survivors(simd, corners, &codes)
-    })
+    let codes = plane_codes(simd, positions, rows, planes, until);
+    survivors(simd, corners, &codes)
 }
 
 /// Triangles whose bounding boxes over the motion overlap the box between two corners. This is exact, since a code has
 /// a bit for each side of the box, set if the vertex is beyond that side at both ends of its path.
-pub(super) fn in_box<const P: usize>(
-    level: SimdLevel,
+#[cfg_attr(not(unoptimized), inline(always))]
+pub(super) fn in_box<S: Simd, const P: usize>(
+    simd: S,
     positions: [&ClusterPositions; P],
     rows: usize,
     corners: &[CornerBlock],
     sides: [[f32; 3]; 2],
 ) -> Survivors {
-    dispatch!(level.level(), simd => {
-        let codes = box_codes(simd, [positions[0], positions[P - 1]], rows, sides);
-        survivors(simd, corners, &codes)
-    })
+    let codes = box_codes(simd, [positions[0], positions[P - 1]], rows, sides);
+    survivors(simd, corners, &codes)
 }
 
-/// Triangles that a ray may meet up to the distance `limit`; `sheared` receives the sheared positions, with the bits of
+/// Triangles that a ray may meet up to the distance `limit`. Positions are sheared with the bits of
 /// [`ShearedRay::shear`].
-pub(super) fn along_ray(
-    level: SimdLevel,
+#[cfg_attr(not(unoptimized), inline(always))]
+pub(super) fn along_ray<S: Simd>(
+    simd: S,
     positions: &ClusterPositions,
     rows: usize,
     corners: &[CornerBlock],
     ray: &ShearedRay,
     limit: f32,
-    sheared: &mut ClusterPositions,
 ) -> Survivors {
-    dispatch!(level.level(), simd => {
-        let codes = ray_codes(simd, positions, rows, ray, limit, sheared);
-        survivors(simd, corners, &codes)
-    })
+    let codes = ray_codes(simd, positions, rows, ray, limit);
+    survivors(simd, corners, &codes)
 }
 
 /// An upper bound of the distance from a point to the nearest of a cluster's vertices.
-pub(super) fn nearest_vertex(
-    level: SimdLevel,
+#[cfg_attr(not(unoptimized), inline(always))]
+pub(super) fn nearest_vertex<S: Simd>(
+    simd: S,
     positions: &ClusterPositions,
     rows: usize,
     point: [f32; 3],
 ) -> f32 {
-    dispatch!(level.level(), simd => nearest_square(simd, positions, rows, point)).sqrt()
-        * (1.0 + 8.0 * f32::EPSILON)
+    nearest_square(simd, positions, rows, point).sqrt() * (1.0 + 8.0 * f32::EPSILON)
         + f32::MIN_POSITIVE.sqrt()
 }
 
@@ -239,7 +281,6 @@ fn ray_codes<S: Simd>(
     rows: usize,
     ray: &ShearedRay,
     limit: f32,
-    sheared: &mut ClusterPositions,
 ) -> Codes {
     let zero = S::f32s::splat(simd, 0.0);
     let limit = S::f32s::splat(simd, limit);
@@ -259,9 +300,6 @@ fn ray_codes<S: Simd>(
                 p[axes[2]] - origin[2],
             );
             let (x, y, z) = (x - shear[0] * z, y - shear[1] * z, z * shear[2]);
-            for (axis, vector) in [x, y, z].into_iter().enumerate() {
-                vector.store_slice(&mut sheared.0[axis][slot..slot + S::f32s::LEN]);
-            }
             [
                 x.simd_lt(zero),
                 y.simd_lt(zero),
@@ -350,13 +388,14 @@ pub(super) struct MovingBall {
 ///
 /// Solves a quadratic for a slightly smaller ball. Rounding may put the root anywhere, so it counts only if the vertex
 /// is then within the full ball, less the allowance for rounding.
-pub(super) fn touched_by<const P: usize>(
-    level: SimdLevel,
+#[cfg_attr(not(unoptimized), inline(always))]
+pub(super) fn touched_by<S: Simd, const P: usize>(
+    simd: S,
     positions: [&ClusterPositions; P],
     rows: usize,
     ball: &MovingBall,
 ) -> f32 {
-    dispatch!(level.level(), simd => earliest(simd, positions, rows, ball))
+    earliest(simd, positions, rows, ball)
 }
 
 /// Share of the radius by which the ball is reduced for the quadratic. With a smaller share, rounding voids more roots;

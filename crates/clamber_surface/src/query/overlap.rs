@@ -1,6 +1,7 @@
+use fearless_simd::{Simd, dispatch};
 use glam::Vec3;
 
-use super::cluster::{PosedCluster, by_eight};
+use super::cluster::PosedCluster;
 use super::hit::FoundPoint;
 use super::instance::Instance;
 use super::probe::{Probe, with_probe};
@@ -33,35 +34,56 @@ impl Instance {
         if !root::overlaps(self.current.root(), low, high) {
             return;
         }
-        let reaching = probe.reaching(reach);
-        let mut posed = PosedCluster::new(self, [&self.current]);
+        dispatch!(self.simd_level.level(), simd => {
+            self.descend_overlap(simd, probe, &probe.reaching(reach), &mut visit);
+        });
+    }
+
+    #[cfg_attr(not(unoptimized), inline(always))]
+    fn descend_overlap<S: Simd, const N: usize>(
+        &self,
+        simd: S,
+        probe: &Probe<N>,
+        reaching: &Probe<N>,
+        visit: &mut impl FnMut(SurfaceHit),
+    ) {
+        let radius = f64::from(probe.radius);
         let mut tested = 0;
         traverse::<false>(
             self.mesh.hierarchy(),
-            reach,
+            radius,
+            #[cfg_attr(not(unoptimized), inline(always))]
             |node, _| {
                 let spheres = self.current.spheres(&self.mesh, node);
-                (broad::near(&spheres, &reaching), [0.0; LANES])
+                (broad::near(simd, spheres, reaching), [0.0; LANES])
             },
-            &mut |cluster, limit| {
-                if !posed.visit(cluster) {
+            #[cfg_attr(not(unoptimized), inline(always))]
+            |cluster, limit| {
+                let Some(posed) = PosedCluster::visit(self, [&self.current], cluster) else {
+                    return Some(limit);
+                };
+                if !posed.comes_within(probe, reaching.reach) {
                     return Some(limit);
                 }
-                by_eight(posed.enabled(posed.near(&reaching, 0.0)), |batch| {
-                    tested += batch.len();
-                    let points = probe.closest_of_eight(posed.level(), &posed.batch(batch)[0]);
-                    for (lane, triangle) in batch.iter().enumerate() {
-                        let found = points.get(lane);
-                        if found.distance <= radius {
-                            let nearest = FoundPoint {
-                                triangle: posed.id(*triangle),
-                                found,
-                            };
-                            let [corners] = posed.corners(*triangle);
-                            visit(self.hit(nearest, posed.part(), corners, probe.middle()));
+                posed.near(simd, reaching, 0.0).by_eight(
+                    #[cfg_attr(not(unoptimized), inline(always))]
+                    |batch| {
+                        tested += batch.len();
+                        let corners = posed.batch(batch);
+                        let points = probe.closest_of_eight(posed.level(), &corners[0]);
+                        for (lane, triangle) in batch.iter().enumerate() {
+                            let found = points.get(lane);
+                            if found.distance <= radius {
+                                let nearest = FoundPoint {
+                                    triangle: posed.id(usize::from(*triangle)),
+                                    found,
+                                };
+                                let corners = corners[0].get(lane);
+                                visit(self.hit(nearest, posed.part(), corners, probe.middle()));
+                            }
                         }
-                    }
-                });
+                    },
+                );
                 Some(limit)
             },
         );

@@ -1,11 +1,12 @@
+use fearless_simd::{Simd, dispatch};
+
 use super::cluster::PosedCluster;
 use super::hit::{Best, FoundPoint, sort_by_distance};
 use super::instance::Instance;
 use super::traverse::traverse;
 use super::{ModelSpace, SurfaceHit, broad, length, root};
-use crate::geometry::triangle::{ShearedRay, TrianglePoint, intersect_sheared};
+use crate::geometry::triangle::{ShearedRay, TrianglePoint};
 use crate::geometry::{Ray, round_up_to_f32};
-use crate::skin::ClusterPositions;
 
 impl ModelSpace<'_> {
     /// The first triangle that a ray meets, from either side, up to `max_distance`, in model units.
@@ -15,11 +16,12 @@ impl ModelSpace<'_> {
     pub fn cast_ray(&self, ray: &Ray, max_distance: f32) -> Option<SurfaceHit> {
         let mut best = Best::within(length(max_distance)?);
         self.instance
-            .visit_ray(ray, best.limit(), |posed, triangle, found| {
-                best.offer(FoundPoint {
+            .visit_ray(ray, best.limit(), &mut |posed, triangle, found| {
+                let candidate = FoundPoint {
                     triangle: posed.id(triangle),
                     found,
-                });
+                };
+                best.offer(candidate, posed.part(), || posed.corners(triangle)[0]);
                 Some(best.limit())
             });
         best.hit(self.instance, ray.origin())
@@ -30,7 +32,7 @@ impl ModelSpace<'_> {
     pub fn intersects_ray(&self, ray: &Ray, max_distance: f32) -> bool {
         let mut met = false;
         if let Some(limit) = length(max_distance) {
-            self.instance.visit_ray(ray, limit, |_, _, _| {
+            self.instance.visit_ray(ray, limit, &mut |_, _, _| {
                 met = true;
                 None
             });
@@ -47,7 +49,7 @@ impl ModelSpace<'_> {
             return;
         };
         self.instance
-            .visit_ray(ray, limit, |posed, triangle, found| {
+            .visit_ray(ray, limit, &mut |posed, triangle, found| {
                 let nearest = FoundPoint {
                     triangle: posed.id(triangle),
                     found,
@@ -66,37 +68,48 @@ impl ModelSpace<'_> {
 impl Instance {
     /// Calls `visit` with every triangle that the ray meets, nearest bounds first. `visit` returns the distance that
     /// still matters, or `None` to stop.
-    pub(super) fn visit_ray<'a>(
-        &'a self,
+    pub(super) fn visit_ray(
+        &self,
         ray: &Ray,
         limit: f64,
-        mut visit: impl FnMut(&PosedCluster<'a, 1>, usize, TrianglePoint) -> Option<f64>,
+        visit: &mut dyn FnMut(&PosedCluster<'_, 1>, usize, TrianglePoint) -> Option<f64>,
     ) {
-        if !root::may_meet(self.current.root(), ray, limit) {
-            return;
+        if root::may_meet(self.current.root(), ray, limit) {
+            dispatch!(self.simd_level.level(), simd => self.descend_ray(simd, ray, limit, visit));
         }
+    }
+
+    #[cfg_attr(not(unoptimized), inline(always))]
+    fn descend_ray<S: Simd>(
+        &self,
+        simd: S,
+        ray: &Ray,
+        limit: f64,
+        visit: &mut dyn FnMut(&PosedCluster<'_, 1>, usize, TrianglePoint) -> Option<f64>,
+    ) {
         let sheared_ray = ShearedRay::new(ray);
-        let mut posed = PosedCluster::new(self, [&self.current]);
-        let mut sheared = ClusterPositions::ZERO;
         let mut tested = 0;
         traverse::<true>(
             self.mesh.hierarchy(),
             limit,
+            #[cfg_attr(not(unoptimized), inline(always))]
             |node, limit| {
                 let spheres = self.current.spheres(&self.mesh, node);
-                broad::along_ray(&spheres, ray, round_up_to_f32(limit))
+                broad::along_ray(simd, spheres, ray, limit)
             },
-            &mut |cluster, mut limit| {
-                if !posed.visit(cluster) {
+            #[cfg_attr(not(unoptimized), inline(always))]
+            |cluster, mut limit| {
+                let Some(posed) = PosedCluster::visit(self, [&self.current], cluster) else {
+                    return Some(limit);
+                };
+                let reach = round_up_to_f32(limit);
+                if !posed.may_meet(&sheared_ray, reach) {
                     return Some(limit);
                 }
-                let reach = round_up_to_f32(limit);
-                let survivors = posed.along_ray(&sheared_ray, reach, &mut sheared);
-                for triangle in posed.enabled(survivors) {
+                for triangle in posed.along_ray(simd, &sheared_ray, reach).iter() {
                     tested += 1;
-                    let corners = posed.corners_in(&sheared, triangle);
-                    let corners = corners.map(|corner| corner.to_array());
-                    if let Some(found) = intersect_sheared(corners, limit) {
+                    let [corners] = posed.corners(triangle);
+                    if let Some(found) = sheared_ray.intersect(corners, limit) {
                         limit = visit(&posed, triangle, found)?;
                     }
                 }

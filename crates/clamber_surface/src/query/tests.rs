@@ -34,10 +34,9 @@ fn assert_positions_equal(surface: &SkinnedSurface, mesh: &ColliderMesh, case: &
             (&surface.instance.current, &wanted),
             (&surface.instance.previous, &before),
         ] {
-            let mut positions = crate::skin::ClusterPositions::ZERO;
             // The first pass fills the cache, the second reads it.
             for _ in 0..2 {
-                pose.positions(mesh, index as u32, &mut positions);
+                let positions = &pose.cluster(mesh, index as u32).positions;
                 for (slot, v) in cluster.vertices(mesh.clusters()).iter().enumerate() {
                     let found = Vec3::from_array(positions.0.map(|axis| axis[slot]));
                     assert!(same_bits(&[found], &[wanted[v.index()]]), "{case}: {v}");

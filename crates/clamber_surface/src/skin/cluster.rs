@@ -1,6 +1,6 @@
 //! The fast kernel: skins one cluster at a time, as many vertices at once as fit a SIMD vector.
 
-use fearless_simd::{Simd, SimdBase, dispatch};
+use fearless_simd::{Select, Simd, SimdBase, dispatch};
 
 use crate::geometry::Affine;
 use crate::mesh::clusters::{Cluster, Clusters, MAX_SLOTS, ROW, Row};
@@ -13,6 +13,58 @@ pub(crate) struct ClusterPositions(pub(crate) [[f32; MAX_SLOTS]; 3]);
 
 impl ClusterPositions {
     pub(crate) const ZERO: Self = Self([[0.0; MAX_SLOTS]; 3]);
+}
+
+impl Default for ClusterPositions {
+    fn default() -> Self {
+        Self::ZERO
+    }
+}
+
+/// A cluster that was skinned: the positions of its slots, and a box around them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct SkinnedCluster {
+    pub(crate) positions: ClusterPositions,
+    pub(crate) low: [f32; 3],
+    pub(crate) high: [f32; 3],
+}
+
+impl SkinnedCluster {
+    /// Skins a cluster. The palette must have a matrix for every joint of the mesh.
+    pub(crate) fn skin(
+        &mut self,
+        level: SimdLevel,
+        clusters: &Clusters,
+        cluster: &Cluster,
+        palette: &[Affine],
+    ) {
+        let joints = cluster.joints(clusters);
+        let rest = cluster.rest(clusters);
+        dispatch!(level.level(), simd => {
+            skin_rows(simd, rest, joints, palette, &mut self.positions);
+            [self.low, self.high] = box_around(simd, &self.positions, cluster.rows());
+        });
+    }
+}
+
+/// The lowest and the highest coordinates in the first `rows` rows of slots.
+#[cfg_attr(not(unoptimized), inline(always))]
+fn box_around<S: Simd>(simd: S, positions: &ClusterPositions, rows: usize) -> [[f32; 3]; 2] {
+    let mut sides = [[0.0; 3]; 2];
+    for (axis, numbers) in positions.0.iter().enumerate() {
+        let first = S::f32s::from_slice(simd, &numbers[..S::f32s::LEN]);
+        let (mut low, mut high) = (first, first);
+        for slot in (S::f32s::LEN..rows * ROW).step_by(S::f32s::LEN) {
+            let x = S::f32s::from_slice(simd, &numbers[slot..slot + S::f32s::LEN]);
+            low = x.simd_lt(low).select(x, low);
+            high = x.simd_gt(high).select(x, high);
+        }
+        let least = |a: f32, b: &f32| if *b < a { *b } else { a };
+        let most = |a: f32, b: &f32| if *b > a { *b } else { a };
+        sides[0][axis] = low.as_slice().iter().fold(f32::INFINITY, least);
+        sides[1][axis] = high.as_slice().iter().fold(f32::NEG_INFINITY, most);
+    }
+    sides
 }
 
 /// Skins all slots of a cluster, with the bits of [`super::skin_vertex`]. The palette must have a matrix for every

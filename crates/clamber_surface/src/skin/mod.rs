@@ -19,7 +19,7 @@ pub(crate) mod reference;
 mod scalar;
 pub(crate) mod whole;
 
-pub(crate) use cluster::{ClusterPositions, skin_cluster};
+pub(crate) use cluster::{ClusterPositions, SkinnedCluster};
 pub(crate) use scalar::skin_vertex;
 pub(crate) use whole::skin_checked;
 pub use whole::{skin, skin_into};

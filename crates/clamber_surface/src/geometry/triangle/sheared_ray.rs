@@ -10,6 +10,9 @@ use glam::{DVec3, Vec3};
 use super::TrianglePoint;
 use crate::geometry::Ray;
 
+/// Allowance for rounding in f32, as a share of the lengths involved: some ten roundings of 2^-24.
+const SLACK: f32 = 16.0 * f32::EPSILON;
+
 /// A ray prepared for watertight tests.
 pub(crate) struct ShearedRay {
     pub(crate) origin: Vec3,
@@ -38,9 +41,11 @@ impl ShearedRay {
     ///
     /// All of it is in f32, and it has the same bits for one vertex as for many: the test is watertight only if each
     /// vertex has a single sheared position.
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(crate) fn shear(&self, vertex: Vec3) -> [f32; 3] {
         let local = (vertex - self.origin).to_array();
-        let [x, y, z] = self.axes.map(|axis| local[axis]);
+        let [x, y, z] = self.axes;
+        let (x, y, z) = (local[x % 3], local[y % 3], local[z % 3]);
         [
             x - self.shear[0] * z,
             y - self.shear[1] * z,
@@ -48,19 +53,54 @@ impl ShearedRay {
         ]
     }
 
+    /// False only if the ray meets no triangle, within `limit`, whose corners all lie in the box from `low` to `high`.
+    ///
+    /// The box is sheared like its contents. Along each axis it then spans an interval about its middle.
+    #[cfg_attr(not(unoptimized), inline(always))]
+    pub(crate) fn may_meet_box(&self, low: [f32; 3], high: [f32; 3], limit: f32) -> bool {
+        let origin = self.origin.to_array();
+        let [(x, half_x), (y, half_y), (z, half_z)] = self.axes.map(
+            #[cfg_attr(not(unoptimized), inline(always))]
+            |axis| {
+                // Relative to the origin before anything else, as corners are.
+                let (low, high) = (low[axis] - origin[axis], high[axis] - origin[axis]);
+                (low * 0.5 + high * 0.5, high * 0.5 - low * 0.5)
+            },
+        );
+        // More than corners, sheared in f32, and this test may be off.
+        let slack = SLACK * (x.abs() + y.abs() + z.abs() + half_x + half_y + half_z);
+        let [shear_x, shear_y, scale] = self.shear;
+        let beside = |middle: f32, half: f32, shear: f32| {
+            (middle - shear * z).abs() > half + shear.abs() * half_z + slack
+        };
+        let (along, reach) = (z * scale, (half_z + slack) * scale.abs());
+        // Comparisons with NaN are false, so NaN may meet.
+        !(beside(x, half_x, shear_x)
+            | beside(y, half_y, shear_y)
+            | (along + reach < 0.0)
+            | (along - reach > limit))
+    }
+
     /// The point where the ray meets the triangle, from either side, at a distance from 0 to `max_distance`. Edges and
     /// corners belong to the triangle. A triangle seen edge-on is missed.
-    pub(crate) fn intersect(&self, corners: [Vec3; 3], max_distance: f64) -> Option<TrianglePoint> {
-        intersect_sheared(corners.map(|corner| self.shear(corner)), max_distance)
+    #[cfg_attr(not(unoptimized), inline(always))]
+    pub(crate) fn intersect(
+        &self,
+        [a, b, c]: [Vec3; 3],
+        max_distance: f64,
+    ) -> Option<TrianglePoint> {
+        let corners = [self.shear(a), self.shear(b), self.shear(c)];
+        intersect_sheared(corners, max_distance)
     }
 }
 
 /// [`ShearedRay::intersect`] for corners that are [sheared](ShearedRay::shear) already.
+#[cfg_attr(not(unoptimized), inline(always))]
 pub(crate) fn intersect_sheared(
-    corners: [[f32; 3]; 3],
+    [a, b, c]: [[f32; 3]; 3],
     max_distance: f64,
 ) -> Option<TrianglePoint> {
-    let [a, b, c] = corners.map(|corner| corner.map(f64::from));
+    let [a, b, c] = [wide(a), wide(b), wide(c)];
     let u = c[0] * b[1] - c[1] * b[0];
     let v = a[0] * c[1] - a[1] * c[0];
     let w = b[0] * a[1] - b[1] * a[0];
@@ -78,4 +118,9 @@ pub(crate) fn intersect_sheared(
         barycentric,
         distance,
     })
+}
+
+#[cfg_attr(not(unoptimized), inline(always))]
+fn wide([x, y, z]: [f32; 3]) -> [f64; 3] {
+    [f64::from(x), f64::from(y), f64::from(z)]
 }

@@ -7,7 +7,6 @@ use crate::measure::skin_scalar;
 use crate::mesh::hierarchy::Child;
 use crate::mesh::{ColliderMesh, TriangleId, VertexId};
 use crate::pose::PosedMesh;
-use crate::skin::ClusterPositions;
 use crate::surface::SkinnedSurface;
 use glam::{DVec3, Vec3};
 
@@ -103,8 +102,7 @@ fn check_clusters(mesh: &ColliderMesh, pose: &PosedMesh, skinned: &[Vec3], case:
             if entry.is_dead() {
                 continue;
             }
-            let mut positions = ClusterPositions::ZERO;
-            pose.positions(mesh, cluster, &mut positions);
+            let positions = &pose.cluster(mesh, cluster).positions;
             let sphere = spheres.sphere(lane);
             for (slot, v) in entry.vertices(clusters).iter().enumerate() {
                 let found = Vec3::from_array(positions.0.map(|axis| axis[slot]));

@@ -1,0 +1,202 @@
+//! Values that are computed on demand, without unsafe.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, OnceLock, PoisonError};
+
+/// Values by index that queries compute on demand, shared by any number of threads.
+///
+/// A value is computed once, where it is first requested, and handed out by reference. If two threads request it at the
+/// same time, one waits for the other. Forgetting takes `&mut`, and costs O(values) and one bit per entry.
+///
+/// Entries without a value take a pointer each. What was forgotten is written again, the last one first, so few values
+/// are in use, and stay in the processor's caches, however many entries there are. With twice as many values as were ever
+/// needed, a steady use allocates nothing.
+#[derive(Debug)]
+pub(super) struct Memo<T> {
+    entries: Vec<OnceLock<Box<T>>>,
+    /// A bit for every entry that has a value.
+    filled: Bits,
+    /// A bit for every entry that was requested, kept only while `ahead`.
+    asked: Bits,
+    /// True if entries were filled before anybody requested them. Otherwise those that have a value were requested.
+    ahead: bool,
+    /// Forgotten values, and some that were never used.
+    spare: Mutex<Vec<Box<T>>>,
+    /// The most values that were ever needed at once.
+    most: usize,
+}
+
+/// The least number of values that are made ahead.
+const LEAST: usize = 32;
+
+impl<T: Default> Memo<T> {
+    pub(super) fn new(entries: usize) -> Self {
+        let mut memo = Self {
+            entries: Vec::new(),
+            filled: Bits::default(),
+            asked: Bits::default(),
+            ahead: false,
+            spare: Mutex::default(),
+            most: LEAST / 2,
+        };
+        memo.grow(entries);
+        memo
+    }
+
+    /// Appends entries without a value, up to `entries` in all.
+    pub(super) fn grow(&mut self, entries: usize) {
+        self.entries.resize_with(entries, OnceLock::new);
+        self.filled.grow(entries);
+        self.asked.grow(entries);
+    }
+
+    /// The value of an entry, and marks it as requested. `compute` writes it over a default or forgotten value, if there
+    /// is none yet.
+    #[cfg_attr(not(unoptimized), inline(always))]
+    pub(super) fn get(&self, entry: usize, compute: impl FnOnce(&mut T)) -> &T {
+        if self.ahead {
+            self.asked.set(entry);
+        }
+        match self.entries[entry].get() {
+            Some(value) => value,
+            None => self.fill(entry, compute),
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn fill(&self, entry: usize, compute: impl FnOnce(&mut T)) -> &T {
+        self.entries[entry].get_or_init(|| {
+            let spare = self.spare.lock();
+            let spare = spare.unwrap_or_else(PoisonError::into_inner).pop();
+            let mut value = spare.unwrap_or_default();
+            compute(&mut value);
+            self.filled.set(entry);
+            value
+        })
+    }
+
+    /// Computes an entry, again if it has a value, without marking it as requested.
+    pub(super) fn fill_ahead(&mut self, entry: usize, compute: impl FnOnce(&mut T)) {
+        if !self.ahead {
+            self.ahead = true;
+            self.asked.copy(&mut self.filled);
+        }
+        match self.entries[entry].get_mut() {
+            Some(value) => compute(value),
+            None => {
+                self.fill(entry, compute);
+            }
+        }
+    }
+
+    /// The value of an entry, if it has one.
+    pub(super) fn peek(&self, entry: usize) -> Option<&T> {
+        self.entries[entry].get().map(|value| &**value)
+    }
+
+    /// Empties an entry.
+    pub(super) fn forget(&mut self, entry: usize) {
+        if let Some(value) = self.entries[entry].take() {
+            let spare = self.spare.get_mut();
+            spare.unwrap_or_else(PoisonError::into_inner).push(value);
+        }
+        self.filled.clear(entry);
+        self.asked.clear(entry);
+    }
+
+    /// Empties all entries.
+    pub(super) fn forget_all(&mut self) {
+        let spare = self.spare.get_mut();
+        let spare = spare.unwrap_or_else(PoisonError::into_inner);
+        let unused = spare.len();
+        for entry in self.filled.iter() {
+            spare.extend(self.entries[entry].take());
+        }
+        self.most = self.most.max(spare.len() - unused);
+        let wanted = (2 * self.most).min(self.entries.len());
+        while spare.len() < wanted {
+            spare.push(Box::default());
+        }
+        self.filled.clear_all();
+        if self.ahead {
+            self.asked.clear_all();
+            self.ahead = false;
+        }
+    }
+
+    /// The entries that were requested, ascending.
+    pub(super) fn asked(&self) -> impl Iterator<Item = usize> {
+        let bits = if self.ahead {
+            &self.asked
+        } else {
+            &self.filled
+        };
+        bits.iter()
+    }
+
+    /// The entries that have a value, requested or not, ascending.
+    pub(super) fn filled(&self) -> impl Iterator<Item = usize> {
+        self.filled.iter()
+    }
+
+    /// Size in bytes, values included.
+    pub(super) fn memory(&self) -> usize {
+        let spare = self.spare.lock();
+        let spare = spare.unwrap_or_else(PoisonError::into_inner).len();
+        let values = spare + self.filled.iter().count();
+        size_of_val(&self.entries[..]) + values * size_of::<T>()
+    }
+}
+
+/// A bit per entry, which threads may set at the same time.
+#[derive(Debug, Default)]
+struct Bits(Vec<AtomicU64>);
+
+/// Number of bits in a word.
+const WORD: usize = u64::BITS as usize;
+
+impl Bits {
+    fn grow(&mut self, bits: usize) {
+        self.0.resize_with(bits.div_ceil(WORD), AtomicU64::default);
+    }
+
+    #[cfg_attr(not(unoptimized), inline(always))]
+    fn set(&self, bit: usize) {
+        let (word, bit) = (&self.0[bit / WORD], 1 << (bit % WORD));
+        // Read first, so that a line which several threads read is seldom written.
+        if word.load(Ordering::Relaxed) & bit == 0 {
+            word.fetch_or(bit, Ordering::Relaxed);
+        }
+    }
+
+    fn clear(&mut self, bit: usize) {
+        *self.0[bit / WORD].get_mut() &= !(1 << (bit % WORD));
+    }
+
+    fn clear_all(&mut self) {
+        for word in &mut self.0 {
+            *word.get_mut() = 0;
+        }
+    }
+
+    fn copy(&mut self, other: &mut Self) {
+        for (word, other) in self.0.iter_mut().zip(&mut other.0) {
+            *word.get_mut() = *other.get_mut();
+        }
+    }
+
+    fn iter(&self) -> impl Iterator<Item = usize> {
+        self.0.iter().enumerate().flat_map(|(index, word)| {
+            let mut word = word.load(Ordering::Relaxed);
+            std::iter::from_fn(move || {
+                let bit = word.trailing_zeros() as usize;
+                word &= word.wrapping_sub(1);
+                (bit < WORD).then_some(index * WORD + bit)
+            })
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests;

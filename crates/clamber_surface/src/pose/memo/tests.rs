@@ -1,0 +1,94 @@
+use super::Memo;
+
+/// Requests an entry, and tells whether it had to be computed.
+fn ask(memo: &Memo<usize>, entry: usize, value: usize) -> bool {
+    let mut computed = false;
+    let found = *memo.get(entry, |found| {
+        *found = value;
+        computed = true;
+    });
+    assert_eq!(found, value, "entry {entry}");
+    computed
+}
+
+fn asked(memo: &Memo<usize>) -> Vec<usize> {
+    memo.asked().collect()
+}
+
+fn filled(memo: &Memo<usize>) -> Vec<usize> {
+    memo.filled().collect()
+}
+
+#[test]
+fn entries_are_computed_once_until_they_are_forgotten() {
+    let mut memo = Memo::new(200);
+    for entry in [3, 199, 64, 3] {
+        let first = !filled(&memo).contains(&entry);
+        assert_eq!(ask(&memo, entry, entry), first);
+    }
+    assert_eq!(
+        (asked(&memo), filled(&memo)),
+        (vec![3, 64, 199], vec![3, 64, 199])
+    );
+    memo.forget(64);
+    memo.forget(65);
+    assert_eq!((asked(&memo), memo.peek(64)), (vec![3, 199], None));
+    memo.forget_all();
+    assert_eq!((asked(&memo), filled(&memo)), (vec![], vec![]));
+    assert!(ask(&memo, 3, 7));
+    memo.grow(300);
+    assert!(ask(&memo, 299, 8) && !ask(&memo, 3, 7));
+}
+
+#[test]
+fn entries_that_were_filled_ahead_count_as_requested_only_once_they_are() {
+    let mut memo = Memo::new(100);
+    assert!(ask(&memo, 70, 1));
+    for entry in [2, 70, 90] {
+        memo.fill_ahead(entry, |found| *found = 5);
+    }
+    assert_eq!((asked(&memo), filled(&memo)), (vec![70], vec![2, 70, 90]));
+    assert!(!ask(&memo, 90, 5) && !ask(&memo, 70, 5) && ask(&memo, 1, 6));
+    assert_eq!(
+        (asked(&memo), filled(&memo)),
+        (vec![1, 70, 90], vec![1, 2, 70, 90])
+    );
+    memo.forget_all();
+    assert!(ask(&memo, 2, 3));
+    assert_eq!((asked(&memo), filled(&memo)), (vec![2], vec![2]));
+}
+
+#[test]
+fn forgotten_values_are_used_again() {
+    let mut memo = Memo::<[u64; 8]>::new(1_000);
+    let empty = memo.memory();
+    for round in 1..5 {
+        for entry in 0..100 {
+            memo.get(entry * round, |found| *found = [entry as u64; 8]);
+        }
+        let values = if round == 1 { 100 } else { 200 };
+        assert_eq!(memo.memory() - empty, values * 64, "round {round}");
+        memo.forget_all();
+        assert_eq!(memo.memory() - empty, 200 * 64, "round {round}");
+    }
+}
+
+#[test]
+fn threads_that_ask_for_one_entry_get_one_value() {
+    for round in 0..200 {
+        let memo = Memo::<[usize; 32]>::new(65);
+        std::thread::scope(|scope| {
+            let ask = || {
+                let value = memo.get(64, |found| *found = [round; 32]);
+                assert_eq!(*value, [round; 32]);
+                std::ptr::from_ref(value) as usize
+            };
+            let others = [scope.spawn(ask), scope.spawn(ask)];
+            let own = ask();
+            for other in others {
+                assert_eq!(other.join().unwrap(), own);
+            }
+        });
+        assert_eq!(memo.filled().collect::<Vec<_>>(), [64]);
+    }
+}
