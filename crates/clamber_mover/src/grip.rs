@@ -24,6 +24,27 @@ impl Mover<'_> {
         can_grip: impl Fn(&Touch) -> bool,
         merit: impl Fn(&Touch) -> f64,
     ) -> Option<Touch> {
+        // Nearly always there is a grip at the body. What is farther away than it, and not about as near, changes nothing.
+        let as_near = AS_NEAR * body.radius;
+        let at_body = 2.0 * (body.margin + as_near);
+        if at_body < reach {
+            let found = self.grip_within(body, position, at_body, &can_grip, &merit);
+            if found.is_some_and(|touch| touch.contact.distance + as_near <= at_body + body.radius)
+            {
+                return found;
+            }
+        }
+        self.grip_within(body, position, reach, &can_grip, &merit)
+    }
+
+    fn grip_within(
+        &mut self,
+        body: &MoverBody,
+        position: DVec3,
+        reach: f64,
+        can_grip: &impl Fn(&Touch) -> bool,
+        merit: &impl Fn(&Touch) -> f64,
+    ) -> Option<Touch> {
         self.overlap(&body.crouched(), position, reach);
         let as_near = AS_NEAR * body.radius;
         let mut blocked = [usize::MAX; TRIES];

@@ -2,7 +2,7 @@ use std::ops::Range;
 
 use clamber_world::{
     Attachment, Contact, MaterialPoint, Obstacle, ObstacleId, PointMotion, SweepContact,
-    TargetMotion, WorldCapsule,
+    TargetMotion, WorldCapsule, WorldPath,
 };
 use glam::DVec3;
 
@@ -116,6 +116,17 @@ impl<'a> Mover<'a> {
     /// not finite.
     pub fn motion(&self, obstacle: ObstacleId, point: &MaterialPoint) -> Option<PointMotion> {
         motion_among(self.obstacles, obstacle, point, self.dt)
+    }
+
+    /// Where the material at a contact was at the start of the tick, and is at its end: the part of [`Mover::motion`]
+    /// that needs no frame, for a fraction of the time.
+    pub fn path_of(&self, touch: &Touch) -> Option<WorldPath> {
+        path_among(
+            self.obstacles,
+            touch.obstacle,
+            &touch.contact.material,
+            self.dt,
+        )
     }
 
     /// Fixes something at `place`, in world space, to the material of a contact. Call [`Attachment::follow`] in later
@@ -315,7 +326,7 @@ fn find<'a>(
 }
 
 /// [`Mover::motion`].
-pub(crate) fn motion_among(
+fn motion_among(
     obstacles: &[(ObstacleId, &dyn Obstacle)],
     id: ObstacleId,
     point: &MaterialPoint,
@@ -323,6 +334,17 @@ pub(crate) fn motion_among(
 ) -> Option<PointMotion> {
     let motion = find(obstacles, id)?.motion(point, dt)?;
     motion.is_finite().then_some(motion)
+}
+
+/// Where a material point was at the start of the tick, and is at its end.
+pub(crate) fn path_among(
+    obstacles: &[(ObstacleId, &dyn Obstacle)],
+    id: ObstacleId,
+    point: &MaterialPoint,
+    dt: f64,
+) -> Option<WorldPath> {
+    let path = find(obstacles, id)?.path(point, dt)?;
+    path.is_finite().then_some(path)
 }
 
 /// Applies [`turn_outward`] to the contacts of one obstacle, from index `first` on, body by body: the depth in one body

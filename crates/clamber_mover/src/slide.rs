@@ -17,7 +17,7 @@ use clamber_world::WorldCapsule;
 use glam::DVec3;
 
 use crate::half_spaces::{HalfSpace, Projection, project_where_it_pays};
-use crate::mover::motion_among;
+use crate::mover::path_among;
 use crate::{Hit, Mover, MoverBody, Touch};
 
 /// Most rounds of one movement, each with a sweep, an overlap query, or both. Corners take two or three rounds. After
@@ -209,7 +209,7 @@ impl Mover<'_> {
         let touched = self.memory.touched.iter().zip(&self.memory.half_spaces);
         let gaps = touched.map(|(touch, wall)| {
             // The offset of an overlap includes the body's depth; only the motion of its material counts as a push.
-            let motion = self.motion(touch.obstacle, &touch.contact.material);
+            let motion = self.path_of(touch);
             let offset = match motion.filter(|_| !touch.swept) {
                 Some(motion) => {
                     let way = motion.position - motion.previous_position;
@@ -302,7 +302,7 @@ impl Mover<'_> {
             if is_known || Self::is_pressed_into(&path.body, touch) {
                 continue;
             }
-            let motion = self.motion(touch.obstacle, &touch.contact.material);
+            let motion = self.path_of(touch);
             let way = motion.map_or(DVec3::ZERO, |motion| {
                 motion.position - motion.previous_position
             });
@@ -330,7 +330,7 @@ impl Mover<'_> {
         let Some(Hit { touch, time, .. }) = hit else {
             return false;
         };
-        let motion = self.motion(touch.obstacle, &touch.contact.material);
+        let motion = self.path_of(&touch);
         let end = motion.map_or(touch.contact.point, |motion| motion.position);
         let on_axis = path.end_of(way, time, touch.contact.point);
         let offset = touch.normal.dot(end - path.start - on_axis) + path.body.radius;
@@ -379,7 +379,7 @@ impl Mover<'_> {
             if of_its_face.peek().is_none() {
                 return true;
             }
-            let motion = motion_among(obstacles, touch.obstacle, &touch.contact.material, dt);
+            let motion = path_among(obstacles, touch.obstacle, &touch.contact.material, dt);
             let start = motion.map_or(touch.contact.point, |motion| motion.previous_position);
             !of_its_face.any(|other| touch.continues(start, other, margin))
         });
@@ -391,7 +391,7 @@ impl Mover<'_> {
     fn stop(&mut self, path: &Path, moved: &mut Moved) {
         let way = moved.position - path.start;
         if let Some(Hit { touch, time, .. }) = self.sweep_from(path, way) {
-            let end = self.motion(touch.obstacle, &touch.contact.material);
+            let end = self.path_of(&touch);
             let carried = end.map_or(DVec3::ZERO, |motion| motion.position - touch.contact.point);
             moved.position = path.start + way * time + carried;
         }

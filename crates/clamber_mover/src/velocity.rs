@@ -1,4 +1,4 @@
-use clamber_world::PointMotion;
+use clamber_world::WorldPath;
 use glam::DVec3;
 
 use crate::half_spaces::{HalfSpace, project_where_it_pays};
@@ -8,7 +8,7 @@ use crate::{Mover, Touch};
 /// Most half-spaces that limit a velocity together.
 const STOPS: usize = 24;
 
-fn velocity_in(motion: Option<&PointMotion>) -> DVec3 {
+fn velocity_in(motion: Option<&WorldPath>) -> DVec3 {
     motion.map_or(DVec3::ZERO, |motion| motion.velocity)
 }
 
@@ -22,13 +22,13 @@ impl Mover<'_> {
         });
         let known = same.next().and_then(|(_, velocity)| *velocity);
         known.unwrap_or_else(|| {
-            let motion = self.motion(touch.obstacle, &touch.contact.material);
+            let motion = self.path_of(touch);
             velocity_in(motion.as_ref())
         })
     }
 
     /// Stores the velocity of the contact that was touched last.
-    pub(crate) fn know_velocity(&mut self, motion: Option<&PointMotion>) {
+    pub(crate) fn know_velocity(&mut self, motion: Option<&WorldPath>) {
         let before = self.touched().len().saturating_sub(1);
         self.memory.velocities.resize(before, None);
         self.memory.velocities.push(Some(velocity_in(motion)));

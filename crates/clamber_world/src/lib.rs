@@ -20,6 +20,8 @@ pub use clamber_surface::geometry::WorldCapsule;
 pub use clamber_surface::mesh::{SurfaceKind, SurfaceTag};
 /// Whether an obstacle moves during a cast.
 pub use clamber_surface::surface::TargetMotion;
+/// Where a material point was and is.
+pub use clamber_surface::surface::WorldPath;
 #[cfg(feature = "rapier")]
 pub use debris::{Debris, DebrisConfig, DebrisError, DebrisReport, DebrisSnapshot};
 /// The version of glam that this crate's API uses.

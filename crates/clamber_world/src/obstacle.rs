@@ -1,6 +1,6 @@
 use clamber_surface::geometry::WorldCapsule;
 use clamber_surface::mesh::SurfaceTag;
-use clamber_surface::surface::TargetMotion;
+use clamber_surface::surface::{TargetMotion, WorldPath};
 use glam::{DQuat, DVec3};
 
 /// Search distance for an obstacle without bounds, metres. At this distance f64 still resolves 0.2 nm.
@@ -169,6 +169,18 @@ pub trait Obstacle {
     /// The motion of a material point over the tick of `dt` seconds that ends now. `None` if the material no longer
     /// exists or is hidden from queries.
     fn motion(&self, point: &MaterialPoint, dt: f64) -> Option<PointMotion>;
+
+    /// Where a material point was a tick of `dt` seconds ago, and is now: the positions and the velocity of
+    /// [`motion`](Obstacle::motion), which this is by default. Override it where these cost less than the whole motion.
+    /// `None` if any of it is not finite, and where there is no motion.
+    fn path(&self, point: &MaterialPoint, dt: f64) -> Option<WorldPath> {
+        let motion = self.motion(point, dt)?;
+        motion.is_finite().then_some(WorldPath {
+            position: motion.position,
+            previous_position: motion.previous_position,
+            velocity: motion.velocity,
+        })
+    }
 
     /// Centre and radius of a ball in world space, metres, that contains everything that queries of this tick can
     /// touch. `None` if the obstacle is unbounded or its size is unknown. Queries outside the ball skip the obstacle.

@@ -3,7 +3,8 @@
 use clamber_surface::geometry::rotation_from_axis_angle;
 use clamber_surface::mesh::TriangleId;
 use clamber_surface::surface::{
-    Anchor, CastOptions, SkinnedSurface, TargetMotion, WorldHit, WorldSweepHit,
+    Anchor, CastOptions, SkinnedSurface, SurfacePoint, TargetMotion, WorldHit, WorldPath,
+    WorldSweepHit,
 };
 use glam::{DQuat, DVec3, Quat};
 
@@ -112,6 +113,18 @@ impl Obstacle for SkinnedSurface {
         let (space, options) = (self.in_world(), options(capsule, target));
         let hit = space.cast_capsule_where(capsule, displacements, &options, &mut counts);
         hit.map(SweepContact::from)
+    }
+
+    fn path(&self, point: &MaterialPoint, dt: f64) -> Option<WorldPath> {
+        let triangle = point.triangle()?;
+        let point = SurfacePoint {
+            mesh: self.mesh().id(),
+            triangle,
+            barycentric: point.weights(),
+        };
+        let is_there = self.is_enabled(triangle);
+        let path = is_there.then(|| self.in_world().path(point, dt).ok())??;
+        path.is_finite().then_some(path)
     }
 
     fn motion(&self, point: &MaterialPoint, dt: f64) -> Option<PointMotion> {

@@ -11,6 +11,7 @@ use thiserror::Error;
 
 use crate::{
     Contact, MaterialPoint, Obstacle, PointMotion, SweepContact, TargetMotion, WorldCapsule,
+    WorldPath,
 };
 
 /// Terrain of plain triangles, without a physics engine: a level, a height field, a rock.
@@ -96,6 +97,10 @@ impl Obstacle for TriangleTerrain {
 
     fn motion(&self, point: &MaterialPoint, dt: f64) -> Option<PointMotion> {
         self.surface.motion(point, dt)
+    }
+
+    fn path(&self, point: &MaterialPoint, dt: f64) -> Option<WorldPath> {
+        self.surface.path(point, dt)
     }
 
     fn bounds(&self) -> Option<(DVec3, f64)> {

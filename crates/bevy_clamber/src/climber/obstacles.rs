@@ -13,7 +13,7 @@ use clamber_climber::{ClimberContact, ClimberObstacle};
 use clamber_surface::geometry::WorldCapsule;
 use clamber_surface::surface::TargetMotion;
 use clamber_world::{
-    Attachment, Contact, MaterialPoint, Obstacle, ObstacleId, PointMotion, SweepContact,
+    Attachment, Contact, MaterialPoint, Obstacle, ObstacleId, PointMotion, SweepContact, WorldPath,
 };
 use glam::DVec3;
 
@@ -468,6 +468,13 @@ impl Obstacle for WithoutPoint<'_> {
             return None;
         }
         Obstacle::motion(&**self.surface, point, dt)
+    }
+
+    fn path(&self, point: &MaterialPoint, dt: f64) -> Option<WorldPath> {
+        if *point == self.point {
+            return None;
+        }
+        Obstacle::path(&**self.surface, point, dt)
     }
 }
 

@@ -100,8 +100,7 @@ impl Tick<'_> {
     /// True if the material can carry the climber, which means that its motion is known. An obstacle that answers
     /// queries but reports no motion blocks the climber, but cannot be stood on or held.
     pub(super) fn carries(&self, touch: &Touch) -> bool {
-        let motion = self.mover.motion(touch.obstacle, &touch.contact.material);
-        motion.is_some()
+        self.mover.path_of(touch).is_some()
     }
 
     /// Attaches the climber, at a position, to a contact.

@@ -21,13 +21,66 @@
 //! Unterguggenberger, Kerbl, Pernsteiner and Wimmer 2021 ("Conservative Meshlet Bounds for Robust
 //! Culling of Skinned Meshes", Computer Graphics Forum 40(7)) bound meshlets.
 
+use fearless_simd::Simd;
+
+mod boxes;
 mod joint_table;
 mod root;
 mod spheres;
 
+pub(crate) use boxes::Boxes;
 pub(crate) use joint_table::JointTable;
 pub(crate) use root::{RootBox, root_box};
 pub(crate) use spheres::{Spheres, spheres};
+
+/// Bounds of the children of a node.
+#[derive(Clone, Debug)]
+pub(crate) enum Bounds {
+    /// From the palette.
+    Spheres(Spheres),
+    /// Fitted to skinned positions.
+    Boxes(Boxes),
+}
+
+impl Bounds {
+    /// Spheres that hold the same.
+    #[cfg_attr(not(unoptimized), inline(always))]
+    pub(crate) fn spheres<S: Simd>(&self, simd: S) -> Spheres {
+        match self {
+            Self::Spheres(spheres) => *spheres,
+            Self::Boxes(boxes) => boxes.spheres(simd),
+        }
+    }
+}
+
+#[cfg(test)]
+impl Bounds {
+    /// True if a point lies in the bound of a lane; for a box, also if it lies in the sphere about the box.
+    pub(crate) fn holds(&self, lane: usize, p: glam::Vec3) -> bool {
+        let spheres =
+            fearless_simd::dispatch!(fearless_simd::Level::new(), simd => self.spheres(simd));
+        let in_box = match self {
+            Self::Spheres(_) => true,
+            Self::Boxes(boxes) => (0..3)
+                .all(|axis| boxes.low[axis][lane] <= p[axis] && p[axis] <= boxes.high[axis][lane]),
+        };
+        in_box && spheres.sphere(lane).contains(p)
+    }
+
+    /// True if a lane holds nothing.
+    pub(crate) fn is_empty(&self, lane: usize) -> bool {
+        match self {
+            Self::Spheres(spheres) => spheres.radius[lane] < 0.0,
+            Self::Boxes(boxes) => boxes.low[0][lane] > crate::geometry::MAX_COORDINATE as f32,
+        }
+    }
+}
+
+impl Default for Bounds {
+    fn default() -> Self {
+        Self::Spheres(Spheres::ZERO)
+    }
+}
 
 #[cfg(test)]
 pub(crate) mod tests;

@@ -88,12 +88,6 @@ impl Spheres {
     }
 }
 
-impl Default for Spheres {
-    fn default() -> Self {
-        Self::ZERO
-    }
-}
-
 /// The factor that covers the relative rounding error of a radius: at least `1 + (m + 8 + m / 128) 2^-24`, computed
 /// exactly.
 fn slack(joints: usize) -> f32 {

@@ -6,7 +6,7 @@ mod whole;
 use glam::Vec3;
 
 use self::memo::Memo;
-use crate::bounds::{JointTable, RootBox, Spheres, root_box, spheres};
+use crate::bounds::{Bounds, JointTable, RootBox, root_box, spheres};
 use crate::geometry::{Affine, Sphere};
 use crate::mesh::hierarchy::Child;
 use crate::mesh::{ColliderMesh, PartId};
@@ -20,7 +20,7 @@ pub(crate) struct PosedMesh {
     table: JointTable,
     root: RootBox,
     level: SimdLevel,
-    nodes: Memo<Spheres>,
+    nodes: Memo<Bounds>,
     clusters: Memo<SkinnedCluster>,
 }
 
@@ -95,13 +95,14 @@ impl PosedMesh {
         skin_vertex(mesh, &self.palette, vertex)
     }
 
-    /// Spheres that hold the children of a node.
+    /// Bounds that hold the children of a node.
     #[cfg_attr(not(unoptimized), inline(always))]
-    pub(crate) fn spheres(&self, mesh: &ColliderMesh, node: u32) -> &Spheres {
+    pub(crate) fn bounds(&self, mesh: &ColliderMesh, node: u32) -> &Bounds {
         let index = node as usize;
         self.nodes.get(index, |found| {
-            let hierarchy = mesh.hierarchy();
-            *found = spheres(self.level, hierarchy, &hierarchy.nodes[index], &self.table);
+            let (hierarchy, table) = (mesh.hierarchy(), &self.table);
+            let node = &hierarchy.nodes[index];
+            *found = Bounds::Spheres(spheres(self.level, hierarchy, node, table));
         })
     }
 

@@ -58,18 +58,16 @@ fn check(mesh: &ColliderMesh, pose: &PosedMesh, case: &str) -> usize {
     let vertices = |cluster: &Cluster| cluster.vertices(clusters).iter().map(|v| v.index());
     let mut checked = 0;
     for (index, node) in mesh.hierarchy().nodes.iter().enumerate() {
-        let spheres = pose.spheres(mesh, index as u32);
+        let bounds = pose.bounds(mesh, index as u32);
         for lane in 0..usize::from(node.lanes) {
-            let sphere = spheres.sphere(lane);
-            assert!(sphere.center.is_finite(), "{case}: {sphere:?}");
             let mut below = Vec::new();
             clusters_below(mesh, node.child(lane), &mut below);
             for cluster in below {
                 for v in vertices(&clusters.clusters[cluster as usize]) {
                     let p = skinned[v];
                     assert!(
-                        sphere.contains(p),
-                        "{case}: node {index} {lane}: {p} {sphere:?}"
+                        bounds.holds(lane, p),
+                        "{case}: node {index} {lane}: {p} {bounds:?}"
                     );
                     checked += 1;
                 }
@@ -158,7 +156,7 @@ fn requested_entries_stay_marked_when_everything_is_filled() {
     for cluster in [3, 5] {
         pose.cluster(&mesh, cluster);
     }
-    pose.spheres(&mesh, 0);
+    pose.bounds(&mesh, 0);
     pose.fill(&mesh);
     for _ in 0..2 {
         assert_eq!(pose.asked_clusters().collect::<Vec<_>>(), [3, 5]);
@@ -173,7 +171,7 @@ fn requested_entries_stay_marked_when_everything_is_filled() {
     assert_eq!(pose.skinned_clusters().count(), all);
     pose.cluster(&mesh, 4);
     assert_eq!(pose.asked_clusters().count(), 3);
-    pose.spheres(&mesh, 1);
+    pose.bounds(&mesh, 1);
     assert_eq!(pose.asked_nodes().collect::<Vec<_>>(), [0, 1]);
     // Another palette invalidates everything.
     pose.set(&mesh, pose.palette.clone().into_iter());

@@ -73,8 +73,8 @@ impl Instance {
             0.0,
             #[cfg_attr(not(unoptimized), inline(always))]
             |node, _| {
-                let spheres = poses.map(|pose| pose.spheres(&self.mesh, node));
-                (broad::near_box(spheres, sides), [0.0; LANES])
+                let bounds = poses.map(|pose| pose.bounds(&self.mesh, node));
+                (broad::near_box(simd, bounds, sides), [0.0; LANES])
             },
             #[cfg_attr(not(unoptimized), inline(always))]
             |cluster, limit| {

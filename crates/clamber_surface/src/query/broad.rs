@@ -1,15 +1,16 @@
-//! A query against the eight spheres of a node, in f32.
+//! A query against the eight bounds of a node, in f32.
 //!
 //! Every test errs on the side of a touch: it is widened by more than f32 arithmetic can be off, and NaN counts as a
 //! touch. A distance whose square overflows is beyond any reach whose square does not. Squares that underflow do no
-//! harm, since every sphere has a radius of at least 2^-56.
+//! harm, since every sphere has a radius of at least 2^-56, and distances from boxes an allowance.
 
 use fearless_simd::{Simd, f32x8, mask32x8, prelude::*};
 use glam::Vec3;
 
 use super::probe::{Probe, Sweep};
-use crate::bounds::Spheres;
+use crate::bounds::{Bounds, Boxes, Spheres};
 use crate::geometry::Ray;
+use crate::geometry::triangle::ShearedRay;
 use crate::mesh::hierarchy::LANES;
 
 /// Allowance for rounding in f32, as a share of the lengths involved. The tests take some ten roundings of 2^-24. A
@@ -18,6 +19,9 @@ pub(super) const SLACK: f32 = 16.0 * f32::EPSILON;
 
 /// The length above which squares overflow in f32, rounded down.
 const SQUARE_OVERFLOWS: f32 = 1.8e19;
+
+/// 2^-62. Squares of shorter lengths lose digits in f32, or underflow.
+const SQUARE_UNDERFLOWS: f32 = 1.0 / (1u64 << 62) as f32;
 
 /// 2^60. Products and sums of the squares of lengths up to this are far from overflow in f32.
 const LONG: f32 = (1u64 << 60) as f32;
@@ -72,13 +76,22 @@ fn others<S: Simd>(beyond: mask32x8<S>) -> LaneMask {
     !(beyond.to_bitmask() as LaneMask)
 }
 
-/// Lanes whose sphere may hold something within the probe's reach, before the probe moves.
+/// Lanes whose bound may hold something within the probe's reach, before the probe moves.
 #[cfg_attr(not(unoptimized), inline(always))]
 pub(super) fn near<S: Simd, const N: usize>(
     simd: S,
-    spheres: &Spheres,
+    bounds: &Bounds,
     probe: &Probe<N>,
 ) -> LaneMask {
+    let spheres = match bounds {
+        Bounds::Spheres(spheres) => spheres,
+        Bounds::Boxes(boxes) => {
+            let reach = probe.reach * (1.0 + SLACK) + SQUARE_UNDERFLOWS;
+            return others(
+                square_from_box(simd, boxes, probe).simd_gt(Lanes::<S>::splat(simd, reach * reach)),
+            );
+        }
+    };
     let (distance_sq, lost) = from_core(simd, spheres, probe);
     let reach = load(simd, &spheres.radius) + probe.reach + lost;
     others(distance_sq.simd_gt(reach * reach * (1.0 + SLACK)))
@@ -90,15 +103,39 @@ pub(super) fn near<S: Simd, const N: usize>(
 #[cfg_attr(not(unoptimized), inline(always))]
 pub(super) fn distances<S: Simd, const N: usize>(
     simd: S,
-    spheres: &Spheres,
+    bounds: &Bounds,
     probe: &Probe<N>,
 ) -> [f32; LANES] {
-    let (distance_sq, lost) = from_core(simd, spheres, probe);
     let farthest = Lanes::<S>::splat(simd, SQUARE_OVERFLOWS);
+    let spheres = match bounds {
+        Bounds::Spheres(spheres) => spheres,
+        Bounds::Boxes(boxes) => {
+            let apart = square_from_box(simd, boxes, probe).sqrt();
+            let apart = less(apart, farthest) * (1.0 - SLACK) - SQUARE_UNDERFLOWS;
+            return *larger(apart, Lanes::<S>::splat(simd, 0.0));
+        }
+    };
+    let (distance_sq, lost) = from_core(simd, spheres, probe);
     let apart = less(distance_sq.sqrt(), farthest);
     let radius = load(simd, &spheres.radius);
     let gap = apart * (1.0 - SLACK) - radius * (1.0 + SLACK) - lost;
     *larger(gap, Lanes::<S>::splat(simd, 0.0))
+}
+
+/// Squared distances of the boxes from the box around a probe's core, before it moves.
+#[cfg_attr(not(unoptimized), inline(always))]
+fn square_from_box<S: Simd, const N: usize>(simd: S, boxes: &Boxes, probe: &Probe<N>) -> Lanes<S> {
+    let [a, b] = probe.segment();
+    let (first, last) = (a.min(b), a.max(b));
+    let zero = Lanes::<S>::splat(simd, 0.0);
+    let mut square = zero;
+    for axis in 0..3 {
+        let below = load(simd, &boxes.low[axis]) - last[axis];
+        let above = Lanes::<S>::splat(simd, first[axis]) - load(simd, &boxes.high[axis]);
+        let apart = larger(larger(below, above), zero);
+        square += apart * apart;
+    }
+    square
 }
 
 /// Squared distances of the centres from a probe's core, before it moves, and the allowance for rounding in the
@@ -151,10 +188,15 @@ pub(super) fn within<S: Simd>(simd: S, distances: &[f32; LANES], reach: f32) -> 
 #[cfg_attr(not(unoptimized), inline(always))]
 pub(super) fn along_ray<S: Simd>(
     simd: S,
-    spheres: &Spheres,
+    bounds: &Bounds,
     ray: &Ray,
+    sheared: &ShearedRay,
     limit: f32,
 ) -> (LaneMask, [f32; LANES]) {
+    let spheres = match bounds {
+        Bounds::Spheres(spheres) => spheres,
+        Bounds::Boxes(boxes) => return along_sheared(simd, boxes, sheared, limit),
+    };
     let direction = ray.direction();
     let from = centers_from(simd, spheres, ray.origin());
     let along = from[0] * direction.x + from[1] * direction.y + from[2] * direction.z;
@@ -173,33 +215,97 @@ pub(super) fn along_ray<S: Simd>(
     (others(beyond), *larger(first, Lanes::<S>::splat(simd, 0.0)))
 }
 
+/// [`along_ray`] for boxes: [`ShearedRay::may_meet_box`] in every lane.
+#[cfg_attr(not(unoptimized), inline(always))]
+fn along_sheared<S: Simd>(
+    simd: S,
+    boxes: &Boxes,
+    ray: &ShearedRay,
+    limit: f32,
+) -> (LaneMask, [f32; LANES]) {
+    let origin = ray.origin.to_array();
+    let number = |x: f32| Lanes::<S>::splat(simd, x);
+    let zero = number(0.0);
+    let (mut middles, mut halves) = ([zero; 3], [zero; 3]);
+    for (k, axis) in ray.axes.into_iter().enumerate() {
+        let low = (load(simd, &boxes.low[axis % 3]) - origin[axis % 3]) * 0.5;
+        let high = (load(simd, &boxes.high[axis % 3]) - origin[axis % 3]) * 0.5;
+        (middles[k], halves[k]) = (low + high, high - low);
+    }
+    let [x, y, z] = middles;
+    let slack = (sizes(middles) + halves[0] + halves[1] + halves[2]) * SLACK;
+    let [shear_x, shear_y, scale] = ray.shear;
+    let beside_x = (x - z * shear_x).abs();
+    let beside_x = beside_x.simd_gt(halves[0] + halves[2] * shear_x.abs() + slack);
+    let beside_y = (y - z * shear_y).abs();
+    let beside_y = beside_y.simd_gt(halves[1] + halves[2] * shear_y.abs() + slack);
+    let (along, reach) = (z * scale, (halves[2] + slack) * scale.abs());
+    let first = along - reach;
+    let beyond = beside_x | beside_y | (along + reach).simd_lt(zero) | first.simd_gt(number(limit));
+    (others(beyond), *larger(first, zero))
+}
+
 /// Lanes whose contents a sweep may touch up to the time `limit`, and per lane a lower bound of the time of the first
 /// touch.
 ///
 /// The contents of a sphere move on straight lines between the two poses. At time t they are within `(1 - t) r0 + t r1`
 /// of `(1 - t) c0 + t c1`: at most the larger radius. Relative to that centre the core moves on straight lines as well.
+/// `path` is the sweep's box.
 #[cfg_attr(not(unoptimized), inline(always))]
 pub(super) fn along<S: Simd, const N: usize, const P: usize>(
     simd: S,
-    spheres: [&Spheres; P],
+    bounds: [&Bounds; P],
+    sweep: &Sweep<N>,
+    path: [[f32; 3]; 2],
+    limit: f32,
+) -> (LaneMask, [f32; LANES]) {
+    let ends = [bounds[0], bounds[P - 1]];
+    let in_path = in_boxes(simd, ends, path);
+    let is_part = !sweep.is_whole::<P>();
+    if let ([Bounds::Spheres(start), Bounds::Spheres(end)], false) = (ends, is_part) {
+        return along_spheres(simd, [start, end], sweep, limit);
+    }
+    let [mut start, mut end] = [ends[0].spheres(simd), ends[1].spheres(simd)];
+    if is_part {
+        sweep.span.spheres([&mut start, &mut end]);
+    }
+    let (near, first) = along_spheres(simd, [&start, &end], sweep, limit);
+    (near & in_path, first)
+}
+
+#[cfg_attr(not(unoptimized), inline(always))]
+fn along_spheres<S: Simd, const N: usize>(
+    simd: S,
+    spheres: [&Spheres; 2],
     sweep: &Sweep<N>,
     limit: f32,
 ) -> (LaneMask, [f32; LANES]) {
-    let ends = [spheres[0], spheres[P - 1]];
-    let mut during;
-    let ends = if P == 1 || sweep.span.is_whole() {
-        ends
-    } else {
-        during = ends.map(Spheres::clone);
-        let [first, last] = &mut during;
-        sweep.span.spheres([first, last]);
-        during.each_ref()
-    };
     if N == 1 {
-        along_line(simd, ends, &sweep.probe, limit)
+        along_line(simd, spheres, &sweep.probe, limit)
     } else {
-        along_strip(ends, &sweep.probe, limit)
+        along_strip(spheres, &sweep.probe, limit)
     }
+}
+
+/// Lanes that the boxes at both ends of a motion do not keep out of the box from `low` to `high`: all, unless both ends
+/// have boxes.
+#[cfg_attr(not(unoptimized), inline(always))]
+fn in_boxes<S: Simd>(simd: S, ends: [&Bounds; 2], [low, high]: [[f32; 3]; 2]) -> LaneMask {
+    let [Bounds::Boxes(start), Bounds::Boxes(end)] = ends else {
+        return LaneMask::MAX;
+    };
+    let mut beyond = mask32x8::splat(simd, false);
+    for axis in 0..3 {
+        let (low, high) = (
+            Lanes::<S>::splat(simd, low[axis]),
+            Lanes::<S>::splat(simd, high[axis]),
+        );
+        beyond |=
+            load(simd, &start.high[axis]).simd_lt(low) & load(simd, &end.high[axis]).simd_lt(low);
+        beyond |=
+            load(simd, &start.low[axis]).simd_gt(high) & load(simd, &end.low[axis]).simd_gt(high);
+    }
+    others(beyond)
 }
 
 /// [`along`] for a swept sphere, by the perpendicular from a bounding sphere's centre to the path of the swept sphere's
@@ -368,24 +474,29 @@ fn taxicab(v: Vec3) -> f32 {
     v.x.abs() + v.y.abs() + v.z.abs()
 }
 
-/// Lanes whose contents may enter the box between two poses. The contents stay in the box around the spheres at both
+/// Lanes whose contents may enter the box between two poses. The contents stay in the box around their bounds at both
 /// poses.
 #[cfg_attr(not(unoptimized), inline(always))]
-pub(super) fn near_box([start, end]: [&Spheres; 2], [low, high]: [[f32; 3]; 2]) -> LaneMask {
+pub(super) fn near_box<S: Simd>(
+    simd: S,
+    ends: [&Bounds; 2],
+    [low, high]: [[f32; 3]; 2],
+) -> LaneMask {
+    let [start, end] = [ends[0].spheres(simd), ends[1].spheres(simd)];
     let mut beyond = [false; LANES];
-    for (axis, (first, last)) in axes(start).into_iter().zip(axes(end)).enumerate() {
+    for (axis, (first, last)) in axes(&start).into_iter().zip(axes(&end)).enumerate() {
         for lane in 0..LANES {
             let reach = |spheres: &Spheres, x: f32| {
                 spheres.radius[lane] + SLACK * (x.abs() + spheres.radius[lane])
             };
             let (x, y) = (first[lane], last[lane]);
-            let (at_x, at_y) = (reach(start, x), reach(end, y));
+            let (at_x, at_y) = (reach(&start, x), reach(&end, y));
             // Comparisons with NaN are false, so NaN touches.
             beyond[lane] |= (x + at_x < low[axis]) & (y + at_y < low[axis]);
             beyond[lane] |= (x - at_x > high[axis]) & (y - at_y > high[axis]);
         }
     }
-    lanes(|lane| !beyond[lane])
+    lanes(|lane| !beyond[lane]) & in_boxes(simd, ends, [low, high])
 }
 
 fn axes(spheres: &Spheres) -> [&[f32; LANES]; 3] {

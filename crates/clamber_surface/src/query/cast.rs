@@ -16,9 +16,9 @@ use super::probe::{Sweep, with_probe};
 use super::span::Span;
 use super::traverse::traverse;
 use super::{ModelSpace, SweepHit, broad, root};
-use crate::geometry::triangle::first_contact_of_eight;
+use crate::geometry::triangle::{Corners8, EIGHT, first_contact_of_eight};
 use crate::geometry::{Capsule, round_up_to_f32};
-use crate::mesh::ColliderMesh;
+use crate::mesh::{ColliderMesh, TriangleId};
 use crate::pose::PosedMesh;
 
 /// Whether the target of a cast, skin or any other obstacle, moves during the cast.
@@ -263,76 +263,148 @@ impl Instance {
         every_one_counts: bool,
         visit: &mut dyn FnMut(First) -> f64,
     ) {
+        let mut tests = Tests {
+            instance: self,
+            poses,
+            sweep,
+            visit,
+            limit: 1.0,
+            tested: 0,
+            steps: 0,
+        };
         dispatch!(self.simd_level.level(), simd => {
-            self.descend_cast::<_, EARLIEST_FIRST, N, P>(simd, poses, sweep, every_one_counts, visit);
+            tests.descend::<_, EARLIEST_FIRST>(simd, every_one_counts);
         });
+        self.count_tested(tests.tested, tests.steps);
+    }
+}
+
+/// Most clusters that are set aside until all touches of vertices are known.
+const ASIDE: usize = 16;
+
+/// The exact tests of a cast.
+struct Tests<'a, const N: usize, const P: usize> {
+    instance: &'a Instance,
+    poses: [&'a PosedMesh; P],
+    sweep: &'a Sweep<N>,
+    visit: &'a mut dyn FnMut(First) -> f64,
+    /// The last time that still matters.
+    limit: f64,
+    tested: usize,
+    steps: u32,
+}
+
+impl<const N: usize, const P: usize> Tests<'_, N, P> {
+    /// Descends to the clusters on the way. If `every_one_counts`, they are set aside first, and their vertices tell by
+    /// when something is touched: few triangles are then left for the exact test.
+    #[cfg_attr(not(unoptimized), inline(always))]
+    fn descend<S: Simd, const EARLIEST_FIRST: bool>(&mut self, simd: S, every_one_counts: bool) {
+        let (instance, poses, sweep) = (self.instance, self.poses, self.sweep);
+        let path = sweep.bounds();
+        let (mut aside, mut count) = ([0; ASIDE], 0);
+        traverse::<EARLIEST_FIRST>(
+            instance.mesh.hierarchy(),
+            self.limit,
+            #[cfg_attr(not(unoptimized), inline(always))]
+            |node, limit| {
+                let bounds = poses.map(|pose| pose.bounds(&instance.mesh, node));
+                broad::along(simd, bounds, sweep, path, limit)
+            },
+            #[cfg_attr(not(unoptimized), inline(always))]
+            |cluster, _| {
+                let Some(posed) = PosedCluster::visit(instance, poses, cluster) else {
+                    return Some(self.limit);
+                };
+                if !posed.enters(path) {
+                    return Some(self.limit);
+                }
+                aside[count] = cluster;
+                count += 1;
+                if every_one_counts {
+                    let mut ends;
+                    let posed = if sweep.is_whole::<P>() {
+                        posed
+                    } else {
+                        ends = Default::default();
+                        posed.during(&sweep.span, &mut ends)
+                    };
+                    let touch = posed.touched_by(simd, &sweep.probe);
+                    self.limit = self.limit.min(touch.into());
+                }
+                if !every_one_counts || count == ASIDE {
+                    self.test(&aside[..count]);
+                    count = 0;
+                }
+                Some(self.limit)
+            },
+        );
+        if count > 0 {
+            self.test(&aside[..count]);
+        }
+    }
+
+    /// Tests the triangles of some clusters, those of several clusters together.
+    fn test(&mut self, clusters: &[u32]) {
+        let level = self.instance.simd_level.level();
+        dispatch!(level, simd => self.test_on(simd, clusters));
     }
 
     #[cfg_attr(not(unoptimized), inline(always))]
-    fn descend_cast<S: Simd, const EARLIEST_FIRST: bool, const N: usize, const P: usize>(
-        &self,
-        simd: S,
-        poses: [&PosedMesh; P],
-        sweep: &Sweep<N>,
-        every_one_counts: bool,
-        visit: &mut dyn FnMut(First) -> f64,
-    ) {
-        let path = sweep.bounds();
-        let (mut tested, mut steps) = (0, 0);
-        traverse::<EARLIEST_FIRST>(
-            self.mesh.hierarchy(),
-            1.0,
-            #[cfg_attr(not(unoptimized), inline(always))]
-            |node, limit| {
-                let spheres = poses.map(|pose| pose.spheres(&self.mesh, node));
-                broad::along(simd, spheres, sweep, limit)
-            },
-            #[cfg_attr(not(unoptimized), inline(always))]
-            |cluster, limit| {
-                let Some(posed) = PosedCluster::visit(self, poses, cluster) else {
-                    return Some(limit);
-                };
-                if !posed.enters(path) {
-                    return Some(limit);
-                }
-                let mut ends;
-                let posed = if P == 1 || sweep.span.is_whole() {
-                    posed
-                } else {
-                    ends = Default::default();
-                    posed.during(&sweep.span, &mut ends)
-                };
-                let mut limit = limit;
-                let mut until = limit;
-                if every_one_counts {
-                    until = until.min(posed.touched_by(simd, &sweep.probe).into());
-                }
+    fn test_on<S: Simd>(&mut self, simd: S, clusters: &[u32]) {
+        let (poses, sweep) = (self.poses, self.sweep);
+        let mut corners = [Corners8::default(); P];
+        let mut ids = [TriangleId(0); EIGHT];
+        let mut count = 0;
+        for cluster in clusters {
+            let Some(posed) = PosedCluster::visit(self.instance, poses, *cluster) else {
+                continue;
+            };
+            let mut ends;
+            let posed = if sweep.is_whole::<P>() {
                 posed
-                    .near(simd, &sweep.probe, round_up_to_f32(until))
-                    .by_eight(
-                        #[cfg_attr(not(unoptimized), inline(always))]
-                        |batch| {
-                            let corners = posed.batch(batch);
-                            let found =
-                                first_contact_of_eight(posed.level(), &corners, &sweep.core, until);
-                            tested += batch.len();
-                            steps = steps.max(found.steps);
-                            for (lane, triangle) in batch.iter().enumerate() {
-                                if let Some(contact) = found.get(lane) {
-                                    limit = visit(First {
-                                        triangle: posed.id(usize::from(*triangle)),
-                                        corners: [corners[0].get(lane), corners[P - 1].get(lane)],
-                                        contact,
-                                    });
-                                    until = until.min(limit);
-                                }
-                            }
-                        },
-                    );
-                Some(limit)
-            },
-        );
-        self.count_tested(tested, steps);
+            } else {
+                ends = Default::default();
+                posed.during(&sweep.span, &mut ends)
+            };
+            let until = round_up_to_f32(self.limit);
+            for triangle in posed.near(simd, &sweep.probe, until).iter() {
+                for (corners, of_pose) in corners.iter_mut().zip(posed.corners(triangle)) {
+                    corners.set(count, of_pose);
+                }
+                ids[count] = posed.id(triangle);
+                count += 1;
+                if count == EIGHT {
+                    self.test_eight(&corners, &ids);
+                    count = 0;
+                }
+            }
+        }
+        if count > 0 {
+            for corners in &mut corners {
+                let first = corners.get(0);
+                for lane in count..EIGHT {
+                    corners.set(lane, first);
+                }
+            }
+            self.test_eight(&corners, &ids[..count]);
+        }
+    }
+
+    fn test_eight(&mut self, corners: &[Corners8; P], triangles: &[TriangleId]) {
+        let level = self.instance.simd_level;
+        let found = first_contact_of_eight(level, corners, &self.sweep.core, self.limit);
+        self.tested += triangles.len();
+        self.steps = self.steps.max(found.steps);
+        for (lane, triangle) in triangles.iter().enumerate() {
+            if let Some(contact) = found.get(lane) {
+                let limit = (self.visit)(First {
+                    triangle: *triangle,
+                    corners: [corners[0].get(lane), corners[P - 1].get(lane)],
+                    contact,
+                });
+                self.limit = self.limit.min(limit);
+            }
+        }
     }
 }
 

@@ -59,8 +59,8 @@ impl Instance {
             best.limit() + blur,
             #[cfg_attr(not(unoptimized), inline(always))]
             |node, limit| {
-                let spheres = self.current.spheres(&self.mesh, node);
-                let distances = broad::distances(simd, spheres, probe);
+                let bounds = self.current.bounds(&self.mesh, node);
+                let distances = broad::distances(simd, bounds, probe);
                 (broad::within(simd, &distances, limit), distances)
             },
             #[cfg_attr(not(unoptimized), inline(always))]
@@ -72,7 +72,7 @@ impl Instance {
                     return Some(limit);
                 }
                 // No triangle farther than the nearest vertex matters, except for rounding in its measured distance.
-                let (point, lost) = probe.facing(posed.somewhere()[0]);
+                let (point, lost) = probe.facing(posed.middle()[0]);
                 let vertex = f64::from(posed.nearest_vertex(simd, point)) + lost;
                 let near = best.limit().min(vertex + BLUR * size) + blur;
                 let survivors = posed.near(simd, &probe.reaching(near), 0.0);

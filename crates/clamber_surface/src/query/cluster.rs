@@ -14,9 +14,6 @@ use crate::pose::PosedMesh;
 use crate::simd::SimdLevel;
 use crate::skin::{ClusterPositions, SkinnedCluster};
 
-/// Number of vertices whose mean tells where a cluster is.
-const SAMPLES: usize = 8;
-
 /// A cluster as skinned in one pose (P = 1), or at the two ends of a motion (P = 2).
 pub(super) struct PosedCluster<'a, const P: usize> {
     instance: &'a Instance,
@@ -131,13 +128,28 @@ impl<'a, const P: usize> PosedCluster<'a, P> {
         probe: &Probe<N>,
         until: f32,
     ) -> Survivors {
-        let mut targets = self.somewhere();
+        let mut targets = self.middle();
         targets[P - 1] = targets[0] + (targets[P - 1] - targets[0]) * until;
         let planes = Planes::facing(probe, until, targets);
         let rows = self.cluster.rows();
         let survivors =
             narrow::within_planes(simd, self.positions(), rows, self.corners, &planes, until);
         self.enabled(survivors)
+    }
+
+    /// Of some triangles, those of which a corner is surely within the reach of a probe before it moves: its exact test
+    /// would find a distance below that.
+    #[cfg_attr(not(unoptimized), inline(always))]
+    pub(super) fn surely_within<S: Simd, const N: usize>(
+        &self,
+        simd: S,
+        probe: &Probe<N>,
+        survivors: Survivors,
+    ) -> Survivors {
+        let ball = self.facing_ball(probe);
+        let positions = self.positions()[0];
+        let within = narrow::within_ball(simd, positions, self.cluster.rows(), self.corners, &ball);
+        survivors.and(within)
     }
 
     /// Triangles whose bounding boxes over the motion overlap a box.
@@ -163,7 +175,7 @@ impl<'a, const P: usize> PosedCluster<'a, P> {
     fn facing_ball<const N: usize>(&self, probe: &Probe<N>) -> MovingBall {
         let [a, b] = probe.segment();
         let axis = b - a;
-        let share = (self.somewhere()[0] - a).dot(axis) / axis.length_squared();
+        let share = (self.middle()[0] - a).dot(axis) / axis.length_squared();
         let share = if share > 0.0 { share.min(1.0) } else { 0.0 };
         let motion = probe.motions[0];
         let turn = probe.motions[N - 1] - motion;
@@ -193,18 +205,14 @@ impl<'a, const P: usize> PosedCluster<'a, P> {
         instance.hidden_triangles == 0 || self.triangles.iter().all(|id| instance.shows(*id))
     }
 
-    /// A point near the cluster's middle in each pose: the mean of a few vertices.
+    /// The middle of the box around the cluster, in each pose.
     #[cfg_attr(not(unoptimized), inline(always))]
-    pub(super) fn somewhere(&self) -> [Vec3; P] {
-        let slots = usize::from(self.cluster.slots);
-        let mut means = [Vec3::ZERO; P];
-        for (mean, positions) in means.iter_mut().zip(self.positions()) {
-            for k in 0..SAMPLES {
-                *mean += position(positions, k * slots / SAMPLES);
-            }
-            *mean /= SAMPLES as f32;
+    pub(super) fn middle(&self) -> [Vec3; P] {
+        let mut middles = [Vec3::ZERO; P];
+        for (middle, skinned) in middles.iter_mut().zip(self.skinned) {
+            *middle = Vec3::from(skinned.low) * 0.5 + Vec3::from(skinned.high) * 0.5;
         }
-        means
+        middles
     }
 
     /// The corners of a triangle in each pose.

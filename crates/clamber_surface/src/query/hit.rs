@@ -183,7 +183,12 @@ impl Earliest {
     }
 
     pub(super) fn offer(&mut self, candidate: First) {
-        if self.first.is_none_or(|first| candidate.precedes(&first)) {
+        self.offer_if(candidate, |_| true);
+    }
+
+    /// Offers a contact that `counts` accepts. It is asked only about one that would be the earliest.
+    pub(super) fn offer_if(&mut self, candidate: First, counts: impl FnOnce(&First) -> bool) {
+        if self.first.is_none_or(|first| candidate.precedes(&first)) && counts(&candidate) {
             self.first = Some(candidate);
         }
     }

@@ -40,6 +40,24 @@ impl Survivors {
         }
     }
 
+    /// Those that are in both.
+    #[cfg_attr(not(unoptimized), inline(always))]
+    pub(super) fn and(mut self, other: Self) -> Self {
+        for (bits, other) in self.0.iter_mut().zip(other.0) {
+            *bits &= other;
+        }
+        self
+    }
+
+    /// Those that are not in `other`.
+    #[cfg_attr(not(unoptimized), inline(always))]
+    pub(super) fn without(mut self, other: Self) -> Self {
+        for (bits, other) in self.0.iter_mut().zip(other.0) {
+            *bits &= !other;
+        }
+        self
+    }
+
     /// Triangles by ascending number.
     #[cfg_attr(not(unoptimized), inline(always))]
     pub(super) fn iter(self) -> impl Iterator<Item = usize> {
@@ -124,6 +142,33 @@ pub(super) fn along_ray<S: Simd>(
     limit: f32,
 ) -> Survivors {
     let codes = ray_codes(simd, positions, rows, ray, limit);
+    survivors(simd, corners, &codes)
+}
+
+/// Triangles of which a corner is within a ball that stands still, by more than rounding.
+#[cfg_attr(not(unoptimized), inline(always))]
+pub(super) fn within_ball<S: Simd>(
+    simd: S,
+    positions: &ClusterPositions,
+    rows: usize,
+    corners: &[CornerBlock],
+    ball: &MovingBall,
+) -> Survivors {
+    let center = ball.center.map(|x| S::f32s::splat(simd, x));
+    let reach = ball.radius * (1.0 - SLACK) - ball.lost;
+    let reach = if reach > LEAST_RADIUS { reach } else { 0.0 };
+    let reach_sq = S::f32s::splat(simd, reach * reach * (1.0 - SLACK));
+    let codes = each_code(
+        simd,
+        rows,
+        #[cfg_attr(not(unoptimized), inline(always))]
+        |slot| {
+            let [x, y, z] = vectors::<S>(simd, positions, slot);
+            let (x, y, z) = (x - center[0], y - center[1], z - center[2]);
+            // Beyond the ball, or about as far as its surface.
+            [(x * x + y * y + z * z).simd_ge(reach_sq)]
+        },
+    );
     survivors(simd, corners, &codes)
 }
 

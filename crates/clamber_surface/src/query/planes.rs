@@ -33,17 +33,23 @@ pub(super) struct Planes<const P: usize> {
 impl<const P: usize> Planes<P> {
     /// Planes around all that a probe reaches up to the time `until`, facing a target that moves from the first of
     /// `targets` to the last by then.
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(super) fn facing<const N: usize>(probe: &Probe<N>, until: f32, targets: [Vec3; P]) -> Self {
         let [origin, last] = probe.segment();
         let axis = last - origin;
-        let motions = [0, N - 1].map(|end| probe.motions[end] * until);
-        let facing = direction(axis, motions, origin, [targets[0], targets[P - 1]]);
+        let motions = [probe.motions[0] * until, probe.motions[N - 1] * until];
+        let facing = if N == 1 && P == 1 && motions[0] == Vec3::ZERO {
+            straight(origin, targets[0])
+        } else {
+            direction(axis, motions, origin, [targets[0], targets[P - 1]])
+        };
         let normals = about(round_to_f32(facing));
         let radius = probe.reach * (1.0 + SLACK);
-        let size = [origin, axis, motions[0], motions[1]]
-            .map(|v| v.abs().max_element())
-            .into_iter()
-            .fold(radius, f32::max);
+        let largest = origin
+            .abs()
+            .max(axis.abs())
+            .max(motions[0].abs().max(motions[1].abs()));
+        let size = largest.max_element().max(radius);
         // The last term is for products that underflow.
         let beside = radius + SLACK * size + f32::MIN_POSITIVE;
         let beside = if size < LARGEST {
@@ -91,6 +97,13 @@ fn larger(a: [f32; PLANES], b: [f32; PLANES]) -> [f32; PLANES] {
     found
 }
 
+/// [`direction`] to a target for a core that is a point, where nothing moves.
+#[cfg_attr(not(unoptimized), inline(always))]
+fn straight(origin: Vec3, target: Vec3) -> DVec3 {
+    let way = widen(target) - widen(origin);
+    way.try_normalize().unwrap_or(DVec3::Y)
+}
+
 /// Approximate direction from the core to the target when they are nearest. Any direction gives valid planes.
 fn direction(axis: Vec3, motions: [Vec3; 2], origin: Vec3, targets: [Vec3; 2]) -> DVec3 {
     // In f64: in f32, squares of small numbers underflow, and normals come out too long.
@@ -116,24 +129,22 @@ fn share(numerator: f64, denominator: f64) -> f64 {
 }
 
 /// Unit vectors around `facing`, by coordinate: itself, and others tilted away from it.
+#[cfg_attr(not(unoptimized), inline(always))]
 fn about(facing: Vec3) -> [[f32; PLANES]; 3] {
     let (across, up) = facing.any_orthonormal_pair();
     let half_root_3 = 0.866_025_4;
     // Components along `facing`, `across` and `up`.
-    let parts = [
-        [1.0, 0.0, 0.0],
-        [NEAR[0], NEAR[1], 0.0],
-        [NEAR[0], -NEAR[1], 0.0],
-        [NEAR[0], 0.0, NEAR[1]],
-        [NEAR[0], 0.0, -NEAR[1]],
-        [FAR[0], 0.0, FAR[1]],
-        [FAR[0], half_root_3 * FAR[1], -0.5 * FAR[1]],
-        [FAR[0], -half_root_3 * FAR[1], -0.5 * FAR[1]],
+    let along = [
+        1.0, NEAR[0], NEAR[0], NEAR[0], NEAR[0], FAR[0], FAR[0], FAR[0],
     ];
+    let (half, side) = (-0.5 * FAR[1], half_root_3 * FAR[1]);
+    let aside = [0.0, NEAR[1], -NEAR[1], 0.0, 0.0, 0.0, side, -side];
+    let above = [0.0, 0.0, 0.0, NEAR[1], -NEAR[1], FAR[1], half, half];
     let mut normals = [[0.0; PLANES]; 3];
     for (axis, normals) in normals.iter_mut().enumerate() {
-        for (normal, [along, aside, above]) in normals.iter_mut().zip(parts) {
-            *normal = facing[axis] * along + across[axis] * aside + up[axis] * above;
+        let (facing, across, up) = (facing[axis], across[axis], up[axis]);
+        for plane in 0..PLANES {
+            normals[plane] = facing * along[plane] + across * aside[plane] + up * above[plane];
         }
     }
     normals

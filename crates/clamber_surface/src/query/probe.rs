@@ -167,6 +167,11 @@ impl<const N: usize> Sweep<N> {
         })
     }
 
+    /// True if what it meets, in P poses, moves from the first of them to the last, or stands still.
+    pub(super) fn is_whole<const P: usize>(&self) -> bool {
+        P == 1 || self.span.is_whole()
+    }
+
     /// The same sweep with the reach that it has among triangles that are at most `size` across and `size` away.
     pub(super) fn among(&self, size: f64) -> Self {
         let core = &self.core;

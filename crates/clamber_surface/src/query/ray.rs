@@ -94,8 +94,8 @@ impl Instance {
             limit,
             #[cfg_attr(not(unoptimized), inline(always))]
             |node, limit| {
-                let spheres = self.current.spheres(&self.mesh, node);
-                broad::along_ray(simd, spheres, ray, limit)
+                let bounds = self.current.bounds(&self.mesh, node);
+                broad::along_ray(simd, bounds, ray, &sheared_ray, limit)
             },
             #[cfg_attr(not(unoptimized), inline(always))]
             |cluster, mut limit| {

@@ -1,6 +1,6 @@
 use glam::{DQuat, Quat};
 
-use super::deformation::material_frame;
+use super::deformation::{Flattened, Rest};
 use super::{SkinnedSurface, SurfaceError};
 use crate::mesh::{ColliderMesh, MeshId, TriangleId};
 use crate::query::{CapsuleHit, SurfaceHit, SweepHit};
@@ -92,8 +92,8 @@ impl SkinnedSurface {
         check_barycentric(barycentric)?;
         let instance = &self.instance;
         let matrix = &instance.current.palette()[joint.index()];
-        let rest = mesh.rest_corners(triangle);
-        let frame = material_frame(rest, instance.corners(triangle), matrix);
+        let now = Flattened::new(instance.corners(triangle));
+        let frame = Rest::new(mesh.rest_corners(triangle)).frame(now.as_ref(), matrix);
         Ok(Anchor {
             mesh: mesh.id_of(triangle),
             triangle,

@@ -27,28 +27,49 @@ pub(super) fn is_collapsed(corners: [Vec3; 3]) -> bool {
     scaled_normal(corners).length() <= longest * lowest
 }
 
-/// The rotation of the material from rest to now; `None` if the triangle has collapsed. A sliver without an orientation
-/// even at rest turns with the joint of its part.
-pub(super) fn material_frame(rest: [Vec3; 3], now: [Vec3; 3], joint: &Affine) -> Option<DQuat> {
-    if !is_collapsed(rest) {
-        return frame_of(rest, now);
+/// A triangle at rest, from which rotations of the material are measured.
+pub(super) struct Rest {
+    corners: [Vec3; 3],
+    /// `None` if it has no orientation even at rest.
+    flat: Option<Flattened>,
+}
+
+impl Rest {
+    pub(super) fn new(corners: [Vec3; 3]) -> Self {
+        let flat = Flattened::new(corners);
+        Self { corners, flat }
     }
-    let linear = joint.to_f64().matrix3;
-    let x = linear.x_axis.try_normalize()?;
-    let z = x.cross(linear.y_axis).try_normalize()?;
-    Some(DQuat::from_mat3(&DMat3::from_cols(x, z.cross(x), z)).normalize())
+
+    /// Normal of the triangle at rest, of any length.
+    pub(super) fn scaled_normal(&self) -> DVec3 {
+        scaled_normal(self.corners)
+    }
+
+    /// The rotation of the material from rest to now; `None` if the triangle has collapsed. A sliver without an
+    /// orientation even at rest turns with the joint of its part.
+    pub(super) fn frame(&self, now: Option<&Flattened>, joint: &Affine) -> Option<DQuat> {
+        // What cannot be flattened although it has not collapsed, by overflow, has no frame.
+        if self.flat.is_some() || !is_collapsed(self.corners) {
+            return frame_between(self.flat.as_ref()?, now?);
+        }
+        let linear = joint.to_f64().matrix3;
+        let x = linear.x_axis.try_normalize()?;
+        let z = x.cross(linear.y_axis).try_normalize()?;
+        Some(DQuat::from_mat3(&DMat3::from_cols(x, z.cross(x), z)).normalize())
+    }
 }
 
 /// A triangle in its own plane: its orthonormal axes (first edge, in-plane perpendicular, normal), and its two edges in
 /// these axes, `(length, 0)` and `(x, y)` with positive y.
-struct Flattened {
+pub(super) struct Flattened {
     axes: DMat3,
     first: f64,
     second: DVec2,
 }
 
 impl Flattened {
-    fn new(corners: [Vec3; 3]) -> Option<Self> {
+    /// `None` if the triangle has collapsed.
+    pub(super) fn new(corners: [Vec3; 3]) -> Option<Self> {
         if is_collapsed(corners) {
             return None;
         }
@@ -63,6 +84,11 @@ impl Flattened {
         })
     }
 
+    /// Its counter-clockwise unit normal.
+    pub(super) fn normal(&self) -> DVec3 {
+        self.axes.z_axis
+    }
+
     /// The in-plane map from this triangle's edges to those of `to`, each in its own axes: `[[a, b], [0, d]]` with
     /// positive a and d, returned as (a, b, d).
     fn gradient(&self, to: &Self) -> (f64, f64, f64) {
@@ -73,13 +99,12 @@ impl Flattened {
     }
 }
 
-/// The rotation nearest to the map from one triangle to the other; `None` if either has collapsed.
+/// The rotation nearest to the map from one triangle to the other; `None` if it is not finite.
 ///
 /// The rotation nearest to the in-plane gradient `[[a, b], [0, d]]` has a cosine proportional to `a + d` and a sine
 /// proportional to `-b` (polar decomposition in two dimensions).
-pub(super) fn frame_of(rest: [Vec3; 3], now: [Vec3; 3]) -> Option<DQuat> {
-    let (rest, now) = (Flattened::new(rest)?, Flattened::new(now)?);
-    let (a, b, d) = rest.gradient(&now);
+fn frame_between(rest: &Flattened, now: &Flattened) -> Option<DQuat> {
+    let (a, b, d) = rest.gradient(now);
     let (cos, sin) = (a + d, -b);
     let length = (cos * cos + sin * sin).sqrt();
     let (cos, sin) = (cos / length, sin / length);
@@ -93,19 +118,23 @@ pub(super) fn frame_of(rest: [Vec3; 3], now: [Vec3; 3]) -> Option<DQuat> {
     frame.is_finite().then_some(frame)
 }
 
-/// Area ratio and principal stretches, larger first, from one triangle to the other; 1 if the first has collapsed.
-pub(super) fn stretch(before: [Vec3; 3], now: [Vec3; 3]) -> (f64, [f64; 2]) {
-    let Some(flat_before) = Flattened::new(before) else {
+/// Area ratio and principal stretches, larger first, from one triangle to the other; 1 if the first has collapsed. Takes
+/// the corners of both, and both flattened.
+pub(super) fn stretch(
+    [before, now]: [[Vec3; 3]; 2],
+    [flat_before, flat_now]: [Option<&Flattened>; 2],
+) -> (f64, [f64; 2]) {
+    let Some(flat_before) = flat_before else {
         return (1.0, [1.0, 1.0]);
     };
-    let Some(flat_now) = Flattened::new(now) else {
+    let Some(flat_now) = flat_now else {
         // Collapsed into a segment or a point: the longest edges give the stretch along it.
         let area = scaled_normal(now).length() / scaled_normal(before).length();
         let along = longest_edge(now) / longest_edge(before);
         let across = if along > 0.0 { area / along } else { 0.0 };
         return (area, [along.max(across), along.min(across)]);
     };
-    let (a, b, d) = flat_before.gradient(&flat_now);
+    let (a, b, d) = flat_before.gradient(flat_now);
     // Singular values of [[a, b], [0, d]] without cancellation (Blinn 1996).
     let sum = ((a + d) * (a + d) + b * b).sqrt();
     let difference = ((a - d) * (a - d) + b * b).sqrt();

@@ -3,9 +3,9 @@
 use glam::{DQuat, DVec3, Quat, Vec3};
 
 use super::anchor::{check_barycentric, check_mesh};
-use super::deformation::{is_collapsed, material_frame, stretch};
-use super::{Anchor, ModelSpace, SurfaceError};
-use crate::geometry::triangle::{point_at, scaled_normal};
+use super::deformation::{Flattened, Rest, stretch};
+use super::{Anchor, ModelSpace, SurfaceError, SurfacePoint};
+use crate::geometry::triangle::point_at;
 use crate::geometry::{rotation_vector, round_to_f32, widen};
 use crate::rig::{rotation_f32, rotation_f64};
 
@@ -38,7 +38,49 @@ pub struct Motion {
     pub stretches: [f32; 2],
 }
 
+/// Where a material point was and is, in the *current* model frame: the part of its [`Motion`] that needs no frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct PointPath {
+    /// The point's current position.
+    pub position: Vec3,
+    /// The point's position a tick ago.
+    pub previous_position: Vec3,
+    /// Displacement over the tick, in model units per second.
+    pub velocity: Vec3,
+}
+
 impl ModelSpace<'_> {
+    /// Where a point was a tick of `dt` seconds ago, and is now. These are the positions and the velocity of
+    /// [`ModelSpace::motion`], for a fraction of the time. Skins the triangle's three vertices.
+    ///
+    /// # Errors
+    /// As [`ModelSpace::motion`].
+    pub fn path(&self, point: impl Into<SurfacePoint>, dt: f64) -> Result<PointPath, SurfaceError> {
+        let (point, instance) = (point.into(), self.instance);
+        let triangle = point.triangle;
+        check_mesh(&instance.mesh, point.mesh)?;
+        if instance.mesh.part_of(triangle).is_none() {
+            return Err(SurfaceError::Triangle(triangle));
+        }
+        check_barycentric(point.barycentric)?;
+        if !(dt > 0.0 && dt.is_finite()) {
+            return Err(SurfaceError::Tick(dt));
+        }
+        let weights = widen(Vec3::from_array(point.barycentric));
+        let position = point_at(instance.corners(triangle), weights);
+        let previous = point_at(instance.corners_in(&instance.previous, triangle), weights);
+        let velocity = (position - previous) / dt;
+        if velocity.length() > f64::from(f32::MAX) {
+            return Err(SurfaceError::ShortTick(dt));
+        }
+        Ok(PointPath {
+            position: round_to_f32(position),
+            previous_position: round_to_f32(previous),
+            velocity: round_to_f32(velocity),
+        })
+    }
+
     /// The motion of an anchor over a tick of `dt` seconds. Skins the triangle's three vertices.
     ///
     /// # Errors
@@ -57,31 +99,31 @@ impl ModelSpace<'_> {
         if !(dt > 0.0 && dt.is_finite()) {
             return Err(SurfaceError::Tick(dt));
         }
-        let rest = instance.mesh.rest_corners(triangle);
+        let rest = Rest::new(instance.mesh.rest_corners(triangle));
         let before = instance.corners_in(&instance.previous, triangle);
         let now = instance.corners(triangle);
+        let [flat_before, flat_now] = [before, now].map(Flattened::new);
+        let (flat_before, flat_now) = (flat_before.as_ref(), flat_now.as_ref());
 
         let weights = widen(Vec3::from_array(anchor.barycentric));
         let (position, previous) = (point_at(now, weights), point_at(before, weights));
         let joint = instance.mesh.parts()[part.index()].joint.index();
-        let previous_frame = material_frame(rest, before, &instance.previous.palette()[joint]);
-        let current_frame = material_frame(rest, now, &instance.current.palette()[joint]);
+        let previous_frame = rest.frame(flat_before, &instance.previous.palette()[joint]);
+        let current_frame = rest.frame(flat_now, &instance.current.palette()[joint]);
         let frame = current_frame
             .or(previous_frame)
             .unwrap_or_else(|| last_frame(anchor));
         let previous_frame = previous_frame.unwrap_or(frame);
-        let normal = match instance.outward_normal(now, part) {
-            Some(normal) if !is_collapsed(now) => normal,
-            _ => {
-                let sign = if instance.is_mirrored(part) {
-                    -1.0
-                } else {
-                    1.0
-                };
-                frame * scaled_normal(rest).normalize_or(DVec3::Y) * sign
-            }
+        let sign = if instance.is_mirrored(part) {
+            -1.0
+        } else {
+            1.0
         };
-        let (area_ratio, stretches) = stretch(before, now);
+        let normal = match flat_now {
+            Some(flat) => flat.normal() * sign,
+            None => frame * rest.scaled_normal().normalize_or(DVec3::Y) * sign,
+        };
+        let (area_ratio, stretches) = stretch([before, now], [flat_before, flat_now]);
         let velocity = (position - previous) / dt;
         let angular_velocity = rotation_vector(frame * previous_frame.conjugate()) / dt;
         if velocity.length().max(angular_velocity.length()) > f64::from(f32::MAX) {

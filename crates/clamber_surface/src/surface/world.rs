@@ -87,6 +87,24 @@ pub struct WorldMotion {
     pub stretches: [f32; 2],
 }
 
+/// Where a material point was a tick ago and is now, in world space: the part of its motion that needs no frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WorldPath {
+    /// The point's current position.
+    pub position: DVec3,
+    /// The point's position a tick ago.
+    pub previous_position: DVec3,
+    /// Displacement over the tick divided by the tick's length, metres per second; see [`WorldMotion::velocity`].
+    pub velocity: DVec3,
+}
+
+impl WorldPath {
+    /// True if all of it is finite.
+    pub fn is_finite(&self) -> bool {
+        self.position.is_finite() && self.previous_position.is_finite() && self.velocity.is_finite()
+    }
+}
+
 impl From<&WorldHit> for SurfacePoint {
     fn from(hit: &WorldHit) -> Self {
         Self {
@@ -228,6 +246,21 @@ impl WorldSpace<'_> {
     pub fn motion(&self, anchor: &Anchor, dt: f64) -> Result<WorldMotion, SurfaceError> {
         let motion = self.surface.in_model().motion(anchor, dt)?;
         Ok(self.motion_of(&motion))
+    }
+
+    /// Where a point was a tick of `dt` seconds ago, and is now: the positions and the velocity of
+    /// [`WorldSpace::motion`], for a fraction of the time.
+    ///
+    /// # Errors
+    /// As [`ModelSpace::path`](super::ModelSpace::path).
+    pub fn path(&self, point: impl Into<SurfacePoint>, dt: f64) -> Result<WorldPath, SurfaceError> {
+        let path = self.surface.in_model().path(point, dt)?;
+        let world_from_model = self.place();
+        Ok(WorldPath {
+            position: world_from_model.transform_point_f32(path.position),
+            previous_position: world_from_model.transform_point_f32(path.previous_position),
+            velocity: world_from_model.transform_vector(path.velocity.as_dvec3()),
+        })
     }
 
     fn motion_of(&self, motion: &Motion) -> WorldMotion {

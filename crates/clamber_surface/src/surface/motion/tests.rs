@@ -2,7 +2,7 @@ use super::*;
 use crate::geometry::{Affine, Ray, Similarity, rotation_from_axis_angle};
 use crate::rig::Palette;
 use crate::surface::SkinnedSurface;
-use crate::surface::deformation::frame_of;
+use crate::surface::deformation::is_collapsed;
 use crate::testing::{bend, rigid, tube};
 
 const JOINTS: u32 = 5;
@@ -24,6 +24,15 @@ fn scaled(x: f32, y: f32, z: f32) -> Palette {
     matrix.rows[1][1] = y;
     matrix.rows[2][2] = z;
     Palette::from_matrices((0..JOINTS).map(|_| matrix))
+}
+
+fn frame(rest: [Vec3; 3], now: [Vec3; 3], joint: &Affine) -> Option<DQuat> {
+    Rest::new(rest).frame(Flattened::new(now).as_ref(), joint)
+}
+
+fn stretched(before: [Vec3; 3], now: [Vec3; 3]) -> (f64, [f64; 2]) {
+    let flat = [before, now].map(Flattened::new);
+    stretch([before, now], [flat[0].as_ref(), flat[1].as_ref()])
 }
 
 #[test]
@@ -92,11 +101,11 @@ fn shear_turns_the_frame_by_half_its_angle_only() {
     let corners = [Vec3::ZERO, Vec3::Z, Vec3::X];
     for s in [0.01f32, 0.5, 3.0] {
         let sheared = [Vec3::ZERO, Vec3::Z, Vec3::X + Vec3::Z * s];
-        let turned = rotation_vector(frame_of(corners, sheared).unwrap());
+        let turned = rotation_vector(frame(corners, sheared, &Affine::IDENTITY).unwrap());
         // About the normal, Y, from X towards Z.
         let expected = DVec3::Y * -libm::atan(f64::from(s) / 2.0);
         assert!((turned - expected).length() < 1e-9, "{s}: {turned}");
-        let (area, [large, small]) = stretch(corners, sheared);
+        let (area, [large, small]) = stretched(corners, sheared);
         assert!((area - 1.0).abs() < 1e-9 && (large * small - 1.0).abs() < 1e-9);
         let exact = (1.0 + f64::from(s * s) / 4.0).sqrt() + f64::from(s) / 2.0;
         assert!((large - exact).abs() < 1e-6, "{s}: {large} {exact}");
@@ -160,7 +169,7 @@ fn a_sliver_without_a_frame_at_rest_turns_with_its_joint() {
     let turn = rotation_from_axis_angle(DVec3::new(0.0, 0.6, 0.8), 1.0);
     let joint = Affine::from_f64(&glam::DAffine3::from_quat(turn));
     let turned = thin.map(|p| joint.transform_point(p));
-    let frame = material_frame(thin, turned, &joint).unwrap();
+    let frame = frame(thin, turned, &joint).unwrap();
     assert!(rotation_vector(frame * turn.conjugate()).length() < 1e-6);
 }
 
@@ -222,7 +231,7 @@ fn stretches_of_a_collapsed_triangle_come_larger_first() {
     let before = [Vec3::ZERO, Vec3::X * 2.0, Vec3::Y * 0.5];
     let now = at([Vec3::ZERO, Vec3::X, Vec3::Y], 1e7);
     assert!(is_collapsed(now) && !is_collapsed(before));
-    let (area, [larger, smaller]) = stretch(before, now);
+    let (area, [larger, smaller]) = stretched(before, now);
     assert!((area - 1.0).abs() < 1e-6, "{area}");
     assert!(
         larger > 1.4 && smaller < 0.7 && smaller > 0.6,
@@ -242,4 +251,35 @@ fn ratios_beyond_f32_are_clamped_to_its_largest_number() {
     let motion = surface.in_model().motion(&anchor, 1.0).unwrap();
     assert_eq!(motion.area_ratio, f32::MAX);
     assert_eq!(motion.stretches, [f32::MAX; 2]);
+}
+
+#[test]
+fn a_path_has_the_bits_of_the_motion() {
+    let mut surface = surface();
+    let anchor = anchor(&surface);
+    for step in 1..50 {
+        let palette = bend(JOINTS, DVec3::Z, f64::from(step) * 0.02);
+        let place = Similarity::from_translation(DVec3::splat(f64::from(step)));
+        surface.advance(&palette, place).unwrap();
+        let dt = 1.0 / f64::from(step);
+        let motion = surface.in_model().motion(&anchor, dt).unwrap();
+        let path = surface.in_model().path(&anchor, dt).unwrap();
+        let wanted = (motion.position, motion.previous_position, motion.velocity);
+        let found = (path.position, path.previous_position, path.velocity);
+        assert_eq!(found, wanted, "step {step}");
+        let motion = surface.in_world().motion(&anchor, dt).unwrap();
+        let path = surface.in_world().path(&anchor, dt).unwrap();
+        let wanted = (motion.position, motion.previous_position, motion.velocity);
+        let found = (path.position, path.previous_position, path.velocity);
+        assert_eq!(found, wanted, "step {step}");
+    }
+    for dt in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let path = surface.in_model().path(&anchor, dt);
+        assert!(matches!(path, Err(SurfaceError::Tick(_))), "{dt}");
+    }
+    let short = surface.in_model().path(&anchor, 1e-300);
+    assert!(
+        matches!(short, Err(SurfaceError::ShortTick(_))),
+        "{short:?}"
+    );
 }

@@ -112,14 +112,10 @@ fn an_edit_reclusters_only_its_part_and_keeps_other_cached_results() {
     let mut empty = 0;
     let mesh = ahead.mesh();
     for (index, node) in (0..).zip(&mesh.hierarchy().nodes) {
-        let spheres = ahead.instance.current.spheres(mesh, index);
+        let bounds = ahead.instance.current.bounds(mesh, index);
         for lane in 0..usize::from(node.lanes) {
             let dead = is_dead(mesh, node.child(lane));
-            assert_eq!(
-                spheres.radius[lane] < 0.0,
-                dead,
-                "node {index}, lane {lane}"
-            );
+            assert_eq!(bounds.is_empty(lane), dead, "node {index}, lane {lane}");
             empty += usize::from(dead);
         }
     }

@@ -1,0 +1,79 @@
+//! Boxes around the children of a node, fitted to skinned positions.
+
+use fearless_simd::{Simd, f32x8, prelude::*};
+
+use super::Spheres;
+use crate::mesh::hierarchy::LANES;
+
+/// Eight boxes along the axes, in model space. A lane without a child, or with dead clusters only, holds an empty box:
+/// one point far away from everything.
+#[repr(C, align(64))]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Boxes {
+    /// The lowest x, y and z of each lane.
+    pub(crate) low: [[f32; LANES]; 3],
+    pub(crate) high: [[f32; LANES]; 3],
+}
+
+/// The coordinates of an empty box: far from any position, and its square overflows.
+const NOWHERE: f32 = 1e38;
+
+impl Boxes {
+    /// Eight empty boxes.
+    pub(crate) const EMPTY: Self = Self {
+        low: [[NOWHERE; LANES]; 3],
+        high: [[NOWHERE; LANES]; 3],
+    };
+
+    pub(crate) fn set(&mut self, lane: usize, [low, high]: [[f32; 3]; 2]) {
+        for axis in 0..3 {
+            self.low[axis][lane] = low[axis];
+            self.high[axis][lane] = high[axis];
+        }
+    }
+
+    /// The box around all that are not empty; `None` if all are.
+    pub(crate) fn union(&self) -> Option<[[f32; 3]; 2]> {
+        let mut union = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
+        for axis in 0..3 {
+            for (low, high) in self.low[axis].iter().zip(&self.high[axis]) {
+                if *low < NOWHERE {
+                    union[0][axis] = union[0][axis].min(*low);
+                    union[1][axis] = union[1][axis].max(*high);
+                }
+            }
+        }
+        (union[0][0] <= union[1][0]).then_some(union)
+    }
+
+    /// Spheres about the boxes; of infinite radius about boxes that are empty or too large to be squared.
+    #[cfg_attr(not(unoptimized), inline(always))]
+    pub(crate) fn spheres<S: Simd>(&self, simd: S) -> Spheres {
+        let zero = f32x8::splat(simd, 0.0);
+        let (mut centers, mut square) = ([zero; 3], zero);
+        for (axis, center) in centers.iter_mut().enumerate() {
+            let low = f32x8::simd_from(simd, self.low[axis]) * 0.5;
+            let high = f32x8::simd_from(simd, self.high[axis]) * 0.5;
+            *center = low + high;
+            // Halves of f32 are exact, unless they underflow: the slack is larger.
+            let half = high - low;
+            let size = low.abs() + high.abs();
+            let half = half + size * SLACK + f32::MIN_POSITIVE;
+            square += half * half;
+        }
+        let [x, y, z] = centers;
+        let radius = square.sqrt() * (1.0 + SLACK) + LEAST_RADIUS;
+        Spheres {
+            x: *x,
+            y: *y,
+            z: *z,
+            radius: *radius,
+        }
+    }
+}
+
+/// More than the roundings in a radius, and in a centre as a share of the coordinates.
+const SLACK: f32 = 4.0 * f32::EPSILON;
+
+/// 2^-56, the least radius of bounds from the palette. Squares that underflow are smaller.
+const LEAST_RADIUS: f32 = 1.0 / (1u64 << 56) as f32;
