@@ -3,10 +3,10 @@
 use std::error::Error;
 use std::sync::Arc;
 
-use clamber_surface::geometry::{Capsule, Ray, Similarity, Sphere};
+use clamber_surface::geometry::{Affine, Capsule, Ray, Similarity, Sphere};
 use clamber_surface::mesh::{ColliderMesh, TriangleId};
 use clamber_surface::rig::Palette;
-use clamber_surface::surface::{CastOptions, SkinnedSurface, SurfaceHit};
+use clamber_surface::surface::{CastOptions, SkinnedSurface, SurfacePoint};
 use glam::{DVec3, Vec3};
 
 use crate::peer::{Answer, Entry, Nearest, Peer, RayHit};
@@ -14,11 +14,11 @@ use crate::peer::{Answer, Entry, Nearest, Peer, RayHit};
 pub(crate) const ENTRIES: &[Entry] = &[
     Entry {
         name: "clamber",
-        make: |mesh| Ok(Box::new(Ours::new(mesh, false))),
+        make: |mesh| Ok(Box::new(Ours::new(mesh))),
     },
     Entry {
         name: "clamber, all skinned ahead",
-        make: |mesh| Ok(Box::new(Ours::new(mesh, true))),
+        make: |mesh| Ok(Box::new(Ours::ahead(mesh)?)),
     },
 ];
 
@@ -29,16 +29,28 @@ const CAST: CastOptions = CastOptions::STILL.with_tolerance(1e-4);
 struct Ours {
     surface: SkinnedSurface,
     ahead: bool,
-    hits: Vec<SurfaceHit>,
+    /// The triangles of an overlap.
+    found: Vec<TriangleId>,
 }
 
 impl Ours {
-    fn new(mesh: &Arc<ColliderMesh>, ahead: bool) -> Self {
+    fn new(mesh: &Arc<ColliderMesh>) -> Self {
         Self {
             surface: SkinnedSurface::new(Arc::clone(mesh)),
-            ahead,
-            hits: Vec::new(),
+            ahead: false,
+            found: Vec::new(),
         }
+    }
+
+    /// A surface that is skinned at once in each tick. Two ticks at rest fill the caches of both poses.
+    fn ahead(mesh: &Arc<ColliderMesh>) -> Result<Self, Box<dyn Error>> {
+        let mut ours = Self::new(mesh);
+        ours.ahead = true;
+        let rest = Palette::from_matrices(vec![Affine::IDENTITY; mesh.joint_count()]);
+        for _ in 0..2 {
+            ours.update(&rest, DVec3::ZERO)?;
+        }
+        Ok(ours)
     }
 
     fn local(&self, point: Vec3) -> Vec3 {
@@ -79,8 +91,9 @@ impl Peer for Ours {
             return Ok(0);
         };
         let space = self.surface.in_model();
-        space.overlap_capsule(&ball, &mut self.hits);
-        Ok(self.hits.len())
+        self.found.clear();
+        space.visit_triangles_in_capsule(&ball, |triangle| self.found.push(triangle));
+        Ok(self.found.len())
     }
 
     fn closest_point(&mut self, point: Vec3, max_distance: f32) -> Answer<Option<Nearest>> {
@@ -101,12 +114,16 @@ impl Peer for Ours {
     }
 
     fn motion(&mut self, triangle: TriangleId, barycentric: [f32; 3]) -> (Vec3, Vec3) {
-        let anchor = self.surface.anchor(triangle, barycentric);
-        let motion = anchor.and_then(|anchor| self.surface.in_model().motion(&anchor, 1.0));
+        let point = SurfacePoint {
+            mesh: self.surface.mesh().id(),
+            triangle,
+            barycentric,
+        };
+        let path = self.surface.in_model().path(point, 1.0);
         let placed = self.surface.world_from_model();
-        motion.map_or((Vec3::NAN, Vec3::NAN), |motion| {
-            let point = placed.transform_point_f32(motion.position).as_vec3();
-            (point, motion.velocity)
+        path.map_or((Vec3::NAN, Vec3::NAN), |path| {
+            let point = placed.transform_point_f32(path.position).as_vec3();
+            (point, path.velocity)
         })
     }
 

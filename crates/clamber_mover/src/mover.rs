@@ -217,6 +217,20 @@ impl<'a> Mover<'a> {
         })
     }
 
+    /// [`Mover::sweep_where`] among the contacts that did not start inside.
+    pub(crate) fn sweep_past_overlaps(
+        &mut self,
+        capsule: &WorldCapsule,
+        ways: [DVec3; 2],
+        mut counts: impl FnMut(&Hit) -> bool,
+    ) -> Option<Hit> {
+        self.first(capsule, ways, |id, obstacle| {
+            let mut counts = |sweep: &SweepContact| counts(&Hit::new(id, sweep));
+            let moving = TargetMotion::Moving;
+            obstacle.cast_capsule_past_overlaps(capsule, ways, moving, &mut counts)
+        })
+    }
+
     /// Checks a step up or a snap to the ground, which consider only the end of the tick, against moving obstacles.
     /// Sweeps the body's core from `start` to `end`, shifted by `correction`. True if it meets nothing, and for input
     /// that is not finite. Overlaps at the start are ignored.
@@ -227,7 +241,7 @@ impl<'a> Mover<'a> {
         correction: DVec3,
     ) -> bool {
         let core = body.core_at(start + correction);
-        self.sweep_where(&core, [end - start; 2], |hit| !hit.started_inside)
+        self.sweep_past_overlaps(&core, [end - start; 2], |_| true)
             .is_none()
     }
 

@@ -367,11 +367,8 @@ impl Mover<'_> {
         let inside = std::mem::take(&mut self.memory.passed);
         let margin = path.body.margin;
         let (obstacles, dt) = (self.obstacles, self.dt());
-        let hit = self.sweep_where(&core, path.ways(way), |hit| {
+        let hit = self.sweep_past_overlaps(&core, path.ways(way), |hit| {
             let touch = &hit.touch;
-            if hit.started_inside {
-                return false;
-            }
             let mut of_its_face = inside
                 .iter()
                 .filter(|other| touch.is_on_face_of(other))

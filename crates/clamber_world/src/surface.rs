@@ -69,6 +69,19 @@ fn options(capsule: &WorldCapsule, target: TargetMotion) -> CastOptions {
     CastOptions::from(target).with_tolerance(capsule.sweep_tolerance())
 }
 
+fn cast_where(
+    surface: &SkinnedSurface,
+    capsule: &WorldCapsule,
+    displacements: [DVec3; 2],
+    options: &CastOptions,
+    counts: &mut dyn FnMut(&SweepContact) -> bool,
+) -> Option<SweepContact> {
+    let mut counts = |hit: &WorldSweepHit| counts(&(*hit).into());
+    let space = surface.in_world();
+    let hit = space.cast_capsule_where(capsule, displacements, options, &mut counts);
+    hit.map(SweepContact::from)
+}
+
 impl Obstacle for SkinnedSurface {
     fn bounds(&self) -> Option<(DVec3, f64)> {
         self.bounding_ball()
@@ -109,10 +122,19 @@ impl Obstacle for SkinnedSurface {
         target: TargetMotion,
         counts: &mut dyn FnMut(&SweepContact) -> bool,
     ) -> Option<SweepContact> {
-        let mut counts = |hit: &WorldSweepHit| counts(&(*hit).into());
-        let (space, options) = (self.in_world(), options(capsule, target));
-        let hit = space.cast_capsule_where(capsule, displacements, &options, &mut counts);
-        hit.map(SweepContact::from)
+        let options = options(capsule, target);
+        cast_where(self, capsule, displacements, &options, counts)
+    }
+
+    fn cast_capsule_past_overlaps(
+        &self,
+        capsule: &WorldCapsule,
+        displacements: [DVec3; 2],
+        target: TargetMotion,
+        counts: &mut dyn FnMut(&SweepContact) -> bool,
+    ) -> Option<SweepContact> {
+        let options = options(capsule, target).past_overlaps();
+        cast_where(self, capsule, displacements, &options, counts)
     }
 
     fn path(&self, point: &MaterialPoint, dt: f64) -> Option<WorldPath> {

@@ -117,6 +117,17 @@ impl Obstacle for TriangleTerrain {
         Obstacle::cast_capsule_where(&self.surface, capsule, displacements, target, counts)
     }
 
+    fn cast_capsule_past_overlaps(
+        &self,
+        capsule: &WorldCapsule,
+        displacements: [DVec3; 2],
+        target: TargetMotion,
+        counts: &mut dyn FnMut(&SweepContact) -> bool,
+    ) -> Option<SweepContact> {
+        self.surface
+            .cast_capsule_past_overlaps(capsule, displacements, target, counts)
+    }
+
     fn cast_ray(&self, origin: DVec3, direction: DVec3, max_distance: f64) -> Option<Contact> {
         Obstacle::cast_ray(&self.surface, origin, direction, max_distance)
     }

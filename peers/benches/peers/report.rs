@@ -2,7 +2,7 @@
 
 use std::error::Error;
 
-use clamber_scenes::measure::{Plot, Series, Table, measure_folder};
+use clamber_scenes::measure::{Bound, Cells, Plot, Series, Table, measure_folder};
 use clamber_surface::mesh::ColliderMesh;
 
 use crate::race::{Entrant, Lap};
@@ -107,6 +107,7 @@ impl Report {
         let path = folder.join(format!("peers{brief}.csv"));
         self.table.write_csv(&path)?;
         println!("written to {}", path.display());
+        self.compare(brief.is_empty())?;
         for riders in [1, 100] {
             let title = format!(
                 "A whole tick, {riders} rider{}",
@@ -129,6 +130,33 @@ impl Report {
             |row| row.riders,
         );
         plot.write_svg(&folder.join(format!("peers_by_riders{brief}.svg")))
+    }
+
+    /// The fastest peer's time over clamber's, for each size and number of riders.
+    fn compare(&self, full: bool) -> Result<(), Box<dyn Error>> {
+        let mut cells = Cells::default();
+        let mut ahead = 0;
+        let ours = self.rows.iter().filter(|row| row.name == "clamber");
+        for (row, own) in ours.filter_map(|row| Some((row, row.tick?))) {
+            let others = self.rows.iter().filter(|other| {
+                let same = (other.vertices, other.riders) == (row.vertices, row.riders);
+                same && !other.name.starts_with("clamber")
+            });
+            let fastest = others
+                .filter_map(|other| Some((other.tick?, other.name)))
+                .min_by(|a, b| a.0.total_cmp(&b.0));
+            if let Some((tick, name)) = fastest {
+                let cell = format!(
+                    "{} vertices, {} riders: {name} / clamber",
+                    row.vertices, row.riders
+                );
+                cells.push(&cell, tick / own, Bound::Least(0.8));
+                ahead += usize::from(tick >= own);
+            }
+        }
+        let bound = if full { Bound::Least(14.0) } else { Bound::None };
+        cells.push("cells in which no peer is faster", ahead as f64, bound);
+        cells.finish("peers_fastest", !full)
     }
 
     fn plot(

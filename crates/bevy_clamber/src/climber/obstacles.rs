@@ -463,6 +463,17 @@ impl Obstacle for WithoutPoint<'_> {
             .cast_capsule_where(capsule, displacements, target, counts)
     }
 
+    fn cast_capsule_past_overlaps(
+        &self,
+        capsule: &WorldCapsule,
+        displacements: [DVec3; 2],
+        target: TargetMotion,
+        counts: &mut dyn FnMut(&SweepContact) -> bool,
+    ) -> Option<SweepContact> {
+        self.surface
+            .cast_capsule_past_overlaps(capsule, displacements, target, counts)
+    }
+
     fn motion(&self, point: &MaterialPoint, dt: f64) -> Option<PointMotion> {
         if *point == self.point {
             return None;

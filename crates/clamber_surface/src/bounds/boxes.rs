@@ -34,16 +34,17 @@ impl Boxes {
 
     /// The box around all that are not empty; `None` if all are.
     pub(crate) fn union(&self) -> Option<[[f32; 3]; 2]> {
-        let mut union = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
-        for axis in 0..3 {
-            for (low, high) in self.low[axis].iter().zip(&self.high[axis]) {
+        let (mut lowest, mut highest) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
+        let sides = lowest.iter_mut().zip(&mut highest);
+        for ((lowest, highest), lanes) in sides.zip(self.low.iter().zip(&self.high)) {
+            for (low, high) in lanes.0.iter().zip(lanes.1) {
                 if *low < NOWHERE {
-                    union[0][axis] = union[0][axis].min(*low);
-                    union[1][axis] = union[1][axis].max(*high);
+                    *lowest = lowest.min(*low);
+                    *highest = highest.max(*high);
                 }
             }
         }
-        (union[0][0] <= union[1][0]).then_some(union)
+        (lowest[0] <= highest[0]).then_some([lowest, highest])
     }
 
     /// Spheres about the boxes; of infinite radius about boxes that are empty or too large to be squared.

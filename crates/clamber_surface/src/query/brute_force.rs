@@ -124,7 +124,11 @@ impl<'a> BruteForce<'a> {
         let tolerance = options.tolerance_for(capsule, &self.instance.mesh);
         with_probe!(capsule, displacements, probe => {
             let sweep = Sweep::new(probe, tolerance?, Span::new(options.during)?)?;
-            self.contacts(&sweep, options.target, |first| earliest.offer(first));
+            self.contacts(&sweep, options.target, |first| {
+                if !options.past_overlaps || !sweep.started_inside(&first.contact) {
+                    earliest.offer(first);
+                }
+            });
             earliest.hit(self.instance, &sweep)
         })
     }
@@ -160,6 +164,7 @@ impl<'a> BruteForce<'a> {
                 });
             }
         });
+        hits.retain(|hit| !options.past_overlaps || !hit.started_inside);
         sort_by_time(hits);
     }
 

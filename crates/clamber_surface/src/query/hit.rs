@@ -283,9 +283,14 @@ impl Instance {
         let outward = (b - a).cross(c - a).try_normalize();
         let outward = outward.map(|n| if self.is_mirrored(part) { -n } else { n });
         let core = sweep.core.nearest(contact.time, point);
-        let size = (b - a).length() + (c - a).length() + core.length();
-        let apart = (core - point).try_normalize();
-        let apart = apart.filter(|_| contact.distance > size * ALL_BUT_TOUCHING);
+        let (ab, ac) = (b - a, c - a);
+        // At least the lengths, which are seldom needed.
+        let most = taxicab(ab) + taxicab(ac) + taxicab(core);
+        let is_apart = contact.distance > most * ALL_BUT_TOUCHING || {
+            let size = ab.length() + ac.length() + core.length();
+            contact.distance > size * ALL_BUT_TOUCHING
+        };
+        let apart = (core - point).try_normalize().filter(|_| is_apart);
         let normal = apart.or(outward).unwrap_or(DVec3::Y);
         Some(SweepHit {
             mesh: self.mesh.id_of(triangle),
@@ -298,8 +303,13 @@ impl Instance {
             distance: contact.distance,
             part,
             tag: self.mesh.tags()[triangle.index()],
-            started_inside: contact.time == 0.0 && contact.distance <= sweep.core.radius,
+            started_inside: sweep.started_inside(&contact),
             undecided: contact.undecided,
         })
     }
+}
+
+/// The sum of absolute coordinates: at least the length.
+fn taxicab(v: DVec3) -> f64 {
+    v.x.abs() + v.y.abs() + v.z.abs()
 }

@@ -2,7 +2,7 @@ use glam::{DVec3, Vec3};
 
 use super::span::Span;
 use crate::geometry::triangle::{
-    Corners8, MovingCore, Points8, TrianglePoint, closest_point, closest_points,
+    Contact, Corners8, MovingCore, Points8, TrianglePoint, closest_point, closest_points,
     closest_to_segment, closest_to_segments,
 };
 use crate::geometry::{Capsule, round_to_f32, round_up_to_f32, widen};
@@ -152,6 +152,8 @@ pub(super) struct Sweep<const N: usize> {
     pub(super) core: MovingCore<N>,
     /// The part of the tick that it takes.
     pub(super) span: Span,
+    /// Whether it ignores what it overlaps at the start.
+    pub(super) past_overlaps: bool,
 }
 
 impl<const N: usize> Sweep<N> {
@@ -164,7 +166,18 @@ impl<const N: usize> Sweep<N> {
             probe,
             core: MovingCore::new(probe.ends, probe.motions, probe.radius, tolerance),
             span,
+            past_overlaps: false,
         })
+    }
+
+    /// True if it overlaps a triangle at the start, of which this is the contact.
+    pub(super) fn started_inside(&self, contact: &Contact) -> bool {
+        contact.time == 0.0 && contact.distance <= self.core.radius
+    }
+
+    /// False for contacts that it ignores.
+    pub(super) fn counts(&self, contact: &Contact) -> bool {
+        !(self.past_overlaps && self.started_inside(contact))
     }
 
     /// True if what it meets, in P poses, moves from the first of them to the last, or stands still.

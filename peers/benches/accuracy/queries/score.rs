@@ -2,7 +2,7 @@
 
 use std::error::Error;
 
-use clamber_scenes::measure::{Plot, Series, Table, measure_folder, quantile};
+use clamber_scenes::measure::{Bound, Cells, Plot, Series, Table, measure_folder, quantile};
 
 use super::{KINDS, Kind};
 
@@ -79,6 +79,8 @@ pub(crate) struct Report {
     table: Table,
     /// The series of each kind of query.
     plots: Vec<Vec<Series>>,
+    /// Nanoseconds of ordinary queries, by kind and peer.
+    times: Vec<(Kind, &'static str, f64)>,
 }
 
 impl Default for Report {
@@ -86,6 +88,7 @@ impl Default for Report {
         Self {
             table: Table::new(&COLUMNS),
             plots: vec![Vec::new(); KINDS.len()],
+            times: Vec::new(),
         }
     }
 }
@@ -107,6 +110,9 @@ impl Report {
             self.table.push(row);
             return Ok(());
         };
+        if set == "ordinary" {
+            self.times.push((kind, method, score.nanoseconds));
+        }
         if method.starts_with("clamber") && score.leaks + score.false_hits > 0 {
             let (leaks, wrong) = (score.leaks, score.false_hits);
             return Err(format!(
@@ -139,7 +145,29 @@ impl Report {
         Ok(())
     }
 
+    /// Times over those of the peers that they are measured by, on ordinary queries.
+    fn compare(&self, brief: bool) -> Result<(), Box<dyn Error>> {
+        let time = |kind: Kind, method: &str| {
+            let times = self.times.iter();
+            let mut of = times.filter(|(known, name, _)| (*known, *name) == (kind, method));
+            of.next().map(|(.., ns)| *ns)
+        };
+        let mut cells = Cells::default();
+        for (kind, peer, most) in [
+            (Kind::Ray, "Embree 3 robust", 3.0),
+            (Kind::Closest, "Embree 3 robust", 1.2),
+            (Kind::Cast, "PhysX 5.1", 1.2),
+        ] {
+            if let (Some(ours), Some(other)) = (time(kind, "clamber"), time(kind, peer)) {
+                let name = format!("{kind:?}, warm: clamber / {peer}");
+                cells.push(&name, ours / other, Bound::Most(most));
+            }
+        }
+        cells.finish("accuracy_times", brief)
+    }
+
     pub(crate) fn finish(self, brief: bool) -> Result<(), Box<dyn Error>> {
+        self.compare(brief)?;
         println!("\n{}", self.table);
         let brief = if brief { "_brief" } else { "" };
         let folder = measure_folder();

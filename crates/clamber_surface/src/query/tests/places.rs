@@ -4,6 +4,7 @@ use glam::Vec3;
 
 use crate::geometry::{Capsule, Ray};
 use crate::measure::BruteForce;
+use crate::mesh::TriangleId;
 use crate::surface::{SkinnedSurface, SurfaceHit};
 
 /// The place and size of a query.
@@ -53,6 +54,12 @@ pub(super) fn assert_agree(
         surface.in_model().overlap_capsule(&capsule, &mut hits);
         brute_force.overlap_capsule(&capsule, &mut wanted);
         assert_eq!(hits, wanted, "{case}: overlap_capsule, {capsule:?}");
+        let mut triangles = Vec::new();
+        let space = surface.in_model();
+        space.visit_triangles_in_capsule(&capsule, |triangle| triangles.push(triangle));
+        triangles.sort_unstable();
+        let wanted: Vec<TriangleId> = wanted.iter().map(|hit| hit.triangle).collect();
+        assert_eq!(triangles, wanted, "{case}: triangles, {capsule:?}");
         found += hits.len();
     }
     found

@@ -31,7 +31,7 @@ fn place(rng: &mut Rng) -> Vec3 {
 
 #[test]
 fn a_part_of_a_tick_has_the_bits_of_brute_force() {
-    let (mut found, mut missed) = (0, 0);
+    let (mut found, mut missed, mut overlapping) = (0, 0, 0);
     for level in SimdLevel::available() {
         let mut rng = Rng::with_seed(11);
         for _ in 0..cases(400) {
@@ -48,6 +48,13 @@ fn a_part_of_a_tick_has_the_bits_of_brute_force() {
                 .during(a.min(b), a.max(b));
             let hit = space.cast_capsule(&stick, ways, &options);
             assert_eq!(hit, reference.cast_capsule(&stick, ways, &options));
+            let past = options.past_overlaps();
+            let beyond = space.cast_capsule(&stick, ways, &past);
+            assert_eq!(beyond, reference.cast_capsule(&stick, ways, &past));
+            let mut is_beyond = |hit: &SweepHit| !hit.started_inside;
+            let wanted = reference.cast_capsule_where(&stick, ways, &options, &mut is_beyond);
+            assert_eq!(beyond, wanted);
+            overlapping += usize::from(beyond != hit);
             *(if hit.is_some() {
                 &mut found
             } else {
@@ -55,9 +62,11 @@ fn a_part_of_a_tick_has_the_bits_of_brute_force() {
             }) += 1;
 
             let (mut all, mut expected) = (Vec::new(), Vec::new());
-            space.cast_capsule_all(&stick, ways, &options, &mut all);
-            reference.cast_capsule_all(&stick, ways, &options, &mut expected);
-            assert_eq!(all, expected);
+            for options in [options, past] {
+                space.cast_capsule_all(&stick, ways, &options, &mut all);
+                reference.cast_capsule_all(&stick, ways, &options, &mut expected);
+                assert_eq!(all, expected);
+            }
             let mut counts = |hit: &SweepHit| hit.triangle.0.is_multiple_of(3);
             let some = space.cast_capsule_where(&stick, ways, &options, &mut counts);
             assert_eq!(
@@ -67,8 +76,8 @@ fn a_part_of_a_tick_has_the_bits_of_brute_force() {
         }
     }
     assert!(
-        found > cases(300) && missed > cases(100),
-        "{found} {missed}"
+        found > cases(300) && missed > cases(100) && overlapping > cases(50),
+        "{found} {missed} {overlapping}"
     );
 }
 
