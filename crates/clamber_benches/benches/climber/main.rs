@@ -110,9 +110,9 @@ fn run(brief: bool) -> Result<(), Box<dyn Error>> {
         controller,
     );
     let name = "standing / rapier's controller";
-    cells.push(name, standing / controller, Bound::Most(1.5));
+    cells.push(name, standing / controller, Bound::Most(0.08));
     let name = "climbing / rapier's controller";
-    cells.push(name, climbing / controller, Bound::Most(4.0));
+    cells.push(name, climbing / controller, Bound::Most(0.18));
     crushed::measure(if brief { 1 } else { 10 }, &mut cells)?;
     if brief {
         crowd::measure((2, 2_000, 10), 3, &mut cells)?;

@@ -153,9 +153,10 @@ impl Field {
     }
 
     /// Counts the hits of clamber and parry, and prints the largest difference where both hit. Fails if clamber misses
-    /// a hit of parry's.
+    /// a hit of parry's, unless there is no skin where parry reports it.
     fn compare(&self, casts: &[Cast], name: &str, cells: &mut Cells) -> Result<(), Box<dyn Error>> {
         let (mut hits, mut only_ours, mut only_theirs, mut worst) = (0, 0, 0, 0.0f64);
+        let mut nothing_there = 0;
         for cast in casts {
             match (self.cast(cast), self.parry.cast(cast)) {
                 (Some(ours), Some(theirs)) => {
@@ -165,7 +166,16 @@ impl Field {
                     worst = worst.max(off / f64::from(cast.sphere.radius));
                 }
                 (Some(_), None) => only_ours += 1,
-                (None, Some(_)) => only_theirs += 1,
+                (None, Some(theirs)) => {
+                    let there = cast.sphere.center + cast.motion * theirs as f32;
+                    let reach = cast.sphere.radius + TOLERANCE as f32;
+                    let skin = self.surface.in_model().closest_point(there, reach);
+                    *(if skin.is_some() {
+                        &mut only_theirs
+                    } else {
+                        &mut nothing_there
+                    }) += 1;
+                }
                 (None, None) => {}
             }
         }
@@ -176,6 +186,10 @@ impl Field {
         cells.value(
             &format!("{name}: hits that parry misses"),
             f64::from(only_ours),
+        );
+        cells.value(
+            &format!("{name}: hits of parry's where no skin is"),
+            f64::from(nothing_there),
         );
         if only_theirs > 0 {
             return Err(format!("{name}: clamber misses {only_theirs} hits of parry's").into());

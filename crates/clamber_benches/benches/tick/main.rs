@@ -86,7 +86,7 @@ fn run(effort: &Effort) -> Result<(), Box<dyn Error>> {
             let bounds = if vertices == effort.large {
                 [Bound::Least(40.0), Bound::Least(500.0)]
             } else if vertices == effort.small {
-                [Bound::Least(1.5), Bound::Least(10.0)]
+                [Bound::Least(1.5), Bound::Least(8.0)]
             } else {
                 [Bound::None; 2]
             };
@@ -239,5 +239,5 @@ fn memory(field: &Field, cells: &mut Cells) {
     let theirs = field.parry.shape.total_memory_size() as f64;
     cells.value("memory of ours, MB", ours / 1e6);
     cells.value("memory of parry's, MB", theirs / 1e6);
-    cells.push("memory: ours / parry's", ours / theirs, Bound::Most(1.0));
+    cells.push("memory: ours / parry's", ours / theirs, Bound::Most(0.7));
 }
