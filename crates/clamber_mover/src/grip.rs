@@ -24,7 +24,8 @@ impl Mover<'_> {
         can_grip: impl Fn(&Touch) -> bool,
         merit: impl Fn(&Touch) -> f64,
     ) -> Option<Touch> {
-        // Nearly always there is a grip at the body. What is farther away than it, and not about as near, changes nothing.
+        // Nearly always there is a grip close to the body. Contacts that are farther than the nearest grip, and not about
+        // as near, do not matter: a grip that is found within this short reach is the one of the whole reach.
         let as_near = AS_NEAR * body.radius;
         let at_body = 2.0 * (body.margin + as_near);
         if at_body < reach {
@@ -88,3 +89,6 @@ impl Mover<'_> {
         length <= 0.0 || self.cast_ray(position, way, length).is_none()
     }
 }
+
+#[cfg(test)]
+mod tests;

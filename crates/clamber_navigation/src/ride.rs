@@ -172,8 +172,9 @@ impl FutureSkin {
         Ok(Ride::Stays)
     }
 
-    /// The hardest shake that a climber on this creature is about to feel where it is, within `most` seconds, in metres a second
-    /// squared; what it feels now if it is not on the creature, whose obstacle id is `creature`, or the future is not known.
+    /// The hardest shake, metres a second squared, that a climber on this creature will feel where it is, within `most`
+    /// seconds. If it is not on the creature, whose obstacle id is `creature`, or if the future is not known: the shake that
+    /// it feels now.
     ///
     /// `dt` is the time between two looks, seconds. A tenth of a second is enough for a giant: it misses only shakes that are
     /// over sooner. Half a second ahead is what a bot needs to take hold.

@@ -164,6 +164,7 @@ mod tests {
         let mut rng = fastrand::Rng::with_seed(4);
         let origin = DVec3::new(1e5, 20.0, -3e5);
         let (triangles, half) = (level(1.5, origin), HalfSpace::below(21.5));
+        let mut overlapped = 0;
         for _ in 0..500 {
             let mut lot = |size: f64| (2.0 * rng.f64() - 1.0) * size;
             let at = origin + DVec3::new(lot(8.0), 2.0 + lot(0.3), lot(8.0));
@@ -175,6 +176,14 @@ mod tests {
             );
             let time = |hit: &Option<SweepContact>| hit.map_or(2.0, |hit| hit.time);
             assert!((time(&a) - time(&b)).abs() < 1e-3, "{a:?} {b:?}");
+            // Some balls overlap the ground at the start.
+            let target = [TargetMotion::Moving, TargetMotion::Still][usize::from(lot(1.0) > 0.0)];
+            let sunk = ball.moved(DVec3::Y * lot(1.0));
+            let mut none_inside = |contact: &SweepContact| !contact.started_inside;
+            let wanted = triangles.cast_capsule_where(&sunk, [way; 2], target, &mut none_inside);
+            let past = triangles.cast_capsule_past_overlaps(&sunk, [way; 2], target, &mut |_| true);
+            assert_eq!(past, wanted);
+            overlapped += usize::from(past != triangles.cast_capsule(&sunk, [way; 2], target));
             let [p, q] = [
                 triangles.closest_point(at, 5.0),
                 half.closest_point(at, 5.0),
@@ -187,6 +196,7 @@ mod tests {
                 "{motion:?}"
             );
         }
+        assert!(overlapped > 50, "{overlapped}");
     }
 
     #[test]

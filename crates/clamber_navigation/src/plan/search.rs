@@ -287,8 +287,8 @@ impl Search<'_> {
         None
     }
 
-    /// Waits until it can move: gives the time and the stamina then, and what it is like. `None` if it falls before that, or it
-    /// never can.
+    /// Waits until it can move. Returns the time and the stamina then, and how it stays there. `None` if it falls first, or
+    /// can never move.
     #[inline]
     fn until_it_moves(&self, mut time: (f64, f64), mut stay: Stay) -> Option<((f64, f64), Stay)> {
         for _ in 0..=self.forecast.len() {

@@ -145,7 +145,8 @@ impl<T: Default> Memo<T> {
         let spare = self.spare.lock();
         let spare = spare.unwrap_or_else(PoisonError::into_inner).len();
         let values = spare + self.filled.iter().count();
-        size_of_val(&self.entries[..]) + values * size_of::<T>()
+        let bits = size_of_val(&self.filled.0[..]) + size_of_val(&self.asked.0[..]);
+        size_of_val(&self.entries[..]) + bits + values * size_of::<T>()
     }
 }
 

@@ -261,7 +261,7 @@ pub(super) fn along<S: Simd, const N: usize, const P: usize>(
 ) -> (LaneMask, [f32; LANES]) {
     let ends = [bounds[0], bounds[P - 1]];
     let in_path = in_boxes(simd, ends, path);
-    let is_part = !sweep.is_whole::<P>();
+    let is_part = P == 2 && !sweep.span.is_whole();
     if let ([Bounds::Spheres(start), Bounds::Spheres(end)], false) = (ends, is_part) {
         return along_spheres(simd, [start, end], sweep, limit);
     }

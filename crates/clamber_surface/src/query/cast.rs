@@ -243,12 +243,13 @@ impl Instance {
         // The triangle that is touched by then may be one that `counts` rejects.
         let every_one_counts = counts.is_none() && !sweep.past_overlaps;
         self.visit_contacts::<true, N, P>(poses, sweep, every_one_counts, &mut |first| {
-            let is_counted = counts
-                .as_mut()
-                .is_none_or(|counts| self.sweep_hit(sweep, first).is_some_and(|hit| counts(&hit)));
-            if is_counted {
-                earliest.offer(first);
-            }
+            earliest.offer_if(first, |first| {
+                let counts = counts.as_mut();
+                counts.is_none_or(|counts| {
+                    self.sweep_hit(sweep, *first)
+                        .is_some_and(|hit| counts(&hit))
+                })
+            });
             earliest.limit()
         });
         earliest.hit(self, sweep)
@@ -337,13 +338,8 @@ impl<const N: usize, const P: usize> Tests<'_, N, P> {
                 aside[count] = cluster;
                 count += 1;
                 if every_one_counts {
-                    let mut ends;
-                    let posed = if sweep.is_whole::<P>() {
-                        posed
-                    } else {
-                        ends = Default::default();
-                        posed.during(&sweep.span, &mut ends)
-                    };
+                    let mut ends = None;
+                    let posed = posed.during(&sweep.span, &mut ends);
                     let touch = posed.touched_by(simd, &sweep.probe);
                     self.limit = self.limit.min(touch.into());
                 }
@@ -375,13 +371,8 @@ impl<const N: usize, const P: usize> Tests<'_, N, P> {
             let Some(posed) = PosedCluster::visit(self.instance, poses, *cluster) else {
                 continue;
             };
-            let mut ends;
-            let posed = if sweep.is_whole::<P>() {
-                posed
-            } else {
-                ends = Default::default();
-                posed.during(&sweep.span, &mut ends)
-            };
+            let mut ends = None;
+            let posed = posed.during(&sweep.span, &mut ends);
             let until = round_up_to_f32(self.limit);
             for triangle in posed.near(simd, &sweep.probe, until).iter() {
                 for (corners, of_pose) in corners.iter_mut().zip(posed.corners(triangle)) {

@@ -45,18 +45,20 @@ impl<'a, const P: usize> PosedCluster<'a, P> {
     }
 
     /// The same for a part of the motion: the cluster moves from where it is at the start of the span to where it is at
-    /// its end. `ends` takes its positions there.
+    /// its end. `ends` takes its positions there, if the span is not the whole motion.
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(super) fn during<'b>(
         self,
         span: &Span,
-        ends: &'b mut [SkinnedCluster; 2],
+        ends: &'b mut Option<[SkinnedCluster; 2]>,
     ) -> PosedCluster<'b, P>
     where
         'a: 'b,
     {
-        let [first, last] = ends;
-        first.clone_from(self.skinned[0]);
-        last.clone_from(self.skinned[P - 1]);
+        if P == 1 || span.is_whole() {
+            return self;
+        }
+        let [first, last] = ends.insert([self.skinned[0].clone(), self.skinned[P - 1].clone()]);
         span.positions(
             [&mut first.positions, &mut last.positions],
             self.cluster.rows(),
@@ -137,8 +139,8 @@ impl<'a, const P: usize> PosedCluster<'a, P> {
         self.enabled(survivors)
     }
 
-    /// Of some triangles, those of which a corner is surely within the reach of a probe before it moves: its exact test
-    /// would find a distance below that.
+    /// The given triangles that have a corner in a probe before it moves, by more than rounding. The exact test would
+    /// find them within the probe too: no distance that it finds is above that of a corner by more.
     #[cfg_attr(not(unoptimized), inline(always))]
     pub(super) fn surely_within<S: Simd, const N: usize>(
         &self,

@@ -94,7 +94,7 @@ impl Survivors {
             }
         }
         if count > 0 {
-            test(&batch[..count.min(EIGHT)]);
+            test(&batch[..count]);
         }
     }
 }
@@ -145,7 +145,8 @@ pub(super) fn along_ray<S: Simd>(
     survivors(simd, corners, &codes)
 }
 
-/// Triangles of which a corner is within a ball that stands still, by more than rounding.
+/// Triangles with a corner in a ball before it moves, by more than rounding; none if the ball is too small or too far out to
+/// tell.
 #[cfg_attr(not(unoptimized), inline(always))]
 pub(super) fn within_ball<S: Simd>(
     simd: S,
@@ -156,7 +157,10 @@ pub(super) fn within_ball<S: Simd>(
 ) -> Survivors {
     let center = ball.center.map(|x| S::f32s::splat(simd, x));
     let reach = ball.radius * (1.0 - SLACK) - ball.lost;
-    let reach = if reach > LEAST_RADIUS { reach } else { 0.0 };
+    // Where the centre is NaN, the loss is infinite.
+    if !(LEAST_RADIUS < reach && reach < LARGEST_SIZE) {
+        return Survivors([0; MAX_TRIANGLES / BLOCK]);
+    }
     let reach_sq = S::f32s::splat(simd, reach * reach * (1.0 - SLACK));
     let codes = each_code(
         simd,

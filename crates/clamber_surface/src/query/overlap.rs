@@ -4,6 +4,7 @@ use glam::Vec3;
 use super::cluster::PosedCluster;
 use super::hit::FoundPoint;
 use super::instance::Instance;
+use super::narrow::Survivors;
 use super::probe::{Probe, with_probe};
 use super::traverse::traverse;
 use super::{ModelSpace, SurfaceHit, broad, root};
@@ -25,9 +26,7 @@ impl ModelSpace<'_> {
     pub fn visit_overlap_capsule(&self, capsule: &Capsule, visit: impl FnMut(SurfaceHit)) {
         with_probe!(capsule, [Vec3::ZERO; 2], probe => self.instance.visit_overlap(&probe, visit));
     }
-}
 
-impl ModelSpace<'_> {
     /// Calls `visit` with every triangle of [`ModelSpace::overlap_capsule`], in unspecified order. Takes a fraction of
     /// the time, since most triangles need neither their nearest point nor a normal.
     pub fn visit_triangles_in_capsule(&self, capsule: &Capsule, mut visit: impl FnMut(TriangleId)) {
@@ -68,46 +67,24 @@ impl Instance {
         reaching: &Probe<N>,
         visit: &mut impl FnMut(TriangleId),
     ) {
-        let radius = f64::from(probe.radius);
-        let mut tested = 0;
-        traverse::<false>(
-            self.mesh.hierarchy(),
-            radius,
+        self.each_near(
+            simd,
+            reaching,
             #[cfg_attr(not(unoptimized), inline(always))]
-            |node, _| {
-                let bounds = self.current.bounds(&self.mesh, node);
-                (broad::near(simd, bounds, reaching), [0.0; LANES])
-            },
-            #[cfg_attr(not(unoptimized), inline(always))]
-            |cluster, limit| {
-                let Some(posed) = PosedCluster::visit(self, [&self.current], cluster) else {
-                    return Some(limit);
-                };
-                if !posed.comes_within(probe, reaching.reach) {
-                    return Some(limit);
-                }
-                let near = posed.near(simd, reaching, 0.0);
+            |posed, near| {
                 let within = posed.surely_within(simd, probe, near);
                 for triangle in within.iter() {
                     visit(posed.id(triangle));
                 }
-                near.without(within).by_eight(
+                self.each_within(
+                    probe,
+                    posed,
+                    near.without(within),
                     #[cfg_attr(not(unoptimized), inline(always))]
-                    |batch| {
-                        tested += batch.len();
-                        let corners = posed.batch(batch);
-                        let points = probe.closest_of_eight(posed.level(), &corners[0]);
-                        for (lane, triangle) in batch.iter().enumerate() {
-                            if points.get(lane).distance <= radius {
-                                visit(posed.id(usize::from(*triangle)));
-                            }
-                        }
-                    },
-                );
-                Some(limit)
+                    |found, _| visit(found.triangle),
+                )
             },
         );
-        self.count_tested(tested, 0);
     }
 
     #[cfg_attr(not(unoptimized), inline(always))]
@@ -118,11 +95,36 @@ impl Instance {
         reaching: &Probe<N>,
         visit: &mut impl FnMut(SurfaceHit),
     ) {
-        let radius = f64::from(probe.radius);
+        self.each_near(
+            simd,
+            reaching,
+            #[cfg_attr(not(unoptimized), inline(always))]
+            |posed, near| {
+                self.each_within(
+                    probe,
+                    posed,
+                    near,
+                    #[cfg_attr(not(unoptimized), inline(always))]
+                    |found, corners| {
+                        visit(self.hit(found, posed.part(), corners, probe.middle()));
+                    },
+                )
+            },
+        );
+    }
+
+    /// Calls `test` with the triangles that may be within reach, cluster by cluster. It returns how many of them it tested.
+    #[cfg_attr(not(unoptimized), inline(always))]
+    fn each_near<S: Simd, const N: usize>(
+        &self,
+        simd: S,
+        reaching: &Probe<N>,
+        mut test: impl FnMut(&PosedCluster<'_, 1>, Survivors) -> usize,
+    ) {
         let mut tested = 0;
         traverse::<false>(
             self.mesh.hierarchy(),
-            radius,
+            0.0,
             #[cfg_attr(not(unoptimized), inline(always))]
             |node, _| {
                 let bounds = self.current.bounds(&self.mesh, node);
@@ -130,34 +132,44 @@ impl Instance {
             },
             #[cfg_attr(not(unoptimized), inline(always))]
             |cluster, limit| {
-                let Some(posed) = PosedCluster::visit(self, [&self.current], cluster) else {
-                    return Some(limit);
-                };
-                if !posed.comes_within(probe, reaching.reach) {
-                    return Some(limit);
+                if let Some(posed) = PosedCluster::visit(self, [&self.current], cluster)
+                    && posed.comes_within(reaching, reaching.reach)
+                {
+                    tested += test(&posed, posed.near(simd, reaching, 0.0));
                 }
-                posed.near(simd, reaching, 0.0).by_eight(
-                    #[cfg_attr(not(unoptimized), inline(always))]
-                    |batch| {
-                        tested += batch.len();
-                        let corners = posed.batch(batch);
-                        let points = probe.closest_of_eight(posed.level(), &corners[0]);
-                        for (lane, triangle) in batch.iter().enumerate() {
-                            let found = points.get(lane);
-                            if found.distance <= radius {
-                                let nearest = FoundPoint {
-                                    triangle: posed.id(usize::from(*triangle)),
-                                    found,
-                                };
-                                let corners = corners[0].get(lane);
-                                visit(self.hit(nearest, posed.part(), corners, probe.middle()));
-                            }
-                        }
-                    },
-                );
                 Some(limit)
             },
         );
         self.count_tested(tested, 0);
+    }
+
+    /// Calls `visit` with those of some triangles that are within the probe by the exact test, and with their corners.
+    /// Returns how many were tested.
+    #[cfg_attr(not(unoptimized), inline(always))]
+    fn each_within<const N: usize>(
+        &self,
+        probe: &Probe<N>,
+        posed: &PosedCluster<'_, 1>,
+        triangles: Survivors,
+        mut visit: impl FnMut(FoundPoint, [Vec3; 3]),
+    ) -> usize {
+        let radius = f64::from(probe.radius);
+        let mut tested = 0;
+        triangles.by_eight(
+            #[cfg_attr(not(unoptimized), inline(always))]
+            |batch| {
+                tested += batch.len();
+                let [corners] = posed.batch(batch);
+                let points = probe.closest_of_eight(self.simd_level, &corners);
+                for (lane, triangle) in batch.iter().enumerate() {
+                    let found = points.get(lane);
+                    if found.distance <= radius {
+                        let triangle = posed.id(usize::from(*triangle));
+                        visit(FoundPoint { triangle, found }, corners.get(lane));
+                    }
+                }
+            },
+        );
+        tested
     }
 }

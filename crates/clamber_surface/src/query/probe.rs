@@ -152,7 +152,7 @@ pub(super) struct Sweep<const N: usize> {
     pub(super) core: MovingCore<N>,
     /// The part of the tick that it takes.
     pub(super) span: Span,
-    /// Whether it ignores what it overlaps at the start.
+    /// If true, triangles that it overlaps at the start do not count.
     pub(super) past_overlaps: bool,
 }
 
@@ -170,7 +170,7 @@ impl<const N: usize> Sweep<N> {
         })
     }
 
-    /// True if it overlaps a triangle at the start, of which this is the contact.
+    /// True if this is the contact of a triangle that the sweep overlaps at the start.
     pub(super) fn started_inside(&self, contact: &Contact) -> bool {
         contact.time == 0.0 && contact.distance <= self.core.radius
     }
@@ -178,11 +178,6 @@ impl<const N: usize> Sweep<N> {
     /// False for contacts that it ignores.
     pub(super) fn counts(&self, contact: &Contact) -> bool {
         !(self.past_overlaps && self.started_inside(contact))
-    }
-
-    /// True if what it meets, in P poses, moves from the first of them to the last, or stands still.
-    pub(super) fn is_whole<const P: usize>(&self) -> bool {
-        P == 1 || self.span.is_whole()
     }
 
     /// The same sweep with the reach that it has among triangles that are at most `size` across and `size` away.

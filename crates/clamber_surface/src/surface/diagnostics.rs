@@ -83,7 +83,8 @@ impl SkinnedSurface {
         touched.flat_map(|cluster| cluster.triangles.iter().copied())
     }
 
-    /// Memory of the collider in bytes: the rest data, which surfaces share, and this surface's caches.
+    /// Memory of the collider in bytes: the rest data, which surfaces share, and this surface's caches. These grow with
+    /// the most clusters that a tick touches.
     pub fn memory(&self) -> usize {
         self.mesh().memory()
             + self.instance.current.memory()

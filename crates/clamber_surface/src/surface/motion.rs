@@ -7,6 +7,7 @@ use super::deformation::{Flattened, Rest, stretch};
 use super::{Anchor, ModelSpace, SurfaceError, SurfacePoint};
 use crate::geometry::triangle::point_at;
 use crate::geometry::{rotation_vector, round_to_f32, widen};
+use crate::mesh::PartId;
 use crate::rig::{rotation_f32, rotation_f64};
 
 /// The motion of an anchor over one tick, in the *current* model frame: a moving root moves the anchor too. Velocities
@@ -58,15 +59,8 @@ impl ModelSpace<'_> {
     /// As [`ModelSpace::motion`].
     pub fn path(&self, point: impl Into<SurfacePoint>, dt: f64) -> Result<PointPath, SurfaceError> {
         let (point, instance) = (point.into(), self.instance);
+        self.check(&point, dt)?;
         let triangle = point.triangle;
-        check_mesh(&instance.mesh, point.mesh)?;
-        if instance.mesh.part_of(triangle).is_none() {
-            return Err(SurfaceError::Triangle(triangle));
-        }
-        check_barycentric(point.barycentric)?;
-        if !(dt > 0.0 && dt.is_finite()) {
-            return Err(SurfaceError::Tick(dt));
-        }
         let weights = widen(Vec3::from_array(point.barycentric));
         let position = point_at(instance.corners(triangle), weights);
         let previous = point_at(instance.corners_in(&instance.previous, triangle), weights);
@@ -90,15 +84,7 @@ impl ModelSpace<'_> {
     /// velocity over `dt` does not fit in f32.
     pub fn motion(&self, anchor: &Anchor, dt: f64) -> Result<Motion, SurfaceError> {
         let (triangle, instance) = (anchor.triangle, self.instance);
-        check_mesh(&instance.mesh, anchor.mesh)?;
-        let part = instance
-            .mesh
-            .part_of(triangle)
-            .ok_or(SurfaceError::Triangle(triangle))?;
-        check_barycentric(anchor.barycentric)?;
-        if !(dt > 0.0 && dt.is_finite()) {
-            return Err(SurfaceError::Tick(dt));
-        }
+        let part = self.check(&anchor.into(), dt)?;
         let rest = Rest::new(instance.mesh.rest_corners(triangle));
         let before = instance.corners_in(&instance.previous, triangle);
         let now = instance.corners(triangle);
@@ -140,6 +126,21 @@ impl ModelSpace<'_> {
             area_ratio: finite(area_ratio),
             stretches: stretches.map(finite),
         })
+    }
+}
+
+impl ModelSpace<'_> {
+    /// The part that a point lies on; an error if there is no such point, or if a tick cannot take `dt` seconds.
+    fn check(&self, point: &SurfacePoint, dt: f64) -> Result<PartId, SurfaceError> {
+        let mesh = &self.instance.mesh;
+        check_mesh(mesh, point.mesh)?;
+        let part = mesh.part_of(point.triangle);
+        let part = part.ok_or(SurfaceError::Triangle(point.triangle))?;
+        check_barycentric(point.barycentric)?;
+        if !(dt > 0.0 && dt.is_finite()) {
+            return Err(SurfaceError::Tick(dt));
+        }
+        Ok(part)
     }
 }
 

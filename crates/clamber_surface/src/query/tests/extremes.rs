@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::Vec3;
 
 use super::places::{Place, assert_agree};
-use crate::geometry::{Affine, Similarity};
+use crate::geometry::{Affine, Capsule, Similarity};
 use crate::measure::BruteForce;
 use crate::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
 use crate::rig::{JointId, Palette};
@@ -243,4 +243,29 @@ fn the_nearest_vertex_does_not_narrow_the_search_below_rounding() {
         };
         assert_agree(&surface, &brute_force, place, &format!("case {case}"));
     }
+}
+
+#[test]
+fn capsules_as_long_as_numbers_allow_overlap_what_brute_force_says() {
+    let mut rng = fastrand::Rng::with_seed(85);
+    let surface = scaled(1.0);
+    let (space, brute_force) = (surface.in_model(), BruteForce::new(surface.in_model()));
+    let (mut hits, mut wanted, mut triangles) = (Vec::new(), Vec::new(), Vec::new());
+    let mut some = 0;
+    for case in 0..400 {
+        let mut end = || direction(&mut rng) * [1.0, 1e12, 1e20, f32::MAX][case % 4];
+        let ends = [end(), end()];
+        let radius = [0.3, 5.0, 1e10, 1e30][case / 4 % 4];
+        let capsule = Capsule::new(ends[0], ends[1], radius).unwrap();
+        space.overlap_capsule(&capsule, &mut hits);
+        brute_force.overlap_capsule(&capsule, &mut wanted);
+        assert_eq!(hits, wanted, "{capsule:?}");
+        triangles.clear();
+        space.visit_triangles_in_capsule(&capsule, |triangle| triangles.push(triangle));
+        triangles.sort_unstable();
+        let wanted: Vec<_> = wanted.iter().map(|hit| hit.triangle).collect();
+        assert_eq!(triangles, wanted, "{capsule:?}");
+        some += usize::from(!wanted.is_empty() && wanted.len() < surface.mesh().triangles().len());
+    }
+    assert!(some > 10, "{some}");
 }

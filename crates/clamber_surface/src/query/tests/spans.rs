@@ -20,6 +20,9 @@ fn bending(level: SimdLevel, rng: &mut Rng) -> SkinnedSurface {
         };
         let palette = bend(12, axis, 0.6 * rng.f64());
         surface.advance(&palette, root).unwrap();
+        if rng.bool() {
+            surface.skin_ahead();
+        }
     }
     surface
 }

@@ -1,0 +1,59 @@
+use clamber_surface::glam::Vec3;
+use clamber_world::{Obstacle, ObstacleId, TriangleTerrain};
+use fastrand::Rng;
+
+use super::*;
+use crate::MoverMemory;
+
+/// Rough ground of 6 m by 6 m, in cells of 0.2 m.
+fn rough(rng: &mut Rng, height: f32) -> TriangleTerrain {
+    let (mut positions, mut triangles) = (Vec::new(), Vec::new());
+    for row in 0..=30 {
+        for column in 0..=30 {
+            let place = Vec3::new(column as f32, 0.0, row as f32) * 0.2 - Vec3::new(3.0, 0.0, 3.0);
+            positions.push(place + Vec3::Y * (height * rng.f32()));
+        }
+    }
+    for row in 0..30 {
+        for column in 0..30 {
+            let a = row * 31 + column;
+            triangles.extend([[a, a + 31, a + 32], [a, a + 32, a + 1]]);
+        }
+    }
+    TriangleTerrain::new(&positions, &triangles, &[], DVec3::ZERO).unwrap()
+}
+
+#[test]
+fn a_grip_at_the_body_is_the_grip_of_the_whole_reach() {
+    let mut rng = Rng::with_seed(3);
+    let (mut found, mut at_body, mut none) = (0, 0, 0);
+    for case in 0..400 {
+        let height = [0.0, 0.1, 0.5, 1.5][case % 4];
+        let ground = rough(&mut rng, height);
+        let obstacles: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(1), &ground)];
+        let mut memory = MoverMemory::default();
+        let mut mover = Mover::new(&obstacles, 1.0 / 60.0, &mut memory).unwrap();
+        let radius = [0.4, 0.2, 1.0][case % 3];
+        let body = MoverBody::capsule(DVec3::ZERO, radius, radius * 0.025);
+        for _ in 0..20 {
+            let mut lot = |size: f64| (2.0 * rng.f64() - 1.0) * size;
+            let above = radius * (1.0 + lot(0.4)) + f64::from(height) * lot(0.5).abs();
+            let position = DVec3::new(lot(2.0), above, lot(2.0));
+            let (every, salt) = (1 + rng.u64(0..4), rng.u64(0..9));
+            let can_grip =
+                |touch: &Touch| (touch.contact.material.key + salt).is_multiple_of(every);
+            let merit = |touch: &Touch| touch.normal.x.max(0.0);
+            let reach = radius * [0.05, 0.5, 1.5][rng.usize(0..3)];
+            let wanted = mover.grip_within(&body, position, reach, &can_grip, &merit);
+            let grip = mover.find_grip(&body, position, reach, can_grip, merit);
+            assert_eq!(grip, wanted, "case {case}, {position}, reach {reach}");
+            found += usize::from(grip.is_some());
+            none += usize::from(grip.is_none());
+            at_body += usize::from(grip.is_some_and(|grip| grip.contact.distance < radius * 1.05));
+        }
+    }
+    assert!(
+        found > 1_000 && none > 100 && at_body > 500 && at_body < found,
+        "{found} {none} {at_body}"
+    );
+}
