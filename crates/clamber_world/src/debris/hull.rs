@@ -2,13 +2,15 @@
 
 use clamber_surface::geometry::Similarity;
 use clamber_surface::surface::MovingTriangle;
-use glam::{DMat3, DQuat, DVec3, Mat3, Vec3};
+use glam::{DMat3, DQuat, DVec3, Vec3};
 use rapier3d::dynamics::RigidBody;
 use rapier3d::geometry::{ColliderSet, TypedShape};
 use rapier3d::math::Pose;
 use rapier3d::parry::bounding_volume::BoundingVolume;
 use rapier3d::parry::query::PointQuery;
 use rapier3d::parry::shape::Triangle;
+
+use super::corners::{Corners, Transforms};
 
 /// A box around all solid colliders of a body, in the body's space, or a ball if that is all it has.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -133,7 +135,7 @@ impl Reach {
         ReachOnSurface {
             low: low.as_vec3(),
             high: high.as_vec3(),
-            frames,
+            transforms: Transforms::new(frames),
             half: half.as_vec3(),
             is_ball: self.hull.is_ball,
             turn: 2.0 * self.half_turn as f32,
@@ -149,7 +151,7 @@ pub(super) struct ReachOnSurface {
     pub(super) low: Vec3,
     pub(super) high: Vec3,
     /// Transforms from the model to the body's frame, before and after.
-    frames: [(Mat3, Vec3); 2],
+    transforms: Transforms,
     half: Vec3,
     is_ball: bool,
     /// Angle by which the frame turns, radians.
@@ -170,41 +172,39 @@ impl ReachOnSurface {
     /// angle a, a point that moves evenly by m, and is never farther than f from the middle, has an acceleration of at
     /// most `a^2 f + 2 a m`. So it is at most an eighth of that off the straight line.
     pub(super) fn apart(&self, moving: &MovingTriangle) -> f32 {
-        let [(turn, shift), (last_turn, last_shift)] = self.frames;
-        let before = moving.previous.map(|p| turn * p + shift);
-        let after = moving.current.map(|p| last_turn * p + last_shift);
-        let mut low = before[0].min(after[0]);
-        let mut high = before[0].max(after[0]);
-        for corner in [before[1], before[2], after[1], after[2]] {
-            (low, high) = (low.min(corner), high.max(corner));
-        }
+        let corners = Corners::new(moving, &self.transforms);
+        let (low, high) = corners.bounds();
         let apart = (low.max(-high) - self.half).max_element();
         if !self.is_ball {
-            return (apart - self.cut(before, after)) / self.scale;
+            let apart = apart.max(self.beyond_plane(&corners));
+            return (apart - self.cut(&corners)) / self.scale;
         }
         if apart > self.half.x * AT_ONCE {
             return apart / self.scale;
         }
-        let distance = Triangle::from(before).distance_to_local_point(Vec3::ZERO, false);
-        let apart = apart.max(distance - self.half.x - most_moved(before, after));
+        let triangle = Triangle::from([0, 1, 2].map(|corner| corners.before(corner)));
+        let distance = triangle.distance_to_local_point(Vec3::ZERO, false);
+        let apart = apart.max(distance - self.half.x - corners.most_moved());
         apart / self.scale
     }
 
-    fn cut(&self, before: [Vec3; 3], after: [Vec3; 3]) -> f32 {
+    /// Distance between the box and all corners along the triangle's normal; negative if they overlap there.
+    fn beyond_plane(&self, corners: &Corners) -> f32 {
+        let [a, b, c] = [corners.before(0), corners.before(1), corners.before(2)];
+        let normal = (b - a).cross(c - a).normalize_or_zero();
+        let (low, high) = corners.along(normal);
+        low.max(-high) - normal.abs().dot(self.half)
+    }
+
+    fn cut(&self, corners: &Corners) -> f32 {
         if self.turn == 0.0 {
             return 0.0;
         }
-        let farthest = before.into_iter().chain(after).map(Vec3::length_squared);
-        let farthest = farthest.fold(0.0, f32::max).sqrt();
+        let farthest = corners.farthest();
         // An upper bound of the motion in a frame that does not turn.
-        let moved = most_moved(before, after) + self.turn * farthest;
+        let moved = corners.most_moved() + self.turn * farthest;
         self.turn * (self.turn * farthest + 2.0 * moved) / 8.0
     }
-}
-
-fn most_moved(before: [Vec3; 3], after: [Vec3; 3]) -> f32 {
-    let moved = |corner: usize| (after[corner] - before[corner]).length_squared();
-    moved(0).max(moved(1)).max(moved(2)).sqrt()
 }
 
 /// Triangles farther than this from the box around a ball, as a fraction of its radius, are not measured more closely.

@@ -29,11 +29,14 @@ use crate::ObstacleId;
 /// tick to tick. The order of the list does not change any result. The state of a creature that leaves the list is
 /// dropped.
 ///
-/// Skin patches are ordinary colliders of the rapier world. Their `user_data`, and that of their bodies, is their
-/// creature's [`ObstacleId`]. If a climber gets both the creature and a
-/// [`RapierTerrain`](crate::RapierTerrain) without a filter, it touches that skin twice. Leave the patches out with
+/// Skin patches are colliders of the rapier world. Their `user_data`, and that of their bodies, is their creature's
+/// [`ObstacleId`]. If a climber gets both the creature and a [`RapierTerrain`](crate::RapierTerrain) without a filter, it
+/// touches that skin twice. Leave the patches out with
 /// [`RapierTerrain::with_filter`](crate::RapierTerrain::with_filter): by [`DebrisConfig::groups`], or by
 /// [`Debris::triangle_at`], which gives `Some` for subshape 0 of a patch.
+///
+/// They have a shape of their own, which rapier's debug renderer does not draw and serde does not load. Remove the bodies
+/// of patches from a world before serde saves it; they come back in the next tick.
 ///
 /// Make these calls each tick, in this order. `Debris` is the step's [`PhysicsHooks`], which keep a patch from
 /// colliding with anything but its body:

@@ -4,25 +4,21 @@ use clamber_surface::geometry::Similarity;
 use clamber_surface::surface::{MovingTriangle, Patch, PatchChange, SkinnedSurface};
 use glam::DVec3;
 use rapier3d::dynamics::{RigidBodyBuilder, RigidBodyHandle, RigidBodySet};
-use rapier3d::geometry::{ColliderBuilder, ColliderHandle, ColliderSet, SharedShape, TriMesh};
+use rapier3d::geometry::{ColliderBuilder, ColliderHandle, ColliderSet, SharedShape};
 use rapier3d::math::Vector;
 use rapier3d::parry::query::PointQueryWithLocation;
-use rapier3d::parry::shape::{TriMeshFlags, Triangle};
+use rapier3d::parry::shape::Triangle;
 use rapier3d::pipeline::ActiveHooks;
 
 use super::DebrisConfig;
 use super::fit::RigidMotion;
 use super::hull::Reach;
-use super::patch_mesh::{move_trimesh, trimesh};
+use super::patch_shape::PatchShape;
 use crate::ObstacleId;
 
 /// A new patch is filled this far beyond the box that the body may reach, as a fraction of half the box's longest side.
 /// A larger margin rebuilds patches less often, but gives rapier more triangles in every tick.
 const MARGIN: f32 = 0.02;
-
-/// Without these, sliding bodies catch on edges between triangles. Two-sided, since mirrored joints turn triangles
-/// inside out.
-const FLAGS: TriMeshFlags = TriMeshFlags::FIX_INTERNAL_EDGES_TWO_SIDED;
 
 /// A piece of skin that collides with one body.
 ///
@@ -83,7 +79,12 @@ impl SkinPatch {
         }
         self.gap = None;
         let still = self.patch.positions() == self.patch.previous_positions();
-        if still && change == PatchChange::Same && self.still_at == Some(*world_from_model) {
+        let is_shown = self.shown(bodies, colliders).is_some();
+        if still
+            && is_shown
+            && change == PatchChange::Same
+            && self.still_at == Some(*world_from_model)
+        {
             // Nothing has changed. If the patch is left alone, rapier lets rocks fall asleep on it.
             return Some(());
         }
@@ -200,6 +201,16 @@ impl SkinPatch {
         nearest.map(|(_, [before, now])| (before, now))
     }
 
+    /// Its body and collider, if they are in rapier's sets.
+    fn shown(
+        &self,
+        bodies: &RigidBodySet,
+        colliders: &ColliderSet,
+    ) -> Option<(RigidBodyHandle, ColliderHandle)> {
+        self.handles
+            .filter(|(body, collider)| bodies.contains(*body) && colliders.contains(*collider))
+    }
+
     fn show(
         &mut self,
         change: PatchChange,
@@ -208,26 +219,20 @@ impl SkinPatch {
         bodies: &mut RigidBodySet,
         colliders: &mut ColliderSet,
     ) {
-        let vertex = |index: usize| self.before[index].as_vec3();
-        let known = self
-            .handles
-            .filter(|(body, collider)| bodies.contains(*body) && colliders.contains(*collider));
-        let (body, collider) = match known {
-            Some(known) => known,
-            None => {
-                let Some(mesh) = trimesh(&self.patch, FLAGS, vertex) else {
-                    return;
-                };
-                insert(mesh, config, bodies, colliders)
-            }
-        };
+        let vertices = self.before.iter().map(|vertex| vertex.as_vec3());
+        let known = self.shown(bodies, colliders);
+        let (body, collider) = known.unwrap_or_else(|| {
+            let shape = PatchShape::new(self.patch.indices(), vertices.clone());
+            insert(shape, config, bodies, colliders)
+        });
         if let Some(shown) = colliders.get_mut(collider).filter(|_| known.is_some()) {
             let moved = change != PatchChange::Rebuilt && shown.is_enabled();
-            let mesh = moved.then(|| shown.shape_mut().as_trimesh_mut()).flatten();
-            if let Some(mesh) = mesh {
-                move_trimesh(mesh, vertex);
-            } else if let Some(mesh) = trimesh(&self.patch, FLAGS, vertex) {
-                shown.set_shape(SharedShape::new(mesh));
+            let shape = moved.then(|| shown.shape_mut().as_shape_mut::<PatchShape>());
+            if let Some(shape) = shape.flatten() {
+                shape.place(vertices);
+            } else {
+                let shape = PatchShape::new(self.patch.indices(), vertices);
+                shown.set_shape(SharedShape::new(shape));
             }
             shown.set_enabled(true);
         }
@@ -243,13 +248,13 @@ impl SkinPatch {
 }
 
 fn insert(
-    mesh: TriMesh,
+    shape: PatchShape,
     config: &DebrisConfig,
     bodies: &mut RigidBodySet,
     colliders: &mut ColliderSet,
 ) -> (RigidBodyHandle, ColliderHandle) {
     let body = bodies.insert(RigidBodyBuilder::kinematic_velocity_based());
-    let collider = ColliderBuilder::new(SharedShape::new(mesh))
+    let collider = ColliderBuilder::new(SharedShape::new(shape))
         // Kinematic bodies need no mass, and the mass of a mesh is slow to compute.
         .density(0.0)
         .friction(config.friction)

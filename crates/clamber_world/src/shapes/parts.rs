@@ -1,5 +1,6 @@
 use glam::{DVec3, Vec3};
 use parry3d::bounding_volume::Aabb;
+use parry3d::math::Pose;
 use parry3d::partitioning::{Bvh, TraversalAction};
 use parry3d::shape::{HeightField, Shape, TypedShape};
 
@@ -55,6 +56,14 @@ pub(super) fn visit_parts(
         _ => {
             if let Some(convex) = Convex::new(shape) {
                 visit(Part::Convex(convex));
+            } else if let Some(composite) = shape.as_composite_shape() {
+                visit_leaves(composite.bvh(), reaches, &mut |id| {
+                    composite.map_part_at(id, &mut |pose, part, _| {
+                        let pose = pose.copied().unwrap_or(Pose::IDENTITY);
+                        let pose = RigidPose::new(pose.rotation, pose.translation);
+                        visit(Part::Posed(pose, part));
+                    });
+                });
             }
         }
     }

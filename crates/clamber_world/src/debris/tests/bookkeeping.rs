@@ -125,6 +125,29 @@ fn a_patch_collides_with_its_own_rock_only_and_contacts_name_its_triangles() {
 }
 
 #[test]
+fn patches_come_back_after_their_bodies_were_removed() {
+    let mut scene = Scene::new(slab(HALF, 0.6, 1));
+    let palette = lifted(1, |_| 0.0);
+    let (rock, _) = scene.drop(ColliderBuilder::ball(0.3), Vector::new(0.0, 0.85, 0.0));
+    let asleep = (0..600).any(|_| {
+        scene.tick(&palette, Similarity::IDENTITY);
+        scene.world.bodies[rock].is_sleeping()
+    });
+    assert!(asleep);
+    let bodies = scene.world.bodies.iter();
+    let patches: Vec<_> = bodies.filter(|(_, body)| body.is_kinematic()).collect();
+    let patches: Vec<_> = patches.into_iter().map(|(handle, _)| handle).collect();
+    assert_eq!(patches.len(), 1);
+    scene.world.remove_body(patches[0]);
+    let place = scene.in_model(rock);
+    for _ in 0..60 {
+        scene.tick(&palette, Similarity::IDENTITY);
+    }
+    let moved = (scene.in_model(rock) - place).length();
+    assert!(moved < 0.005, "{moved}");
+}
+
+#[test]
 fn patches_are_reused_when_bodies_come_and_go() {
     let mut scene = Scene::new(slab(HALF, 0.6, 1));
     let palette = lifted(1, |_| 0.0);

@@ -2,6 +2,7 @@ use rapier3d::parry::utils::Array2;
 use rapier3d::prelude::*;
 
 use super::*;
+use crate::debris::PatchShape;
 
 static NO_POSES: BodyPoses = BodyPoses::new();
 
@@ -18,7 +19,12 @@ fn grounds() -> Vec<(&'static str, ColliderBuilder)> {
     let corners = [(-4., -4.), (-4., 4.), (4., 4.), (4., -4.)];
     let corners = corners.map(|(x, z)| Vector::new(x, 1.0, z)).to_vec();
     let triangles = vec![[0, 1, 2], [0, 2, 3]];
+    let own = PatchShape::new(&triangles, corners.iter().copied());
     vec![
+        (
+            "a composite shape that is not parry's",
+            ColliderBuilder::new(SharedShape::new(own)),
+        ),
         (
             "height field",
             ColliderBuilder::heightfield(heights, Vector::new(8.0, 1.0, 8.0)),
