@@ -180,10 +180,8 @@ impl Climber {
             obstacles,
             dt,
         };
-        let tick = Tick::new(&self.config, self.state, asked, &mut self.scratch)?;
-        let (state, report) = tick.run();
-        self.state = state;
-        Ok(report)
+        let tick = Tick::new(&self.config, &mut self.state, asked, &mut self.scratch)?;
+        Ok(tick.run())
     }
 }
 

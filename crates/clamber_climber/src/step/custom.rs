@@ -86,7 +86,7 @@ impl<'a> ModeContext<'_, 'a> {
 
     /// The state at this point of the tick.
     pub fn state(&self) -> &ClimberState {
-        &self.tick.state
+        self.tick.state
     }
 
     /// Length of the tick, seconds.

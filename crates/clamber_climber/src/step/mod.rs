@@ -64,7 +64,7 @@ pub(crate) struct Tick<'a> {
     config: &'a ClimberConfig,
     input: &'a ClimberInput,
     rules: &'a StepRules<'a>,
-    state: ClimberState,
+    state: &'a mut ClimberState,
     mover: Mover<'a>,
     report: StepReport,
     contacts: &'a mut Vec<ClimberContact>,
@@ -101,7 +101,7 @@ pub(crate) fn body(config: &ClimberConfig, state: &ClimberState) -> MoverBody {
 impl<'a> Tick<'a> {
     pub(crate) fn new(
         config: &'a ClimberConfig,
-        state: ClimberState,
+        state: &'a mut ClimberState,
         asked: Asked<'a>,
         scratch: &'a mut Scratch,
     ) -> Result<Self, ClimberError> {
@@ -119,7 +119,6 @@ impl<'a> Tick<'a> {
             config,
             input,
             rules,
-            state,
             mover,
             report: StepReport {
                 is_clear: true,
@@ -130,6 +129,7 @@ impl<'a> Tick<'a> {
             was: state.velocity,
             base_was: state.base_velocity,
             was_crushed: state.crushed,
+            state,
             struck: DVec3::ZERO,
             carried: None,
             is_lost: false,
@@ -139,8 +139,9 @@ impl<'a> Tick<'a> {
         })
     }
 
-    pub(crate) fn run(mut self) -> (ClimberState, StepReport) {
-        let before = self.state;
+    /// Brings the state to the end of the tick.
+    pub(crate) fn run(mut self) -> StepReport {
+        let before = *self.state;
         self.be_struck();
         self.count_down();
         self.be_carried();
@@ -152,13 +153,13 @@ impl<'a> Tick<'a> {
         if self.is_lost || !self.state.is_finite() {
             // A game's own obstacle may return numbers that are not finite. The climber waits where it is.
             self.contacts.clear();
-            let report = StepReport {
+            *self.state = before;
+            return StepReport {
                 events: vec![ClimberEvent::NotFinite],
                 ..StepReport::default()
             };
-            return (before, report);
         }
-        (self.state, self.report)
+        self.report
     }
 
     /// Counts down the timers of late jumps, early jumps and open hands.
@@ -225,7 +226,7 @@ impl<'a> Tick<'a> {
 
     /// Clears the memory of the mode that was left.
     fn forget(&mut self, left: ClimberMode) {
-        let state = &mut self.state;
+        let state = &mut *self.state;
         match left {
             ClimberMode::Standing => state.standing = StandingMemory::default(),
             ClimberMode::Hanging => state.hanging = HangingMemory::default(),
@@ -270,7 +271,7 @@ impl<'a> Tick<'a> {
     }
 
     fn body(&self) -> MoverBody {
-        body(self.config, &self.state)
+        body(self.config, self.state)
     }
 
     fn event(&mut self, event: ClimberEvent) {

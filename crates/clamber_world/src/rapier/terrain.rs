@@ -69,18 +69,23 @@ pub struct RapierTerrain<'a> {
     moved: OnceLock<MovedColliders>,
 }
 
+/// Up to this number, colliders are looked at one by one, which is sooner done than a tree is built.
+const FEW: usize = 8;
+
 /// Colliders of bodies whose pose has changed, and a tree over the boxes of their paths. Rapier's own tree has only
 /// their current boxes.
 struct MovedColliders {
     moved: Vec<(ColliderHandle, Moved)>,
-    /// Leaves are indices into `moved`.
-    tree: Bvh,
+    /// Leaves are indices into `moved`. `None` if those are [`FEW`].
+    tree: Option<Bvh>,
 }
 
 impl MovedColliders {
     fn new(moved: Vec<(ColliderHandle, Moved)>) -> Self {
-        let boxes: Vec<_> = moved.iter().map(|(_, moved)| moved.bounds).collect();
-        let tree = Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes);
+        let tree = (moved.len() > FEW).then(|| {
+            let boxes: Vec<_> = moved.iter().map(|(_, moved)| moved.bounds).collect();
+            Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes)
+        });
         Self { moved, tree }
     }
 }
@@ -273,13 +278,8 @@ impl<'a> RapierTerrain<'a> {
     /// Calls `meet` for colliders that have moved, over their whole paths.
     fn meet_moved(&self, first: &mut FirstContact, meet: &mut Meet<'_>) {
         let all = self.moved();
-        all.tree.traverse(|node| {
-            if !first.may_meet(&node.aabb()) {
-                return TraversalAction::Prune;
-            }
-            let leaf = node.leaf_data();
-            if let Some((handle, moved)) = leaf.and_then(|leaf| all.moved.get(leaf as usize))
-                && let Some(collider) = self.colliders.get(*handle)
+        let mut try_one = |first: &mut FirstContact, (handle, moved): &(ColliderHandle, Moved)| {
+            if let Some(collider) = self.colliders.get(*handle)
                 && self.sees(*handle, collider)
             {
                 let met = Met {
@@ -288,6 +288,23 @@ impl<'a> RapierTerrain<'a> {
                     key: key_of(*handle),
                 };
                 meet(first, &met);
+            }
+        };
+        let Some(tree) = &all.tree else {
+            for one in &all.moved {
+                if first.may_meet(&one.1.bounds) {
+                    try_one(first, one);
+                }
+            }
+            return;
+        };
+        tree.traverse(|node| {
+            if !first.may_meet(&node.aabb()) {
+                return TraversalAction::Prune;
+            }
+            let leaf = node.leaf_data();
+            if let Some(one) = leaf.and_then(|leaf| all.moved.get(leaf as usize)) {
+                try_one(first, one);
             }
             TraversalAction::Continue
         });

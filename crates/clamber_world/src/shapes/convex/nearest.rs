@@ -1,10 +1,10 @@
 //! The nearest points of a convex core and a segment, by the algorithm of Gilbert, Johnson and Keerthi (1988, "A fast
 //! procedure for computing the distance between complex objects in three-dimensional space"), in f64.
 
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 
-use super::MovingConvex;
 use super::simplex::{Corner, Simplex};
+use super::{Convex, Core, MovingConvex};
 
 /// Most rounds. In the tests' thousands of cases, cores with corners take four, at most nine; cores with rims take
 /// fourteen, at most 61, at a distance of a micrometre.
@@ -27,7 +27,71 @@ pub(in crate::shapes) struct ClosestPoints {
     pub(in crate::shapes) distance: f64,
 }
 
+impl Convex<'_> {
+    /// The nearest points of a core and a segment in its local space, if the core is a cuboid, the segment is beyond one
+    /// of its faces, and the nearest point is on that face. `None` says nothing.
+    ///
+    /// No point of the core is nearer than the plane of a face that the whole segment is beyond. So if the end that is
+    /// nearest to the plane lies above the face, its foot is the nearest point.
+    fn nearest_on_face(&self, ends: [DVec3; 2]) -> Option<ClosestPoints> {
+        let Core::Cuboid { center, half } = &self.core else {
+            return None;
+        };
+        let from_center = ends.map(|end| end - *center);
+        let [p, q] = &from_center;
+        let beyond = p.min(*q).max(-p.max(*q)) - *half;
+        let distance = beyond.max_element();
+        let size = p.length() + q.length() + half.max_element();
+        if distance <= size * MEETING {
+            return None;
+        }
+        let axis = if distance == beyond.x {
+            DVec3::X
+        } else if distance == beyond.y {
+            DVec3::Y
+        } else {
+            DVec3::Z
+        };
+        let normal = axis * 1f64.copysign(axis.dot(*p));
+        let [height, other] = [p, q].map(|end| normal.dot(*end));
+        let mut order = from_center;
+        if other < height {
+            order.swap(0, 1);
+        }
+        // If both ends are as near, either will do.
+        let foot = |end: DVec3| {
+            let inside = end.abs().cmple(*half) | axis.cmpne(DVec3::ZERO);
+            inside
+                .all()
+                .then(|| end - normal * normal.dot(end) + normal * half.dot(axis))
+        };
+        let found = foot(order[0]).or_else(|| (other == height).then(|| foot(order[1])).flatten());
+        Some(ClosestPoints {
+            on_core: found? + *center,
+            normal,
+            distance,
+        })
+    }
+}
+
 impl MovingConvex<'_> {
+    /// A segment in the solid's local space at a time, and the solid's rotation then. `None` where the solid has no
+    /// rotation: a turning one between the ends of the tick, since its points move in straight lines.
+    fn in_local_space(&self, time: f64, ends: [DVec3; 2]) -> Option<([DVec3; 2], DQuat)> {
+        match &self.before {
+            None => Some((ends, DQuat::IDENTITY)),
+            Some(before) if time == 0.0 => {
+                let local = ends.map(|end| before.inverse_transform(end));
+                Some((local, before.rotation))
+            }
+            Some(before) if before.rotation == DQuat::IDENTITY => {
+                let moved = before.translation * (1.0 - time);
+                Some((ends.map(|end| end - moved), DQuat::IDENTITY))
+            }
+            Some(_) => (time == 1.0).then_some((ends, DQuat::IDENTITY)),
+        }
+    }
+
     /// The nearest points at a time; `None` if core and segment meet. `guess` is the direction from core to segment to
     /// begin with, of any length; zero if there is none.
     pub(in crate::shapes) fn nearest(
@@ -36,6 +100,15 @@ impl MovingConvex<'_> {
         ends: [DVec3; 2],
         guess: DVec3,
     ) -> Option<ClosestPoints> {
+        let local = self.in_local_space(time, ends);
+        if let Some((local, rotation)) = local
+            && let Some(nearest) = self.convex.nearest_on_face(local)
+        {
+            return Some(ClosestPoints {
+                normal: rotation * nearest.normal,
+                ..nearest
+            });
+        }
         let corner = |towards_axis: DVec3| {
             let on_core = self.support(time, towards_axis);
             let farther = towards_axis.dot(ends[1]) < towards_axis.dot(ends[0]);
