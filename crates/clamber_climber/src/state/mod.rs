@@ -164,9 +164,16 @@ impl ClimberState {
     }
 
     pub(crate) fn is_finite(&self) -> bool {
-        self.vectors().iter().all(|v| v.is_finite())
-            && self.memory.iter().all(|x| x.is_finite())
-            && self.numbers().iter().all(|(_, x)| x.is_finite())
+        // Zero times a number is zero, unless the number is infinite or NaN: one test for all of them.
+        let vectors = self.vectors().into_iter();
+        let vectors = vectors.fold(DVec3::ZERO, |sum, v| sum + v * 0.0);
+        let numbers = self.memory.iter().fold(0.0, |sum, x| sum + x * 0.0);
+        let numbers = self
+            .numbers()
+            .iter()
+            .fold(numbers, |sum, (_, x)| sum + x * 0.0);
+        vectors == DVec3::ZERO
+            && numbers == 0.0
             && self.support.is_none_or(|support| support.is_finite())
             && self.support_velocity.is_none_or(DVec3::is_finite)
     }

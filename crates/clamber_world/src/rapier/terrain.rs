@@ -237,15 +237,18 @@ impl<'a> RapierTerrain<'a> {
         }
     }
 
-    /// Pose of a collider before the last step; `None` if it has not moved.
-    fn previous_pose(&self, collider: &Collider) -> Option<RigidPose> {
+    /// Pose of a collider's body before the last step; `None` if it has not moved.
+    fn previous_body_pose(&self, collider: &Collider) -> Option<&Pose> {
         let body = collider.parent()?;
         let before = self.before.get(body)?;
         // A collider's pose is a product, which rounding may change although nothing moves. So compare the bodies'
         // poses.
-        if self.bodies.get(body)?.position() == before {
-            return None;
-        }
+        (self.bodies.get(body)?.position() != before).then_some(before)
+    }
+
+    /// Pose of a collider before the last step; `None` if it has not moved.
+    fn previous_pose(&self, collider: &Collider) -> Option<RigidPose> {
+        let before = self.previous_body_pose(collider)?;
         Some(pose_of(before).compose(&pose_of(collider.position_wrt_parent()?)))
     }
 
@@ -268,7 +271,7 @@ impl<'a> RapierTerrain<'a> {
         match target {
             TargetMotion::Still => self.meet_near(first, |_| true, meet),
             TargetMotion::Moving => {
-                let is_still = |collider: &Collider| self.previous_pose(collider).is_none();
+                let is_still = |collider: &Collider| self.previous_body_pose(collider).is_none();
                 self.meet_near(first, is_still, meet);
                 self.meet_moved(first, meet);
             }

@@ -41,8 +41,9 @@ impl FirstContact {
     pub fn new(capsule: &WorldCapsule, displacements: [DVec3; 2]) -> Option<Self> {
         let radius = capsule.radius;
         let end = capsule.with_ends_moved(displacements).ends;
-        let mut places = capsule.ends.into_iter().chain(end).chain(displacements);
-        if !places.all(is_usable) || !is_usable_radius(radius) {
+        let places = [capsule.ends, end, displacements];
+        let usable = places.iter().all(|[a, b]| is_usable(*a) && is_usable(*b));
+        if !usable || !is_usable_radius(radius) {
             return None;
         }
         let path = clamber_surface::geometry::MovingCapsule {

@@ -1,3 +1,5 @@
+use std::cell::LazyCell;
+
 use clamber_surface::geometry::MovingCapsule;
 use clamber_surface::mesh::SurfaceTag;
 use glam::{DVec3, Vec3};
@@ -53,9 +55,10 @@ pub fn overlap_shape(
         end: ends,
         radius: 0.0,
     };
-    let Some(reach) = Reach::around(ends, radius) else {
+    if !Reach::is_usable(ends, radius) {
         return;
-    };
+    }
+    let reach = LazyCell::new(|| Reach::new(&still, radius));
     let mut offer = |contact: Option<ShapeContact>| {
         if let Some(contact) = contact.filter(|contact| contact.distance <= radius) {
             found(contact);
@@ -63,7 +66,7 @@ pub fn overlap_shape(
     };
     visit_parts(
         shape,
-        &reach.bounds(),
+        &|| reach.bounds(),
         &|bounds| reach.meets(bounds, 1.0),
         &mut |part| match part {
             Part::Triangle(corners) => offer(triangle(corners, &still)),

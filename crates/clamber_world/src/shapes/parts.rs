@@ -18,10 +18,11 @@ pub(super) enum Part<'a> {
 }
 
 /// Calls `visit` with the parts of a shape, except those whose bounding boxes `reaches` rejects. `reaches` is called
-/// anew for each box and may become stricter during the visit. `bounds` meets every box that `reaches` accepts.
+/// anew for each box and may become stricter during the visit. The box that `bounds` returns meets every box that
+/// `reaches` accepts. Neither is called for a convex shape.
 pub(super) fn visit_parts(
     shape: &dyn Shape,
-    bounds: &Aabb,
+    bounds: &dyn Fn() -> Aabb,
     reaches: &dyn Fn(&Aabb) -> bool,
     visit: &mut dyn FnMut(Part<'_>),
 ) {
@@ -29,7 +30,7 @@ pub(super) fn visit_parts(
         TypedShape::TriMesh(mesh) => visit_leaves(mesh.bvh(), reaches, &mut |id| {
             visit(Part::Triangle(corners(&mesh.triangle(id))));
         }),
-        TypedShape::HeightField(field) => visit_field(field, bounds, reaches, visit),
+        TypedShape::HeightField(field) => visit_field(field, &bounds(), reaches, visit),
         TypedShape::Triangle(triangle) => visit(Part::Triangle(corners(triangle))),
         TypedShape::Polyline(line) => visit_leaves(line.bvh(), reaches, &mut |id| {
             let segment = line.segment(id);
@@ -43,7 +44,7 @@ pub(super) fn visit_parts(
         }),
         TypedShape::Voxels(voxels) => {
             let half = voxels.voxel_size().as_dvec3() * 0.5;
-            let near = bounds.intersection(&voxels.compute_local_aabb());
+            let near = bounds().intersection(&voxels.compute_local_aabb());
             let near = near.into_iter();
             for voxel in near.flat_map(|near| voxels.voxels_intersecting_local_aabb(&near)) {
                 if !voxel.state.is_empty() && reaches(&voxels.voxel_aabb(voxel.grid_coords)) {

@@ -14,9 +14,8 @@ const FARTHEST: f64 = (1u128 << 100) as f64;
 
 /// True if a position is finite and no coordinate is beyond [`FARTHEST`].
 pub(super) fn is_usable(place: DVec3) -> bool {
-    // No range contains NaN.
-    let within = |x: f64| (-FARTHEST..=FARTHEST).contains(&x);
-    within(place.x) && within(place.y) && within(place.z)
+    // NaN is not less than anything.
+    place.abs().cmple(DVec3::splat(FARTHEST)).all()
 }
 
 /// True if the radius of a moving capsule is finite, not negative and not beyond [`FARTHEST`].
@@ -50,13 +49,17 @@ impl Reach {
     /// Box around everything within `radius` of a segment at rest. The radius may be infinite. `None` if an end is not
     /// finite or beyond 2^100, or if the radius is NaN or negative.
     pub fn around(ends: [DVec3; 2], radius: f64) -> Option<Self> {
-        let usable = is_usable(ends[0]) && is_usable(ends[1]) && radius >= 0.0;
         let path = MovingCapsule {
             start: ends,
             end: ends,
             radius: 0.0,
         };
-        usable.then(|| Self::new(&path, radius))
+        Self::is_usable(ends, radius).then(|| Self::new(&path, radius))
+    }
+
+    /// True if [`Reach::around`] returns something.
+    pub(super) fn is_usable(ends: [DVec3; 2], radius: f64) -> bool {
+        is_usable(ends[0]) && is_usable(ends[1]) && radius >= 0.0
     }
 
     /// Box around the whole path, rounded outward to f32.

@@ -1,3 +1,5 @@
+use std::cell::{Cell, LazyCell};
+
 use clamber_surface::geometry::MovingCapsule;
 use glam::{DVec3, Vec3};
 use parry3d::shape::Shape;
@@ -83,17 +85,18 @@ fn search(
     mut counts: Option<&mut dyn FnMut(&ShapeTouch) -> bool>,
 ) -> Option<ShapeTouch> {
     let path = &sweep.path;
-    let mut ends = path.start.into_iter().chain(path.end);
-    let usable = ends.all(is_usable) && is_usable_radius(path.radius);
+    let ends = [path.start, path.end];
+    let usable = ends.iter().all(|[a, b]| is_usable(*a) && is_usable(*b));
+    let usable = usable && is_usable_radius(path.radius);
     if !usable {
         return None;
     }
     let mut first: Option<ShapeTouch> = None;
-    let reach = sweep.reach();
-    let until = std::cell::Cell::new(limit);
+    let reach = LazyCell::new(|| sweep.reach());
+    let until = Cell::new(limit);
     visit_parts(
         shape,
-        &reach.bounds(),
+        &|| reach.bounds(),
         &|bounds| reach.meets(bounds, until.get()),
         &mut |part| {
             let Some(touch) = sweep.meet(part, until.get(), &mut counts) else {
