@@ -1,4 +1,5 @@
-//! A thousand climbers on ten walking giants: which share of two cores does a tick at 60 Hz take?
+//! A thousand climbers on ten walking giants: which share of two cores does a tick at 60 Hz take, and how much is that
+//! beside as many of rapier's characters on giants that stand still?
 
 use std::error::Error;
 use std::sync::Arc;
@@ -12,6 +13,8 @@ use clamber_scenes::tour::{self, RATE};
 use clamber_scenes::{Creature, valley};
 use glam::DVec3;
 use rayon::prelude::*;
+
+use super::characters::{self, Character, still_mesh};
 
 const DT: f64 = 1.0 / RATE;
 
@@ -131,10 +134,8 @@ pub(crate) fn measure(
     let [mut posed, mut stepped] = times;
     let mut whole: Vec<f64> = posed.iter().zip(&stepped).map(|(a, b)| a + b).collect();
     cells.value(&name("poses on two cores, ms"), quantile(&mut posed, 0.5));
-    cells.value(
-        &name("climbers on two cores, ms"),
-        quantile(&mut stepped, 0.5),
-    );
+    let climbers = quantile(&mut stepped, 0.5);
+    cells.value(&name("climbers on two cores, ms"), climbers);
     let mut of_60_hz = |part: f64| quantile(&mut whole, part) * 1e-3 * RATE;
     cells.value(
         &name("share of 60 Hz, the fastest tenth of ticks"),
@@ -146,7 +147,56 @@ pub(crate) fn measure(
         share,
         Bound::Most(0.5),
     );
+    let (controllers, grounded) = beside(&giants, riders.len(), (SETTLE, ticks), &two)?;
+    cells.value(
+        &name("as many of rapier's controllers on still meshes, ms"),
+        controllers,
+    );
+    cells.value(&name("ticks of those on the ground, %"), 100.0 * grounded);
+    cells.push(
+        &name("climbers / rapier's controllers"),
+        climbers / controllers,
+        Bound::Most(0.15),
+    );
     Ok(())
+}
+
+/// Median time of a tick of as many of rapier's characters, milliseconds, and the share of ticks on the ground. They are
+/// where climbers could stand; two of five stand, the others walk: none of them can climb.
+fn beside(
+    giants: &[Giant],
+    count: usize,
+    ticks: (usize, usize),
+    threads: &rayon::ThreadPool,
+) -> Result<(f64, f64), Box<dyn Error>> {
+    let mut world = valley::world();
+    for giant in giants {
+        world.insert_collider(still_mesh(&giant.surface)?, None);
+    }
+    world.detect_collisions(&(), &());
+    let mut rng = fastrand::Rng::with_seed(10);
+    let speed = tour::config().ground.walk_speed;
+    let mut all = Vec::with_capacity(count);
+    while all.len() < count {
+        let surface = &giants[all.len() * giants.len() / count].surface;
+        let triangle = TriangleId(rng.u32(0..surface.mesh().triangles().len() as u32));
+        let seat = surface.anchor(triangle, [0.5, 0.25, 0.25])?;
+        let skin = surface.in_world().motion(&seat, DT)?;
+        let aside = DVec3::new(rng.f64() - 0.5, 0.0, rng.f64() - 0.5);
+        if skin.normal.y > LEVEL {
+            let above = skin.position + skin.normal * 0.45;
+            let walks = PARTS[all.len() % PARTS.len()] != Part::Stands;
+            let walk = aside.normalize_or(DVec3::X) * if walks { speed } else { 0.0 };
+            all.push(Character::new(above.as_vec3(), walk.as_vec3()));
+        }
+    }
+    Ok(characters::measure(
+        &world,
+        &mut all,
+        threads,
+        ticks,
+        (AWAY, GRAIN),
+    ))
 }
 
 fn herd(creature: &Creature, count: usize, period: f64) -> Vec<Giant> {

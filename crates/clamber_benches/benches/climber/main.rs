@@ -5,13 +5,15 @@
 //!   mesh is never posed again, so rapier sees no motion, and nothing is skinned for it. All take turns, tick by tick,
 //!   on one thread. Times are medians.
 //! - A thousand climbers are on ten giants of 10,000 vertices in a valley: of five climbers two stand, one walks, two
-//!   climb. Measured is the share of two cores that they take.
+//!   climb. Measured is the share of two cores that they take, and the time of as many of rapier's controllers on the
+//!   same giants as meshes that never move. None of those can climb, so they stand and walk.
 //! - Walls close in on a climber and crush it. Measured is a tick that crushes, beside a tick in which it has room.
 //!
 //! Prints a table and writes it to `target/measure/climber.csv`: name, value, bound, holds.
 //!
 //! Run it with `cargo bench -p clamber_benches --bench climber`; briefly with `-- --test`.
 
+mod characters;
 mod crowd;
 mod crushed;
 
@@ -20,16 +22,14 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use clamber::prelude::*;
-use clamber::world::rapier3d::control::{CharacterLength, KinematicCharacterController};
-use clamber::world::rapier3d::math::{Pose3, Vector};
-use clamber::world::rapier3d::parry::query::DefaultQueryDispatcher;
-use clamber::world::rapier3d::parry::shape::Ball;
-use clamber::world::rapier3d::pipeline::QueryFilter;
-use clamber::world::rapier3d::prelude::{ColliderBuilder, PhysicsWorld};
+use clamber::world::rapier3d::math::Vector;
+use clamber::world::rapier3d::prelude::PhysicsWorld;
 use clamber_scenes::giant;
 use clamber_scenes::measure::{Bound, Cells, is_brief, quantile};
 use clamber_scenes::tour::{self, Motion as Walks, RATE, Stage, Ways};
 use glam::DVec3;
+
+use characters::{Character, queries, still_mesh};
 
 const DT: f64 = 1.0 / RATE;
 
@@ -96,7 +96,7 @@ fn run(brief: bool) -> Result<(), Box<dyn Error>> {
         }
         times[1].push(still.step());
     }
-    if !still.is_grounded {
+    if !still.character.is_grounded {
         return Err("rapier's character does not stand".into());
     }
     let share = 100.0 * times[2].len() as f64 / f64::from(climbed);
@@ -164,41 +164,17 @@ fn above(stage: &Stage<'_>) -> Result<DVec3, Box<dyn Error>> {
 /// rapier's controller on the giant's first pose.
 struct Still {
     world: PhysicsWorld,
-    controller: KinematicCharacterController,
-    shape: Ball,
-    pose: Pose3,
-    is_grounded: bool,
+    character: Character,
 }
 
 impl Still {
     fn new(stage: &Stage<'_>) -> Result<Self, Box<dyn Error>> {
-        let surface = stage.surface();
-        let mut positions = Vec::new();
-        surface.skin_all(&mut positions);
-        let place = surface.world_from_model();
-        let points = positions
-            .iter()
-            .map(|p| place.transform_point_f32(*p).as_vec3())
-            .collect();
-        let triangles = surface.mesh().triangles();
-        let triangles = triangles
-            .iter()
-            .map(|corners| corners.map(|v| v.0))
-            .collect();
         let mut world = PhysicsWorld::default();
-        world
-            .colliders
-            .insert(ColliderBuilder::trimesh(points, triangles)?);
+        world.colliders.insert(still_mesh(stage.surface())?);
         world.step();
         let mut still = Self {
             world,
-            controller: KinematicCharacterController {
-                offset: CharacterLength::Absolute(0.01),
-                ..KinematicCharacterController::default()
-            },
-            shape: Ball::new(0.4),
-            pose: Pose3::from_translation(above(stage)?.as_vec3()),
-            is_grounded: false,
+            character: Character::new(above(stage)?.as_vec3(), Vector::ZERO),
         };
         for _ in 0..SETTLE {
             still.step();
@@ -208,21 +184,9 @@ impl Still {
 
     /// Runs a tick in which the character falls by what gravity adds in a tick; returns the microseconds.
     fn step(&mut self) -> f64 {
-        let queries = self.world.broad_phase.as_query_pipeline(
-            &DefaultQueryDispatcher,
-            &self.world.bodies,
-            &self.world.colliders,
-            QueryFilter::default(),
-        );
-        let down = -Vector::Y * (9.81 * DT * DT) as f32;
+        let queries = queries(&self.world);
         let start = Instant::now();
-        let (dt, shape, pose) = (DT as f32, &self.shape, &self.pose);
-        let moved = self
-            .controller
-            .move_shape(dt, &queries, shape, pose, down, |_| {});
-        let time = start.elapsed().as_secs_f64() * 1e6;
-        self.pose.translation += moved.translation;
-        self.is_grounded = moved.grounded;
-        time
+        self.character.step(&queries);
+        start.elapsed().as_secs_f64() * 1e6
     }
 }

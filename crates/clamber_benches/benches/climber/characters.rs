@@ -1,0 +1,120 @@
+//! As many of rapier's character controllers, on meshes that never move.
+
+use std::error::Error;
+use std::time::Instant;
+
+use clamber::prelude::*;
+use clamber::world::rapier3d::control::{CharacterLength, KinematicCharacterController};
+use clamber::world::rapier3d::math::{Pose3, Vector};
+use clamber::world::rapier3d::parry::query::DefaultQueryDispatcher;
+use clamber::world::rapier3d::parry::shape::Ball;
+use clamber::world::rapier3d::pipeline::{QueryFilter, QueryPipeline};
+use clamber::world::rapier3d::prelude::{ColliderBuilder, PhysicsWorld};
+use clamber_scenes::measure::quantile;
+use clamber_scenes::tour::RATE;
+use rayon::prelude::*;
+
+const DT: f64 = 1.0 / RATE;
+
+/// A mesh of rapier's with a surface's current skin, in world space.
+///
+/// # Errors
+/// parry's, if it refuses the mesh.
+pub(crate) fn still_mesh(surface: &SkinnedSurface) -> Result<ColliderBuilder, Box<dyn Error>> {
+    let mut positions = Vec::new();
+    surface.skin_all(&mut positions);
+    let place = surface.world_from_model();
+    let points = positions.iter();
+    let points = points.map(|p| place.transform_point_f32(*p).as_vec3());
+    let triangles = surface.mesh().triangles().iter();
+    let triangles = triangles.map(|corners| corners.map(|v| v.0));
+    Ok(ColliderBuilder::trimesh(
+        points.collect(),
+        triangles.collect(),
+    )?)
+}
+
+/// A ball of the climber's radius that rapier's controller moves.
+pub(crate) struct Character {
+    controller: KinematicCharacterController,
+    shape: Ball,
+    pub(crate) pose: Pose3,
+    pub(crate) is_grounded: bool,
+    /// Where it is put back.
+    seat: Vector,
+    /// Its own velocity, level, metres a second.
+    walk: Vector,
+}
+
+impl Character {
+    pub(crate) fn new(seat: Vector, walk: Vector) -> Self {
+        Self {
+            controller: KinematicCharacterController {
+                offset: CharacterLength::Absolute(0.01),
+                ..KinematicCharacterController::default()
+            },
+            shape: Ball::new(0.4),
+            pose: Pose3::from_translation(seat),
+            is_grounded: false,
+            seat,
+            walk,
+        }
+    }
+
+    /// Runs a tick in which it walks, and falls by what gravity adds in a tick.
+    pub(crate) fn step(&mut self, queries: &QueryPipeline<'_>) {
+        let way = self.walk * DT as f32 - Vector::Y * (9.81 * DT * DT) as f32;
+        let (shape, pose) = (&self.shape, &self.pose);
+        let moved = self
+            .controller
+            .move_shape(DT as f32, queries, shape, pose, way, |_| {});
+        self.pose.translation += moved.translation;
+        self.is_grounded = moved.grounded;
+    }
+
+    /// Puts it back if it fell or has gone too far.
+    fn sit(&mut self, away: f64) {
+        if f64::from((self.pose.translation - self.seat).length()) > away {
+            self.pose.translation = self.seat;
+        }
+    }
+}
+
+/// Rapier's queries of all colliders.
+pub(crate) fn queries(world: &PhysicsWorld) -> QueryPipeline<'_> {
+    world.broad_phase.as_query_pipeline(
+        &DefaultQueryDispatcher,
+        &world.bodies,
+        &world.colliders,
+        QueryFilter::default(),
+    )
+}
+
+/// Median time of a tick of all characters, milliseconds, and the share of their ticks on the ground. Each is put back
+/// if it is farther than `away` metres from its seat. `grain` is the largest number that a thread takes at a time.
+pub(crate) fn measure(
+    world: &PhysicsWorld,
+    characters: &mut [Character],
+    threads: &rayon::ThreadPool,
+    (settle, ticks): (usize, usize),
+    (away, grain): (f64, usize),
+) -> (f64, f64) {
+    let mut times = Vec::new();
+    let mut grounded = 0;
+    for tick in 0..settle + ticks {
+        for character in characters.iter_mut() {
+            character.sit(away);
+        }
+        let start = Instant::now();
+        threads.install(|| {
+            let all = characters.par_iter_mut().with_max_len(grain);
+            all.for_each_init(|| queries(world), |queries, one| one.step(queries));
+        });
+        if tick >= settle {
+            times.push(start.elapsed().as_secs_f64() * 1e3);
+            grounded += characters.iter().filter(|one| one.is_grounded).count();
+        }
+    }
+    let share = grounded as f64 / (characters.len() * ticks) as f64;
+    (quantile(&mut times, 0.5), share)
+}
