@@ -92,7 +92,12 @@ fn its_collision_mesh_is_closed_and_faces_outwards() {
 fn ledges_are_level_and_wide_enough_to_stand_on() {
     let rig = rig();
     let mut area = 0.0;
-    for (corners, tag) in rig.collider.triangles().iter().zip(rig.collider.tags()) {
+    for (corners, tag) in rig
+        .collider
+        .triangles()
+        .iter()
+        .zip(rig.collider.tags().iter())
+    {
         let [a, b, c] = corners.map(|v| rig.collider.positions()[v.index()].as_dvec3());
         let normal = (b - a).cross(c - a);
         if tag.ledge && normal.y > 0.98 * normal.length() {

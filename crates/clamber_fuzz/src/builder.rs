@@ -92,7 +92,7 @@ fn check_triangles(
     assert_eq!(report.triangles + dropped, source.triangles.len());
     assert_eq!(report.max_influences, mesh.max_influences());
     let mut given = source.triangles.iter().enumerate();
-    for (triangle, tag) in mesh.triangles().iter().zip(mesh.tags()) {
+    for (triangle, tag) in mesh.triangles().iter().zip(mesh.tags().iter()) {
         let found = triangle.map(|v| bits(mesh.positions()[v.index()]));
         let stays = given.any(|(index, corners)| {
             let mut corners = *corners;
@@ -128,7 +128,7 @@ fn check_again(mesh: &ColliderMesh, source: &Source, options: &BuildOptions) {
         triangles: &triangles,
         influences: &influences,
         influence_ends: &influence_ends,
-        tags: mesh.tags(),
+        tags: &mesh.tags().to_vec(),
         rest_spaces: &[],
         joint_count: mesh.joint_count(),
     };

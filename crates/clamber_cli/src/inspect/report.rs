@@ -100,7 +100,7 @@ impl Inspection {
     pub(super) fn of_import(rig: &Rig) -> Self {
         let build = &rig.report.build;
         let mut tags = BTreeMap::new();
-        for tag in rig.collider.tags() {
+        for tag in rig.collider.tags().iter() {
             *tags.entry(name_of(*tag)).or_default() += 1;
         }
         let clip = |clip: &clamber_surface::rig::Clip| ClipLine {

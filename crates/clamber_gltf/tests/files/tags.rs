@@ -41,7 +41,7 @@ fn tags(rig: &Rig) -> Vec<SurfaceTag> {
     let drawn: Vec<_> = primitives
         .flat_map(|primitive| vec![primitive.tag; primitive.triangles.len()])
         .collect();
-    assert_eq!(drawn, rig.collider.tags());
+    assert_eq!(drawn, rig.collider.tags().to_vec());
     drawn
 }
 

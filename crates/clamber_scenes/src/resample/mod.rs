@@ -74,7 +74,7 @@ impl Pieces {
                 .map(|(joint, weight)| Influence { joint, weight })
                 .collect(),
         };
-        let triangles = mesh.triangles().iter().zip(mesh.tags());
+        let triangles = mesh.triangles().iter().zip(mesh.tags().iter());
         Self {
             points: mesh.positions().iter().enumerate().map(point).collect(),
             triangles: triangles

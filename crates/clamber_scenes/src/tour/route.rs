@@ -54,7 +54,7 @@ impl Ways {
         let rest = clamber_surface::skin::skin(&creature.collider, palette.matrices())?;
         let mut neighbours: Vec<Vec<u32>> = vec![Vec::new(); rest.len()];
         let mesh = &creature.collider;
-        for (corners, tag) in mesh.triangles().iter().zip(mesh.tags()) {
+        for (corners, tag) in mesh.triangles().iter().zip(mesh.tags().iter()) {
             if !is_way(tag) {
                 continue;
             }

@@ -12,7 +12,9 @@ use super::hierarchy::{Hierarchy, STACK};
 use super::joint_balls::JointBalls;
 use super::lineage::Lineage;
 use super::weights::{normalize, weight_of};
-use super::{ColliderMesh, Influence, MeshError, Part, PartId, SurfaceTag, TriangleId, VertexId};
+use super::{
+    ColliderMesh, Influence, MeshError, Part, PartId, SurfaceTag, SurfaceTags, TriangleId, VertexId,
+};
 use crate::geometry::{MAX_COORDINATE, widen};
 use crate::rig::JointId;
 
@@ -209,10 +211,10 @@ impl ColliderMesh {
                 .or_default()
                 .push(TriangleId(index as u32));
         }
-        self.part_of = vec![None; self.triangles.len()];
+        self.part_of = vec![PartId::NONE; self.triangles.len()];
         for (part, (joint, triangles)) in by_joint.into_iter().enumerate() {
             for triangle in &triangles {
-                self.part_of[triangle.index()] = Some(PartId(part as u32));
+                self.part_of[triangle.index()] = PartId(part as u32);
             }
             self.parts.push(Part {
                 joint,
@@ -224,6 +226,18 @@ impl ColliderMesh {
     }
 }
 
+/// Most joints of a mesh: as many as glTF's joint indices can tell apart.
+const MAX_JOINTS: usize = 1 << 16;
+
+/// Refuses more vertices, influences or triangles than ids can number.
+pub(super) fn check_count(what: &'static str, found: usize) -> Result<(), MeshError> {
+    let most = u32::MAX as usize - 1;
+    if found > most {
+        return Err(MeshError::TooLarge { what, found, most });
+    }
+    Ok(())
+}
+
 /// Checks counts, index ranges, and that positions are usable.
 fn validate(source: &MeshSource<'_>) -> Result<(), MeshError> {
     let vertices = source.positions.len();
@@ -231,12 +245,16 @@ fn validate(source: &MeshSource<'_>) -> Result<(), MeshError> {
         ("vertices", vertices),
         ("influences", source.influences.len()),
         ("triangles", source.triangles.len()),
-        ("joints", source.joint_count),
     ];
     for (what, found) in counts {
-        if found >= u32::MAX as usize {
-            return Err(MeshError::TooLarge { what, found });
-        }
+        check_count(what, found)?;
+    }
+    if source.joint_count > MAX_JOINTS {
+        return Err(MeshError::TooLarge {
+            what: "joints",
+            found: source.joint_count,
+            most: MAX_JOINTS,
+        });
     }
     let influences = source.influences.len();
     let ends = source.influence_ends;
@@ -385,7 +403,7 @@ fn weld(source: &MeshSource<'_>, keys: &[VertexKey]) -> (ColliderMesh, Vec<u32>)
         joints: Vec::new(),
         weights: Vec::new(),
         triangles: Vec::new(),
-        tags: Vec::new(),
+        tags: SurfaceTags::default(),
         part_of: Vec::new(),
         parts: Vec::new(),
         vertex_removed: Vec::new(),
@@ -402,7 +420,8 @@ fn weld(source: &MeshSource<'_>, keys: &[VertexKey]) -> (ColliderMesh, Vec<u32>)
         let number = *number_of.entry(key).or_insert_with(|| {
             mesh.positions.push(*position + Vec3::ZERO);
             for (joint, units) in &key.1 {
-                mesh.joints.push(joint.0);
+                // A mesh has at most 2^16 joints.
+                mesh.joints.push(joint.0 as u16);
                 mesh.weights.push(weight_of(*units));
             }
             mesh.influence_start.push(mesh.joints.len() as u32);

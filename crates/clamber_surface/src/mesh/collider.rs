@@ -9,7 +9,7 @@ use super::hierarchy::Hierarchy;
 use super::joint_balls::JointBalls;
 use super::lineage::{Lineage, MeshId};
 use super::weights::WEIGHT_ONE;
-use super::{PaletteError, SurfaceTag};
+use super::{PaletteError, SurfaceTags};
 use crate::geometry::triangle::scaled_normal;
 use crate::geometry::{Affine, MAX_COORDINATE, round_up_to_f32, widen};
 use crate::rig::JointId;
@@ -50,6 +50,11 @@ id! {
     PartId
 }
 
+impl PartId {
+    /// Stands for no part where an `Option` would take twice the memory.
+    pub(super) const NONE: Self = Self(u32::MAX);
+}
+
 id! {
     /// Index of an island of a collider mesh: a set of triangles connected across shared edges. Islands are
     /// numbered in the order of their lowest triangle ids. Edits renumber them. See [`ColliderMesh::island_of`].
@@ -77,13 +82,13 @@ pub struct ColliderMesh {
     pub(super) positions: Vec<Vec3>,
     /// The influences of vertex v are at `influence_start[v]..influence_start[v + 1]` in `joints` and `weights`.
     pub(super) influence_start: Vec<u32>,
-    pub(super) joints: Vec<u32>,
+    pub(super) joints: Vec<u16>,
     /// Multiples of 2^-24; the weights of one vertex add up to exactly 1.
     pub(super) weights: Vec<f32>,
     pub(super) triangles: Vec<[VertexId; 3]>,
-    pub(super) tags: Vec<SurfaceTag>,
-    /// `None` for a removed triangle.
-    pub(super) part_of: Vec<Option<PartId>>,
+    pub(super) tags: SurfaceTags,
+    /// [`PartId::NONE`] for a removed triangle.
+    pub(super) part_of: Vec<PartId>,
     pub(super) parts: Vec<Part>,
     /// Per vertex, up to the last one that was removed.
     pub(super) vertex_removed: Vec<bool>,
@@ -134,7 +139,7 @@ impl ColliderMesh {
     }
 
     /// The tag of every triangle, by triangle id. Includes removed triangles.
-    pub fn tags(&self) -> &[SurfaceTag] {
+    pub fn tags(&self) -> &SurfaceTags {
         &self.tags
     }
 
@@ -145,7 +150,8 @@ impl ColliderMesh {
 
     /// The part that a triangle belongs to; `None` if the triangle was removed or never existed.
     pub fn part_of(&self, triangle: TriangleId) -> Option<PartId> {
-        self.part_of.get(triangle.index()).copied().flatten()
+        let part = self.part_of.get(triangle.index()).copied();
+        part.filter(|part| *part != PartId::NONE)
     }
 
     /// The joint that moves a triangle most; `None` if the triangle was removed or never existed.
@@ -168,7 +174,7 @@ impl ColliderMesh {
             (&[][..], &[][..])
         };
         let pairs = joints.iter().zip(weights);
-        pairs.map(|(joint, weight)| (JointId(*joint), *weight))
+        pairs.map(|(joint, weight)| (JointId(u32::from(*joint)), *weight))
     }
 
     /// The largest distance of a rest position from the mesh's origin, rounded up. Includes removed vertices.
@@ -233,7 +239,7 @@ impl ColliderMesh {
             + size_of_val(&self.joints[..])
             + size_of_val(&self.weights[..])
             + size_of_val(&self.triangles[..])
-            + size_of_val(&self.tags[..])
+            + self.tags.memory()
             + size_of_val(&self.part_of[..])
             + size_of_val(&self.vertex_removed[..])
             + parts.sum::<usize>()
@@ -245,7 +251,7 @@ impl ColliderMesh {
 
     /// Joints and weights of vertex `v` as slices of equal length.
     #[inline]
-    pub(crate) fn influence_slices(&self, v: usize) -> (&[u32], &[f32]) {
+    pub(crate) fn influence_slices(&self, v: usize) -> (&[u16], &[f32]) {
         let range = self.influence_start[v] as usize..self.influence_start[v + 1] as usize;
         (&self.joints[range.clone()], &self.weights[range])
     }

@@ -9,7 +9,7 @@ use std::collections::BTreeSet;
 
 use glam::Vec3;
 
-use super::build::is_usable;
+use super::build::{check_count, is_usable};
 use super::clusters::{Clusters, build_beside};
 use super::collider::has_area;
 use super::derived::Derived;
@@ -17,7 +17,9 @@ use super::hierarchy::{Hierarchy, STACK};
 use super::joint_balls::JointBalls;
 use super::lineage::Lineage;
 use super::weights::{normalize, weight_of};
-use super::{ColliderMesh, Influence, MeshError, Part, PartId, SurfaceTag, TriangleId, VertexId};
+use super::{
+    ColliderMesh, Influence, MeshError, Part, PartId, SurfaceTag, SurfaceTags, TriangleId, VertexId,
+};
 use crate::rig::JointId;
 
 /// A validated vertex that can be added.
@@ -49,9 +51,7 @@ impl ColliderMesh {
             ("influences", self.joints.len() + influences.len()),
         ];
         for (what, found) in counts {
-            if found >= u32::MAX as usize {
-                return Err(MeshError::TooLarge { what, found });
-            }
+            check_count(what, found)?;
         }
         if !is_usable(position) {
             return Err(MeshError::Position { vertex });
@@ -80,7 +80,7 @@ impl ColliderMesh {
         let id = VertexId(self.positions.len() as u32);
         self.positions.push(vertex.position);
         for (joint, units) in &vertex.influences {
-            self.joints.push(joint.0);
+            self.joints.push(joint.0 as u16);
             self.weights.push(weight_of(*units));
         }
         self.influence_start.push(self.joints.len() as u32);
@@ -94,11 +94,7 @@ impl ColliderMesh {
 
     /// Validates a triangle to be added. Its vertices must exist.
     pub(crate) fn check_triangle(&self, corners: [VertexId; 3]) -> Result<(), MeshError> {
-        let found = self.triangles.len() + 1;
-        if found >= u32::MAX as usize {
-            let what = "triangles";
-            return Err(MeshError::TooLarge { what, found });
-        }
+        check_count("triangles", self.triangles.len() + 1)?;
         if !has_area(corners.map(|v| self.positions[v.index()])) {
             let vertices = corners.map(|v| v.0);
             return Err(MeshError::DegenerateTriangle { vertices });
@@ -129,14 +125,14 @@ impl ColliderMesh {
         self.tags.push(tag);
         self.parts[part].triangles.push(id);
         let part = PartId(part as u32);
-        self.part_of.push(Some(part));
+        self.part_of.push(part);
         self.adjacency.forget();
         (id, part)
     }
 
     /// Marks a triangle as removed. Its part lists it until [`ColliderMesh::recluster`].
     pub(crate) fn remove_triangle(&mut self, triangle: TriangleId) {
-        self.part_of[triangle.index()] = None;
+        self.part_of[triangle.index()] = PartId::NONE;
         self.adjacency.forget();
     }
 
@@ -148,7 +144,7 @@ impl ColliderMesh {
     }
 
     pub(crate) fn set_tag(&mut self, triangle: TriangleId, tag: SurfaceTag) {
-        self.tags[triangle.index()] = tag;
+        self.tags.set(triangle.index(), tag);
     }
 
     /// The triangles that have `vertex` as a corner. Searches all triangles of the parts in `touched`, because the
@@ -173,7 +169,7 @@ impl ColliderMesh {
         for part in touched {
             let part_of = &self.part_of;
             let triangles = &mut self.parts[part.index()].triangles;
-            triangles.retain(|t| part_of[t.index()] == Some(*part));
+            triangles.retain(|t| part_of[t.index()] == *part);
             self.collect_vertices(part.index());
         }
         self.part_nodes.forget();
@@ -218,8 +214,8 @@ impl ColliderMesh {
             joints: Vec::new(),
             weights: Vec::new(),
             triangles: corners.map(|c| c.map(|v| VertexId(number(v)))).collect(),
-            tags: Vec::new(),
-            part_of: vec![Some(PartId(0)); part.triangles.len()],
+            tags: SurfaceTags::default(),
+            part_of: vec![PartId(0); part.triangles.len()],
             parts: vec![Part {
                 joint: part.joint,
                 triangles: (0..part.triangles.len() as u32).map(TriangleId).collect(),

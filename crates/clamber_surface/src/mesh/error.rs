@@ -99,13 +99,15 @@ pub enum MeshError {
         /// Number of triangles given.
         triangles: usize,
     },
-    /// There are more vertices, influences, triangles or joints than a mesh can number.
-    #[error("{found} {what} are more than a mesh can number (2^32 - 1)")]
+    /// There are more vertices, influences, triangles or joints than a mesh can have.
+    #[error("{found} {what} are more than a mesh can have: {most}")]
     TooLarge {
         /// What there are too many of, such as `"vertices"`.
         what: &'static str,
         /// How many there are.
         found: usize,
+        /// How many there can be.
+        most: usize,
     },
     /// The hierarchy over the clusters is too deep for a query to descend. The hierarchy is balanced, so a mesh
     /// small enough to be numbered is not expected to cause this error.

@@ -82,7 +82,7 @@ impl Lineage {
         let numbers = positions.chain(mesh.weights.iter().copied());
         let words = numbers.map(f32::to_bits);
         let words = words.chain(mesh.influence_start.iter().copied());
-        let words = words.chain(mesh.joints.iter().copied());
+        let words = words.chain(mesh.joints.iter().map(|joint| u32::from(*joint)));
         let words = words.chain(mesh.triangles.iter().flatten().map(|corner| corner.0));
         Self {
             fingerprints: vec![fold(0xcbf2_9ce4_8422_2325, words)],

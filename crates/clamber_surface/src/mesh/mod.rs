@@ -14,6 +14,7 @@ mod joint_balls;
 mod lineage;
 mod summary;
 mod tag;
+mod tags;
 mod weights;
 
 pub use build::{BuildOptions, BuildReport, Cracks, MeshSource, Winding};
@@ -26,4 +27,5 @@ pub use lineage::MeshId;
 #[cfg(test)]
 pub(crate) use summary::Summarizer;
 pub use tag::{SurfaceKind, SurfaceTag};
+pub use tags::SurfaceTags;
 pub use weights::{Influence, normalize_influences};

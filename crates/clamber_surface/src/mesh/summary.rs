@@ -246,7 +246,7 @@ impl<'a> Summarizer<'a> {
             summary.influences = summary.influences.max(joints.len());
             for (joint, weight) in joints.iter().zip(weights) {
                 let span = Span {
-                    joint: *joint,
+                    joint: u32::from(*joint),
                     low: *weight,
                     high: *weight,
                     vertices: 1,

@@ -11,7 +11,7 @@ pub(crate) fn skin_vertex(mesh: &ColliderMesh, palette: &[Affine], v: usize) -> 
     let (joints, weights) = mesh.influence_slices(v);
     let mut sum = Vec3::ZERO;
     for (joint, weight) in joints.iter().zip(weights) {
-        let moved = palette[*joint as usize].transform_point(p);
+        let moved = palette[usize::from(*joint)].transform_point(p);
         sum.x += weight * moved.x;
         sum.y += weight * moved.y;
         sum.z += weight * moved.z;

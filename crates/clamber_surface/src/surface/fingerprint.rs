@@ -147,7 +147,7 @@ fn add_mesh(fold: &mut Fold, mesh: &ColliderMesh) {
         }
     }
     fold.word(mesh.triangles().len() as u64);
-    for (corners, tag) in mesh.triangles().iter().zip(mesh.tags()) {
+    for (corners, tag) in mesh.triangles().iter().zip(mesh.tags().iter()) {
         for corner in corners {
             fold.word(u64::from(corner.0));
         }

@@ -235,3 +235,26 @@ fn each_kind_of_bad_input_has_its_error() {
         E::NoTriangles { triangles: 1 }
     ));
 }
+
+#[test]
+fn a_mesh_has_at_most_as_many_joints_as_gltf_can_name() {
+    let mut given = square();
+    for influence in &mut given.influences {
+        if influence.joint == JointId(1) {
+            influence.joint = JointId(65_535);
+        }
+    }
+    let of = |joint_count| MeshSource {
+        joint_count,
+        ..given.source()
+    };
+    let options = BuildOptions::default();
+    let (mesh, _) = ColliderMesh::build(&of(65_536), &options).unwrap();
+    let joints = mesh.influences(VertexId(1)).map(|(joint, _)| joint);
+    assert!(joints.eq([JointId(65_535)]));
+    let refused = ColliderMesh::build(&of(65_537), &options);
+    let Err(MeshError::TooLarge { what, found, most }) = refused else {
+        panic!("{refused:?}");
+    };
+    assert_eq!((what, found, most), ("joints", 65_537, 65_536));
+}

@@ -89,7 +89,8 @@ impl Packer<'_> {
         self.joints.clear();
         for vertex in &self.vertices {
             let (joints, _) = self.mesh.influence_slices(vertex.index());
-            self.joints.extend(joints);
+            self.joints
+                .extend(joints.iter().map(|joint| u32::from(*joint)));
         }
         self.joints.sort_unstable();
         self.joints.dedup();
@@ -115,7 +116,7 @@ impl Packer<'_> {
             }
             let (joints, weights) = self.mesh.influence_slices(vertex.index());
             for (joint, weight) in joints.iter().zip(weights) {
-                rest[3 + self.place[*joint as usize] as usize].0[lane] = *weight;
+                rest[3 + self.place[usize::from(*joint)] as usize].0[lane] = *weight;
             }
         }
     }

@@ -201,7 +201,8 @@ impl<'a> Splitter<'a> {
                 Order::Joint(joint) => {
                     let weight = |v: VertexId| {
                         let (joints, weights) = mesh.influence_slices(v.index());
-                        joints.binary_search(&joint).map_or(0.0, |at| weights[at])
+                        let at = joints.binary_search_by_key(&joint, |joint| u32::from(*joint));
+                        at.map_or(0.0, |at| weights[at])
                     };
                     mesh.triangles()[*t as usize].into_iter().map(weight).sum()
                 }

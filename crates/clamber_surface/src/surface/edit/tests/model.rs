@@ -45,7 +45,7 @@ impl Model {
             triangles: mesh
                 .triangles()
                 .iter()
-                .zip(mesh.tags())
+                .zip(mesh.tags().iter())
                 .map(known)
                 .collect(),
             at_first: mesh.triangles().len(),
