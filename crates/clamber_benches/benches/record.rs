@@ -140,7 +140,7 @@ fn writer_us(
     let skeleton = &battle.creature().skeleton;
     let path = std::env::temp_dir().join(format!("clamber-writer-{}.mcap", std::process::id()));
     let mut recorder = Recorder::create(&path, &info, skeleton, how)?;
-    let snapshot = battle.snapshot().to_json()?;
+    let snapshot = battle.snapshot();
     let start = Instant::now();
     for tick in 0..ticks {
         recorder.tick(&TickView {
@@ -153,7 +153,8 @@ fn writer_us(
             scene_fingerprint: 0,
         })?;
         if tick.is_multiple_of(60) {
-            recorder.snapshot(&snapshot)?;
+            let snapshot = snapshot.clone();
+            recorder.snapshot_with(move || snapshot.to_json())?;
         }
     }
     recorder.finish()?;

@@ -1,3 +1,5 @@
+use std::convert::Infallible;
+use std::fmt::Display;
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::Path;
@@ -12,7 +14,7 @@ use clamber_world::ObstacleId;
 
 use crate::chunks::Chunks;
 use crate::names::ObstacleNames;
-use crate::taken::Taken;
+use crate::taken::{Taken, TakenSnapshot};
 use crate::views::{FigureJoints, SceneryNames, SceneryView, TakenBrain, TakenFigure};
 use crate::writing::Writing;
 use crate::{RecordError, RecordingInfo};
@@ -267,7 +269,25 @@ impl<W: Write> Recorder<W> {
     /// # Errors
     /// [`RecordError::NoTick`] before the first tick, [`RecordError::Ended`] after writing failed.
     pub fn snapshot(&mut self, scene: &str) -> Result<(), RecordError> {
-        self.chunks.last()?.snapshots.push(scene.to_owned());
+        let scene = scene.to_owned();
+        self.snapshot_with(move || Ok::<_, Infallible>(scene))
+    }
+
+    /// [`Recorder::snapshot`] of what is written as text only later, on the recorder's thread, while the game goes on. Give
+    /// `scene` a copy of the data.
+    ///
+    /// If `scene` fails, its chunk is not written: the next call of [`Recorder::tick`] that hands over a chunk, or
+    /// [`Recorder::finish`], returns [`RecordError::Encode`].
+    ///
+    /// # Errors
+    /// As [`Recorder::snapshot`].
+    pub fn snapshot_with<E: Display>(
+        &mut self,
+        scene: impl FnOnce() -> Result<String, E> + Send + 'static,
+    ) -> Result<(), RecordError> {
+        let text = move || scene().map_err(|error| error.to_string());
+        let taken = TakenSnapshot(Box::new(text));
+        self.chunks.last()?.snapshots.push(taken);
         Ok(())
     }
 

@@ -1,5 +1,6 @@
 //! The copy of a tick that is made while the game waits. The recording is made from it later.
 
+use std::fmt;
 use std::sync::Arc;
 
 use clamber_climber::{ClimberEvent, ClimberInput, ClimberState};
@@ -40,8 +41,17 @@ pub(crate) struct Taken {
     pub(crate) scenery: Vec<TakenScenery>,
     /// The creature's brain, if it was recorded.
     pub(crate) brain: Option<TakenBrain>,
-    /// Snapshots of the scene after this tick, as the caller's text.
-    pub(crate) snapshots: Vec<String>,
+    /// Snapshots of the scene after this tick.
+    pub(crate) snapshots: Vec<TakenSnapshot>,
+}
+
+/// What makes the text of a snapshot, or tells why there is none.
+pub(crate) struct TakenSnapshot(pub(crate) Box<dyn FnOnce() -> Result<String, String> + Send>);
+
+impl fmt::Debug for TakenSnapshot {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("TakenSnapshot")
+    }
 }
 
 /// Data for the views of the skin, beside the palette.

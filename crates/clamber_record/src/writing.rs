@@ -9,7 +9,7 @@ use glam::Vec3;
 use crate::chunks::WriteTicks;
 use crate::messages::{Brain, Snapshot, Tick, Touched};
 use crate::output::{Channel, Output};
-use crate::taken::{Taken, TakenSkin};
+use crate::taken::{Taken, TakenSkin, TakenSnapshot};
 use crate::views::{Frames, Scene, Sceneries, Skin, line};
 use crate::{RecordError, RecordingInfo, topics};
 
@@ -124,8 +124,12 @@ impl<W: Write> Writing<W> {
         if let Some(shapes) = self.scenery.shapes(now, taken.scenery.drain(..)) {
             self.output.send(self.channels.scenery, now, &shapes)?;
         }
-        for scene in taken.snapshots.drain(..) {
+        for TakenSnapshot(scene) in taken.snapshots.drain(..) {
             let tick = taken.tick;
+            let scene = scene().map_err(|reason| RecordError::Encode {
+                topic: topics::SNAPSHOT,
+                reason,
+            })?;
             let message = Snapshot { tick, scene };
             self.output.send(self.channels.snapshot, now, &message)?;
         }

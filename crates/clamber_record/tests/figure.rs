@@ -173,3 +173,24 @@ fn a_figure_that_does_not_fit_is_refused() {
     );
     assert_eq!(figures(&recorder.finish().unwrap()).len(), 1);
 }
+
+#[test]
+fn a_snapshot_whose_text_cannot_be_made_fails_the_recording() {
+    let creature = giant().unwrap();
+    let battle = Battle::new(&creature, &BattleOptions::ride(0, 1)).unwrap();
+    let mut recorder = recorder(&battle);
+    let late = || Err::<String, _>("nothing to say");
+    assert!(matches!(
+        recorder.snapshot_with(late),
+        Err(RecordError::NoTick { .. })
+    ));
+    recorder.tick(&view(&battle)).unwrap();
+    recorder.snapshot_with(late).unwrap();
+    let Err(RecordError::Encode { topic, reason }) = recorder.finish() else {
+        panic!("the snapshot is written");
+    };
+    assert_eq!(
+        (topic, reason.as_str()),
+        (topics::SNAPSHOT, "nothing to say")
+    );
+}

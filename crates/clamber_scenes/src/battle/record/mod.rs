@@ -109,7 +109,8 @@ impl<W: Write + Send + 'static> BattleRecorder<W> {
             })?;
         }
         if battle.tick().is_multiple_of(SNAPSHOT_EVERY) {
-            self.recorder.snapshot(&battle.snapshot().to_json()?)?;
+            let snapshot = battle.snapshot();
+            self.recorder.snapshot_with(move || snapshot.to_json())?;
         }
         Ok(())
     }
