@@ -408,22 +408,28 @@ fn touching(world: &PhysicsWorld, collider: ColliderHandle) -> Vec<DVec3> {
 
 fn rocks(over: &mut Overlay, battle: &Battle<'_>) {
     for (_, collider) in battle.world().colliders.iter() {
-        let Some(mesh) = collider
+        // Patches of skin are the only shapes here that have parts, apart from the ground.
+        let Some(patch) = collider
             .shape()
-            .as_trimesh()
+            .as_composite_shape()
             .filter(|_| collider.is_enabled())
         else {
             continue;
         };
-        for triangle in mesh.triangles() {
-            let at = |corner: Vec3| collider.position().transform_point(corner).as_dvec3();
-            let corners = [at(triangle.a), at(triangle.b), at(triangle.c)];
-            over.triangle(corners, [0.1, 0.5, 1.0, 0.35]);
-            over.path(
-                &[corners[0], corners[1], corners[2], corners[0]],
-                1.5,
-                [0.3, 0.7, 1.0, 0.9],
-            );
+        for part in patch.bvh().leaves(|_| true) {
+            patch.map_part_at(part, &mut |_, shape, _| {
+                let Some(triangle) = shape.as_triangle() else {
+                    return;
+                };
+                let at = |corner: Vec3| collider.position().transform_point(corner).as_dvec3();
+                let corners = [at(triangle.a), at(triangle.b), at(triangle.c)];
+                over.triangle(corners, [0.1, 0.5, 1.0, 0.35]);
+                over.path(
+                    &[corners[0], corners[1], corners[2], corners[0]],
+                    1.5,
+                    [0.3, 0.7, 1.0, 0.9],
+                );
+            });
         }
     }
 }

@@ -3,8 +3,8 @@ use glam::DVec3;
 
 use crate::step::{Asked, Scratch, Tick};
 use crate::{
-    ClimberConfig, ClimberContact, ClimberError, ClimberInput, ClimberMode, ClimberState,
-    CustomMode, StepReport,
+    ClimberConfig, ClimberContact, ClimberError, ClimberEvent, ClimberInput, ClimberMode,
+    ClimberState, CustomMode, StepReport,
 };
 
 /// Decides whether a climber may grip a contact of an obstacle.
@@ -180,8 +180,19 @@ impl Climber {
             obstacles,
             dt,
         };
-        let tick = Tick::new(&self.config, &mut self.state, asked, &mut self.scratch)?;
-        Ok(tick.run())
+        // A copy, so that nothing is changed if the tick is refused, or if an obstacle panics.
+        let mut state = self.state;
+        let tick = Tick::new(&self.config, &mut state, asked, &mut self.scratch)?;
+        let Some(report) = tick.run() else {
+            // A game's own obstacle may return numbers that are not finite. The climber waits where it is.
+            self.scratch.contacts.clear();
+            return Ok(StepReport {
+                events: vec![ClimberEvent::NotFinite],
+                ..StepReport::default()
+            });
+        };
+        self.state = state;
+        Ok(report)
     }
 }
 

@@ -52,7 +52,7 @@ impl Rig {
     /// # Errors
     /// [`MeshError`] as [`ColliderMesh::build`] gives it: [`MeshError::InfluenceCount`] if there are no visual meshes,
     /// [`MeshError::NoTriangles`] if none has a triangle with area, [`MeshError::Position`] for a vertex farther than
-    /// 2^99 from the origin, [`MeshError::TooLarge`] for too many vertices.
+    /// 2^99 from the origin, [`MeshError::TooLarge`] for too many vertices or joints.
     pub fn visual_collider(&self) -> Result<ColliderMesh, MeshError> {
         let joints = self.skeleton.joints().len();
         visual::merged(&self.visual, joints)

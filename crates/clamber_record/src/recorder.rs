@@ -276,8 +276,9 @@ impl<W: Write> Recorder<W> {
     /// [`Recorder::snapshot`] of what is written as text only later, on the recorder's thread, while the game goes on. Give
     /// `scene` a copy of the data.
     ///
-    /// If `scene` fails, its chunk is not written: the next call of [`Recorder::tick`] that hands over a chunk, or
-    /// [`Recorder::finish`], returns [`RecordError::Encode`].
+    /// If `scene` fails, the recording ends before its tick, as if the file could not be written: a later
+    /// [`Recorder::tick`], or [`Recorder::finish`], returns [`RecordError::Encode`] with the reason. If `scene` panics,
+    /// that panic is resumed there.
     ///
     /// # Errors
     /// As [`Recorder::snapshot`].

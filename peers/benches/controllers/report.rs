@@ -1,10 +1,10 @@
-//! Two tables: one to read, with a row for each scene, and one for further computing, with a row for each scene and
-//! controller.
+//! Three tables: one to read, with a row for each scene, one for further computing, with a row for each scene and
+//! controller, and one of times.
 
 use std::error::Error;
 
 use clamber_scenes::controllers::{Outcome, Scene};
-use clamber_scenes::measure::{Table, measure_folder, quantile};
+use clamber_scenes::measure::{Bound, Cells, Table, measure_folder, quantile};
 
 use crate::controller::Entry;
 
@@ -25,6 +25,8 @@ pub(crate) struct Report {
     computed: Table,
     /// For each controller, the number of scenes passed, and the microseconds of a tick in each scene.
     sums: Vec<(usize, Vec<f64>)>,
+    /// Of the controllers.
+    names: Vec<&'static str>,
 }
 
 impl Report {
@@ -38,6 +40,7 @@ impl Report {
             read: Table::new(&columns),
             computed: Table::new(&COLUMNS),
             sums: vec![(0, Vec::new()); entries.len()],
+            names: entries.iter().map(|entry| entry.name).collect(),
         }
     }
 
@@ -80,10 +83,20 @@ impl Report {
         let passed = passed.map(|(passed, _)| format!("{passed} of {scenes}"));
         self.read.push(row("scenes passed", passed.collect()));
         let times = self.sums.iter_mut();
-        let times = times.map(|(_, times)| format!("{:.1} us", quantile(times, 0.5)));
+        let times: Vec<f64> = times.map(|(_, times)| quantile(times, 0.5)).collect();
+        let shown = times.iter().map(|time| format!("{time:.1} us"));
         self.read
-            .push(row("a tick, median of scenes", times.collect()));
+            .push(row("a tick, median of scenes", shown.collect()));
         println!("{}", self.read);
+        let mut cells = Cells::default();
+        for (name, time) in self.names.iter().zip(&times) {
+            cells.value(&format!("{name}: a tick, median of scenes, us"), *time);
+        }
+        if let Some(jolt) = self.names.iter().position(|name| name.starts_with("Jolt")) {
+            let name = format!("{} / {}", self.names[0], self.names[jolt]);
+            cells.push(&name, times[0] / times[jolt], Bound::Most(1.0));
+        }
+        cells.finish("controllers_times", brief)?;
         let brief = if brief { "_brief" } else { "" };
         let path = measure_folder().join(format!("controllers{brief}.csv"));
         self.computed.write_csv(&path)?;

@@ -154,7 +154,11 @@ impl Report {
                 ahead += usize::from(tick >= own);
             }
         }
-        let bound = if full { Bound::Least(14.0) } else { Bound::None };
+        let bound = if full {
+            Bound::Least(14.0)
+        } else {
+            Bound::None
+        };
         cells.push("cells in which no peer is faster", ahead as f64, bound);
         cells.finish("peers_fastest", !full)
     }

@@ -10,7 +10,6 @@ use clamber::world::rapier3d::parry::query::DefaultQueryDispatcher;
 use clamber::world::rapier3d::parry::shape::Ball;
 use clamber::world::rapier3d::pipeline::{QueryFilter, QueryPipeline};
 use clamber::world::rapier3d::prelude::{ColliderBuilder, PhysicsWorld};
-use clamber_scenes::measure::quantile;
 use clamber_scenes::tour::RATE;
 use rayon::prelude::*;
 
@@ -90,31 +89,52 @@ pub(crate) fn queries(world: &PhysicsWorld) -> QueryPipeline<'_> {
     )
 }
 
-/// Median time of a tick of all characters, milliseconds, and the share of their ticks on the ground. Each is put back
-/// if it is farther than `away` metres from its seat. `grain` is the largest number that a thread takes at a time.
-pub(crate) fn measure(
-    world: &PhysicsWorld,
-    characters: &mut [Character],
-    threads: &rayon::ThreadPool,
-    (settle, ticks): (usize, usize),
-    (away, grain): (f64, usize),
-) -> (f64, f64) {
-    let mut times = Vec::new();
-    let mut grounded = 0;
-    for tick in 0..settle + ticks {
-        for character in characters.iter_mut() {
-            character.sit(away);
-        }
-        let start = Instant::now();
-        threads.install(|| {
-            let all = characters.par_iter_mut().with_max_len(grain);
-            all.for_each_init(|| queries(world), |queries, one| one.step(queries));
-        });
-        if tick >= settle {
-            times.push(start.elapsed().as_secs_f64() * 1e3);
-            grounded += characters.iter().filter(|one| one.is_grounded).count();
+/// Many of them in a world that stands still.
+pub(crate) struct Characters {
+    world: PhysicsWorld,
+    all: Vec<Character>,
+    /// One is put back if it is farther than this from its seat, metres.
+    away: f64,
+    /// The largest number that a thread takes at a time.
+    grain: usize,
+    grounded: usize,
+}
+
+impl Characters {
+    pub(crate) fn new(
+        (world, all): (PhysicsWorld, Vec<Character>),
+        (away, grain): (f64, usize),
+    ) -> Self {
+        Self {
+            world,
+            all,
+            away,
+            grain,
+            grounded: 0,
         }
     }
-    let share = grounded as f64 / (characters.len() * ticks) as f64;
-    (quantile(&mut times, 0.5), share)
+
+    /// Runs a tick of all of them; returns the seconds.
+    pub(crate) fn step(&mut self, threads: &rayon::ThreadPool) -> f64 {
+        for character in &mut self.all {
+            character.sit(self.away);
+        }
+        let start = Instant::now();
+        let (world, all) = (&self.world, &mut self.all);
+        threads.install(|| {
+            let all = all.par_iter_mut().with_max_len(self.grain);
+            all.for_each_init(|| queries(world), |queries, one| one.step(queries));
+        });
+        start.elapsed().as_secs_f64()
+    }
+
+    /// Counts those that are on the ground after this tick.
+    pub(crate) fn count(&mut self) {
+        self.grounded += self.all.iter().filter(|one| one.is_grounded).count();
+    }
+
+    /// Their number, over all ticks counted.
+    pub(crate) fn grounded(&self) -> usize {
+        self.grounded
+    }
 }

@@ -115,7 +115,7 @@ fn run(brief: bool) -> Result<(), Box<dyn Error>> {
     cells.push(name, climbing / controller, Bound::Most(0.18));
     crushed::measure(if brief { 1 } else { 10 }, &mut cells)?;
     if brief {
-        crowd::measure((2, 2_000, 10), 3, &mut cells)?;
+        crowd::measure((2, 2_000, 10), 30, &mut cells)?;
     } else {
         crowd::measure((10, 10_000, 1_000), 300, &mut cells)?;
     }

@@ -139,27 +139,19 @@ impl<'a> Tick<'a> {
         })
     }
 
-    /// Brings the state to the end of the tick.
-    pub(crate) fn run(mut self) -> StepReport {
-        let before = *self.state;
+    /// Brings the state to the end of the tick. `None` if it is not finite then.
+    pub(crate) fn run(mut self) -> Option<StepReport> {
+        let shake = self.state.shake;
         self.be_struck();
         self.count_down();
         self.be_carried();
         self.run_modes();
         self.stand_up();
-        self.update_stamina(before.shake);
+        self.update_stamina(shake);
         self.weigh_down();
         self.list_support();
-        if self.is_lost || !self.state.is_finite() {
-            // A game's own obstacle may return numbers that are not finite. The climber waits where it is.
-            self.contacts.clear();
-            *self.state = before;
-            return StepReport {
-                events: vec![ClimberEvent::NotFinite],
-                ..StepReport::default()
-            };
-        }
-        self.report
+        let is_sound = !self.is_lost && self.state.is_finite();
+        is_sound.then_some(self.report)
     }
 
     /// Counts down the timers of late jumps, early jumps and open hands.

@@ -191,7 +191,12 @@ impl ReachOnSurface {
     /// Distance between the box and all corners along the triangle's normal; negative if they overlap there.
     fn beyond_plane(&self, corners: &Corners) -> f32 {
         let [a, b, c] = [corners.before(0), corners.before(1), corners.before(2)];
-        let normal = (b - a).cross(c - a).normalize_or_zero();
+        let normal = (b - a).cross(c - a);
+        // A shorter one may not become a unit vector: its square has few bits.
+        if normal.length_squared() < 1e-30 {
+            return f32::NEG_INFINITY;
+        }
+        let normal = normal.normalize();
         let (low, high) = corners.along(normal);
         low.max(-high) - normal.abs().dot(self.half)
     }

@@ -44,7 +44,8 @@ impl PatchShape {
             edges,
             bvh: Bvh::new(),
         };
-        shape.follow_vertices();
+        shape.set_bounds();
+        shape.set_normals();
         shape
     }
 
@@ -53,24 +54,32 @@ impl PatchShape {
         for (vertex, place) in self.vertices.iter_mut().zip(vertices) {
             *vertex = place;
         }
-        self.follow_vertices();
+        self.set_bounds();
+        self.set_normals();
     }
 
-    /// Computes normals and bounds after the vertices have changed.
-    fn follow_vertices(&mut self) {
-        self.edge_normals.fill(Vector::ZERO);
+    /// Computes the tree's boxes after the vertices have changed. The first time, this inserts the triangles one by one,
+    /// which is sooner done than a build for all of them at once. The tree is not as good, but a patch has few triangles,
+    /// most of them near the body.
+    fn set_bounds(&mut self) {
         for index in 0..self.triangles.len() {
-            let triangle = self.triangle(index);
-            let normal = triangle.normal().unwrap_or(Vector::ZERO);
-            self.normals[index] = normal;
-            for edge in self.edges[index] {
-                self.edge_normals[edge as usize] += normal;
-            }
-            let bounds = triangle.local_aabb();
+            let bounds = self.triangle(index).local_aabb();
             self.bvh
                 .insert_or_update_partially(bounds, index as u32, 0.0);
         }
         self.bvh.refit_without_opt();
+    }
+
+    /// Computes the normals after the vertices have changed.
+    fn set_normals(&mut self) {
+        self.edge_normals.fill(Vector::ZERO);
+        for index in 0..self.triangles.len() {
+            let normal = self.triangle(index).normal().unwrap_or(Vector::ZERO);
+            self.normals[index] = normal;
+            for edge in self.edges[index] {
+                self.edge_normals[edge as usize] += normal;
+            }
+        }
     }
 
     fn triangle(&self, index: usize) -> Triangle {

@@ -35,8 +35,9 @@ use crate::ObstacleId;
 /// [`RapierTerrain::with_filter`](crate::RapierTerrain::with_filter): by [`DebrisConfig::groups`], or by
 /// [`Debris::triangle_at`], which gives `Some` for subshape 0 of a patch.
 ///
-/// They have a shape of their own, which rapier's debug renderer does not draw and serde does not load. Remove the bodies
-/// of patches from a world before serde saves it; they come back in the next tick.
+/// They have a shape of their own, which rapier's debug renderer does not draw and serde does not save. Remove the bodies
+/// of patches from a world before serde saves it; they come back in the next tick. Rapier's continuous collision
+/// detection (`ccd_enabled`) is weaker against such a shape, and not needed: a sweep of `Debris`'s own finds fast skin.
 ///
 /// Make these calls each tick, in this order. `Debris` is the step's [`PhysicsHooks`], which keep a patch from
 /// colliding with anything but its body:

@@ -45,10 +45,10 @@ fn key_of(handle: ColliderHandle) -> u64 {
 /// A rapier world as one obstacle: its enabled colliders as of the last step (or collision detection), without sensors.
 ///
 /// Create one each tick; it only borrows the world. Height fields and triangle meshes report contacts per triangle,
-/// from both sides; convex shapes are solid. A custom shape without a support map is seen by rays only. Ray casts are
-/// rapier's own: a ray that exactly meets an edge between two triangles may slip through.
+/// from both sides; convex shapes are solid. A custom shape is seen by its support map or by its parts, and otherwise by
+/// rays only. Ray casts are rapier's own: a ray that exactly meets an edge between two triangles may slip through.
 ///
-/// The skin patches of [`Debris`](crate::Debris) are ordinary colliders of the world. Without a filter, a climber
+/// The skin patches of [`Debris`](crate::Debris) are colliders of the world. Without a filter, a climber
 /// touches that skin twice: here, and on the creature itself. Leave the patches out with
 /// [`RapierTerrain::with_filter`], by [`DebrisConfig::groups`](crate::DebrisConfig::groups) or by
 /// [`Debris::triangle_at`](crate::Debris::triangle_at).

@@ -60,6 +60,10 @@ pub(super) fn visit_parts(
             } else if let Some(composite) = shape.as_composite_shape() {
                 visit_leaves(composite.bvh(), reaches, &mut |id| {
                     composite.map_part_at(id, &mut |pose, part, _| {
+                        // As in parry, parts have no parts: a shape that is its own part would never end.
+                        if part.as_composite_shape().is_some() {
+                            return;
+                        }
                         let pose = pose.copied().unwrap_or(Pose::IDENTITY);
                         let pose = RigidPose::new(pose.rotation, pose.translation);
                         visit(Part::Posed(pose, part));
