@@ -72,7 +72,7 @@ fn run(brief: bool) -> Result<(), Box<dyn Error>> {
         "an empty world's tick in Bevy, us",
         climbers::nothing(ticks),
     );
-    for (count, bound) in [(1, 1.1), (24, 1.05)] {
+    for (count, bound) in [(1, 1.08), (24, 1.05)] {
         climbers::measure(&creature, count, Bound::Most(bound), ticks, &mut cells)?;
     }
     for timing in [PoseTiming::EachTick, PoseTiming::EachFrame] {
