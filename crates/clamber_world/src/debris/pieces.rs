@@ -23,7 +23,8 @@ use crate::ObstacleId;
 /// sweep of the inside of the body against the moving skin finds it.
 ///
 /// A creature cannot be pushed, so it would drive a body that it steps on through the ground. Such a body is left where
-/// it is, and skin passes through it until it is outside the creature again.
+/// it is, and skin passes through it until it is outside the creature again. The same happens to a body on which a fold of
+/// the skin closes, such as between head and shoulder.
 ///
 /// The state of a body against a creature is stored under the creature's [`ObstacleId`], which must stay the same from
 /// tick to tick. The order of the list does not change any result. The state of a creature that leaves the list is
@@ -173,7 +174,7 @@ impl Debris {
         self.place_of(body).is_ok()
     }
 
-    /// True while skin passes through a body because it was caught between skin and something immovable.
+    /// True while skin passes through a body because it was caught between skin and something immovable, or other skin.
     pub fn is_let_through(&self, body: RigidBodyHandle) -> bool {
         let piece = self.place_of(body).map(|index| &self.pieces[index]);
         piece.is_ok_and(|piece| piece.patches.iter().any(|(_, patch)| patch.let_through))
@@ -336,7 +337,11 @@ impl Debris {
                     report.caught += 1;
                     continue;
                 }
+                // A fold of the skin closes on the body, which has no way out.
                 report.caught += u32::from(!kept.free);
+                if let Some((_, patch)) = known.and_then(|at| piece.patches.get_mut(at)) {
+                    patch.let_through = !kept.free;
+                }
                 if let Some(body) = bodies.get_mut(piece.body) {
                     report.put_back += 1;
                     let place = body.translation() + kept.shift.as_vec3();
