@@ -273,8 +273,8 @@ impl<W: Write> Recorder<W> {
         self.snapshot_with(move || Ok::<_, Infallible>(scene))
     }
 
-    /// [`Recorder::snapshot`] of what is written as text only later, on the recorder's thread, while the game goes on. Give
-    /// `scene` a copy of the data.
+    /// Records a snapshot as [`Recorder::snapshot`] does, but the recorder's thread makes its text, while the game goes on.
+    /// `scene` is called there, so it has to own a copy of what it writes.
     ///
     /// If `scene` fails, the recording ends before its tick, as if the file could not be written: a later
     /// [`Recorder::tick`], or [`Recorder::finish`], returns [`RecordError::Encode`] with the reason. If `scene` panics,

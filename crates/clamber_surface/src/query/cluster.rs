@@ -140,7 +140,7 @@ impl<'a, const P: usize> PosedCluster<'a, P> {
     }
 
     /// The given triangles that have a corner in a probe before it moves, by more than rounding. The exact test would
-    /// find them within the probe too: no distance that it finds is above that of a corner by more.
+    /// find them within the probe too, since its distances exceed that of a corner by rounding at most.
     #[cfg_attr(not(unoptimized), inline(always))]
     pub(super) fn surely_within<S: Simd, const N: usize>(
         &self,

@@ -90,8 +90,10 @@ impl PatchShape {
     /// no normal.
     fn normal_constraints(&self, index: usize) -> Option<TrianglePseudoNormals> {
         let face = self.normals[index];
+        if face == Vector::ZERO {
+            return None;
+        }
         let [a, b, c] = self.edges[index].map(|edge| self.edge_normals[edge as usize]);
-        (face != Vector::ZERO).then_some(())?;
         Some(TrianglePseudoNormals {
             face,
             edges: [a.try_normalize()?, b.try_normalize()?, c.try_normalize()?],

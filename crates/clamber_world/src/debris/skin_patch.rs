@@ -79,11 +79,10 @@ impl SkinPatch {
         }
         self.gap = None;
         let still = self.patch.positions() == self.patch.previous_positions();
-        let is_shown = self.shown(bodies, colliders).is_some();
         if still
-            && is_shown
             && change == PatchChange::Same
             && self.still_at == Some(*world_from_model)
+            && self.shown(bodies, colliders).is_some()
         {
             // Nothing has changed. If the patch is left alone, rapier lets rocks fall asleep on it.
             return Some(());

@@ -1,6 +1,7 @@
 //! Debris on creatures whose skin is known in closed form, so that the library is not checked against itself.
 
 mod bookkeeping;
+mod folding;
 mod outside;
 mod riding;
 mod scene;

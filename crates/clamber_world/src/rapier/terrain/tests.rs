@@ -306,3 +306,45 @@ fn bad_input_and_removed_colliders_find_nothing() {
 
 mod agreement;
 mod capsules;
+
+/// Bodies that move across the way of a ball: one of them, and more than are looked at without a tree. The first contact
+/// among all is the first of those with each alone, at whatever place in the list its body is.
+#[test]
+fn among_many_moving_bodies_the_first_contact_is_that_with_one_of_them_alone() {
+    let mut rng = fastrand::Rng::with_seed(31);
+    let ball = WorldCapsule::ball(DVec3::ZERO, 0.3);
+    let way = [DVec3::X * 12.0; 2];
+    let mut met = 0;
+    for round in 0..60 {
+        let count = [1, FEW, FEW + 1, 40][round % 4];
+        let mut along = |from: f32, size: f32| from + rng.f32() * size;
+        let starts: Vec<_> = (0..count)
+            .map(|_| Vector::new(along(2.0, 12.0), along(2.0, 6.0), along(-0.5, 1.0)))
+            .collect();
+        let first = |starts: &[Vector]| {
+            let mut world = PhysicsWorld::default();
+            let mut handles = Vec::new();
+            for start in starts {
+                let body = RigidBodyBuilder::kinematic_position_based().translation(*start);
+                handles.push(world.insert(body, ColliderBuilder::ball(0.4)).0);
+            }
+            world.step();
+            let mut before = BodyPoses::default();
+            before.record(&world.bodies);
+            for (handle, start) in handles.iter().zip(starts) {
+                let across = *start - Vector::Y * (2.0 * start.y);
+                world.bodies[*handle].set_next_kinematic_translation(across);
+            }
+            world.step();
+            // No body is in the way at the end of the tick.
+            let terrain = RapierTerrain::of_world(&world, &before);
+            let hit = terrain.cast_capsule(&ball, way, TargetMotion::Moving);
+            hit.map(|hit| hit.time)
+        };
+        let alone = starts.iter().filter_map(|start| first(&[*start]));
+        let alone = alone.reduce(f64::min);
+        assert_eq!(first(&starts), alone, "{count} bodies");
+        met += u32::from(alone.is_some());
+    }
+    assert!(met > 15, "{met}");
+}
