@@ -447,10 +447,9 @@ fn state(battle: &Battle<'_>) -> String {
         None => format!("{} the ground", verb(state.mode)),
         Some(support) => {
             let triangle = support.attachment.material.triangle();
-            let part = triangle.and_then(|triangle| mesh.part_of(triangle));
-            let joint = part.map(|part| mesh.parts()[part.index()].joint.0 as usize);
+            let joint = triangle.and_then(|triangle| mesh.joint_of(triangle));
             let joints = battle.creature().skeleton.joints();
-            let joint = joint.and_then(|joint| joints.get(joint));
+            let joint = joint.and_then(|joint| joints.get(joint.index()));
             let tag = triangle.and_then(|triangle| mesh.tags().get(triangle.index()));
             let kind = tag.map(|tag| tag.kind);
             format!(

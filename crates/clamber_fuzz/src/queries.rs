@@ -64,7 +64,7 @@ fn edit(surface: &mut SkinnedSurface, bytes: &mut Bytes<'_>) -> bool {
     let mesh = surface.mesh().clone();
     // An id may be one past the end.
     let triangle = TriangleId(bytes.below(mesh.triangles().len() + 1) as u32);
-    let part = PartId(bytes.below(mesh.parts().len() + 1) as u32);
+    let part = PartId(bytes.below(mesh.part_count() + 1) as u32);
     let mut vertex = || VertexId(bytes.below(mesh.positions().len() + 1) as u32);
     let corners = [vertex(), vertex(), vertex()];
     let before = shown(surface);

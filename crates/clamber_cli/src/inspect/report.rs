@@ -127,7 +127,7 @@ impl Inspection {
             max_influences: build.max_influences,
             worst_weight_error: build.worst_weight_error,
             clips: rig.clips.iter().map(clip).collect(),
-            parts: rig.collider.parts().len(),
+            parts: rig.collider.part_count(),
             tags,
             weak_points: rig.weak_points.iter().map(weak_point).collect(),
             visual_meshes: rig.visual.len(),

@@ -52,11 +52,10 @@ impl<'a> Moment<'a> {
     /// The name of the joint that moves a triangle most.
     fn joint(&self, triangle: u64) -> String {
         let mesh = self.surface().mesh();
-        let part = mesh.part_of(TriangleId(triangle as u32));
-        let joint = part.and_then(|part| mesh.parts().get(part.index()));
+        let joint = mesh.joint_of(TriangleId(triangle as u32));
         let joints = self.performer.creature().skeleton.joints();
         joint
-            .and_then(|part| joints.get(part.joint.0 as usize))
+            .and_then(|joint| joints.get(joint.0 as usize))
             .map_or("no joint".into(), |joint| joint.name.clone())
     }
 }

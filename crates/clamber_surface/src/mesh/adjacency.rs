@@ -3,7 +3,7 @@
 //! The three half-edges of every triangle are sorted by edge. Half-edges of the same edge are paired as neighbours,
 //! and their triangles are joined into one island by union-find. O(n log n) for n triangles.
 
-use super::{ColliderMesh, IslandId, PartId, TriangleId};
+use super::{ColliderMesh, IslandId, TriangleId};
 
 /// Neighbours and islands of the triangles that the mesh has now.
 #[derive(Clone, Debug, Default)]
@@ -93,9 +93,8 @@ impl Adjacency {
 /// The half-edges of all triangles that were not removed, sorted by edge, then by triangle.
 fn half_edges(mesh: &ColliderMesh) -> Vec<HalfEdge> {
     let mut found = Vec::with_capacity(3 * mesh.triangles.len());
-    let triangles = mesh.triangles.iter().zip(&mesh.part_of);
-    for ((corners, part), triangle) in triangles.zip(0..) {
-        if *part == PartId::NONE {
+    for (corners, triangle) in mesh.triangles.iter().zip(0..) {
+        if mesh.part_of(TriangleId(triangle)).is_none() {
             continue;
         }
         for corner in 0..3_u8 {
@@ -149,7 +148,7 @@ fn number_islands(mesh: &ColliderMesh, forest: &mut [u32]) -> (Vec<Option<Island
     let mut island_of: Vec<Option<IslandId>> = vec![None; forest.len()];
     let mut islands = 0;
     for triangle in 0..forest.len() {
-        if mesh.part_of[triangle] == PartId::NONE {
+        if mesh.part_of(TriangleId(triangle as u32)).is_none() {
             continue;
         }
         let root = root(forest, triangle as u32) as usize;

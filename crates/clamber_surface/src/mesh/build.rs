@@ -9,12 +9,12 @@ use super::clusters::Clusters;
 use super::collider::has_area;
 use super::derived::Derived;
 use super::hierarchy::{Hierarchy, STACK};
+use super::influences::Influences;
 use super::joint_balls::JointBalls;
 use super::lineage::Lineage;
-use super::weights::{normalize, weight_of};
-use super::{
-    ColliderMesh, Influence, MeshError, Part, PartId, SurfaceTag, SurfaceTags, TriangleId, VertexId,
-};
+use super::parts::Parts;
+use super::weights::normalize;
+use super::{ColliderMesh, Influence, MeshError, SurfaceTag, SurfaceTags, VertexId};
 use crate::geometry::{MAX_COORDINATE, widen};
 use crate::rig::JointId;
 
@@ -156,6 +156,8 @@ impl ColliderMesh {
         mesh.lineage = Lineage::of(&mesh);
         mesh.assign_parts();
         mesh.cluster();
+        // Clustering was the last to need them.
+        mesh.parts.forget_lists();
         let needed = mesh.hierarchy.stack_needed();
         if needed > STACK {
             return Err(MeshError::TooDeep {
@@ -203,26 +205,9 @@ impl ColliderMesh {
 
     /// Creates the parts, in ascending joint order.
     fn assign_parts(&mut self) {
-        let mut by_joint: BTreeMap<JointId, Vec<TriangleId>> = BTreeMap::new();
-        for (index, corners) in self.triangles.iter().enumerate() {
-            let joint = self.dominant_joint(*corners);
-            by_joint
-                .entry(joint)
-                .or_default()
-                .push(TriangleId(index as u32));
-        }
-        self.part_of = vec![PartId::NONE; self.triangles.len()];
-        for (part, (joint, triangles)) in by_joint.into_iter().enumerate() {
-            for triangle in &triangles {
-                self.part_of[triangle.index()] = PartId(part as u32);
-            }
-            self.parts.push(Part {
-                joint,
-                triangles,
-                vertices: Vec::new(),
-            });
-            self.collect_vertices(part);
-        }
+        let corners = self.triangles.iter();
+        let joints: Vec<JointId> = corners.map(|c| self.dominant_joint(*c)).collect();
+        self.parts = Parts::of_joints(&joints);
     }
 }
 
@@ -399,13 +384,10 @@ fn weld(source: &MeshSource<'_>, keys: &[VertexKey]) -> (ColliderMesh, Vec<u32>)
         lineage: Lineage::default(),
         joint_count: source.joint_count,
         positions: Vec::new(),
-        influence_start: vec![0],
-        joints: Vec::new(),
-        weights: Vec::new(),
+        influences: Influences::default(),
         triangles: Vec::new(),
         tags: SurfaceTags::default(),
-        part_of: Vec::new(),
-        parts: Vec::new(),
+        parts: Parts::default(),
         vertex_removed: Vec::new(),
         radius: 0.0,
         clusters: Clusters::default(),
@@ -419,12 +401,7 @@ fn weld(source: &MeshSource<'_>, keys: &[VertexKey]) -> (ColliderMesh, Vec<u32>)
     for (key, position) in keys.iter().zip(source.positions) {
         let number = *number_of.entry(key).or_insert_with(|| {
             mesh.positions.push(*position + Vec3::ZERO);
-            for (joint, units) in &key.1 {
-                // A mesh has at most 2^16 joints.
-                mesh.joints.push(joint.0 as u16);
-                mesh.weights.push(weight_of(*units));
-            }
-            mesh.influence_start.push(mesh.joints.len() as u32);
+            mesh.influences.push(key.1.iter().copied());
             (mesh.positions.len() - 1) as u32
         });
         vertex_of.push(number);

@@ -6,8 +6,10 @@ use super::adjacency::Adjacency;
 use super::clusters::{self, Clusters};
 use super::derived::Derived;
 use super::hierarchy::Hierarchy;
+use super::influences::Influences;
 use super::joint_balls::JointBalls;
 use super::lineage::{Lineage, MeshId};
+use super::parts::{Part, Parts};
 use super::weights::WEIGHT_ONE;
 use super::{PaletteError, SurfaceTags};
 use crate::geometry::triangle::scaled_normal;
@@ -50,27 +52,10 @@ id! {
     PartId
 }
 
-impl PartId {
-    /// Stands for no part where an `Option` would take twice the memory.
-    pub(super) const NONE: Self = Self(u32::MAX);
-}
-
 id! {
     /// Index of an island of a collider mesh: a set of triangles connected across shared edges. Islands are
     /// numbered in the order of their lowest triangle ids. Edits renumber them. See [`ColliderMesh::island_of`].
     IslandId
-}
-
-/// The triangles that one joint moves most, bounded together.
-#[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct Part {
-    /// The joint with the largest sum of weights over the three corners of each triangle; on a tie, the smaller id.
-    pub joint: JointId,
-    /// The triangles, in ascending order.
-    pub triangles: Vec<TriangleId>,
-    /// The corners of the triangles, each once, in ascending order.
-    pub vertices: Vec<VertexId>,
 }
 
 /// The rest data of a surface: positions, influences, triangles, tags, parts. Any number of surfaces share a mesh
@@ -80,16 +65,11 @@ pub struct ColliderMesh {
     pub(super) lineage: Lineage,
     pub(super) joint_count: usize,
     pub(super) positions: Vec<Vec3>,
-    /// The influences of vertex v are at `influence_start[v]..influence_start[v + 1]` in `joints` and `weights`.
-    pub(super) influence_start: Vec<u32>,
-    pub(super) joints: Vec<u16>,
-    /// Multiples of 2^-24; the weights of one vertex add up to exactly 1.
-    pub(super) weights: Vec<f32>,
+    /// By vertex; the weights of one vertex add up to exactly 1.
+    pub(super) influences: Influences,
     pub(super) triangles: Vec<[VertexId; 3]>,
     pub(super) tags: SurfaceTags,
-    /// [`PartId::NONE`] for a removed triangle.
-    pub(super) part_of: Vec<PartId>,
-    pub(super) parts: Vec<Part>,
+    pub(super) parts: Parts,
     /// Per vertex, up to the last one that was removed.
     pub(super) vertex_removed: Vec<bool>,
     /// At least the distance of every vertex from the origin, including removed vertices.
@@ -143,20 +123,39 @@ impl ColliderMesh {
         &self.tags
     }
 
-    /// The parts. A build sorts them by joint; edits may append more, and may leave a part without triangles.
+    /// The parts, with lists of their triangles and vertices. A build sorts them by joint; edits may append more, and may
+    /// leave a part without triangles. The lists are made on first use, which takes O(triangles), or by an edit. From
+    /// then on the mesh keeps them: they take some six bytes a triangle.
+    ///
+    /// [`ColliderMesh::part_count`], [`ColliderMesh::part_joint`] and [`ColliderMesh::part_of`] need no lists.
     pub fn parts(&self) -> &[Part] {
-        &self.parts
+        self.parts.lists(&self.triangles)
+    }
+
+    /// Number of parts.
+    pub fn part_count(&self) -> usize {
+        self.parts.count()
+    }
+
+    /// The joint that moves the triangles of a part most; `None` if there is no such part.
+    pub fn part_joint(&self, part: PartId) -> Option<JointId> {
+        (part.index() < self.parts.count()).then(|| self.parts.joint(part))
     }
 
     /// The part that a triangle belongs to; `None` if the triangle was removed or never existed.
     pub fn part_of(&self, triangle: TriangleId) -> Option<PartId> {
-        let part = self.part_of.get(triangle.index()).copied();
-        part.filter(|part| *part != PartId::NONE)
+        self.parts.of(triangle)
     }
 
     /// The joint that moves a triangle most; `None` if the triangle was removed or never existed.
     pub fn joint_of(&self, triangle: TriangleId) -> Option<JointId> {
-        Some(self.parts[self.part_of(triangle)?.index()].joint)
+        Some(self.parts.joint(self.part_of(triangle)?))
+    }
+
+    /// [`ColliderMesh::part_joint`] of a part that exists.
+    #[inline]
+    pub(crate) fn joint_of_part(&self, part: PartId) -> JointId {
+        self.parts.joint(part)
     }
 
     /// True if the vertex exists and was not removed.
@@ -167,14 +166,12 @@ impl ColliderMesh {
 
     /// Joints and weights of a vertex, in ascending joint order. Weights are positive multiples of 2^-24 and add up
     /// to exactly 1. Empty for a vertex out of range.
-    pub fn influences(&self, vertex: VertexId) -> impl ExactSizeIterator<Item = (JointId, f32)> {
-        let (joints, weights) = if vertex.index() < self.positions.len() {
-            self.influence_slices(vertex.index())
-        } else {
-            (&[][..], &[][..])
-        };
-        let pairs = joints.iter().zip(weights);
-        pairs.map(|(joint, weight)| (JointId(u32::from(*joint)), *weight))
+    #[inline]
+    pub fn influences(
+        &self,
+        vertex: VertexId,
+    ) -> impl ExactSizeIterator<Item = (JointId, f32)> + Clone {
+        self.influences.of(vertex.index())
     }
 
     /// The largest distance of a rest position from the mesh's origin, rounded up. Includes removed vertices.
@@ -184,8 +181,7 @@ impl ColliderMesh {
 
     /// The most influences that one vertex has.
     pub fn max_influences(&self) -> usize {
-        let counts = self.influence_start.windows(2).map(|w| w[1] - w[0]);
-        counts.max().unwrap_or(0) as usize
+        self.influences.most()
     }
 
     /// The clusters: vertices and triangles that are skinned together.
@@ -230,30 +226,18 @@ impl ColliderMesh {
         self.part_nodes.forget();
     }
 
-    /// Size of the rest data in bytes, without data derived on demand.
+    /// Size of the rest data in bytes. Of data derived on demand, those of edits count as soon as they were needed.
     pub(crate) fn memory(&self) -> usize {
-        let parts = self.parts.iter();
-        let parts = parts.map(|p| size_of_val(&p.triangles[..]) + size_of_val(&p.vertices[..]));
         size_of_val(&self.positions[..])
-            + size_of_val(&self.influence_start[..])
-            + size_of_val(&self.joints[..])
-            + size_of_val(&self.weights[..])
+            + self.influences.memory()
             + size_of_val(&self.triangles[..])
             + self.tags.memory()
-            + size_of_val(&self.part_of[..])
+            + self.parts.memory()
             + size_of_val(&self.vertex_removed[..])
-            + parts.sum::<usize>()
             + self.clusters.memory()
             + self.hierarchy.memory()
             + self.joint_balls.memory()
             + self.lineage.memory()
-    }
-
-    /// Joints and weights of vertex `v` as slices of equal length.
-    #[inline]
-    pub(crate) fn influence_slices(&self, v: usize) -> (&[u16], &[f32]) {
-        let range = self.influence_start[v] as usize..self.influence_start[v + 1] as usize;
-        (&self.joints[range.clone()], &self.weights[range])
     }
 
     pub(crate) fn rest_corners(&self, triangle: TriangleId) -> [Vec3; 3] {
@@ -279,17 +263,6 @@ impl ColliderMesh {
         sums.iter()
             .max_by(|a, b| a.1.cmp(&b.1).then(b.0.cmp(&a.0)))
             .map_or(JointId(0), |(joint, _)| *joint)
-    }
-
-    /// Updates the vertex list of a part from its triangles.
-    pub(super) fn collect_vertices(&mut self, part: usize) {
-        let triangles = &self.triangles;
-        let part = &mut self.parts[part];
-        part.vertices.clear();
-        let corners = part.triangles.iter().flat_map(|t| triangles[t.index()]);
-        part.vertices.extend(corners);
-        part.vertices.sort_unstable();
-        part.vertices.dedup();
     }
 
     /// The largest distance of a position from the origin, rounded up.

@@ -9,6 +9,16 @@ impl<T> Derived<T> {
         self.0.get_or_init(compute)
     }
 
+    /// The value, if it was computed.
+    pub(super) fn get(&self) -> Option<&T> {
+        self.0.get()
+    }
+
+    /// The value, if it was computed.
+    pub(super) fn get_mut(&mut self) -> Option<&mut T> {
+        self.0.get_mut()
+    }
+
     /// Drops the value. Call it when the data that it is derived from change.
     pub(crate) fn forget(&mut self) {
         self.0.take();

@@ -14,11 +14,13 @@ use super::clusters::{Clusters, build_beside};
 use super::collider::has_area;
 use super::derived::Derived;
 use super::hierarchy::{Hierarchy, STACK};
+use super::influences::Influences;
 use super::joint_balls::JointBalls;
 use super::lineage::Lineage;
-use super::weights::{normalize, weight_of};
+use super::parts::{Part, Parts};
+use super::weights::normalize;
 use super::{
-    ColliderMesh, Influence, MeshError, Part, PartId, SurfaceTag, SurfaceTags, TriangleId, VertexId,
+    ColliderMesh, Influence, MeshError, PartId, SurfaceTag, SurfaceTags, TriangleId, VertexId,
 };
 use crate::rig::JointId;
 
@@ -48,7 +50,7 @@ impl ColliderMesh {
         let vertex = self.positions.len();
         let counts = [
             ("vertices", vertex + 1),
-            ("influences", self.joints.len() + influences.len()),
+            ("influences", self.influences.len() + influences.len()),
         ];
         for (what, found) in counts {
             check_count(what, found)?;
@@ -79,11 +81,7 @@ impl ColliderMesh {
     pub(crate) fn add_vertex(&mut self, vertex: NewVertex) -> VertexId {
         let id = VertexId(self.positions.len() as u32);
         self.positions.push(vertex.position);
-        for (joint, units) in &vertex.influences {
-            self.joints.push(joint.0 as u16);
-            self.weights.push(weight_of(*units));
-        }
-        self.influence_start.push(self.joints.len() as u32);
+        self.influences.push(vertex.influences.iter().copied());
         self.radius = vertex.radius;
         self.lineage.add_vertex(vertex.position, &vertex.influences);
         let joints = vertex.influences.iter().map(|(joint, _)| *joint);
@@ -111,28 +109,17 @@ impl ColliderMesh {
     ) -> (TriangleId, PartId) {
         let id = TriangleId(self.triangles.len() as u32);
         let joint = self.dominant_joint(corners);
-        let known = self.parts.iter().position(|part| part.joint == joint);
-        let part = known.unwrap_or_else(|| {
-            self.parts.push(Part {
-                joint,
-                triangles: Vec::new(),
-                vertices: Vec::new(),
-            });
-            self.parts.len() - 1
-        });
         self.lineage.add_triangle(corners);
         self.triangles.push(corners);
         self.tags.push(tag);
-        self.parts[part].triangles.push(id);
-        let part = PartId(part as u32);
-        self.part_of.push(part);
+        let part = self.parts.push(id, joint);
         self.adjacency.forget();
         (id, part)
     }
 
     /// Marks a triangle as removed. Its part lists it until [`ColliderMesh::recluster`].
     pub(crate) fn remove_triangle(&mut self, triangle: TriangleId) {
-        self.part_of[triangle.index()] = PartId::NONE;
+        self.parts.remove(triangle);
         self.adjacency.forget();
     }
 
@@ -154,7 +141,7 @@ impl ColliderMesh {
         vertex: VertexId,
         touched: &BTreeSet<PartId>,
     ) -> Vec<TriangleId> {
-        let parts = (0..).map(PartId).zip(&self.parts);
+        let parts = (0..).map(PartId).zip(self.parts());
         let parts = parts.filter(|(id, part)| {
             touched.contains(id) || part.vertices.binary_search(&vertex).is_ok()
         });
@@ -167,10 +154,7 @@ impl ColliderMesh {
     /// Updates parts whose triangles changed, and their clusters.
     pub(crate) fn recluster(&mut self, touched: &BTreeSet<PartId>) -> Reclustered {
         for part in touched {
-            let part_of = &self.part_of;
-            let triangles = &mut self.parts[part.index()].triangles;
-            triangles.retain(|t| part_of[t.index()] == *part);
-            self.collect_vertices(part.index());
+            self.parts.renew(*part, &self.triangles);
         }
         self.part_nodes.forget();
         let killed = self.clusters.kill(touched, self.positions.len());
@@ -187,7 +171,7 @@ impl ColliderMesh {
     }
 
     fn append_clusters(&mut self, id: PartId) {
-        let part = &self.parts[id.index()];
+        let part = &self.parts.lists(&self.triangles)[id.index()];
         if part.triangles.is_empty() {
             return;
         }
@@ -210,17 +194,10 @@ impl ColliderMesh {
             lineage: Lineage::default(),
             joint_count: self.joint_count,
             positions: Vec::with_capacity(part.vertices.len()),
-            influence_start: vec![0],
-            joints: Vec::new(),
-            weights: Vec::new(),
+            influences: Influences::default(),
             triangles: corners.map(|c| c.map(|v| VertexId(number(v)))).collect(),
             tags: SurfaceTags::default(),
-            part_of: vec![PartId(0); part.triangles.len()],
-            parts: vec![Part {
-                joint: part.joint,
-                triangles: (0..part.triangles.len() as u32).map(TriangleId).collect(),
-                vertices: Vec::new(),
-            }],
+            parts: Parts::of_joints(&vec![part.joint; part.triangles.len()]),
             vertex_removed: Vec::new(),
             radius: self.radius,
             clusters: Clusters::default(),
@@ -230,11 +207,9 @@ impl ColliderMesh {
             adjacency: Derived::default(),
         };
         for vertex in &part.vertices {
-            let (joints, weights) = self.influence_slices(vertex.index());
-            alone.positions.push(self.positions[vertex.index()]);
-            alone.joints.extend(joints);
-            alone.weights.extend(weights);
-            alone.influence_start.push(alone.joints.len() as u32);
+            let vertex = vertex.index();
+            alone.positions.push(self.positions[vertex]);
+            alone.influences.push(self.influences.units_of(vertex));
         }
         alone
     }

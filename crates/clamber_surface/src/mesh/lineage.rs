@@ -79,10 +79,8 @@ impl Lineage {
     /// The lineage of a mesh that has just been built.
     pub(super) fn of(mesh: &ColliderMesh) -> Self {
         let positions = mesh.positions.iter().flat_map(|p| p.to_array());
-        let numbers = positions.chain(mesh.weights.iter().copied());
-        let words = numbers.map(f32::to_bits);
-        let words = words.chain(mesh.influence_start.iter().copied());
-        let words = words.chain(mesh.joints.iter().map(|joint| u32::from(*joint)));
+        let words = positions.map(f32::to_bits);
+        let words = words.chain(mesh.influences.words());
         let words = words.chain(mesh.triangles.iter().flatten().map(|corner| corner.0));
         Self {
             fingerprints: vec![fold(0xcbf2_9ce4_8422_2325, words)],

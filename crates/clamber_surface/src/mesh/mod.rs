@@ -10,8 +10,10 @@ mod derived;
 mod edit;
 mod error;
 pub(crate) mod hierarchy;
+mod influences;
 mod joint_balls;
 mod lineage;
+mod parts;
 mod summary;
 mod tag;
 mod tags;
@@ -19,11 +21,12 @@ mod weights;
 
 pub use build::{BuildOptions, BuildReport, Cracks, MeshSource, Winding};
 pub(crate) use collider::check_matrices;
-pub use collider::{ColliderMesh, IslandId, Part, PartId, TriangleId, VertexId};
+pub use collider::{ColliderMesh, IslandId, PartId, TriangleId, VertexId};
 pub(crate) use edit::Reclustered;
 pub use error::{MeshError, PaletteError};
 pub(crate) use joint_balls::{JointBall, JointBalls};
 pub use lineage::MeshId;
+pub use parts::Part;
 #[cfg(test)]
 pub(crate) use summary::Summarizer;
 pub use tag::{SurfaceKind, SurfaceTag};

@@ -242,13 +242,13 @@ impl<'a> Summarizer<'a> {
         summary.spans.clear();
         let vertices = std::mem::take(&mut self.vertices);
         for vertex in &vertices {
-            let (joints, weights) = self.mesh.influence_slices(*vertex as usize);
-            summary.influences = summary.influences.max(joints.len());
-            for (joint, weight) in joints.iter().zip(weights) {
+            let influences = self.mesh.influences(VertexId(*vertex));
+            summary.influences = summary.influences.max(influences.len());
+            for (joint, weight) in influences {
                 let span = Span {
-                    joint: u32::from(*joint),
-                    low: *weight,
-                    high: *weight,
+                    joint: joint.0,
+                    low: weight,
+                    high: weight,
                     vertices: 1,
                 };
                 self.add(span, &mut summary.spans);

@@ -9,7 +9,7 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 /// same time, one waits for the other. Forgetting takes `&mut`, and costs O(values) and one bit per entry.
 ///
 /// Entries without a value take a pointer each. What was forgotten is written again, the last one first, so few values
-/// are in use, and stay in the processor's caches, however many entries there are. With twice as many values as were ever
+/// are in use, and stay in the processor's caches, however many entries there are. With a few more values than were ever
 /// needed, a steady use allocates nothing.
 #[derive(Debug)]
 pub(super) struct Memo<T> {
@@ -26,8 +26,8 @@ pub(super) struct Memo<T> {
     most: usize,
 }
 
-/// The least number of values that are made ahead.
-const LEAST: usize = 32;
+/// Number of values that are made ahead, beside an eighth of the most that were ever needed.
+const AHEAD: usize = 32;
 
 impl<T: Default> Memo<T> {
     pub(super) fn new(entries: usize) -> Self {
@@ -37,7 +37,7 @@ impl<T: Default> Memo<T> {
             asked: Bits::default(),
             ahead: false,
             spare: Mutex::default(),
-            most: LEAST / 2,
+            most: 0,
         };
         memo.grow(entries);
         memo
@@ -114,7 +114,7 @@ impl<T: Default> Memo<T> {
             spare.extend(self.entries[entry].take());
         }
         self.most = self.most.max(spare.len() - unused);
-        let wanted = (2 * self.most).min(self.entries.len());
+        let wanted = (self.most + self.most / 8 + AHEAD).min(self.entries.len());
         while spare.len() < wanted {
             spare.push(Box::default());
         }

@@ -19,9 +19,9 @@ pub(crate) struct Instance {
     pub(crate) is_still: bool,
     pub(crate) simd_level: SimdLevel,
     pub(crate) part_enabled: Vec<bool>,
-    /// Per triangle; stays true after the triangle is removed.
-    pub(crate) triangle_enabled: Vec<bool>,
-    /// Number of triangles that are not enabled.
+    /// Per triangle, up to the last one that was ever hidden; false once the triangle is removed.
+    pub(crate) triangle_hidden: Vec<bool>,
+    /// Number of triangles that are hidden.
     pub(crate) hidden_triangles: usize,
     pub(crate) triangles_tested: AtomicU64,
     pub(crate) most_cast_steps: AtomicU32,
@@ -35,8 +35,8 @@ impl Instance {
             previous: PosedMesh::at_rest(&mesh, simd_level),
             is_still: true,
             simd_level,
-            part_enabled: vec![true; mesh.parts().len()],
-            triangle_enabled: vec![true; mesh.triangles().len()],
+            part_enabled: vec![true; mesh.part_count()],
+            triangle_hidden: Vec::new(),
             hidden_triangles: 0,
             triangles_tested: AtomicU64::new(0),
             most_cast_steps: AtomicU32::new(0),
@@ -46,15 +46,16 @@ impl Instance {
 
     /// True if queries see the triangle: it exists, and neither it nor its part is disabled.
     pub(crate) fn is_enabled(&self, triangle: TriangleId) -> bool {
-        self.mesh.part_of(triangle).is_some_and(|part| {
-            self.part_enabled[part.index()] && self.triangle_enabled[triangle.index()]
-        })
+        self.mesh
+            .part_of(triangle)
+            .is_some_and(|part| self.part_enabled[part.index()] && self.shows(triangle))
     }
 
     /// [`Instance::is_enabled`] for a triangle of an enabled part. Reads no memory of the triangle if nothing is
     /// hidden.
     pub(super) fn shows(&self, triangle: TriangleId) -> bool {
-        self.hidden_triangles == 0 || self.triangle_enabled[triangle.index()]
+        let hidden = || self.triangle_hidden.get(triangle.index());
+        self.hidden_triangles == 0 || hidden() != Some(&true)
     }
 
     /// The position of a vertex in a pose; `None` if it does not exist or was removed.
@@ -87,7 +88,7 @@ impl Instance {
 
     /// True if the joint of a part mirrors in the current pose.
     pub(crate) fn is_mirrored(&self, part: PartId) -> bool {
-        let joint = self.mesh.parts()[part.index()].joint;
+        let joint = self.mesh.joint_of_part(part);
         self.current.palette()[joint.index()].is_mirrored()
     }
 
@@ -111,7 +112,7 @@ impl Clone for Instance {
             is_still: self.is_still,
             simd_level: self.simd_level,
             part_enabled: self.part_enabled.clone(),
-            triangle_enabled: self.triangle_enabled.clone(),
+            triangle_hidden: self.triangle_hidden.clone(),
             hidden_triangles: self.hidden_triangles,
             triangles_tested: AtomicU64::new(0),
             most_cast_steps: AtomicU32::new(0),

@@ -90,7 +90,7 @@ impl SkinnedSurface {
             + self.instance.current.memory()
             + self.instance.previous.memory()
             + self.instance.part_enabled.len()
-            + self.instance.triangle_enabled.len()
+            + self.instance.triangle_hidden.len()
     }
 }
 

@@ -31,8 +31,10 @@ impl SkinnedSurface {
     /// # Errors
     /// [`SurfaceError::Triangle`] if it does not exist or was removed.
     pub fn enable_triangle(&mut self, triangle: TriangleId) -> Result<(), SurfaceError> {
-        let hidden = !std::mem::replace(self.triangle_flag(triangle)?, true);
-        self.instance.hidden_triangles -= usize::from(hidden);
+        self.check_triangle(triangle)?;
+        if let Some(hidden) = self.instance.triangle_hidden.get_mut(triangle.index()) {
+            self.instance.hidden_triangles -= usize::from(std::mem::take(hidden));
+        }
         Ok(())
     }
 
@@ -41,8 +43,11 @@ impl SkinnedSurface {
     /// # Errors
     /// [`SurfaceError::Triangle`] if it does not exist or was removed.
     pub fn disable_triangle(&mut self, triangle: TriangleId) -> Result<(), SurfaceError> {
-        let shown = std::mem::replace(self.triangle_flag(triangle)?, false);
-        self.instance.hidden_triangles += usize::from(shown);
+        self.check_triangle(triangle)?;
+        let hidden = &mut self.instance.triangle_hidden;
+        hidden.resize(hidden.len().max(triangle.index() + 1), false);
+        let was_hidden = std::mem::replace(&mut hidden[triangle.index()], true);
+        self.instance.hidden_triangles += usize::from(!was_hidden);
         Ok(())
     }
 
@@ -97,13 +102,9 @@ impl SkinnedSurface {
             .ok_or(SurfaceError::Part(part))
     }
 
-    fn triangle_flag(&mut self, triangle: TriangleId) -> Result<&mut bool, SurfaceError> {
-        let exists = self.mesh().part_of(triangle).is_some();
-        self.instance
-            .triangle_enabled
-            .get_mut(triangle.index())
-            .filter(|_| exists)
-            .ok_or(SurfaceError::Triangle(triangle))
+    fn check_triangle(&self, triangle: TriangleId) -> Result<(), SurfaceError> {
+        let part = self.mesh().part_of(triangle);
+        part.map(|_| ()).ok_or(SurfaceError::Triangle(triangle))
     }
 }
 

@@ -76,7 +76,7 @@ mod tests {
             extents.push(expected.is_some());
         }
         assert!(extents[0]);
-        for part in (0..mesh.parts().len() as u32).map(PartId) {
+        for part in (0..mesh.part_count() as u32).map(PartId) {
             surface.disable_part(part).unwrap();
         }
         assert_eq!(surface.in_model().extent(), None);

@@ -93,7 +93,7 @@ impl ModelSpace<'_> {
 
         let weights = widen(Vec3::from_array(anchor.barycentric));
         let (position, previous) = (point_at(now, weights), point_at(before, weights));
-        let joint = instance.mesh.parts()[part.index()].joint.index();
+        let joint = instance.mesh.joint_of_part(part).index();
         let previous_frame = rest.frame(flat_before, &instance.previous.palette()[joint]);
         let current_frame = rest.frame(flat_now, &instance.current.palette()[joint]);
         let frame = current_frame

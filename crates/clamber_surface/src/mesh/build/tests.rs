@@ -1,4 +1,5 @@
 use super::*;
+use crate::mesh::{PartId, TriangleId};
 
 /// A unit square of two triangles on two joints. The triangles do not share vertices.
 struct Square {

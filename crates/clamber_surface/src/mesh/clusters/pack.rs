@@ -88,9 +88,8 @@ impl Packer<'_> {
     fn collect_joints(&mut self) {
         self.joints.clear();
         for vertex in &self.vertices {
-            let (joints, _) = self.mesh.influence_slices(vertex.index());
-            self.joints
-                .extend(joints.iter().map(|joint| u32::from(*joint)));
+            let influences = self.mesh.influences(*vertex);
+            self.joints.extend(influences.map(|(joint, _)| joint.0));
         }
         self.joints.sort_unstable();
         self.joints.dedup();
@@ -114,9 +113,8 @@ impl Packer<'_> {
             for (row, coordinate) in rest.iter_mut().zip(position) {
                 row.0[lane] = coordinate;
             }
-            let (joints, weights) = self.mesh.influence_slices(vertex.index());
-            for (joint, weight) in joints.iter().zip(weights) {
-                rest[3 + self.place[usize::from(*joint)] as usize].0[lane] = *weight;
+            for (joint, weight) in self.mesh.influences(*vertex) {
+                rest[3 + self.place[joint.index()] as usize].0[lane] = weight;
             }
         }
     }

@@ -200,9 +200,9 @@ impl<'a> Splitter<'a> {
                 Order::Along(axis) => centers[*t as usize].dot(axis),
                 Order::Joint(joint) => {
                     let weight = |v: VertexId| {
-                        let (joints, weights) = mesh.influence_slices(v.index());
-                        let at = joints.binary_search_by_key(&joint, |joint| u32::from(*joint));
-                        at.map_or(0.0, |at| weights[at])
+                        let mut influences = mesh.influences(v);
+                        let found = influences.find(|(other, _)| other.0 == joint);
+                        found.map_or(0.0, |(_, weight)| weight)
                     };
                     mesh.triangles()[*t as usize].into_iter().map(weight).sum()
                 }

@@ -99,3 +99,22 @@ fn any_number_of_threads_skins_the_same_ticks_ahead() {
         }
     }
 }
+
+#[test]
+fn lists_of_parts_take_no_memory_before_somebody_needs_them() {
+    let mut surface = SkinnedSurface::new(tube(24, 48));
+    let made = surface.mesh().memory();
+    let ray = Ray::new(Vec3::Y * 100.0, Vec3::NEG_Y).unwrap();
+    let hit = surface.in_model().cast_ray(&ray, 200.0).unwrap();
+    let anchor = surface.anchor(hit.triangle, hit.barycentric).unwrap();
+    surface.in_model().motion(&anchor, 0.1).unwrap();
+    surface.disable_part(hit.part).unwrap();
+    let bent = bend(24, glam::DVec3::Z, 0.05);
+    surface.advance(&bent, Similarity::IDENTITY).unwrap();
+    assert_eq!(surface.mesh().memory(), made);
+
+    let lists = surface.mesh().parts().iter();
+    let lists = lists.map(|p| 4 * (p.triangles.len() + p.vertices.len()));
+    let lists = lists.sum::<usize>();
+    assert_eq!(surface.mesh().memory(), made + lists);
+}

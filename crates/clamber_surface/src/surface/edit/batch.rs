@@ -71,9 +71,8 @@ impl<'a> SurfaceEdit<'a> {
         let (triangle, part) = self.mesh_mut().add_triangle(corners, tag);
         self.touched.insert(part);
         let instance = &mut self.surface.instance;
-        let parts = instance.mesh.parts().len();
+        let parts = instance.mesh.part_count();
         instance.part_enabled.resize(parts, true);
-        instance.triangle_enabled.push(true);
         Ok(triangle)
     }
 

@@ -14,7 +14,7 @@ use glam::{DVec3, Vec3};
 fn state(surface: &SkinnedSurface) -> (ColliderMesh, Diagnostics, String) {
     let flags = (
         &surface.instance.part_enabled,
-        &surface.instance.triangle_enabled,
+        &surface.instance.triangle_hidden,
     );
     let roots = (
         surface.instance.current.root(),
