@@ -66,7 +66,7 @@ impl Instance {
         simd: S,
         poses: [&PosedMesh; 2],
         sides: [[f32; 3]; 2],
-        visit: &mut dyn FnMut(&MovingTriangle),
+        visit: &mut impl FnMut(&MovingTriangle),
     ) {
         traverse::<false>(
             self.mesh.hierarchy(),

@@ -238,19 +238,35 @@ impl<'a, const P: usize> PosedCluster<'a, P> {
         ]
     }
 
-    /// The corners of up to eight triangles in each pose; unused lanes repeat the first triangle.
+    /// The corners of up to eight triangles in each pose; unused lanes repeat the first triangle. There must be one.
     #[cfg_attr(not(unoptimized), inline(always))]
     pub(super) fn batch(&self, triangles: &[u8]) -> [Corners8; P] {
-        let mut batches = [Corners8::default(); P];
-        for (batch, positions) in batches.iter_mut().zip(self.positions()) {
-            for lane in 0..EIGHT {
-                let triangle = triangles.get(lane).or(triangles.first());
-                if let Some(triangle) = triangle {
-                    batch.set(lane, self.corners_in(positions, usize::from(*triangle)));
-                }
+        let mut lanes = [triangles[0]; EIGHT];
+        lanes[..triangles.len()].copy_from_slice(triangles);
+        let mut slots = [[0u8; EIGHT]; 3];
+        for (lane, triangle) in lanes.into_iter().enumerate() {
+            let triangle = usize::from(triangle);
+            let CornerBlock(corners) = &self.corners[triangle / BLOCK];
+            for (slots, corners) in slots.iter_mut().zip(corners) {
+                slots[lane] = corners[triangle % BLOCK];
             }
         }
+        let mut batches = [Corners8::default(); P];
+        for (batch, positions) in batches.iter_mut().zip(self.positions()) {
+            take(&positions.0[0], &slots, &mut batch.x);
+            take(&positions.0[1], &slots, &mut batch.y);
+            take(&positions.0[2], &slots, &mut batch.z);
+        }
         batches
+    }
+}
+
+/// Takes the numbers in some slots. Not inlined: it is called often, and its loop is unrolled.
+#[inline(never)]
+fn take(numbers: &[f32; MAX_SLOTS], slots: &[[u8; EIGHT]; 3], taken: &mut [[f32; EIGHT]; 3]) {
+    let slots = slots.as_flattened();
+    for (number, slot) in taken.as_flattened_mut().iter_mut().zip(slots) {
+        *number = numbers[usize::from(*slot) % MAX_SLOTS];
     }
 }
 

@@ -97,7 +97,8 @@ impl Patch {
     }
 
     /// [`Patch::update`] near a region that fills little of its box. `apart` returns a lower bound of the distance
-    /// between the region and a moving triangle, in model units: 0 or less for a triangle that meets the region.
+    /// between the region and a moving triangle, in model units: 0 or less for a triangle that meets the region. If it
+    /// is `#[inline(always)]`, it is compiled for the widest instruction set of the machine, as the query around it is.
     pub fn update_near(
         &mut self,
         surface: &SkinnedSurface,
@@ -110,16 +111,21 @@ impl Patch {
         self.found.clear();
         let (mut met, mut all_held) = (0, true);
         let (low, high) = (low - around, high + around);
-        surface.in_model().visit_box(low, high, |moving| {
-            let apart = apart(moving);
-            if apart <= margin {
-                self.found.push(*moving);
-            }
-            if apart <= 0.0 {
-                met += 1;
-                all_held &= self.triangles.binary_search(&moving.triangle).is_ok();
-            }
-        });
+        surface.in_model().visit_box(
+            low,
+            high,
+            #[cfg_attr(not(unoptimized), inline(always))]
+            |moving| {
+                let apart = apart(moving);
+                if apart <= margin {
+                    self.found.push(*moving);
+                }
+                if apart <= 0.0 {
+                    met += 1;
+                    all_held &= self.triangles.binary_search(&moving.triangle).is_ok();
+                }
+            },
+        );
         // With a margin of 0, no triangle beyond those met; if none is met, no triangle at all.
         let no_more = met > 0 && margin > 0.0 || met == self.triangles.len();
         if all_held && no_more && self.is_of(surface) {

@@ -40,7 +40,7 @@ impl Transforms {
 pub(super) struct Corners([Lanes; 3]);
 
 impl Corners {
-    #[inline]
+    #[inline(always)]
     pub(super) fn new(moving: &MovingTriangle, transforms: &Transforms) -> Self {
         let [a, b, c] = &moving.previous;
         let [d, e, f] = &moving.current;
@@ -58,14 +58,14 @@ impl Corners {
     }
 
     /// A corner before the motion.
-    #[inline]
+    #[inline(always)]
     pub(super) fn before(&self, corner: usize) -> Vec3 {
         let [x, y, z] = &self.0;
         Vec3::new(x[corner % 4], y[corner % 4], z[corner % 4])
     }
 
     /// The low and the high corner of the box around them.
-    #[inline]
+    #[inline(always)]
     pub(super) fn bounds(&self) -> (Vec3, Vec3) {
         let [x, y, z] = &self.0;
         let ((low_x, high_x), (low_y, high_y), (low_z, high_z)) = (span(x), span(y), span(z));
@@ -76,7 +76,7 @@ impl Corners {
     }
 
     /// The least and the largest dot product with a direction.
-    #[inline]
+    #[inline(always)]
     pub(super) fn along(&self, direction: Vec3) -> (f32, f32) {
         let [x, y, z] = &self.0;
         let mut dots = [0.0; LANES];
@@ -87,7 +87,7 @@ impl Corners {
     }
 
     /// The largest distance from the origin.
-    #[inline]
+    #[inline(always)]
     pub(super) fn farthest(&self) -> f32 {
         let [x, y, z] = &self.0;
         let mut squares = [0.0; LANES];
@@ -98,7 +98,7 @@ impl Corners {
     }
 
     /// The largest distance between a corner before and after the motion.
-    #[inline]
+    #[inline(always)]
     pub(super) fn most_moved(&self) -> f32 {
         let mut squares = [0.0; LANES / 2];
         for axis in &self.0 {
@@ -113,7 +113,7 @@ impl Corners {
 }
 
 /// The least and the largest of eight numbers.
-#[inline]
+#[inline(always)]
 fn span(lanes: &Lanes) -> (f32, f32) {
     let (mut low, mut high) = ([0.0; LANES / 2], [0.0; LANES / 2]);
     for lane in 0..LANES / 2 {

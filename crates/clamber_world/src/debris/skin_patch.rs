@@ -1,7 +1,7 @@
 //! The skin near one body, as a kinematic rapier body.
 
 use clamber_surface::geometry::Similarity;
-use clamber_surface::surface::{MovingTriangle, Patch, PatchChange, SkinnedSurface};
+use clamber_surface::surface::{Patch, PatchChange, SkinnedSurface};
 use glam::DVec3;
 use rapier3d::dynamics::{RigidBodyBuilder, RigidBodyHandle, RigidBodySet};
 use rapier3d::geometry::{ColliderBuilder, ColliderHandle, ColliderSet, SharedShape};
@@ -69,10 +69,14 @@ impl SkinPatch {
             return None;
         }
         let margin = reach.half_side() * MARGIN;
-        let apart = |moving: &MovingTriangle| reach.apart(moving);
-        let change = self
-            .patch
-            .update_near(surface, reach.low, reach.high, margin, apart);
+        let change = self.patch.update_near(
+            surface,
+            reach.low,
+            reach.high,
+            margin,
+            #[inline(always)]
+            |moving| reach.apart(moving),
+        );
         if self.patch.is_empty() {
             self.rest(colliders);
             return Some(());
@@ -187,6 +191,9 @@ impl SkinPatch {
         let mut nearest: Option<(f64, [DVec3; 2])> = None;
         for corners in self.patch.indices() {
             let before = corners.map(|corner| self.before[corner as usize]);
+            if nearest.is_some_and(|(least, _)| least < least_square(before)) {
+                continue;
+            }
             let weights = closest_to_origin(before);
             let at = |corners: [DVec3; 3]| {
                 corners[0] * weights[0] + corners[1] * weights[1] + corners[2] * weights[2]
@@ -262,6 +269,12 @@ fn insert(
         .active_hooks(ActiveHooks::FILTER_CONTACT_PAIRS);
     let collider = colliders.insert_with_parent(collider, body, bodies);
     (body, collider)
+}
+
+/// Squared distance from the origin to the box around a triangle: at most that to the triangle.
+fn least_square([a, b, c]: [DVec3; 3]) -> f64 {
+    let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+    low.max(-high).max(DVec3::ZERO).length_squared()
 }
 
 /// Barycentric weights of a triangle's point closest to the origin.
