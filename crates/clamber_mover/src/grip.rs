@@ -27,7 +27,7 @@ impl Mover<'_> {
         // Nearly always there is a grip close to the body. Contacts that are farther than the nearest grip, and not about
         // as near, do not matter: a grip that is found within this short reach is the one of the whole reach.
         let as_near = AS_NEAR * body.radius;
-        let at_body = 2.0 * (body.margin + as_near);
+        let at_body = as_near + 0.5 * body.margin;
         if at_body < reach {
             let found = self.grip_within(body, position, at_body, &can_grip, &merit);
             if found.is_some_and(|touch| touch.contact.distance + as_near <= at_body + body.radius)
@@ -46,7 +46,13 @@ impl Mover<'_> {
         can_grip: &impl Fn(&Touch) -> bool,
         merit: &impl Fn(&Touch) -> f64,
     ) -> Option<Touch> {
-        self.overlap(&body.crouched(), position, reach);
+        let overlaps = self.overlap(&body.crouched(), position, reach).iter();
+        let distances = overlaps.map(|touch| touch.contact.distance);
+        // Nothing is nearer than the nearest of all contacts, nor within the core, except for an obstacle that crushes the
+        // body.
+        let clear = distances
+            .fold(f64::INFINITY, f64::min)
+            .max(body.core_radius());
         let as_near = AS_NEAR * body.radius;
         let mut blocked = [usize::MAX; TRIES];
         for tries in 0..TRIES {
@@ -71,9 +77,8 @@ impl Mover<'_> {
             let (_, index) = best?;
             let touch = self.overlaps()[index];
             let at_hand = AT_HAND * body.radius;
-            // Within the core, only an obstacle that crushes the body can be in the way.
-            let is_at_body = touch.contact.distance - at_hand <= body.core_radius();
-            if is_at_body || self.can_reach(position, &touch, at_hand) {
+            let is_clear = touch.contact.distance - at_hand <= clear;
+            if is_clear || self.can_reach(position, &touch, at_hand) {
                 return Some(touch);
             }
             blocked[tries] = index;

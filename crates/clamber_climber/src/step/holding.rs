@@ -185,12 +185,13 @@ impl Tick<'_> {
     ) -> Option<Touch> {
         let (config, input, rules) = (self.config, self.input, self.rules);
         let body = self.body();
+        let holds = holds.map(|held| (held, climb_direction(config, input, held)));
         let touch = self.mover.find_grip(
             &body,
             position,
             grip.reach,
             |touch| (rules.can_grip)(touch.obstacle, &touch.contact),
-            |touch| holds.map_or(0.0, |held| leads_on(config, input, held, touch.normal)),
+            |touch| holds.map_or(0.0, |holds| leads_on(config, input, holds, touch.normal)),
         )?;
         self.carries(&touch).then_some(touch)
     }
@@ -230,10 +231,14 @@ fn climb_direction(config: &ClimberConfig, input: &ClimberInput, normal: DVec3) 
     along.normalize_or_zero() * if fade.is_finite() { share * fade } else { 0.0 }
 }
 
-/// How much the input pushes against `face`, beyond a threshold, while the climber holds a face of normal `held`. Zero
-/// if climbing on `face` would lead back against the held one.
-fn leads_on(config: &ClimberConfig, input: &ClimberInput, held: DVec3, face: DVec3) -> f64 {
-    let wish = climb_direction(config, input, held);
+/// How much the input pushes against `face`, beyond a threshold, while the climber holds a face of normal `held`, along
+/// which the input's direction is `wish`. Zero if climbing on `face` would lead back against the held one.
+fn leads_on(
+    config: &ClimberConfig,
+    input: &ClimberInput,
+    (held, wish): (DVec3, DVec3),
+    face: DVec3,
+) -> f64 {
     let beyond = climb_direction(config, input, face);
     let leads_back = beyond.dot(held) < -AHEAD;
     if leads_back {

@@ -31,7 +31,7 @@ mod spheres;
 pub(crate) use boxes::Boxes;
 pub(crate) use joint_table::JointTable;
 pub(crate) use root::{RootBox, root_box};
-pub(crate) use spheres::{Spheres, spheres};
+pub(crate) use spheres::{Spheres, find_spheres, spheres};
 
 /// Bounds of the children of a node.
 #[derive(Clone, Debug)]
@@ -43,6 +43,17 @@ pub(crate) enum Bounds {
 }
 
 impl Bounds {
+    /// Changes to spheres, which `write` writes in place.
+    #[cfg_attr(not(unoptimized), inline(always))]
+    pub(crate) fn write_spheres(&mut self, write: impl FnOnce(&mut Spheres)) {
+        if let Self::Boxes(_) = self {
+            *self = Self::Spheres(Spheres::ZERO);
+        }
+        if let Self::Spheres(spheres) = self {
+            write(spheres);
+        }
+    }
+
     /// Spheres that hold the same.
     #[cfg_attr(not(unoptimized), inline(always))]
     pub(crate) fn spheres<S: Simd>(&self, simd: S) -> Spheres {

@@ -105,8 +105,21 @@ pub(crate) fn spheres(
     node: &Node,
     table: &JointTable,
 ) -> Spheres {
+    let mut found = Spheres::ZERO;
+    find_spheres(level, hierarchy, node, table, &mut found);
+    found
+}
+
+/// [`spheres`] where the caller has room for them.
+pub(crate) fn find_spheres(
+    level: SimdLevel,
+    hierarchy: &Hierarchy,
+    node: &Node,
+    table: &JointTable,
+    found: &mut Spheres,
+) {
     let (joints, weights) = (node.joints(hierarchy), node.weights(hierarchy));
-    dispatch!(level.level(), simd => evaluate(simd, node, joints, weights, table.joints()))
+    dispatch!(level.level(), simd => evaluate(simd, node, joints, weights, table.joints(), found));
 }
 
 /// Eight points.
@@ -124,7 +137,8 @@ fn evaluate<S: Simd>(
     joints: &[u32],
     weights: &[JointWeights],
     table: &[Joint],
-) -> Spheres {
+    found: &mut Spheres,
+) {
     let zero = f32x8::splat(simd, 0.0);
     let rest = Points {
         x: load(simd, &node.x),
@@ -170,12 +184,10 @@ fn evaluate<S: Simd>(
     let radius = smaller * slack(joints.len()) + lost;
     let infinite = f32x8::splat(simd, f32::INFINITY);
     let radius = radius.simd_ge(zero).select(radius, infinite);
-    Spheres {
-        x: *center.x,
-        y: *center.y,
-        z: *center.z,
-        radius: *radius,
-    }
+    center.x.store_slice(&mut found.x);
+    center.y.store_slice(&mut found.y);
+    center.z.store_slice(&mut found.z);
+    radius.store_slice(&mut found.radius);
 }
 
 /// The images of eight points under the matrix of a joint, in the order of the skinning contract.

@@ -1,12 +1,13 @@
 //! Values that are computed on demand, without unsafe.
 
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Mutex, OnceLock, PoisonError};
+use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 
 /// Values by index that queries compute on demand, shared by any number of threads.
 ///
 /// A value is computed once, where it is first requested, and handed out by reference. If two threads request it at the
-/// same time, one waits for the other. Forgetting takes `&mut`, and costs O(values) and one bit per entry.
+/// same time, one waits for the other. Forgetting takes `&mut`, and costs O(values), and one bit per entry if entries were
+/// filled ahead.
 ///
 /// Entries without a value take a pointer each. What was forgotten is written again, the last one first, so few values
 /// are in use, and stay in the processor's caches, however many entries there are. With a few more values than were ever
@@ -14,16 +15,22 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 #[derive(Debug)]
 pub(super) struct Memo<T> {
     entries: Vec<OnceLock<Box<T>>>,
-    /// A bit for every entry that has a value.
-    filled: Bits,
     /// A bit for every entry that was requested, kept only while `ahead`.
     asked: Bits,
     /// True if entries were filled before anybody requested them. Otherwise those that have a value were requested.
     ahead: bool,
-    /// Forgotten values, and some that were never used.
-    spare: Mutex<Vec<Box<T>>>,
+    shelf: Mutex<Shelf<T>>,
     /// The most values that were ever needed at once.
     most: usize,
+}
+
+/// What a thread needs that fills an entry. In one place, since each lock that it takes costs as much as bounding a joint.
+#[derive(Debug)]
+struct Shelf<T> {
+    /// Forgotten values, and some that were never used.
+    spare: Vec<Box<T>>,
+    /// The entries that have a value, in any order. One whose computation has panicked may be here without a value.
+    filled: Vec<u32>,
 }
 
 /// Number of values that are made ahead, beside an eighth of the most that were ever needed.
@@ -31,12 +38,15 @@ const AHEAD: usize = 32;
 
 impl<T: Default> Memo<T> {
     pub(super) fn new(entries: usize) -> Self {
+        let shelf = Shelf {
+            spare: Vec::new(),
+            filled: Vec::new(),
+        };
         let mut memo = Self {
             entries: Vec::new(),
-            filled: Bits::default(),
             asked: Bits::default(),
             ahead: false,
-            spare: Mutex::default(),
+            shelf: Mutex::new(shelf),
             most: 0,
         };
         memo.grow(entries);
@@ -46,7 +56,6 @@ impl<T: Default> Memo<T> {
     /// Appends entries without a value, up to `entries` in all.
     pub(super) fn grow(&mut self, entries: usize) {
         self.entries.resize_with(entries, OnceLock::new);
-        self.filled.grow(entries);
         self.asked.grow(entries);
     }
 
@@ -67,20 +76,32 @@ impl<T: Default> Memo<T> {
     #[inline(never)]
     fn fill(&self, entry: usize, compute: impl FnOnce(&mut T)) -> &T {
         self.entries[entry].get_or_init(|| {
-            let spare = self.spare.lock();
-            let spare = spare.unwrap_or_else(PoisonError::into_inner).pop();
+            let mut shelf = self.shelf();
+            shelf.filled.push(entry as u32);
+            let spare = shelf.spare.pop();
+            drop(shelf);
             let mut value = spare.unwrap_or_default();
             compute(&mut value);
-            self.filled.set(entry);
             value
         })
+    }
+
+    fn shelf(&self) -> MutexGuard<'_, Shelf<T>> {
+        self.shelf.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn shelf_mut(&mut self) -> &mut Shelf<T> {
+        let shelf = self.shelf.get_mut();
+        shelf.unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Computes an entry, again if it has a value, without marking it as requested.
     pub(super) fn fill_ahead(&mut self, entry: usize, compute: impl FnOnce(&mut T)) {
         if !self.ahead {
             self.ahead = true;
-            self.asked.copy(&mut self.filled);
+            for entry in self.filled() {
+                self.asked.set(entry);
+            }
         }
         match self.entries[entry].get_mut() {
             Some(value) => compute(value),
@@ -98,55 +119,67 @@ impl<T: Default> Memo<T> {
     /// Empties an entry.
     pub(super) fn forget(&mut self, entry: usize) {
         if let Some(value) = self.entries[entry].take() {
-            let spare = self.spare.get_mut();
-            spare.unwrap_or_else(PoisonError::into_inner).push(value);
+            let shelf = self.shelf_mut();
+            shelf.spare.push(value);
+            shelf.filled.retain(|other| *other as usize != entry);
         }
-        self.filled.clear(entry);
         self.asked.clear(entry);
     }
 
     /// Empties all entries.
     pub(super) fn forget_all(&mut self) {
-        let spare = self.spare.get_mut();
-        let spare = spare.unwrap_or_else(PoisonError::into_inner);
-        let unused = spare.len();
-        for entry in self.filled.iter() {
-            spare.extend(self.entries[entry].take());
+        let shelf = self.shelf.get_mut();
+        let shelf = shelf.unwrap_or_else(PoisonError::into_inner);
+        let unused = shelf.spare.len();
+        for entry in shelf.filled.drain(..) {
+            shelf.spare.extend(self.entries[entry as usize].take());
         }
-        self.most = self.most.max(spare.len() - unused);
+        self.most = self.most.max(shelf.spare.len() - unused);
         let wanted = (self.most + self.most / 8 + AHEAD).min(self.entries.len());
-        while spare.len() < wanted {
-            spare.push(Box::default());
+        shelf.filled.reserve(wanted);
+        while shelf.spare.len() < wanted {
+            shelf.spare.push(Box::default());
         }
-        self.filled.clear_all();
         if self.ahead {
             self.asked.clear_all();
             self.ahead = false;
         }
     }
 
-    /// The entries that were requested, ascending.
-    pub(super) fn asked(&self) -> impl Iterator<Item = usize> {
-        let bits = if self.ahead {
-            &self.asked
+    /// Number of entries that were requested.
+    pub(super) fn asked_count(&self) -> usize {
+        if self.ahead {
+            self.asked.iter().count()
         } else {
-            &self.filled
-        };
-        bits.iter()
+            self.shelf().filled.len()
+        }
+    }
+
+    /// The entries that were requested, ascending.
+    pub(super) fn asked(&self) -> Vec<usize> {
+        if self.ahead {
+            self.asked.iter().collect()
+        } else {
+            self.filled()
+        }
     }
 
     /// The entries that have a value, requested or not, ascending.
-    pub(super) fn filled(&self) -> impl Iterator<Item = usize> {
-        self.filled.iter()
+    pub(super) fn filled(&self) -> Vec<usize> {
+        let filled = self.shelf().filled.clone();
+        let filled = filled.into_iter().map(|entry| entry as usize);
+        let mut filled: Vec<usize> = filled.filter(|entry| self.peek(*entry).is_some()).collect();
+        filled.sort_unstable();
+        filled.dedup();
+        filled
     }
 
     /// Size in bytes, values included.
     pub(super) fn memory(&self) -> usize {
-        let spare = self.spare.lock();
-        let spare = spare.unwrap_or_else(PoisonError::into_inner).len();
-        let values = spare + self.filled.iter().count();
-        let bits = size_of_val(&self.filled.0[..]) + size_of_val(&self.asked.0[..]);
-        size_of_val(&self.entries[..]) + bits + values * size_of::<T>()
+        let shelf = self.shelf();
+        let values = shelf.spare.len() + shelf.filled.len();
+        let lists = size_of_val(&self.asked.0[..]) + size_of_val(&shelf.filled[..]);
+        size_of_val(&self.entries[..]) + lists + values * size_of::<T>()
     }
 }
 
@@ -178,12 +211,6 @@ impl Bits {
     fn clear_all(&mut self) {
         for word in &mut self.0 {
             *word.get_mut() = 0;
-        }
-    }
-
-    fn copy(&mut self, other: &mut Self) {
-        for (word, other) in self.0.iter_mut().zip(&mut other.0) {
-            *word.get_mut() = *other.get_mut();
         }
     }
 

@@ -6,7 +6,7 @@ mod whole;
 use glam::Vec3;
 
 use self::memo::Memo;
-use crate::bounds::{Bounds, JointTable, RootBox, root_box, spheres};
+use crate::bounds::{Bounds, JointTable, RootBox, find_spheres, root_box, spheres};
 use crate::geometry::{Affine, Sphere};
 use crate::mesh::hierarchy::Child;
 use crate::mesh::{ColliderMesh, PartId};
@@ -102,7 +102,7 @@ impl PosedMesh {
         self.nodes.get(index, |found| {
             let (hierarchy, table) = (mesh.hierarchy(), &self.table);
             let node = &hierarchy.nodes[index];
-            *found = Bounds::Spheres(spheres(self.level, hierarchy, node, table));
+            found.write_spheres(|found| find_spheres(self.level, hierarchy, node, table, found));
         })
     }
 
@@ -138,17 +138,22 @@ impl PosedMesh {
 
     /// Clusters that were requested in this pose.
     pub(crate) fn asked_clusters(&self) -> impl Iterator<Item = usize> {
-        self.clusters.asked()
+        self.clusters.asked().into_iter()
+    }
+
+    /// Number of [`PosedMesh::asked_clusters`].
+    pub(crate) fn asked_cluster_count(&self) -> usize {
+        self.clusters.asked_count()
     }
 
     /// Nodes whose bounds were requested in this pose.
     pub(crate) fn asked_nodes(&self) -> impl Iterator<Item = usize> {
-        self.nodes.asked()
+        self.nodes.asked().into_iter()
     }
 
     /// Clusters that were skinned in this pose, requested or not.
     pub(crate) fn skinned_clusters(&self) -> impl Iterator<Item = usize> {
-        self.clusters.filled()
+        self.clusters.filled().into_iter()
     }
 
     /// Size of palette and caches in bytes.

@@ -7,6 +7,7 @@ use super::instance::Instance;
 use super::probe::{BLUR, Probe, with_probe};
 use super::traverse::traverse;
 use super::{CapsuleHit, ModelSpace, SurfaceHit, broad, length, root};
+use crate::geometry::triangle::{Corners8, Points8};
 use crate::geometry::{Capsule, round_up_to_f32};
 
 impl ModelSpace<'_> {
@@ -76,12 +77,13 @@ impl Instance {
                 let vertex = f64::from(posed.nearest_vertex(simd, point)) + lost;
                 let near = best.limit().min(vertex + BLUR * size) + blur;
                 let survivors = posed.near(simd, &probe.reaching(near), 0.0);
+                let (mut corners, mut points) = ([Corners8::default()], Points8::default());
                 survivors.by_eight(
                     #[cfg_attr(not(unoptimized), inline(always))]
                     |batch| {
                         tested += batch.len();
-                        let corners = posed.batch(batch);
-                        let points = probe.closest_of_eight(posed.level(), &corners[0]);
+                        posed.batch(batch, &mut corners);
+                        probe.closest_of_eight(posed.level(), &corners[0], &mut points);
                         for (lane, triangle) in batch.iter().enumerate() {
                             let candidate = FoundPoint {
                                 triangle: posed.id(usize::from(*triangle)),

@@ -238,9 +238,9 @@ impl<'a, const P: usize> PosedCluster<'a, P> {
         ]
     }
 
-    /// The corners of up to eight triangles in each pose; unused lanes repeat the first triangle. There must be one.
+    /// Finds the corners of up to eight triangles in each pose; unused lanes repeat the first triangle. There must be one.
     #[cfg_attr(not(unoptimized), inline(always))]
-    pub(super) fn batch(&self, triangles: &[u8]) -> [Corners8; P] {
+    pub(super) fn batch(&self, triangles: &[u8], batches: &mut [Corners8; P]) {
         let mut lanes = [triangles[0]; EIGHT];
         lanes[..triangles.len()].copy_from_slice(triangles);
         let mut slots = [[0u8; EIGHT]; 3];
@@ -251,13 +251,11 @@ impl<'a, const P: usize> PosedCluster<'a, P> {
                 slots[lane] = corners[triangle % BLOCK];
             }
         }
-        let mut batches = [Corners8::default(); P];
         for (batch, positions) in batches.iter_mut().zip(self.positions()) {
             take(&positions.0[0], &slots, &mut batch.x);
             take(&positions.0[1], &slots, &mut batch.y);
             take(&positions.0[2], &slots, &mut batch.z);
         }
-        batches
     }
 }
 

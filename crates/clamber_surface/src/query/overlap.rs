@@ -9,6 +9,7 @@ use super::probe::{Probe, with_probe};
 use super::traverse::traverse;
 use super::{ModelSpace, SurfaceHit, broad, root};
 use crate::geometry::Capsule;
+use crate::geometry::triangle::{Corners8, Points8};
 use crate::mesh::TriangleId;
 use crate::mesh::hierarchy::LANES;
 
@@ -154,18 +155,19 @@ impl Instance {
         mut visit: impl FnMut(FoundPoint, [Vec3; 3]),
     ) -> usize {
         let radius = f64::from(probe.radius);
+        let (mut corners, mut points) = ([Corners8::default()], Points8::default());
         let mut tested = 0;
         triangles.by_eight(
             #[cfg_attr(not(unoptimized), inline(always))]
             |batch| {
                 tested += batch.len();
-                let [corners] = posed.batch(batch);
-                let points = probe.closest_of_eight(self.simd_level, &corners);
+                posed.batch(batch, &mut corners);
+                probe.closest_of_eight(self.simd_level, &corners[0], &mut points);
                 for (lane, triangle) in batch.iter().enumerate() {
                     let found = points.get(lane);
                     if found.distance <= radius {
                         let triangle = posed.id(usize::from(*triangle));
-                        visit(FoundPoint { triangle, found }, corners.get(lane));
+                        visit(FoundPoint { triangle, found }, corners[0].get(lane));
                     }
                 }
             },

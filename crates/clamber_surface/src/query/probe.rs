@@ -135,12 +135,17 @@ impl<const N: usize> Probe<N> {
     }
 
     /// [`Probe::closest`] for eight triangles.
-    pub(super) fn closest_of_eight(&self, level: SimdLevel, corners: &Corners8) -> Points8 {
+    pub(super) fn closest_of_eight(
+        &self,
+        level: SimdLevel,
+        corners: &Corners8,
+        points: &mut Points8,
+    ) {
         let [a, b] = self.segment();
         if N == 1 {
-            closest_points(level, corners, a)
+            closest_points(level, corners, a, points);
         } else {
-            closest_to_segments(level, corners, a, b)
+            closest_to_segments(level, corners, [a, b], points);
         }
     }
 }

@@ -1,5 +1,7 @@
 //! The traversal of the hierarchy that all queries share.
 
+use arrayvec::ArrayVec;
+
 use super::broad::LaneMask;
 use crate::geometry::round_up_to_f32;
 use crate::mesh::hierarchy::{Child, Hierarchy, LANES, STACK};
@@ -20,14 +22,11 @@ pub(super) fn traverse<const NEAREST_FIRST: bool>(
 ) {
     // Nodes and clusters still to be visited, in the lower half; in the upper half the bits of their keys, which are in
     // the order of the keys. A mesh whose hierarchy needs a larger stack cannot be built.
-    let mut stack = [0u64; STACK];
+    let mut stack = ArrayVec::<u64, STACK>::new();
     let mut reach = round_up_to_f32(limit);
     for root in std::iter::once(0).chain(hierarchy.further_roots()) {
-        stack[0] = u64::from(Child::Node(root).packed());
-        let mut count = 1;
-        while count > 0 {
-            count -= 1;
-            let next = stack[count];
+        stack.push(u64::from(Child::Node(root).packed()));
+        while let Some(next) = stack.pop() {
             // A child at exactly the limit stays: it may hold a triangle with a smaller id.
             if NEAREST_FIRST && f32::from_bits((next >> 32) as u32) > reach {
                 continue;
@@ -45,23 +44,24 @@ pub(super) fn traverse<const NEAREST_FIRST: bool>(
             };
             let node = &hierarchy.nodes[index as usize];
             let (near, keys) = bounds(index, reach);
-            let first = count;
+            let first = stack.len();
             let mut lanes = near & node.lane_mask();
             while lanes != 0 {
                 let lane = lanes.trailing_zeros() as usize;
                 lanes &= lanes - 1;
                 let mut child = u64::from(node.children[lane]);
-                let mut place = count;
+                if NEAREST_FIRST {
+                    child |= u64::from(keys[lane].to_bits()) << 32;
+                }
+                stack.push(child);
                 if NEAREST_FIRST {
                     // Below children with smaller keys, which are then visited first.
-                    child |= u64::from(keys[lane].to_bits()) << 32;
+                    let mut place = stack.len() - 1;
                     while place > first && stack[place - 1] < child {
-                        stack[place] = stack[place - 1];
+                        stack.swap(place - 1, place);
                         place -= 1;
                     }
                 }
-                stack[place] = child;
-                count += 1;
             }
         }
     }

@@ -75,7 +75,7 @@ impl SkinnedSurface {
 
     /// Starts the next tick: the current pose becomes the previous one, and the given pose becomes current.
     ///
-    /// Costs O(joints), and reads one number per cluster. Nothing is skinned, unless the last tick touched at least
+    /// Costs O(joints and clusters that the last tick touched). Nothing is skinned, unless the last tick touched at least
     /// three quarters of all clusters; then all are. That depends on which clusters queries reached, not on how many
     /// threads they ran on.
     ///
@@ -221,9 +221,7 @@ impl SkinnedSurface {
     /// True if this tick touched so many clusters that skinning the next tick ahead costs less than finding out which
     /// clusters it needs.
     fn touched_nearly_everything(&self) -> bool {
-        // Counted from the stamps: a counter that queries raise would count a cluster twice if two threads reached it
-        // at once.
-        let asked = self.instance.current.asked_clusters().count();
+        let asked = self.instance.current.asked_cluster_count();
         let all = self.mesh().clusters().living();
         asked * 4 >= all * 3
     }

@@ -62,49 +62,50 @@ impl Points8 {
 }
 
 /// [`closest_point`](super::closest_point) of each triangle, with the same bits.
-pub(crate) fn closest_points(level: SimdLevel, corners: &Corners8, p: Vec3) -> Points8 {
-    dispatch!(level.level(), simd => closest_points_simd(simd, corners, p))
+pub(crate) fn closest_points(level: SimdLevel, corners: &Corners8, p: Vec3, points: &mut Points8) {
+    dispatch!(level.level(), simd => closest_points_simd(simd, corners, p, points));
 }
 
 /// [`closest_to_segment`](super::closest_to_segment) of each triangle, with the same bits.
 pub(crate) fn closest_to_segments(
     level: SimdLevel,
     corners: &Corners8,
-    a: Vec3,
-    b: Vec3,
-) -> Points8 {
-    dispatch!(level.level(), simd => closest_to_segments_simd(simd, corners, a, b))
+    segment: [Vec3; 2],
+    points: &mut Points8,
+) {
+    dispatch!(level.level(), simd => closest_to_segments_simd(simd, corners, segment, points));
 }
 
 #[cfg_attr(not(unoptimized), inline(always))]
-fn closest_points_simd<S: Simd>(simd: S, corners: &Corners8, p: Vec3) -> Points8 {
+fn closest_points_simd<S: Simd>(simd: S, corners: &Corners8, p: Vec3, points: &mut Points8) {
     let corners = Corners8Wide::new(corners);
     let p = splat(simd, widen(p));
-    let mut points = Points8::default();
     for first in (0..EIGHT).step_by(S::f64s::LEN) {
         let found = nearest_to_origin(corners.relative_to(simd, first, p));
-        store(found, first, &mut points);
+        store(found, first, points);
     }
-    points
 }
 
 #[cfg_attr(not(unoptimized), inline(always))]
-fn closest_to_segments_simd<S: Simd>(simd: S, corners: &Corners8, a: Vec3, b: Vec3) -> Points8 {
+fn closest_to_segments_simd<S: Simd>(
+    simd: S,
+    corners: &Corners8,
+    [a, b]: [Vec3; 2],
+    points: &mut Points8,
+) {
     let corners = Corners8Wide::new(corners);
     let [a, b] = ordered(a, b);
     let axis = splat(simd, widen(b) - widen(a));
     let (a, b) = (splat(simd, widen(a)), splat(simd, widen(b)));
-    let mut points = Points8::default();
     for first in (0..EIGHT).step_by(S::f64s::LEN) {
         let from_start = corners.relative_to(simd, first, a);
         let from_end = corners.relative_to(simd, first, b);
         store(
             nearest_to_segment(from_start, from_end, axis),
             first,
-            &mut points,
+            points,
         );
     }
-    points
 }
 
 /// [`Corners8`] in f64. The compiler turns plain loops over these arrays into vector conversions and keeps the arrays

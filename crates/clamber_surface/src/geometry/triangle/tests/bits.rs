@@ -30,8 +30,10 @@ fn compare(batches: u32, seed: u64) {
             corners.set(lane, *triangle);
         }
         for level in &levels {
-            let points = closest_points(*level, &corners, p);
-            let segments = closest_to_segments(*level, &corners, a, b);
+            let mut points = Points8::default();
+            closest_points(*level, &corners, p, &mut points);
+            let mut segments = Points8::default();
+            closest_to_segments(*level, &corners, [a, b], &mut segments);
             for (lane, triangle) in triangles.iter().enumerate() {
                 let one = closest_point(*triangle, p);
                 let case = format_args!("{level} batch {batch} {triangle:?}");
