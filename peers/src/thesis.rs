@@ -31,7 +31,7 @@ struct Part {
 
 impl Thesis {
     fn new(mesh: &Arc<ColliderMesh>) -> Self {
-        let mut parts: Vec<Part> = mesh.parts().iter().map(|_| Part::default()).collect();
+        let mut parts: Vec<Part> = (0..mesh.part_count()).map(|_| Part::default()).collect();
         for (index, corners) in mesh.triangles().iter().enumerate() {
             let Some(part) = mesh.part_of(TriangleId(index as u32)) else {
                 continue;

@@ -173,6 +173,7 @@ const KEPT_TO: [(&str, &str); 10] = [
 const CORE: (&str, &[&str]) = (
     "clamber_surface",
     &[
+        "arrayvec",
         REFLECTION,
         "fearless_simd",
         "glam",

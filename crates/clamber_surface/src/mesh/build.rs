@@ -156,8 +156,7 @@ impl ColliderMesh {
         mesh.lineage = Lineage::of(&mesh);
         mesh.assign_parts();
         mesh.cluster();
-        // Clustering was the last to need them.
-        mesh.parts.forget_lists();
+        mesh.shrink();
         let needed = mesh.hierarchy.stack_needed();
         if needed > STACK {
             return Err(MeshError::TooDeep {
@@ -167,6 +166,14 @@ impl ColliderMesh {
         }
         report.triangles = mesh.triangles.len();
         Ok((mesh, report))
+    }
+
+    /// Drops memory that a build needs and a mesh does not.
+    fn shrink(&mut self) {
+        self.positions.shrink_to_fit();
+        self.triangles.shrink_to_fit();
+        self.influences.shrink();
+        self.parts.shrink();
     }
 
     /// Appends the triangles that have an area, without duplicates.

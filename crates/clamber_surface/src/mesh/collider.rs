@@ -124,8 +124,9 @@ impl ColliderMesh {
     }
 
     /// The parts, with lists of their triangles and vertices. A build sorts them by joint; edits may append more, and may
-    /// leave a part without triangles. The lists are made on first use, which takes O(triangles), or by an edit. From
-    /// then on the mesh keeps them: they take some six bytes a triangle.
+    /// leave a part without triangles. The lists are made on first use, which takes O(n log n) for n triangles: by this
+    /// call, an edit, or [`ModelSpace::part_spheres`](crate::surface::ModelSpace::part_spheres). From then on the mesh
+    /// keeps them: they take some six bytes a triangle.
     ///
     /// [`ColliderMesh::part_count`], [`ColliderMesh::part_joint`] and [`ColliderMesh::part_of`] need no lists.
     pub fn parts(&self) -> &[Part] {
@@ -226,7 +227,7 @@ impl ColliderMesh {
         self.part_nodes.forget();
     }
 
-    /// Size of the rest data in bytes. Of data derived on demand, those of edits count as soon as they were needed.
+    /// Size of the rest data in bytes. Includes the lists of parts once they were made, but no other derived data.
     pub(crate) fn memory(&self) -> usize {
         size_of_val(&self.positions[..])
             + self.influences.memory()

@@ -62,6 +62,24 @@ impl Influences {
         weights.chain(starts).chain(pairs.map(|(joint, _)| joint.0))
     }
 
+    /// Drops memory that is not used.
+    pub(super) fn shrink(&mut self) {
+        match &mut self.ends {
+            Ends::Near { blocks, ends } => {
+                blocks.shrink_to_fit();
+                ends.shrink_to_fit();
+            }
+            Ends::Far(ends) => ends.shrink_to_fit(),
+        }
+        match &mut self.pairs {
+            Pairs::Together(pairs) => pairs.shrink_to_fit(),
+            Pairs::Apart { joints, units } => {
+                joints.shrink_to_fit();
+                units.shrink_to_fit();
+            }
+        }
+    }
+
     /// Size of the arrays in bytes.
     pub(super) fn memory(&self) -> usize {
         self.ends.memory() + self.pairs.memory()

@@ -35,8 +35,8 @@ impl Part {
     }
 }
 
-/// The joint of every part, and the part of every triangle. Queries need no more than this, so the lists of a part's
-/// triangles and vertices are made on first use: by edits, and by those who ask for them.
+/// The joint of every part, and the part of every triangle. Most queries need no more than this, so the lists of a part's
+/// triangles and vertices are made on first use: by edits, by spheres around parts, and by those who ask for them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Parts {
     /// By part.
@@ -51,6 +51,7 @@ impl Parts {
         let mut parts: Vec<JointId> = joints.to_vec();
         parts.sort_unstable();
         parts.dedup();
+        parts.shrink_to_fit();
         let mut of = PartOf::default();
         for joint in joints {
             of.push(parts.partition_point(|other| other < joint));
@@ -97,13 +98,19 @@ impl Parts {
         }
         for part in &mut parts {
             part.collect_vertices(corners);
+            part.triangles.shrink_to_fit();
+            part.vertices.shrink_to_fit();
         }
         parts
     }
 
-    /// Drops the lists, to save their memory.
-    pub(super) fn forget_lists(&mut self) {
+    /// Drops the lists, and memory that is not used.
+    pub(super) fn shrink(&mut self) {
         self.lists.forget();
+        match &mut self.of {
+            PartOf::Two(parts) => parts.shrink_to_fit(),
+            PartOf::Four(parts) => parts.shrink_to_fit(),
+        }
     }
 
     /// Adds the next triangle to the part of a joint, and the part if there is none yet. Its lists are out of date then,

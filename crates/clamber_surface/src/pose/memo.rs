@@ -24,12 +24,13 @@ pub(super) struct Memo<T> {
     most: usize,
 }
 
-/// What a thread needs that fills an entry. In one place, since each lock that it takes costs as much as bounding a joint.
+/// What a thread needs that fills an entry. Under one lock: taking a lock costs as much as bounding a joint.
 #[derive(Debug)]
 struct Shelf<T> {
     /// Forgotten values, and some that were never used.
     spare: Vec<Box<T>>,
-    /// The entries that have a value, in any order. One whose computation has panicked may be here without a value.
+    /// The entries that have a value, in any order. One whose computation has panicked may be here without a value, or
+    /// twice.
     filled: Vec<u32>,
 }
 
@@ -90,11 +91,6 @@ impl<T: Default> Memo<T> {
         self.shelf.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn shelf_mut(&mut self) -> &mut Shelf<T> {
-        let shelf = self.shelf.get_mut();
-        shelf.unwrap_or_else(PoisonError::into_inner)
-    }
-
     /// Computes an entry, again if it has a value, without marking it as requested.
     pub(super) fn fill_ahead(&mut self, entry: usize, compute: impl FnOnce(&mut T)) {
         if !self.ahead {
@@ -116,14 +112,19 @@ impl<T: Default> Memo<T> {
         self.entries[entry].get().map(|value| &**value)
     }
 
-    /// Empties an entry.
-    pub(super) fn forget(&mut self, entry: usize) {
-        if let Some(value) = self.entries[entry].take() {
-            let shelf = self.shelf_mut();
-            shelf.spare.push(value);
-            shelf.filled.retain(|other| *other as usize != entry);
+    /// Empties some entries. O(values and entries given).
+    pub(super) fn forget(&mut self, entries: &[u32]) {
+        let shelf = self.shelf.get_mut();
+        let shelf = shelf.unwrap_or_else(PoisonError::into_inner);
+        for entry in entries {
+            let entry = *entry as usize;
+            shelf.spare.extend(self.entries[entry].take());
+            self.asked.clear(entry);
         }
-        self.asked.clear(entry);
+        let entries = &self.entries;
+        shelf
+            .filled
+            .retain(|entry| entries[*entry as usize].get().is_some());
     }
 
     /// Empties all entries.
@@ -146,32 +147,37 @@ impl<T: Default> Memo<T> {
         }
     }
 
-    /// Number of entries that were requested.
-    pub(super) fn asked_count(&self) -> usize {
+    /// Calls `visit` with the entries that were requested, in any order. It must not request any.
+    pub(super) fn each_asked(&self, mut visit: impl FnMut(usize)) {
         if self.ahead {
-            self.asked.iter().count()
+            self.asked.iter().for_each(visit);
         } else {
-            self.shelf().filled.len()
+            self.each_filled(&mut visit);
+        }
+    }
+
+    /// Calls `visit` with the entries that have a value, requested or not, in any order. It must not request any.
+    pub(super) fn each_filled(&self, mut visit: impl FnMut(usize)) {
+        for entry in &self.shelf().filled {
+            let entry = *entry as usize;
+            if self.peek(entry).is_some() {
+                visit(entry);
+            }
         }
     }
 
     /// The entries that were requested, ascending.
     pub(super) fn asked(&self) -> Vec<usize> {
-        if self.ahead {
-            self.asked.iter().collect()
-        } else {
-            self.filled()
-        }
+        let mut asked = Vec::new();
+        self.each_asked(|entry| asked.push(entry));
+        sorted(asked)
     }
 
     /// The entries that have a value, requested or not, ascending.
     pub(super) fn filled(&self) -> Vec<usize> {
-        let filled = self.shelf().filled.clone();
-        let filled = filled.into_iter().map(|entry| entry as usize);
-        let mut filled: Vec<usize> = filled.filter(|entry| self.peek(*entry).is_some()).collect();
-        filled.sort_unstable();
-        filled.dedup();
-        filled
+        let mut filled = Vec::new();
+        self.each_filled(|entry| filled.push(entry));
+        sorted(filled)
     }
 
     /// Size in bytes, values included.
@@ -181,6 +187,12 @@ impl<T: Default> Memo<T> {
         let lists = size_of_val(&self.asked.0[..]) + size_of_val(&shelf.filled[..]);
         size_of_val(&self.entries[..]) + lists + values * size_of::<T>()
     }
+}
+
+fn sorted(mut entries: Vec<usize>) -> Vec<usize> {
+    entries.sort_unstable();
+    entries.dedup();
+    entries
 }
 
 /// A bit per entry, which threads may set at the same time.

@@ -56,11 +56,9 @@ impl PosedMesh {
     }
 
     /// Updates the pose after an edit of the mesh in which some clusters died and others were appended. What was
-    /// computed of the other clusters stays valid. O(joints and clusters edited).
+    /// computed of the other clusters stays valid. O(joints, clusters edited and clusters skinned).
     pub(crate) fn follow(&mut self, mesh: &ColliderMesh, dead: &[u32]) {
-        for cluster in dead {
-            self.clusters.forget(*cluster as usize);
-        }
+        self.clusters.forget(dead);
         self.grow(mesh);
         self.root = root_box(mesh.joint_balls(), &self.table);
     }
@@ -141,12 +139,33 @@ impl PosedMesh {
         self.clusters.asked().into_iter()
     }
 
-    /// Number of [`PosedMesh::asked_clusters`].
+    /// Number of clusters that were requested in this pose.
     pub(crate) fn asked_cluster_count(&self) -> usize {
-        self.clusters.asked_count()
+        let mut count = 0;
+        self.clusters.each_asked(|_| count += 1);
+        count
+    }
+
+    /// Number of children of the nodes whose bounds were requested in this pose.
+    pub(crate) fn asked_bounds(&self, mesh: &ColliderMesh) -> usize {
+        let (nodes, mut count) = (&mesh.hierarchy().nodes, 0);
+        self.nodes
+            .each_asked(|node| count += usize::from(nodes[node].lanes));
+        count
+    }
+
+    /// Numbers of clusters that were skinned in this pose, requested or not, and of their vertices.
+    pub(crate) fn skinned_count(&self, mesh: &ColliderMesh) -> [usize; 2] {
+        let (clusters, mut counts) = (&mesh.clusters().clusters, [0; 2]);
+        self.clusters.each_filled(|cluster| {
+            counts[0] += 1;
+            counts[1] += usize::from(clusters[cluster].slots);
+        });
+        counts
     }
 
     /// Nodes whose bounds were requested in this pose.
+    #[cfg(test)]
     pub(crate) fn asked_nodes(&self) -> impl Iterator<Item = usize> {
         self.nodes.asked().into_iter()
     }

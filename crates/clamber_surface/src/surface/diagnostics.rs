@@ -46,16 +46,16 @@ impl SkinnedSurface {
     /// Counts what queries touched since the last [`SkinnedSurface::advance`] or [`SkinnedSurface::place`]. Clusters
     /// that an edit has replaced since then no longer count. Takes O(clusters).
     pub fn diagnostics(&self) -> Diagnostics {
-        let (clusters, hierarchy) = (&self.mesh().clusters().clusters, self.mesh().hierarchy());
-        let slots = |cluster: usize| usize::from(clusters[cluster].slots);
-        let lanes = |node: usize| usize::from(hierarchy.nodes[node].lanes);
+        let (pose, mesh) = (&self.instance.current, self.mesh());
+        let [clusters_skinned, vertices_skinned] = pose.skinned_count(mesh);
+        let slots = mesh.clusters().clusters.iter();
         Diagnostics {
-            bounds_evaluated: self.instance.current.asked_nodes().map(lanes).sum(),
-            clusters_touched: self.instance.current.asked_clusters().count(),
-            clusters_skinned: self.instance.current.skinned_clusters().count(),
-            clusters: self.mesh().clusters().living(),
-            vertices_skinned: self.instance.current.skinned_clusters().map(slots).sum(),
-            vertices: (0..clusters.len()).map(slots).sum(),
+            bounds_evaluated: pose.asked_bounds(mesh),
+            clusters_touched: pose.asked_cluster_count(),
+            clusters_skinned,
+            clusters: mesh.clusters().living(),
+            vertices_skinned,
+            vertices: slots.map(|cluster| usize::from(cluster.slots)).sum(),
             triangles_tested: self.instance.triangles_tested.load(Ordering::Relaxed),
             most_cast_steps: self.instance.most_cast_steps.load(Ordering::Relaxed),
         }

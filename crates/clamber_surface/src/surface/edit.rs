@@ -58,8 +58,8 @@ impl SkinnedSurface {
     /// When the closure returns, the clusters of the parts whose triangles changed are rebuilt, once each; results that
     /// queries have cached for other parts stay. That takes as long as building a mesh of those parts. Once edits have
     /// replaced more than half of all clusters, the edit rebuilds all of them, which takes as long as building the
-    /// whole mesh. The first change of a mesh's triangles also lists those of all parts
-    /// ([`ColliderMesh::parts`](crate::mesh::ColliderMesh::parts)). The first change of a surface that shares its mesh
+    /// whole mesh. The first edit that adds or removes triangles also makes the lists of
+    /// [`ColliderMesh::parts`](crate::mesh::ColliderMesh::parts). The first change of a surface that shares its mesh
     /// gives the surface a copy of its own.
     ///
     /// ```

@@ -75,7 +75,7 @@ impl SkinnedSurface {
 
     /// Starts the next tick: the current pose becomes the previous one, and the given pose becomes current.
     ///
-    /// Costs O(joints and clusters that the last tick touched). Nothing is skinned, unless the last tick touched at least
+    /// Costs O(joints), and O(nodes and clusters that the last two ticks touched). Nothing is skinned, unless the last tick touched at least
     /// three quarters of all clusters; then all are. That depends on which clusters queries reached, not on how many
     /// threads they ran on.
     ///

@@ -11,6 +11,13 @@ fn ask(memo: &Memo<usize>, entry: usize, value: usize) -> bool {
     computed
 }
 
+/// Counts the requested entries without sorting them.
+fn asked_count(memo: &Memo<usize>) -> usize {
+    let mut count = 0;
+    memo.each_asked(|_| count += 1);
+    count
+}
+
 fn asked(memo: &Memo<usize>) -> Vec<usize> {
     memo.asked()
 }
@@ -30,10 +37,9 @@ fn entries_are_computed_once_until_they_are_forgotten() {
         (asked(&memo), filled(&memo)),
         (vec![3, 64, 199], vec![3, 64, 199])
     );
-    memo.forget(64);
-    memo.forget(65);
+    memo.forget(&[64, 65]);
     assert_eq!((asked(&memo), memo.peek(64)), (vec![3, 199], None));
-    assert_eq!(memo.asked_count(), 2);
+    assert_eq!(asked_count(&memo), 2);
     memo.forget_all();
     assert_eq!((asked(&memo), filled(&memo)), (vec![], vec![]));
     assert!(ask(&memo, 3, 7));
@@ -57,7 +63,7 @@ fn entries_that_were_filled_ahead_count_as_requested_only_once_they_are() {
     memo.forget_all();
     assert!(ask(&memo, 2, 3));
     assert_eq!((asked(&memo), filled(&memo)), (vec![2], vec![2]));
-    assert_eq!(memo.asked_count(), 1);
+    assert_eq!(asked_count(&memo), 1);
 }
 
 #[test]
@@ -71,8 +77,8 @@ fn an_entry_whose_computation_panics_can_be_requested_again() {
     }
     assert!(ask(&memo, 7, 3) && !ask(&memo, 7, 3));
     assert_eq!((asked(&memo), filled(&memo)), (vec![7], vec![7]));
-    memo.forget(7);
-    assert_eq!((asked(&memo), memo.asked_count()), (vec![], 0));
+    memo.forget(&[7]);
+    assert_eq!((asked(&memo), asked_count(&memo)), (vec![], 0));
     assert!(ask(&memo, 7, 4));
     memo.forget_all();
     assert_eq!(asked(&memo), vec![]);
