@@ -1,7 +1,10 @@
 //! Gathers ticks in chunks, and writes them on a thread of its own while the game goes on.
 
-use std::sync::mpsc::{Receiver, Sender, SyncSender, channel, sync_channel};
+use std::sync::mpsc::{
+    Receiver, Sender, SyncSender, TryRecvError, TrySendError, channel, sync_channel,
+};
 use std::thread::JoinHandle;
+use std::time::Duration;
 
 use crate::RecordError;
 
@@ -43,11 +46,11 @@ impl<T: Send + 'static, W: Send + 'static> Chunks<T, W> {
         mut writing: impl WriteTicks<T, W>,
         chunk_ticks: u32,
     ) -> Result<Self, RecordError> {
-        // One chunk is gathered, one waits, one is written.
-        let (to_thread, chunks) = sync_channel::<Chunk<T>>(1);
+        // One chunk is gathered, some wait, one is written.
+        let (to_thread, chunks) = sync_channel::<Chunk<T>>(WAITING);
         let (back, written): (Sender<Vec<T>>, _) = channel();
         let work = move || {
-            for (mut chunk, count) in chunks {
+            while let Some((mut chunk, count)) = next(&chunks) {
                 writing.chunk(&mut chunk[..count])?;
                 // Fails once the recorder waits for the end: then it takes no chunk back.
                 let _ = back.send(chunk);
@@ -70,6 +73,47 @@ impl<T: Send + 'static, W: Send + 'static> Chunks<T, W> {
                 handle,
             }),
         })
+    }
+}
+
+/// Most chunks that wait to be written before the game waits for them.
+const WAITING: usize = 3;
+
+/// How long the thread sleeps before it looks for the next chunk: first, and at most. Handing a chunk over does not wake
+/// it, since that takes longer than all else that the game's thread does for a chunk.
+const SLEEP: [Duration; 2] = [Duration::from_micros(250), Duration::from_millis(50)];
+
+/// The next chunk; `None` when no more will come.
+fn next<T>(chunks: &Receiver<T>) -> Option<T> {
+    let [mut sleep, longest] = SLEEP;
+    loop {
+        match chunks.try_recv() {
+            Ok(chunk) => return Some(chunk),
+            Err(TryRecvError::Disconnected) => return None,
+            Err(TryRecvError::Empty) => std::thread::park_timeout(sleep),
+        }
+        sleep = (sleep * 2).min(longest);
+    }
+}
+
+impl<T, W> WriterThread<T, W> {
+    /// Passes a chunk to the thread; false if it has ended with an error. Waits only if too many others wait.
+    fn pass(&self, chunk: Chunk<T>) -> bool {
+        match self.chunks.try_send(chunk) {
+            Ok(()) => true,
+            Err(TrySendError::Disconnected(_)) => false,
+            Err(TrySendError::Full(chunk)) => {
+                self.handle.thread().unpark();
+                self.chunks.send(chunk).is_ok()
+            }
+        }
+    }
+
+    /// Waits until all chunks are written and the thread has ended.
+    fn join(self) -> std::thread::Result<Result<W, RecordError>> {
+        drop(self.chunks);
+        self.handle.thread().unpark();
+        self.handle.join()
     }
 }
 
@@ -133,7 +177,7 @@ impl<T, W> Chunks<T, W> {
         let next = thread.written.try_recv().unwrap_or_default();
         let chunk = core::mem::replace(&mut self.chunk, next);
         let count = core::mem::take(&mut self.gathered);
-        if thread.chunks.send((chunk, count)).is_ok() {
+        if thread.pass((chunk, count)) {
             return Ok(());
         }
         // The thread takes no more chunks: it has ended with an error.
@@ -142,9 +186,8 @@ impl<T, W> Chunks<T, W> {
 
     /// Waits for the thread to end. If it panicked, resumes the panic.
     fn end(&mut self) -> Result<W, RecordError> {
-        let WriterThread { chunks, handle, .. } = self.thread.take().ok_or(RecordError::Ended)?;
-        drop(chunks);
-        match handle.join() {
+        let thread = self.thread.take().ok_or(RecordError::Ended)?;
+        match thread.join() {
             Ok(ended) => ended,
             Err(panic) => std::panic::resume_unwind(panic),
         }
@@ -153,12 +196,11 @@ impl<T, W> Chunks<T, W> {
 
 impl<T, W> Drop for Chunks<T, W> {
     fn drop(&mut self) {
-        if let Some(WriterThread { chunks, handle, .. }) = self.thread.take() {
+        if let Some(thread) = self.thread.take() {
             // Errors are ignored: a drop cannot return them.
             let chunk = core::mem::take(&mut self.chunk);
-            let _ = chunks.send((chunk, self.gathered));
-            drop(chunks);
-            let _ = handle.join();
+            thread.pass((chunk, self.gathered));
+            let _ = thread.join();
         }
     }
 }
