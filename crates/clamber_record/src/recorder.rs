@@ -40,7 +40,7 @@ pub struct RecordOptions {
     /// Largest number of points in a view of the skin. Default 1000; 0 means 1.
     pub skin_points: usize,
     /// Ticks in a chunk. Default 60; 0 means 1. A crash loses the chunk being gathered and those not yet written:
-    /// up to three in all, one or two if the disk keeps up. Raise it for fewer, larger writes. Each tick of a chunk
+    /// up to five in all, one or two if the disk keeps up. Raise it for fewer, larger writes. Each tick of a chunk
     /// waits in memory with its palette.
     pub chunk_ticks: u32,
 }

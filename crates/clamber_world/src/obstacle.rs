@@ -21,7 +21,8 @@ fn farthest(bounds: Option<(DVec3, f64)>, from: DVec3) -> f64 {
 #[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
 pub struct ObstacleId(pub u64);
 
-/// A point of an obstacle's material. Only the obstacle that it belongs to can interpret it.
+/// A point of an obstacle's material. Its numbers mean something to that obstacle only; on a surface,
+/// [`MaterialPoint::triangle`] is the triangle.
 ///
 /// A small plain value. Two values from one obstacle are the same point if their bits are the same.
 #[derive(Clone, Copy, Debug, PartialEq)]
