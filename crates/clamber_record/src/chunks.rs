@@ -204,3 +204,43 @@ impl<T, W> Drop for Chunks<T, W> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Keeps what it is told to write, and takes its time.
+    struct Slow(Vec<u64>);
+
+    impl WriteTicks<u64, Vec<u64>> for Slow {
+        fn chunk(&mut self, ticks: &mut [u64]) -> Result<(), RecordError> {
+            std::thread::sleep(Duration::from_millis(2));
+            self.0.extend(ticks.iter());
+            Ok(())
+        }
+
+        fn finish(self) -> Result<Vec<u64>, RecordError> {
+            Ok(self.0)
+        }
+    }
+
+    #[test]
+    fn a_game_that_is_faster_than_the_thread_loses_no_tick() {
+        for (ticks, pause) in [(0, 0), (1, 0), (61, 0), (10, 3)] {
+            let mut chunks = Chunks::start(Slow(Vec::new()), 3).unwrap();
+            for tick in 0..ticks {
+                let take = |known: Option<&mut u64>| match known {
+                    Some(known) => {
+                        *known = tick;
+                        None
+                    }
+                    None => Some(tick),
+                };
+                chunks.push(tick, take).unwrap();
+                std::thread::sleep(Duration::from_millis(pause));
+            }
+            let written = chunks.finish().unwrap();
+            assert_eq!(written, (0..ticks).collect::<Vec<_>>());
+        }
+    }
+}

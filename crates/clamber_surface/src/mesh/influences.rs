@@ -93,10 +93,8 @@ const BLOCK: usize = 8;
 #[derive(Clone, Debug)]
 enum Ends {
     /// As a distance from the start of its block of vertices, while no block has more than 255 influences.
-    Near {
-        blocks: Vec<u32>,
-        ends: Vec<u8>,
-    },
+    Near { blocks: Vec<u32>, ends: Vec<u8> },
+    /// As an index, from the first such block on.
     Far(Vec<u32>),
 }
 
@@ -179,7 +177,7 @@ impl PartialEq for Ends {
 enum Pairs {
     /// The joint in the upper byte; below it, the weight in units of 2^-24, less one.
     Together(Vec<u32>),
-    /// For a mesh of which some vertex is moved by a joint above 255.
+    /// From the first joint above 255 on.
     Apart { joints: Vec<u16>, units: Vec<u32> },
 }
 
