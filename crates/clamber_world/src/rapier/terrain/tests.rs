@@ -1,3 +1,9 @@
+use rapier3d::parry::bounding_volume::BoundingSphere;
+use rapier3d::parry::mass_properties::MassProperties;
+use rapier3d::parry::partitioning::{Bvh, BvhBuildStrategy};
+use rapier3d::parry::query::details::NormalConstraints;
+use rapier3d::parry::query::{PointProjection, PointQuery, Ray, RayCast, RayIntersection};
+use rapier3d::parry::shape::CompositeShape;
 use rapier3d::parry::utils::Array2;
 use rapier3d::prelude::*;
 
@@ -92,6 +98,113 @@ fn convex_shapes_are_solid() {
         (contact.separation_normal(outside) - DVec3::Y).length() < 1e-6,
         "{contact:?}"
     );
+}
+
+#[test]
+fn a_shape_that_is_its_own_part_has_no_parts() {
+    let own = SelfPart(
+        Ball::new(1.0),
+        Bvh::from_leaves(BvhBuildStrategy::default(), &[BOX]),
+    );
+    let collider = ColliderBuilder::new(SharedShape::new(own));
+    let world = world_of(collider);
+    let terrain = RapierTerrain::of_world(&world, &NO_POSES);
+    let mut contacts = Vec::new();
+    terrain.overlap_sphere(DVec3::ZERO, 2.0, &mut contacts);
+    assert_eq!(contacts, []);
+    assert_eq!(terrain.closest_point(DVec3::ZERO, 2.0), None);
+    // Rays are cast by the shape itself.
+    assert!(
+        terrain
+            .cast_ray(DVec3::Y * 2.0, DVec3::NEG_Y, 4.0)
+            .is_some()
+    );
+}
+
+const BOX: Aabb = Aabb {
+    mins: Vector::NEG_ONE,
+    maxs: Vector::ONE,
+};
+
+/// A composite shape whose only part is itself.
+#[derive(Clone)]
+struct SelfPart(Ball, Bvh);
+
+impl CompositeShape for SelfPart {
+    fn map_part_at(
+        &self,
+        _: u32,
+        f: &mut dyn FnMut(Option<&Pose>, &dyn Shape, Option<&dyn NormalConstraints>),
+    ) {
+        f(None, self, None);
+    }
+
+    fn bvh(&self) -> &Bvh {
+        &self.1
+    }
+}
+
+impl Shape for SelfPart {
+    fn compute_local_aabb(&self) -> Aabb {
+        BOX
+    }
+
+    fn compute_local_bounding_sphere(&self) -> BoundingSphere {
+        self.0.compute_local_bounding_sphere()
+    }
+
+    fn clone_dyn(&self) -> Box<dyn Shape> {
+        Box::new(self.clone())
+    }
+
+    fn scale_dyn(&self, _: Vector, _: u32) -> Option<Box<dyn Shape>> {
+        None
+    }
+
+    fn mass_properties(&self, _: Real) -> MassProperties {
+        MassProperties::default()
+    }
+
+    fn shape_type(&self) -> ShapeType {
+        ShapeType::Custom
+    }
+
+    fn as_typed_shape(&self) -> TypedShape<'_> {
+        TypedShape::Custom(self)
+    }
+
+    fn ccd_thickness(&self) -> Real {
+        0.0
+    }
+
+    fn ccd_angular_thickness(&self) -> Real {
+        0.0
+    }
+
+    fn as_composite_shape(&self) -> Option<&(dyn CompositeShape + Sync)> {
+        Some(self)
+    }
+}
+
+impl RayCast for SelfPart {
+    fn cast_local_ray_and_get_normal(
+        &self,
+        ray: &Ray,
+        max_time: Real,
+        solid: bool,
+    ) -> Option<RayIntersection> {
+        self.0.cast_local_ray_and_get_normal(ray, max_time, solid)
+    }
+}
+
+impl PointQuery for SelfPart {
+    fn project_local_point(&self, point: Vector, solid: bool) -> PointProjection {
+        self.0.project_local_point(point, solid)
+    }
+
+    fn project_local_point_and_get_feature(&self, point: Vector) -> (PointProjection, FeatureId) {
+        self.0.project_local_point_and_get_feature(point)
+    }
 }
 
 #[test]
