@@ -35,11 +35,11 @@ fn engines() -> Result<(), String> {
         "avian,rapier",
         IGNORE_RUST_VERSION,
         "--test",
-        "obstacles",
-        "--test",
-        "climbers_on_engines",
-        "--test",
-        "debris",
+        "plugin",
+        "--",
+        "obstacles::",
+        "climbers_on_engines::",
+        "debris::",
     ])
 }
 

@@ -21,7 +21,7 @@
 
 #[path = "bevy/climbers.rs"]
 mod climbers;
-#[path = "../tests/common/mod.rs"]
+#[path = "../tests/plugin/common/mod.rs"]
 mod common;
 #[path = "bevy/giants.rs"]
 mod giants;

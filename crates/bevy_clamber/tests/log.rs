@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
+#[path = "plugin/common/mod.rs"]
 mod common;
 
 use std::sync::Mutex;
