@@ -1,6 +1,6 @@
 //! What does a climber's tick cost, beside rapier's character controller on a mesh that does not move?
 //!
-//! - A giant of 6,054 vertices walks. One climber stands on it, another climbs from its foot to its head. They skin
+//! - A giant of 6,258 vertices walks. One climber stands on it, another climbs from its foot to its head. They skin
 //!   what they touch. rapier's `KinematicCharacterController` stands on the same mesh in the giant's first pose. That
 //!   mesh is never posed again, so rapier sees no motion, and nothing is skinned for it. All take turns, tick by tick,
 //!   on one thread. Times are medians.
