@@ -89,10 +89,15 @@ fn a_climb_replays_bit_for_bit() {
     let replay = battle::replay(&recording, None).unwrap();
     assert_eq!(replay.difference, None);
     assert_eq!(replay.agreed, options.ticks() + 1);
-    for from in [120, 600, 900, 1_500] {
+    let agrees_from = &|from| {
         let replay = battle::replay(&recording, Some(from)).unwrap();
         assert_eq!((replay.difference, replay.from), (None, from));
-    }
+    };
+    std::thread::scope(|scope| {
+        for from in [120, 600, 900, 1_500] {
+            scope.spawn(move || agrees_from(from));
+        }
+    });
     let ticks: Vec<_> = recording.ticks().map(|tick| tick.unwrap()).collect();
     let inputs: Vec<_> = ticks.iter().map(|tick| tick.input).collect();
     // The blows are the arena's own, and follow from the inputs.
