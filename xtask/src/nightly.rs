@@ -25,7 +25,8 @@ pub(crate) const STEPS: [Step; 8] = [
     ("soak", |_| soak::run(MINUTES, 1, None)),
 ];
 
-/// Climbers on the terrain of avian and of `bevy_rapier3d`, and its bodies on skin. They take minutes to build.
+/// The plugins in apps with avian and `bevy_rapier3d`: climbers on their terrain, bodies on skin, and all the rest. These
+/// two take minutes to build.
 fn engines() -> Result<(), String> {
     cargo(&[
         "test",
@@ -36,10 +37,6 @@ fn engines() -> Result<(), String> {
         IGNORE_RUST_VERSION,
         "--test",
         "plugin",
-        "--",
-        "obstacles::",
-        "climbers_on_engines::",
-        "debris::",
     ])
 }
 

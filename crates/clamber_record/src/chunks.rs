@@ -79,8 +79,8 @@ impl<T: Send + 'static, W: Send + 'static> Chunks<T, W> {
 /// Most chunks that wait to be written before the game waits for them.
 const WAITING: usize = 3;
 
-/// How long the thread sleeps before it looks for the next chunk: first, and at most. Handing a chunk over does not wake
-/// it, since that takes longer than all else that the game's thread does for a chunk.
+/// How long the thread sleeps before it looks for the next chunk: first, and at most. Handing a chunk over does not
+/// wake it, since that takes longer than all else that the game's thread does for a chunk.
 const SLEEP: [Duration; 2] = [Duration::from_micros(250), Duration::from_millis(50)];
 
 /// The next chunk; `None` when no more will come.
@@ -209,7 +209,7 @@ impl<T, W> Drop for Chunks<T, W> {
 mod tests {
     use super::*;
 
-    /// Keeps what it is told to write, and takes its time.
+    /// Stores the ticks that it is given, slower than the test makes them.
     struct Slow(Vec<u64>);
 
     impl WriteTicks<u64, Vec<u64>> for Slow {

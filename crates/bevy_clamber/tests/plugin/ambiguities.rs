@@ -1,6 +1,5 @@
 //! No system of this crate depends on an order that nobody has set, in any schedule, beside systems of an app.
 
-use super::common::{app_with, limb};
 use bevy_app::{App, FixedFirst, FixedPostUpdate, FixedUpdate, PostUpdate, PreUpdate, Update};
 use bevy_clamber::clamber_fight::{Arena, ArenaConfig};
 use bevy_clamber::prelude::*;
@@ -8,6 +7,8 @@ use bevy_ecs::prelude::*;
 use bevy_ecs::schedule::{LogLevel, ScheduleBuildSettings, Schedules};
 use bevy_math::Vec3;
 use bevy_transform::components::Transform;
+
+use super::common::{app_with, limb};
 
 /// What many systems of an app do.
 fn look(surfaces: SurfaceQuery, names: Query<&Name>) {

@@ -1,6 +1,5 @@
 //! Entities that are anchored to skin follow it as it is drawn.
 
-use super::common::{animate, app, drawn, limb};
 use bevy_app::{AnimationSystems, PostUpdate};
 use bevy_clamber::prelude::*;
 use bevy_ecs::prelude::*;
@@ -8,6 +7,8 @@ use bevy_ecs::system::RunSystemOnce;
 use bevy_math::{Dir3, Quat, Vec3};
 use bevy_shape::Ray3d;
 use bevy_transform::components::{GlobalTransform, Transform};
+
+use super::common::{animate, app, drawn, limb};
 
 /// Attaches an entity to the point of skin that a ray hits.
 fn stick(app: &mut bevy_app::App, from: Vec3, toward: Dir3) -> Entity {

@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use super::common::{Limb, add_bindposes, add_mesh, app, limb_mesh, spawn_limb, wait};
 use bevy_app::App;
 use bevy_asset::{Assets, Handle, RenderAssetUsages};
 use bevy_clamber::clamber_surface::mesh::{ColliderMesh, MeshError};
@@ -14,6 +13,8 @@ use bevy_mesh::{
     Indices, Mesh, Mesh3d, MeshCompressionArgs, PrimitiveTopology, VertexAttributeValues,
 };
 use bevy_transform::components::Transform;
+
+use super::common::{Limb, add_bindposes, add_mesh, app, limb_mesh, spawn_limb, wait};
 
 fn collider(app: &mut App, limb: &Limb) {
     app.world_mut()

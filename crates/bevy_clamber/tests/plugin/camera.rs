@@ -2,7 +2,6 @@
 
 use std::time::Duration;
 
-use super::common::{self, LYING, app_with, limb};
 use bevy_app::{App, PostUpdate, Update};
 use bevy_clamber::clamber_climber::ClimberMode;
 use bevy_clamber::prelude::*;
@@ -10,6 +9,8 @@ use bevy_ecs::prelude::*;
 use bevy_math::{DVec3, Quat, Vec2, Vec3};
 use bevy_time::{Time, TimeUpdateStrategy};
 use bevy_transform::components::Transform;
+
+use super::common::{self, LYING, app_with, limb};
 
 #[derive(Component)]
 struct Moving(Vec3);

@@ -1,6 +1,5 @@
 //! Keyboard, mouse and gamepads steer a climber, in the directions of its camera.
 
-use super::common::app_with;
 use bevy_app::App;
 use bevy_clamber::prelude::*;
 use bevy_ecs::message::Messages;
@@ -15,6 +14,8 @@ use bevy_input::mouse::MouseMotion;
 use bevy_input::prelude::ButtonInput;
 use bevy_math::{Quat, Vec2, Vec3};
 use bevy_transform::components::Transform;
+
+use super::common::app_with;
 
 fn app() -> (App, Entity, Entity) {
     let plugins = (

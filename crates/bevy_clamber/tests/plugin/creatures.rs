@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use super::common::{app, app_with};
 use bevy_app::{App, FixedPostUpdate, PostUpdate};
 use bevy_asset::Assets;
 use bevy_clamber::clamber_surface::rig::{Joint, Marker, Playback, Skeleton};
@@ -19,6 +18,8 @@ use bevy_time::{Fixed, Time};
 use bevy_transform::components::Transform;
 use clamber_gltf::Rig;
 use clamber_scenes::test_data;
+
+use super::common::{app, app_with};
 
 const COLOSSUS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/colossus.glb");
 

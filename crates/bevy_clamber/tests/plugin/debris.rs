@@ -1,6 +1,5 @@
 //! Bodies of `bevy_rapier3d` lie on skin, are carried by it, and are let go.
 
-use super::common::{self, LYING, Limb, limb};
 use bevy_app::{App, FixedPostUpdate, FixedUpdate, TaskPoolPlugin};
 use bevy_asset::AssetPlugin;
 use bevy_clamber::clamber_climber::ClimberMode;
@@ -13,6 +12,8 @@ use bevy_rapier3d::prelude::{Collider, NoUserData, RapierPhysicsPlugin, RigidBod
 use bevy_time::{Fixed, Time, TimePlugin, TimeUpdateStrategy};
 use bevy_transform::TransformPlugin;
 use bevy_transform::components::Transform;
+
+use super::common::{self, LYING, Limb, limb};
 
 #[derive(Component)]
 struct Moving(Vec3);

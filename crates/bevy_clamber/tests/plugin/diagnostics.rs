@@ -1,6 +1,5 @@
 //! Bevy's diagnostics agree with the surfaces' own counts.
 
-use super::common::{animate, app_with, limb};
 use bevy_app::{App, FixedPostUpdate, FixedUpdate, PostUpdate};
 use bevy_clamber::prelude::*;
 use bevy_diagnostic::{DiagnosticPath, DiagnosticsStore};
@@ -8,6 +7,8 @@ use bevy_ecs::prelude::*;
 use bevy_math::{Dir3, Vec3};
 use bevy_shape::Ray3d;
 use bevy_transform::components::Transform;
+
+use super::common::{animate, app_with, limb};
 
 type Plugin = SurfaceDiagnosticsPlugin;
 

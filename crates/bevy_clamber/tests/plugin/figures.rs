@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use super::common::{self, LYING, app_with, limb};
 use bevy_app::{App, PostUpdate};
 use bevy_asset::Assets;
 use bevy_clamber::WrongJoints;
@@ -14,6 +13,8 @@ use bevy_math::{DVec3, Vec3};
 use bevy_mesh::Mesh;
 use bevy_mesh::skinning::SkinnedMeshInverseBindposes;
 use bevy_transform::components::Transform;
+
+use super::common::{self, LYING, app_with, limb};
 
 const HERO: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/hero.glb");
 

@@ -2,7 +2,6 @@
 
 use std::any::TypeId;
 
-use super::common::{Limb, animate, app_with, drawn, limb};
 use bevy_app::{AnimationSystems, App, FixedUpdate, PostUpdate};
 use bevy_asset::Assets;
 use bevy_clamber::clamber_surface::geometry::Capsule;
@@ -14,6 +13,8 @@ use bevy_gizmos::{GizmoAsset, GizmoHandles, GizmoPlugin};
 use bevy_math::{Dir3, Vec3};
 use bevy_shape::Ray3d;
 use bevy_transform::components::{GlobalTransform, Transform};
+
+use super::common::{Limb, animate, app_with, drawn, limb};
 
 const NOTHING: SurfaceGizmos = SurfaceGizmos {
     parts: false,

@@ -2,8 +2,6 @@
 
 use std::time::Instant;
 
-use super::common::posed;
-use super::common::{Limb, add_bindposes, add_mesh, app, bend, limb, limb_mesh, spawn_limb, wait};
 use bevy_app::{App, PreUpdate};
 use bevy_asset::{Assets, RenderAssetUsages};
 use bevy_clamber::ColliderError;
@@ -16,6 +14,9 @@ use bevy_mesh::skinning::{SkinnedMesh, SkinnedMeshInverseBindposes};
 use bevy_mesh::{Indices, Mesh, Mesh3d, PrimitiveTopology, VertexAttributeValues};
 use bevy_shape::Ray3d;
 use bevy_transform::components::Transform;
+
+use super::common::posed;
+use super::common::{Limb, add_bindposes, add_mesh, app, bend, limb, limb_mesh, spawn_limb, wait};
 
 const EACH_TICK: SkinnedCollider = SkinnedCollider {
     joints: PoseTiming::EachTick,

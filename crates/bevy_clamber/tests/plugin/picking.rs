@@ -1,6 +1,5 @@
 //! Pointers hit skin in the pose that is drawn.
 
-use super::common::{Limb, animate, app_with, bend, drawn, limb};
 use bevy_app::{AnimationSystems, App, PostUpdate, Update};
 use bevy_asset::{Assets, Handle};
 use bevy_camera::visibility::{RenderLayers, Visibility, VisibilityPlugin};
@@ -24,6 +23,8 @@ use bevy_picking::pointer::{
 use bevy_picking::{InteractionPlugin, Pickable, PickingPlugin, PickingSettings};
 use bevy_transform::components::{GlobalTransform, Transform};
 use bevy_window::{PrimaryWindow, Window};
+
+use super::common::{Limb, animate, app_with, bend, drawn, limb};
 
 /// The `PointerHits` of the last update.
 #[derive(Resource, Default)]

@@ -1,7 +1,5 @@
 //! Every query over several surfaces agrees with brute force in f64.
 
-use super::common::posed;
-use super::common::{Limb, add_bindposes, add_mesh, app, bend, limb_mesh, spawn_limb, wait};
 use bevy_app::{App, FixedPostUpdate};
 use bevy_clamber::EntitySweepHit;
 use bevy_clamber::clamber_surface::geometry::Capsule;
@@ -13,6 +11,9 @@ use bevy_shape::Ray3d;
 use bevy_transform::components::Transform;
 use clamber_oracle::brute_force::{self, Corners, Crossing, Triangles, segment_distance};
 use glam::DVec3;
+
+use super::common::posed;
+use super::common::{Limb, add_bindposes, add_mesh, app, bend, limb_mesh, spawn_limb, wait};
 
 /// Largest error of a distance, metres: a few roundings of positions to f32, at up to 30 m.
 const CLOSE: f64 = 3e-5;

@@ -1,6 +1,5 @@
 //! Anchored entities are found from their surface, and are told of when it is gone.
 
-use super::common::{Limb, add_mesh, app, limb, limb_mesh, wait};
 use bevy_app::App;
 use bevy_clamber::prelude::*;
 use bevy_clamber::{AnchoredTo, SurfaceAnchors};
@@ -10,6 +9,8 @@ use bevy_ecs::system::RunSystemOnce;
 use bevy_math::Vec3;
 use bevy_mesh::{Mesh, Mesh3d, VertexAttributeValues};
 use bevy_transform::components::Transform;
+
+use super::common::{Limb, add_mesh, app, limb, limb_mesh, wait};
 
 fn arrow(app: &mut App, near: Vec3) -> Entity {
     let ask = move |surfaces: SurfaceQuery| {

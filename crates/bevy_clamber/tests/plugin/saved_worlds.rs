@@ -1,6 +1,5 @@
 //! A world is written as Bevy writes worlds, read into another app, and goes on there.
 
-use super::common::{self, LYING, Limb, app_with, limb};
 use bevy_app::App;
 use bevy_asset::AssetServer;
 use bevy_clamber::clamber_climber::{ClimberState as State, Support};
@@ -13,6 +12,8 @@ use bevy_transform::components::Transform;
 use bevy_world_serialization::serde::WorldDeserializer;
 use bevy_world_serialization::{DynamicWorld, DynamicWorldBuilder};
 use serde::de::DeserializeSeed;
+
+use super::common::{self, LYING, Limb, app_with, limb};
 
 /// A floor of skin in an app with climbers.
 fn scene() -> (App, Limb) {

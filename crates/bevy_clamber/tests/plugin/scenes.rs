@@ -4,7 +4,6 @@
 use std::error::Error;
 use std::time::Duration;
 
-use super::common::{app_with, wait};
 use bevy_app::App;
 use bevy_asset::{Assets, RenderAssetUsages};
 use bevy_clamber::clamber_climber::{self, ClimberConfig, ClimberMode, GroundConfig};
@@ -19,6 +18,8 @@ use bevy_transform::components::Transform;
 use clamber_scenes::controllers::{
     Controller, HEIGHT, Input, Motion, PADDING, RADIUS, SNAP, STEP, Set, Solid, all, play,
 };
+
+use super::common::{app_with, wait};
 
 /// A world of Bevy with a climber, and the same climber of the core.
 struct InBevy {

@@ -2,8 +2,6 @@
 
 use std::time::Duration;
 
-use super::common::posed;
-use super::common::{self, Limb, animate, app, bend, limb};
 use bevy_app::{AnimationSystems, App, PostUpdate, Update};
 use bevy_asset::Assets;
 use bevy_clamber::AnchorError;
@@ -18,6 +16,9 @@ use bevy_shape::Ray3d;
 use bevy_time::TimeUpdateStrategy;
 use bevy_transform::components::{GlobalTransform, Transform};
 use glam::DVec3;
+
+use super::common::posed;
+use super::common::{self, Limb, animate, app, bend, limb};
 
 /// An anchor at the point of the limb that a ray along -X at a height hits.
 fn anchor_at(app: &mut App, height: f32) -> SurfaceAnchor {

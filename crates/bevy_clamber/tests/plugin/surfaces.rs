@@ -1,6 +1,5 @@
 //! A skinned mesh becomes a surface, which has the pose of its animation.
 
-use super::common::{SPIN, animate, app, limb};
 use bevy_app::{AnimationSystems, FixedUpdate, PostUpdate};
 use bevy_clamber::prelude::*;
 use bevy_ecs::prelude::*;
@@ -10,6 +9,8 @@ use bevy_shape::Ray3d;
 use bevy_time::{Fixed, Time};
 use bevy_transform::components::Transform;
 use glam::DVec3;
+
+use super::common::{SPIN, animate, app, limb};
 
 /// The hit of a ray from the right, at a height.
 fn meet(app: &mut bevy_app::App, height: f32) -> Option<EntityHit> {

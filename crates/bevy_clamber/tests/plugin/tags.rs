@@ -1,6 +1,5 @@
 //! Surface tags of meshes: from a component, from an observer, and changed later.
 
-use super::common::{Limb, add_bindposes, add_mesh, app, limb_mesh, spawn_limb, wait};
 use bevy_app::App;
 use bevy_clamber::prelude::*;
 use bevy_ecs::prelude::*;
@@ -8,6 +7,8 @@ use bevy_ecs::system::RunSystemOnce;
 use bevy_math::{Dir3, Vec3};
 use bevy_shape::Ray3d;
 use bevy_transform::components::Transform;
+
+use super::common::{Limb, add_bindposes, add_mesh, app, limb_mesh, spawn_limb, wait};
 
 const FUR: SurfaceTag = SurfaceTag::new(SurfaceKind::Fur);
 const LEDGE: SurfaceTag = SurfaceTag::new(SurfaceKind::Stone).with_ledge();

@@ -2,7 +2,6 @@
 
 use std::time::Duration;
 
-use super::common::{self, Limb, app, bend, limb};
 use bevy_app::{AnimationSystems, App, FixedPostUpdate, FixedUpdate, PostUpdate, Update};
 use bevy_clamber::clamber_surface::mesh::VertexId;
 use bevy_clamber::prelude::*;
@@ -10,6 +9,8 @@ use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_time::{Fixed, Time, TimeUpdateStrategy, Virtual};
 use bevy_transform::components::Transform;
+
+use super::common::{self, Limb, app, bend, limb};
 
 const FRAME: SkinnedCollider = SkinnedCollider::each_frame();
 const TICK: SkinnedCollider = SkinnedCollider::each_tick();

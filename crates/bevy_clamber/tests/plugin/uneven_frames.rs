@@ -3,7 +3,6 @@
 
 use std::time::Duration;
 
-use super::common::{self, app_with, limb};
 use bevy_app::{App, FixedPostUpdate, Update};
 use bevy_clamber::clamber_climber::ClimberMode;
 use bevy_clamber::prelude::*;
@@ -11,6 +10,8 @@ use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_time::{Time, TimeUpdateStrategy, Virtual};
 use bevy_transform::components::Transform;
+
+use super::common::{self, app_with, limb};
 
 /// Metres a second that the creature moves along X.
 const SPEED: f64 = 2.0;

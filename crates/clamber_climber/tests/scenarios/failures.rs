@@ -1,8 +1,8 @@
 //! Known failures of other engines. Each scene is named after the issue or thread that reports it.
 //!
 //! Some are tested elsewhere. bevy#25605, picking hits in mid-air beside an animated body, is in
-//! `bevy_clamber/tests/plugin/picking.rs`. avian#813 (eight overlapping moving meshes) and the cost in Unity's thread 875257
-//! (18 ms to bake 30,000 faces again) are measured for our skins by the benches `scene` and `tick` of the root package.
+//! `bevy_clamber/tests/plugin/picking.rs`. avian#813 (eight overlapping moving meshes) and the cost in Unity's thread
+//! 875257 (18 ms to bake 30,000 faces again) are measured for our skins by `clamber_benches`' benches `scene` and `tick`.
 //! The other part of that thread, velocities of a posed mesh, is here.
 
 use core::f64::consts::TAU;

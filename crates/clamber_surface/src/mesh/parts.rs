@@ -35,8 +35,8 @@ impl Part {
     }
 }
 
-/// The joint of every part, and the part of every triangle. Most queries need no more than this, so the lists of a part's
-/// triangles and vertices are made on first use: by edits, by spheres around parts, and by those who ask for them.
+/// The joint of every part, and the part of every triangle. Most queries need no more than this, so the lists of a
+/// part's triangles and vertices are made on first use: by edits, by spheres around parts, and by those who ask for them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Parts {
     /// By part.

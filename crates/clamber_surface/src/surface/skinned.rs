@@ -75,9 +75,9 @@ impl SkinnedSurface {
 
     /// Starts the next tick: the current pose becomes the previous one, and the given pose becomes current.
     ///
-    /// Costs O(joints), and O(nodes and clusters that the last two ticks touched). Nothing is skinned, unless the last tick touched at least
-    /// three quarters of all clusters; then all are. That depends on which clusters queries reached, not on how many
-    /// threads they ran on.
+    /// Costs O(joints), and O(nodes and clusters that the last two ticks touched). Nothing is skinned, unless the last
+    /// tick touched at least three quarters of all clusters; then all are. That depends on which clusters queries
+    /// reached, not on how many threads they ran on.
     ///
     /// # Errors
     /// [`SurfaceError::Palette`] about the given palette, or about the previous one re-expressed in the new model

@@ -6,7 +6,6 @@ mod supports;
 
 use std::time::Duration;
 
-use super::common::{self, Limb, app_with, limb, limb_mesh, wait};
 use bevy_app::{App, FixedUpdate, PreUpdate, Update};
 use bevy_asset::Assets;
 use bevy_clamber::clamber_climber::{ClimberConfig, ClimberMode, ClimberObstacle, CustomMode};
@@ -23,6 +22,8 @@ use bevy_math::{DVec3, Vec3};
 use bevy_mesh::{Mesh, Mesh3d};
 use bevy_time::{Time, TimeUpdateStrategy, Virtual};
 use bevy_transform::components::Transform;
+
+use super::common::{self, Limb, app_with, limb, limb_mesh, wait};
 
 /// Metres a second that the creature moves along X.
 const SPEED: f32 = 2.0;
