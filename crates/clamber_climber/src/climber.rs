@@ -20,6 +20,10 @@ pub struct StepRules<'a> {
     /// Handlers of the game's custom modes. In each tick, all but the current mode's are asked in this order whether
     /// they begin, until one does. A climber in a custom mode whose handler is missing falls. By default none.
     pub modes: &'a [&'a dyn CustomMode],
+    /// Velocity of the air, in world space, metres a second, such as the wind's. A climber that has touched nothing for
+    /// a second takes it as its frame ([`ClimberState::base_velocity`]): steering in the air is measured against it.
+    /// By default zero.
+    pub air_velocity: DVec3,
 }
 
 impl<'a> StepRules<'a> {
@@ -28,6 +32,7 @@ impl<'a> StepRules<'a> {
         Self {
             can_grip,
             modes: &[],
+            air_velocity: DVec3::ZERO,
         }
     }
 
@@ -45,6 +50,7 @@ impl Default for StepRules<'_> {
         Self {
             can_grip: &|_, contact| is_fur(&contact.tag),
             modes: &[],
+            air_velocity: DVec3::ZERO,
         }
     }
 }
@@ -158,7 +164,8 @@ impl Climber {
     /// [`Climber::step`] by a game's own rules: what can be gripped, and custom modes.
     ///
     /// # Errors
-    /// As [`Climber::step`], and [`ClimberError::SameMode`] if two of the modes have the same id.
+    /// As [`Climber::step`]. [`ClimberError::SameMode`] if two of the modes have the same id, and
+    /// [`ClimberError::NotFinite`] if the air's velocity is not finite.
     pub fn step_with(
         &mut self,
         input: &ClimberInput,
@@ -173,6 +180,9 @@ impl Climber {
             {
                 return Err(ClimberError::SameMode(mode.id()));
             }
+        }
+        if !rules.air_velocity.is_finite() {
+            return Err(ClimberError::NotFinite("air_velocity"));
         }
         let asked = Asked {
             input,

@@ -100,6 +100,12 @@ pub enum ClimberEvent {
         /// The mode now.
         to: ClimberMode,
     },
+    /// A mode's handler asked for a change to the mode that the climber is in, which counts as
+    /// [`NextMode::Stay`](crate::NextMode::Stay). A custom mode that wants to begin anew resets its memory and stays.
+    AlreadyInMode {
+        /// The mode.
+        mode: ClimberMode,
+    },
     /// Reported by a custom mode ([`ModeContext::report`](crate::ModeContext::report)).
     Custom {
         /// Id of the mode.
@@ -116,15 +122,17 @@ pub enum ClimberEvent {
 
 /// An impulse that a climber gives to an obstacle that can be pushed.
 ///
-/// - The support gets the climber's weight, mass times gravity, at the supporting point, however the climber walks or
-///   climbs there.
+/// - The support gets the climber's weight, mass times gravity, at the supporting point.
 /// - An obstacle that it lands on or hits in the air gets, along the contact normal, the impulse that brings both to
 ///   the same speed.
 /// - An obstacle that it runs into gets the same, but at most
 ///   [`BodyConfig::push_force`](crate::BodyConfig::push_force) times the tick.
 ///
-/// If it hits several obstacles at once, each of these impulses is divided by their number. Jumping off and starting to
-/// walk push nothing.
+/// - The support gets the reaction to all of this that the climber does while it stands or holds on: to running into
+///   something, to starting, stopping and turning, and to a jump off it. So the momentum of bodies and climber together
+///   changes by gravity and by what is fixed alone, and no passenger drives its cart.
+///
+/// If it hits several obstacles at once, each of the impulses of hits is divided by their number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Push {

@@ -9,8 +9,10 @@ use crate::ClimberError;
 #[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
 pub struct ClimberInput {
     /// Direction to walk or climb in, in world space. Its length is the share of full speed; more than 1 counts as 1.
-    /// The component along up is ignored. On a hold, the direction is rotated with the hold from level ground: pushing
-    /// against a wall climbs up, pulling away climbs down.
+    /// The component along up is ignored. On a hold, it says where to climb when it is pressed, or turned by more than
+    /// 20 degrees: towards a wall is up, away from it down, and under a ceiling it is the direction itself. While it is
+    /// held, the climber goes on in one direction, over bumps, round edges, and from a wall onto its ceiling
+    /// ([`HoldingMemory`](crate::HoldingMemory)).
     pub walk: DVec3,
     /// Direction to climb in, in world space, on holds and ledges. Only its component along the hold counts. Zero:
     /// `walk` is used instead. For bots, and for cameras that look at the wall.

@@ -31,6 +31,6 @@ pub use obstacle::ClimberObstacle;
 pub use shake::Shake;
 pub use state::{ClimberMode, ClimberState, MEMORY, Support, TRANSITIONS};
 pub use step::{
-    CustomMode, FlyingMemory, HangingMemory, LedgeHangingMemory, ModeContext, NextMode,
-    StandingMemory, TumblingMemory,
+    CustomMode, FlyingMemory, HangingMemory, HoldingMemory, LedgeHangingMemory, ModeContext,
+    NextMode, StandingMemory, TumblingMemory,
 };

@@ -9,8 +9,8 @@ const AS_NEAR: f64 = 0.05;
 const TRIES: usize = 16;
 
 /// The end of the line to a contact may be blocked over this length, as a fraction of the body's radius: the triangles
-/// around the contact are there.
-const AT_HAND: f64 = 0.025;
+/// around the contact are there, and rounding moves them. Thicker armour above fur keeps hands off.
+const AT_HAND: f64 = 0.0025;
 
 impl Mover<'_> {
     /// Finds the contact that hands grip at a position: the nearest one within `reach` metres of the body's ball that

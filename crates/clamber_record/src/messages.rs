@@ -2,8 +2,8 @@
 //! numbers follow the order of the fields.
 
 use clamber_climber::{
-    Blow, ClimberInput, ClimberMode, ClimberState, FlyingMemory, HangingMemory, LedgeHangingMemory,
-    MEMORY, StandingMemory, StepReport, Support, TumblingMemory,
+    Blow, ClimberInput, ClimberMode, ClimberState, FlyingMemory, HangingMemory, HoldingMemory,
+    LedgeHangingMemory, MEMORY, StandingMemory, StepReport, Support, TumblingMemory,
 };
 use clamber_surface::surface::Diagnostics;
 use clamber_world::{Attachment, MaterialPoint, ObstacleId, SurfaceKind, SurfaceTag};
@@ -169,6 +169,23 @@ pub(crate) struct State {
     pub(crate) legs: Vector,
     #[prost(bool, tag = "23")]
     pub(crate) crushed: bool,
+    /// How long it has touched nothing, seconds.
+    #[prost(double, tag = "24")]
+    pub(crate) untouched: f64,
+    /// What it remembers of a held stick while it climbs.
+    #[prost(message, optional, tag = "25")]
+    pub(crate) held_stick: Option<HeldStick>,
+}
+
+/// A stick that is held while the climber climbs.
+#[derive(Clone, Copy, PartialEq, Encode, prost::Message)]
+pub(crate) struct HeldStick {
+    #[prost(message, required, tag = "1")]
+    pub(crate) stick: Vector,
+    #[prost(message, required, tag = "2")]
+    pub(crate) along: Vector,
+    #[prost(message, required, tag = "3")]
+    pub(crate) normal: Vector,
 }
 
 /// A summary of the step's report.
@@ -359,10 +376,15 @@ impl State {
             self.coyote,
             self.jump_buffer,
             self.open_handed,
+            self.untouched,
         ];
         vectors.iter().any(Vector::has_negative_zero)
             || numbers.iter().chain(&memory).any(negative_zero)
             || self.support.is_some_and(|held| held.has_negative_zero())
+            || self.held_stick.is_some_and(|held| {
+                let vectors = [held.stick, held.along, held.normal];
+                vectors.iter().any(Vector::has_negative_zero)
+            })
             || self
                 .support_velocity
                 .is_some_and(|velocity| velocity.has_negative_zero())
@@ -521,6 +543,12 @@ impl From<&ClimberState> for State {
             jumping: state.flying.jumping,
             memory: state.memory.into(),
             shoved: state.standing.shoved,
+            untouched: state.untouched,
+            held_stick: Some(HeldStick {
+                stick: state.holding.stick.into(),
+                along: state.holding.along.into(),
+                normal: state.holding.normal.into(),
+            }),
         }
     }
 }
@@ -611,6 +639,14 @@ impl State {
             standing: StandingMemory {
                 shoved: self.shoved,
             },
+            untouched: self.untouched,
+            holding: self
+                .held_stick
+                .map_or(HoldingMemory::default(), |held| HoldingMemory {
+                    stick: held.stick.into(),
+                    along: held.along.into(),
+                    normal: held.normal.into(),
+                }),
             memory: self.memory.into(),
         })
     }

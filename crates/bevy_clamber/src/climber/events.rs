@@ -274,6 +274,9 @@ pub(super) fn tell_event(event: &ClimberEvent, told: &Told<'_>, commands: &mut C
                 value: *value,
             },
         ),
+        ClimberEvent::AlreadyInMode { mode } => {
+            tracing::warn!("climber {entity}: mode {mode:?} changed to itself, which does nothing");
+        }
         ClimberEvent::NotFinite => {
             tracing::warn!("climber {entity} met numbers that are not finite");
             tell(commands, ClimberNotFinite { entity });

@@ -184,6 +184,7 @@ pub(super) fn step_climbers(
         let rules = StepRules {
             can_grip: &can_grip,
             modes: &modes,
+            ..StepRules::default()
         };
         let gone = body.lost_point(&touchable);
         body.forget_jump(&touchable);

@@ -9,7 +9,7 @@ use glam::DVec3;
 
 use crate::ClimberError;
 use crate::step::{
-    FlyingMemory, HangingMemory, LedgeHangingMemory, StandingMemory, TumblingMemory,
+    FlyingMemory, HangingMemory, HoldingMemory, LedgeHangingMemory, StandingMemory, TumblingMemory,
 };
 
 /// Everything that a climber remembers between ticks.
@@ -25,7 +25,9 @@ pub struct ClimberState {
     /// Velocity after the last tick, in world space, metres a second. Corrections of position, such as steps up, are
     /// not part of it.
     pub velocity: DVec3,
-    /// Velocity of its support, or of its last one, in world space, metres a second. The climber's own motion is
+    /// Velocity of its support, in world space, metres a second; in the air, that of what it touched last. A climber that
+    /// has touched nothing for a second takes on the velocity of the air
+    /// ([`StepRules::air_velocity`](crate::StepRules::air_velocity)) within the next. The climber's own motion is
     /// measured against it, so that a fall or a late jump is the same in every frame that moves steadily.
     pub base_velocity: DVec3,
     /// Direction that it faces: a unit vector perpendicular to up, in world space.
@@ -54,6 +56,8 @@ pub struct ClimberState {
     pub jump_buffer: f64,
     /// Time left in which it grips nothing after it let go, seconds.
     pub open_handed: f64,
+    /// How long it has touched nothing, seconds, counted up to 2. 0 while it has a support.
+    pub untouched: f64,
     /// True if its body is the ball alone although [`BodyConfig::height`](crate::BodyConfig::height) is not 0: it holds
     /// on, was crushed, or has no room to stand up.
     pub crouched: bool,
@@ -65,6 +69,8 @@ pub struct ClimberState {
     pub flying: FlyingMemory,
     /// Memory of [`ClimberMode::Tumbling`].
     pub tumbling: TumblingMemory,
+    /// Memory of [`ClimberMode::Holding`].
+    pub holding: HoldingMemory,
     /// Memory of [`ClimberMode::Hanging`].
     pub hanging: HangingMemory,
     /// Memory of [`ClimberMode::LedgeHanging`].
@@ -95,11 +101,13 @@ impl ClimberState {
             coyote: 0.0,
             jump_buffer: 0.0,
             open_handed: 0.0,
+            untouched: 0.0,
             crouched: false,
             crushed: false,
             standing: StandingMemory::default(),
             flying: FlyingMemory::default(),
             tumbling: TumblingMemory::default(),
+            holding: HoldingMemory::default(),
             hanging: HangingMemory::default(),
             ledge_hanging: LedgeHangingMemory::default(),
             memory: [0.0; MEMORY],
@@ -137,7 +145,7 @@ impl ClimberState {
         Ok(())
     }
 
-    fn vectors(&self) -> [DVec3; 6] {
+    fn vectors(&self) -> [DVec3; 9] {
         [
             self.position,
             self.velocity,
@@ -145,11 +153,14 @@ impl ClimberState {
             self.heading,
             self.shake,
             self.hanging.legs,
+            self.holding.stick,
+            self.holding.along,
+            self.holding.normal,
         ]
     }
 
     /// Every number, with its name.
-    fn numbers(&self) -> [(&'static str, f64); 9] {
+    fn numbers(&self) -> [(&'static str, f64); 10] {
         [
             ("stamina", self.stamina),
             ("hit_points", self.hit_points),
@@ -160,6 +171,7 @@ impl ClimberState {
             ("coyote", self.coyote),
             ("jump_buffer", self.jump_buffer),
             ("open_handed", self.open_handed),
+            ("untouched", self.untouched),
         ]
     }
 

@@ -68,6 +68,7 @@ impl Tick<'_> {
         self.state.support = Some(support);
         self.state.velocity = motion.velocity;
         self.state.base_velocity = motion.velocity;
+        self.state.untouched = 0.0;
         self.face(motion.turn * self.state.heading);
         let offset = support.attachment.offset_in_world();
         self.carried = Some(Carried {
@@ -97,6 +98,14 @@ impl Tick<'_> {
             .map_or(own, |carried| carried.motion.turn * own)
     }
 
+    /// Its velocity if it does nothing in this tick: its own at the tick's beginning, on top of its support's.
+    pub(super) fn carried_velocity(&self) -> DVec3 {
+        match &self.carried {
+            Some(carried) => carried.velocity() + self.own_velocity(),
+            None => self.state.velocity,
+        }
+    }
+
     /// True if the material can carry the climber, which means that its motion is known. An obstacle that answers
     /// queries but reports no motion blocks the climber, but cannot be stood on or held.
     pub(super) fn carries(&self, touch: &Touch) -> bool {
@@ -118,6 +127,7 @@ impl Tick<'_> {
         self.state.support = Some(support);
         self.state.support_velocity = motion.map(|motion| motion.velocity);
         self.state.base_velocity = motion.map_or(DVec3::ZERO, |motion| motion.velocity);
+        self.state.untouched = 0.0;
         // The last support has carried it in this tick already. The new one is at its final position, so it adds no
         // motion.
         self.carried = motion.map(|motion| Carried {

@@ -13,7 +13,8 @@ use crate::{ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, ClimberState
 pub enum NextMode {
     /// The mode goes on.
     Stay,
-    /// Change to another mode. Its handler runs in the same tick, or in the next one if the body has already moved.
+    /// Change to another mode. Its handler runs in the same tick, or in the next one if the body has already moved. A
+    /// change to the current mode counts as [`NextMode::Stay`], with [`ClimberEvent::AlreadyInMode`].
     Change(ClimberMode),
 }
 
@@ -135,24 +136,27 @@ impl<'a> ModeContext<'_, 'a> {
     /// The climber's velocity before its own movement, in world space, metres a second. It is the sum of its support's
     /// velocity and its own, including a blow.
     pub fn velocity(&self) -> DVec3 {
-        let tick = &self.tick;
-        match &tick.carried {
-            Some(carried) => carried.velocity() + tick.own_velocity(),
-            None => tick.state.velocity,
-        }
+        self.tick.carried_velocity()
     }
 
-    /// Velocity of its support, or of its last one, in world space, metres a second. Its own motion is measured against
-    /// it.
+    /// Velocity of its support, in world space, metres a second; without one, its frame in the air
+    /// ([`ClimberState::base_velocity`]). Its own motion is measured against it.
     pub fn base_velocity(&self) -> DVec3 {
         let carried = self.tick.carried;
         carried.map_or(self.tick.state.base_velocity, |carried| carried.velocity())
     }
 
+    /// Velocity of the air, in world space, metres a second ([`StepRules::air_velocity`](crate::StepRules)).
+    pub fn air_velocity(&self) -> DVec3 {
+        self.tick.rules.air_velocity
+    }
+
     /// Sets the velocity that its own motion is measured against from now on, in world space, metres a second, such as
-    /// that of water or wind. While it has a support, the support's velocity is used instead, and replaces it.
+    /// that of water. It counts as a touch: without another one, it becomes that of the air from the first to the
+    /// second second after this call. While it has a support, the support's velocity is used instead, and replaces it.
     pub fn set_base_velocity(&mut self, velocity: DVec3) {
         self.tick.state.base_velocity = velocity;
+        self.tick.state.untouched = 0.0;
     }
 
     /// Sweeps the body to `target`, a position in world space at the tick's end, and returns where it got.

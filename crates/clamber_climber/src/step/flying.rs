@@ -5,8 +5,11 @@ use glam::DVec3;
 
 use super::ground::GRAZING;
 use super::moving::Intent;
-use super::{NextMode, Tick};
+use super::{LEVEL, NextMode, Tick};
 use crate::{ClimberEvent, ClimberMode};
+
+/// A contact at no more than this multiple of the speed that gravity adds in a tick is no impact.
+const RESTS: f64 = 1.5;
 
 /// A tumbling body bounces if its impact speed is above this share of the speed of a jump.
 const BOUNCE: f64 = 0.1;
@@ -73,7 +76,36 @@ impl Tick<'_> {
         let along = own - up * own.dot(up);
         let wanted = level * ground.walk_speed;
         let steered = along.move_towards(wanted, ground.air_acceleration * self.dt());
-        self.state.velocity += steered - along;
+        let change = self.off_steep_slopes(steered - along);
+        self.state.velocity += change;
+    }
+
+    /// A level change of velocity without what leads into slopes that are too steep to stand on: they would deflect it
+    /// upwards, and be climbed. (Unreal's `LimitAirControl` and Jolt's sample do the same.)
+    fn off_steep_slopes(&mut self, change: DVec3) -> DVec3 {
+        let (up, body) = (self.config.up(), self.body());
+        let limit = self.standing_slope();
+        let here = self.state.position + self.state.base_velocity * self.dt();
+        self.mover.overlap(&body, here, body.margin);
+        let is_slope =
+            |normal: DVec3| self.config.slope(normal) > limit && normal.dot(up) > GRAZING;
+        let slopes = || {
+            // By both normals: the edge of a step is no slope.
+            let touches = self.mover.overlaps().iter();
+            touches
+                .filter(|touch| is_slope(touch.normal) && is_slope(touch.contact.normal))
+                .map(|touch| (touch.normal - up * touch.normal.dot(up)).normalize_or_zero())
+        };
+        let kept = slopes().fold(change, |kept, level| {
+            kept - level * kept.dot(level).min(0.0)
+        });
+        // Between two slopes, what leads along one leads into the other.
+        let leads_into = |level: DVec3| kept.dot(level) < -LEVEL * change.length();
+        if slopes().any(leads_into) {
+            DVec3::ZERO
+        } else {
+            kept
+        }
     }
 
     /// Moves the body through one tick of free fall. Returns the velocity that it would have had without contacts.
@@ -95,7 +127,24 @@ impl Tick<'_> {
         let moved = self.slide_at(&self.path(target), Intent::Go, falling);
         self.state.position = moved.position;
         self.state.velocity = self.clipped(falling);
+        // Gravity changed it, and what it hit got its pushes.
+        self.rides = self.state.velocity;
+        self.be_hurt_by_impact(falling);
         falling
+    }
+
+    /// Costs hit points for the hardest of the last movement's impacts, by its speed along the contact's normal: on
+    /// ground, slopes, walls and ceilings alike.
+    fn be_hurt_by_impact(&mut self, falling: DVec3) {
+        let speeds = self.mover.touched().iter().map(|touch| {
+            let own = falling - self.mover.velocity_of(touch);
+            -own.dot(touch.normal)
+        });
+        let speed = speeds.fold(0.0, f64::max);
+        // A body that rests or slides meets its ground at the speed that gravity adds in a tick.
+        if speed > RESTS * self.config.gravity.length() * self.dt() {
+            self.hurt_by_fall(speed);
+        }
     }
 
     /// Stands on the ground that it came down on, or slides down it. A crushed climber does neither.
@@ -133,7 +182,6 @@ impl Tick<'_> {
             speed,
         });
         self.change_to(ClimberMode::Standing);
-        self.hurt_by_fall(speed);
         let falls_over = self
             .config
             .tumble
@@ -164,7 +212,6 @@ impl Tick<'_> {
         let speed = -(falling - base).dot(touch.normal);
         if speed > BOUNCE * jump {
             self.state.velocity += touch.normal * (speed * tumble.restitution);
-            self.hurt_by_fall(speed);
         }
         let along = self.state.velocity - base;
         let sliding = along - touch.normal * along.dot(touch.normal);

@@ -7,7 +7,7 @@ use super::carrying::Carried;
 use super::moving::Intent;
 use super::{NextMode, Tick};
 use crate::config::GripConfig;
-use crate::{ClimberConfig, ClimberEvent, ClimberInput, ClimberMode};
+use crate::{ClimberEvent, ClimberInput, ClimberMode};
 
 /// Speed at which arms draw the body to its hold, as a share of the climbing speed.
 const DRAW: f64 = 8.0 / 3.0;
@@ -27,6 +27,29 @@ const STUCK: f64 = 0.25;
 
 /// Share of the input along the hold above which it climbs at full speed. Below, it climbs more slowly.
 const FULL: f64 = 0.1;
+
+/// Cosine from up of a hold's normal, below which the hold is a ceiling: it leans over by more than 45 degrees.
+const CEILING: f64 = -0.707;
+
+/// Cosine of the angle by which a held stick may turn before its direction is taken anew: 20 degrees.
+const HELD_STILL: f64 = 0.939_692_620_785_908_4;
+
+/// Memory of a climber that climbs by [`ClimberInput::walk`]: in which direction along its hold the stick leads.
+///
+/// The direction is found when the stick is pressed, or turned by more than 20 degrees. While the stick is held, it goes
+/// along with the hold's normal, over bumps and round edges, by the shortest rotation (parallel transport). All are zero
+/// without a held stick.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
+pub struct HoldingMemory {
+    /// The stick's direction when `along` was found: a level unit vector in world space.
+    pub stick: DVec3,
+    /// Direction in which it climbs: a unit vector in world space, perpendicular to `normal`.
+    pub along: DVec3,
+    /// Normal of the hold in the last tick: a unit vector in world space.
+    pub normal: DVec3,
+}
 
 /// A face that opposes the input's direction by more than this cosine is climbed onto, not along.
 const AHEAD: f64 = 0.3;
@@ -76,8 +99,40 @@ impl Tick<'_> {
             self.state.hanging.arm = self.config.hang.arm_length;
             return NextMode::Change(ClimberMode::Hanging);
         }
-        let wish = climb_direction(self.config, self.input, normal);
+        let wish = self.climb_wish(&carried);
         self.climb(&carried, &grip, wish)
+    }
+
+    /// The direction in which the input leads along the hold; its length is the share of full speed.
+    fn climb_wish(&mut self, carried: &Carried) -> DVec3 {
+        let normal = carried.normal();
+        let (up, walk, climb) = (self.config.up(), self.input.walk, self.input.climb);
+        let level = walk - up * walk.dot(up);
+        let held = std::mem::take(&mut self.state.holding);
+        if climb != DVec3::ZERO {
+            return projected(climb, normal);
+        }
+        let Some(stick) = level.try_normalize() else {
+            return DVec3::ZERO;
+        };
+        let turn = carried.motion.turn;
+        let memory = if held.stick.dot(stick) > HELD_STILL {
+            let along = turn_to(turn * held.normal, normal) * (turn * held.along);
+            let along = along - normal * along.dot(normal);
+            HoldingMemory {
+                stick: held.stick,
+                along: along.normalize_or(pressed(up, normal, stick)),
+                normal,
+            }
+        } else {
+            HoldingMemory {
+                stick,
+                along: pressed(up, normal, stick),
+                normal,
+            }
+        };
+        self.state.holding = memory;
+        memory.along * level.length().min(1.0)
     }
 
     /// Lets go: stands on ground that is level enough, else falls.
@@ -94,6 +149,7 @@ impl Tick<'_> {
     pub(super) fn jump_off(&mut self, normal: DVec3, speed: f64) -> NextMode {
         let up = self.config.up();
         self.state.velocity += (normal + up).normalize_or(normal) * speed;
+        self.push_off();
         self.begin_jump();
         self.state.open_handed = OPEN_HANDED;
         self.leave(ClimberMode::Falling)
@@ -183,15 +239,22 @@ impl Tick<'_> {
         grip: &GripConfig,
         holds: Option<DVec3>,
     ) -> Option<Touch> {
-        let (config, input, rules) = (self.config, self.input, self.rules);
+        let (input, rules) = (self.input, self.rules);
         let body = self.body();
-        let holds = holds.map(|held| (held, climb_direction(config, input, held)));
+        let along = self.state.holding.along;
+        let holds = holds.map(|held| {
+            let wish = match input.climb {
+                DVec3::ZERO => along,
+                climb => projected(climb, held),
+            };
+            (held, wish)
+        });
         let touch = self.mover.find_grip(
             &body,
             position,
             grip.reach,
             |touch| (rules.can_grip)(touch.obstacle, &touch.contact),
-            |touch| holds.map_or(0.0, |holds| leads_on(config, input, holds, touch.normal)),
+            |touch| holds.map_or(0.0, |holds| leads_on(input, holds, touch.normal)),
         )?;
         self.carries(&touch).then_some(touch)
     }
@@ -216,30 +279,34 @@ impl Tick<'_> {
     }
 }
 
-/// The input's direction along a hold; its length is the share of full speed.
-fn climb_direction(config: &ClimberConfig, input: &ClimberInput, normal: DVec3) -> DVec3 {
-    let up = config.up();
-    let (wanted, share) = if input.climb == DVec3::ZERO {
-        let level = input.walk - up * input.walk.dot(up);
-        (turn_to(up, normal) * level, level.length().min(1.0))
-    } else {
-        (input.climb, input.climb.length().min(1.0))
-    };
+/// The direction of [`ClimberInput::climb`] along a hold; its length is the share of full speed.
+fn projected(wanted: DVec3, normal: DVec3) -> DVec3 {
+    let share = wanted.length().min(1.0);
     let along = wanted - normal * wanted.dot(normal);
     // Input straight into the hold does not move the climber: rounding would decide its direction.
     let fade = (along.length() / (FULL * wanted.length())).min(1.0);
     along.normalize_or_zero() * if fade.is_finite() { share * fade } else { 0.0 }
 }
 
+/// The direction along a hold in which a stick that is pressed now climbs, a unit vector. `stick` is a level unit vector.
+///
+/// On walls it is turned with the hold from level ground, so that towards the wall is up. Under ceilings this turn has no
+/// axis that stays the same from one bump to the next, and the stick's own direction is taken.
+fn pressed(up: DVec3, normal: DVec3, stick: DVec3) -> DVec3 {
+    if normal.dot(up) > CEILING {
+        turn_to(up, normal) * stick
+    } else {
+        (stick - normal * stick.dot(normal)).normalize_or_zero()
+    }
+}
+
 /// How much the input pushes against `face`, beyond a threshold, while the climber holds a face of normal `held`, along
-/// which the input's direction is `wish`. Zero if climbing on `face` would lead back against the held one.
-fn leads_on(
-    config: &ClimberConfig,
-    input: &ClimberInput,
-    (held, wish): (DVec3, DVec3),
-    face: DVec3,
-) -> f64 {
-    let beyond = climb_direction(config, input, face);
+/// which it leads in the direction `wish`. Zero if climbing on `face` would lead back against the held one.
+fn leads_on(input: &ClimberInput, (held, wish): (DVec3, DVec3), face: DVec3) -> f64 {
+    let beyond = match input.climb {
+        DVec3::ZERO => turn_to(held, face) * wish,
+        climb => projected(climb, face),
+    };
     let leads_back = beyond.dot(held) < -AHEAD;
     if leads_back {
         0.0

@@ -4,6 +4,7 @@
 //! [`Tick::run`] reads the same way. Each mode has a handler, which returns whether the mode stays or which mode comes
 //! next. One bounded loop runs the handlers; no handler calls another.
 
+mod air;
 mod carrying;
 mod custom;
 mod effort;
@@ -19,6 +20,7 @@ mod standing;
 pub use custom::{CustomMode, ModeContext, NextMode};
 pub use flying::{FlyingMemory, TumblingMemory};
 pub use hanging::HangingMemory;
+pub use holding::HoldingMemory;
 pub use ledge::LedgeHangingMemory;
 pub use standing::StandingMemory;
 
@@ -74,8 +76,10 @@ pub(crate) struct Tick<'a> {
     was: DVec3,
     /// True if it was crushed in the last tick.
     was_crushed: bool,
-    /// Velocity of its support, or of its last one, at the tick's beginning.
+    /// Velocity of its support, or of its frame in the air, at the tick's beginning.
     base_was: DVec3,
+    /// The velocity at which its own momentum is what it was: any change from it has a reaction on its support.
+    rides: DVec3,
     /// Velocity of a blow that does not end the mode by itself: the climber stays on its feet or its hold. Zero if
     /// none.
     struck: DVec3,
@@ -128,6 +132,7 @@ impl<'a> Tick<'a> {
             began: state.position,
             was: state.velocity,
             base_was: state.base_velocity,
+            rides: state.velocity,
             was_crushed: state.crushed,
             state,
             struck: DVec3::ZERO,
@@ -145,6 +150,7 @@ impl<'a> Tick<'a> {
         self.be_struck();
         self.count_down();
         self.be_carried();
+        self.rides = self.carried_velocity();
         self.run_modes();
         self.stand_up();
         self.update_stamina(shake);
@@ -174,7 +180,7 @@ impl<'a> Tick<'a> {
     /// Runs handlers until a mode stays or the body has been moved.
     fn run_modes(&mut self) {
         self.start_custom_mode();
-        loop {
+        for _ in 0..MOST_CHANGES {
             let next = match self.state.mode {
                 ClimberMode::Standing => self.stand(),
                 ClimberMode::Holding => self.hold(),
@@ -187,6 +193,11 @@ impl<'a> Tick<'a> {
             let NextMode::Change(mode) = next else {
                 break;
             };
+            if mode == self.state.mode {
+                // Without this, the handler would run again and again.
+                self.event(ClimberEvent::AlreadyInMode { mode });
+                break;
+            }
             let is_last = self.report.mode_changes + 1 >= MOST_CHANGES;
             self.change_to(mode);
             if self.has_moved {
@@ -228,7 +239,8 @@ impl<'a> Tick<'a> {
                 let flies_on = matches!(state.mode, ClimberMode::Falling | ClimberMode::Sliding);
                 state.flying.jumping &= flies_on;
             }
-            ClimberMode::Holding | ClimberMode::Custom(_) => {}
+            ClimberMode::Holding => state.holding = HoldingMemory::default(),
+            ClimberMode::Custom(_) => {}
         }
     }
 

@@ -7,6 +7,13 @@ use super::Tick;
 use super::carrying::Carried;
 use crate::{ClimberContact, ClimberEvent, ClimberMode, ContactPhase};
 
+/// Contacts with one key count as one if they are nearer to each other than this share of the radius, and their normals
+/// differ by at most the angle of [`ONE_FACE`]. A movement may find a contact twice.
+const ONE_CONTACT: f64 = 0.25;
+
+/// Cosine of the largest angle between the normals of contacts on one face: 8 degrees, since skin bends.
+const ONE_FACE: f64 = 0.99;
+
 /// Whether the climber or only its support moves the body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Intent {
@@ -48,7 +55,18 @@ impl Tick<'_> {
 
     /// [`Tick::slide`] with the velocity by which contacts are judged, where that is not the mean over the tick.
     pub(super) fn slide_at(&mut self, path: &Path, intent: Intent, wanted: DVec3) -> Moved {
-        let moved = self.mover.slide(path);
+        let mut moved = self.mover.slide(path);
+        if self.is_free() {
+            // A body that is crushed keeps to the frame of what crushes it, not to that of a support which it left.
+            let frame = self.touched_velocity().map(|velocity| velocity * self.dt());
+            if let Some(frame) = frame
+                && moved.missing_room > path.body.margin
+                && frame != path.frame
+            {
+                moved = self.mover.slide(&Path { frame, ..*path });
+            }
+            self.update_frame();
+        }
         self.note(path, intent, wanted, moved)
     }
 
@@ -119,9 +137,13 @@ impl Tick<'_> {
 
     fn list(&mut self, touch: &Touch, closing_speed: f64, phase: ContactPhase) {
         let (obstacle, contact) = (touch.obstacle, &touch.contact);
+        let apart = ONE_CONTACT * self.config.body.radius;
         let is_known = self.contacts.iter().any(|known| {
             let same = (known.obstacle, known.material.key) == (obstacle, contact.material.key);
-            same && known.phase == phase
+            // A collider may be a whole mesh, whose faces cannot be told apart by its key.
+            let is_near = known.position.distance(contact.point) <= apart;
+            let is_face = known.normal.dot(touch.normal) > ONE_FACE;
+            same && known.phase == phase && is_near && is_face
         });
         if !is_known {
             self.contacts.push(ClimberContact {

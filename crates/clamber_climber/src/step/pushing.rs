@@ -1,12 +1,12 @@
 //! Weight on the support, and impulses on the obstacles in the climber's way, if they can be pushed.
 //!
 //! An airborne climber transfers its momentum to what it hits: the impulse that brings both to one speed, this tick's
-//! gravity included. A climber that stands or holds on transfers no momentum to its support, however firmly walking
-//! presses it there: the support gets its weight, and other obstacles in the way get a push of limited force. None of
-//! this changes where the climber goes.
+//! gravity included. A climber that stands or holds on gives its support its weight, and obstacles in its way a push of
+//! limited force. Every push, and every change of its own velocity, has its reaction on the support. None of this
+//! changes where the climber goes.
 
 use clamber_mover::Touch;
-use clamber_world::{MaterialPoint, ObstacleId};
+use clamber_world::{Attachment, MaterialPoint, ObstacleId};
 use glam::DVec3;
 
 use super::Tick;
@@ -49,15 +49,34 @@ impl Tick<'_> {
         let pushes = &mut self.report.pushes[first..];
         let share = 1.0 / pushes.len() as f64;
         pushes.iter_mut().for_each(|push| push.impulse *= share);
+        let given = pushes.iter().map(|push| push.impulse).sum();
+        self.brace_against(given);
+    }
+
+    /// Gives the reaction to an impulse to what the climber stands on or holds, if that can be pushed. Without it a
+    /// passenger would drive its cart by pushing against the cart's wall.
+    fn brace_against(&mut self, impulse: DVec3) {
+        if let Some(carried) = self.carried {
+            self.push_support(&carried.support.attachment, -impulse);
+        }
+    }
+
+    /// Gives its support the reaction to a jump off it: all of the momentum that it takes along.
+    pub(super) fn push_off(&mut self) {
+        if let Some(attachment) = self.attachment() {
+            let change = self.state.velocity - self.rides;
+            self.push_support(&attachment, -change * self.config.body.mass);
+        }
     }
 
     /// Puts its weight on its support, except after a movement through the air: then the support got the impulse of the
-    /// hit.
+    /// hit. It also gets the reaction to changes of the climber's own velocity.
     pub(super) fn weigh_down(&mut self) {
         let Some(support) = self.state.support else {
             return;
         };
         let attachment = support.attachment;
+        self.recoil(&attachment);
         if self.has_flown {
             if self.is_pushed(attachment.obstacle, &attachment.material) {
                 // The impulse will change the support's velocity, which must not count as shake.
@@ -65,21 +84,62 @@ impl Tick<'_> {
             }
             return;
         }
-        let (obstacle, gravity) = (attachment.obstacle, self.config.gravity);
-        let down = gravity.normalize_or_zero();
-        if self
-            .mover
-            .push_response(obstacle, &attachment.material, down)
-            == 0.0
-        {
+        let gravity = self.config.gravity;
+        if self.response_of(&attachment, gravity) > 0.0 {
+            let weight = gravity * (self.config.body.mass * self.dt());
+            self.add_to_support(&attachment, weight);
+        }
+    }
+
+    /// The reaction to starting, stopping and turning, and to being brought to the support's velocity. Both move on
+    /// together, so a light raft is not kicked away.
+    fn recoil(&mut self, attachment: &Attachment) {
+        let change = self.state.velocity - self.rides;
+        let response = self.response_of(attachment, -change);
+        if response > 0.0 {
+            let together = 1.0 / (response + 1.0 / self.config.body.mass);
+            self.push_support(attachment, -change * together);
+        }
+    }
+
+    /// Gives the support an impulse, if it can be pushed. The change of velocity that this makes will not count as
+    /// shake.
+    fn push_support(&mut self, attachment: &Attachment, impulse: DVec3) {
+        let response = self.response_of(attachment, impulse);
+        if response == 0.0 {
+            return;
+        }
+        if let Some(velocity) = &mut self.state.support_velocity {
+            *velocity += impulse * response;
+        }
+        self.add_to_support(attachment, impulse);
+    }
+
+    /// Adds an impulse to what the support gets in this tick.
+    fn add_to_support(&mut self, attachment: &Attachment, impulse: DVec3) {
+        let (obstacle, material) = (attachment.obstacle, attachment.material);
+        let is_same =
+            |push: &&mut Push| (push.obstacle, push.material.key) == (obstacle, material.key);
+        if let Some(push) = self.report.pushes.iter_mut().find(is_same) {
+            push.impulse += impulse;
             return;
         }
         self.report.pushes.push(Push {
             obstacle,
-            material: attachment.material,
+            material,
             point: attachment.point,
-            impulse: gravity * (self.config.body.mass * self.dt()),
+            impulse,
         });
+    }
+
+    /// The speed along a direction that an impulse of 1 N s in it gives to the support.
+    fn response_of(&self, attachment: &Attachment, direction: DVec3) -> f64 {
+        let direction = direction.normalize_or_zero();
+        if direction == DVec3::ZERO {
+            return 0.0;
+        }
+        let (obstacle, material) = (attachment.obstacle, &attachment.material);
+        self.mover.push_response(obstacle, material, direction)
     }
 
     /// True for contacts that it stands on or holds: its support, and while standing all that are level enough to be

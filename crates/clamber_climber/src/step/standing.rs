@@ -75,6 +75,7 @@ impl Tick<'_> {
     /// Jumps, with the velocity of the ground that it leaves.
     fn jump(&mut self, walk: DVec3) -> NextMode {
         self.state.velocity += walk + self.config.up() * self.config.ground.jump_speed;
+        self.push_off();
         self.begin_jump();
         self.leave(ClimberMode::Falling)
     }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use clamber_climber::{ClimberEvent, ClimberInput, ClimberMode};
+use clamber_climber::{Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode};
 use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
 use clamber_surface::rig::JointId;
 use clamber_surface::surface::SkinnedSurface;
@@ -186,5 +186,42 @@ fn fur_behind_a_plate_does_not_drag_the_climber_along() {
             "tick {k}: {:?}",
             climber.state()
         );
+    }
+}
+
+/// Armour above fur, of skin and of half-spaces: hands reach through no more than a 400th of the radius.
+#[test]
+fn does_not_grip_fur_through_thin_armour() {
+    for radius in [0.02, 0.4, 2.0, 40.0] {
+        for share in [0.003, 0.005, 0.01, 0.02, 0.024, 0.03, 0.05] {
+            for along in [DVec3::ZERO, v(0.3, 0.0, -0.8)] {
+                for is_skin in [true, false] {
+                    let gap = share * radius;
+                    let half = Vec3::new(4.0, 0.5, 4.0);
+                    let fur = at(cuboid(half, FUR), DVec3::NEG_Y * f64::from(half.y));
+                    let thin = Vec3::new(half.x, 1e-4, half.z);
+                    let plate = at(cuboid(thin, STONE), DVec3::Y * gap);
+                    let spaces = [(0.0, FUR), (gap, STONE)]
+                        .map(|(height, tag)| clamber_world::HalfSpace::below(height).with_tag(tag));
+                    let obstacles: [&dyn Obstacle; 2] = if is_skin {
+                        [&fur, &plate]
+                    } else {
+                        [&spaces[0], &spaces[1]]
+                    };
+                    let mut config = ClimberConfig::colossus_climber();
+                    config.body.radius = radius;
+                    config.body.margin = radius / 40.0;
+                    let start = DVec3::Y * (gap + 1e-4 + radius) + along * radius;
+                    let mut climber = Climber::new(config, start).unwrap();
+                    for k in 0..20 {
+                        let input = if k < 10 { &ClimberInput::IDLE } else { &HOLD };
+                        tick(&mut climber, &obstacles, input);
+                        let state = climber.state();
+                        let told = format!("{is_skin}, radius {radius}, {share} thick: {state:?}");
+                        assert!(!state.mode.is_holding(), "{told}");
+                    }
+                }
+            }
+        }
     }
 }

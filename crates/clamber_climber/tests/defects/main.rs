@@ -8,12 +8,16 @@
 
 mod blows;
 mod common;
+mod contacts;
 mod corrections;
 mod crushing;
 mod errors;
+mod frames;
 mod grips;
+mod impacts;
 mod landings;
 mod ledges;
+mod modes;
 mod reach;
 #[allow(dead_code, reason = "shared with other targets")]
 #[path = "../climbing/scene.rs"]

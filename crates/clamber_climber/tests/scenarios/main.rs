@@ -10,12 +10,14 @@
     reason = "a test's helpers may fail like the test"
 )]
 
+mod air;
 mod belt;
 mod edges;
 mod failures;
 mod frames;
 mod ground;
 mod hands;
+mod holds;
 mod nonsense;
 mod open;
 mod platforms;

@@ -60,6 +60,16 @@ const NOT_COMPARED: &[(&str, &[Played], &str)] = &[
         "all planes touch the ball, so rounding decides which one it stands on",
     ),
     (
+        "a_held_stick_crosses_a_belly_as_a_direction_does",
+        &[Played::Root],
+        "velocities on bumps multiply the rounding of f32",
+    ),
+    (
+        "a_notch_stops_a_climber_that_left_a_train",
+        &[Played::Root],
+        "a narrow notch multiplies the rounding of f32 by up to 16",
+    ),
+    (
         "ground_moves_on_below_a_climber_held_back_by_a_wall",
         &[Played::Body],
         "the ground's end passes after 1.5 km, where f32 rounds it by 0.1 mm, and the ball rolls off that end",

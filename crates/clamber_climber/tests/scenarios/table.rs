@@ -385,13 +385,13 @@ fn the_table_in_markdown() {
     println!("{table}");
 }
 
-/// Declares the tests of known failures of others, which are played in every setting, too.
+/// Declares the tests of known failures of others and of ours, which are played in every setting, too.
 macro_rules! failures {
-    ($($test:ident),+ $(,)?) => {
+    ($($group:ident::$test:ident),+ $(,)?) => {
         $(
             #[test]
             fn $test() {
-                crate::plays::in_every_setting(stringify!($test), crate::failures::$test);
+                crate::plays::in_every_setting(stringify!($test), crate::$group::$test);
             }
         )+
 
@@ -400,12 +400,21 @@ macro_rules! failures {
 }
 
 failures! {
-    rapier_488_falling_through_a_rising_lift,
-    shock2quest_666_dragged_along_a_brushed_wall,
-    godot_46604_drift_on_a_rotating_platform,
-    godot_101253_one_frame_behind_the_platform,
-    jolt_1988_a_jump_eaten_by_stick_to_floor_on_a_descending_lift,
-    jolt_1514_jitter_on_a_diagonally_descending_platform,
-    tnua_13_pushed_when_the_platform_reverses,
-    unity_875257_no_velocities_of_a_mesh_that_is_posed,
+    failures::rapier_488_falling_through_a_rising_lift,
+    failures::shock2quest_666_dragged_along_a_brushed_wall,
+    failures::godot_46604_drift_on_a_rotating_platform,
+    failures::godot_101253_one_frame_behind_the_platform,
+    failures::jolt_1988_a_jump_eaten_by_stick_to_floor_on_a_descending_lift,
+    failures::jolt_1514_jitter_on_a_diagonally_descending_platform,
+    failures::tnua_13_pushed_when_the_platform_reverses,
+    failures::unity_875257_no_velocities_of_a_mesh_that_is_posed,
+    air::a_notch_stops_a_climber_that_left_a_train,
+    air::a_wall_that_squeezes_a_falling_climber_does_not_lift_it,
+    air::steering_away_from_a_cliff_counts_from_the_cliff,
+    air::the_frame_of_a_fall_becomes_that_of_the_air,
+    air::steering_in_the_air_climbs_no_steep_slope,
+    holds::a_held_stick_crosses_a_belly_as_a_direction_does,
+    holds::a_held_stick_goes_round_the_edges_of_a_box,
+    holds::a_held_stick_leads_from_a_wall_onto_its_ceiling,
+    holds::a_stick_that_turns_far_enough_leads_anew,
 }

@@ -1,7 +1,7 @@
 use super::*;
 use clamber_climber::{
-    Climber, ClimberConfig, FlyingMemory, HangingMemory, LedgeHangingMemory, StandingMemory,
-    TumblingMemory,
+    Climber, ClimberConfig, FlyingMemory, HangingMemory, HoldingMemory, LedgeHangingMemory,
+    StandingMemory, TumblingMemory,
 };
 use prost::Message;
 
@@ -18,6 +18,7 @@ fn everything() -> (ClimberState, ClimberInput) {
     let coordinates = vector();
     let [support_velocity, walk, climb, struck] = [vector(), vector(), vector(), vector()];
     let [base_velocity, aim, legs] = [vector(), vector(), vector()];
+    let [stick, along, held_normal] = [vector(), vector(), vector()];
     let state = ClimberState {
         position,
         velocity,
@@ -55,6 +56,12 @@ fn everything() -> (ClimberState, ClimberInput) {
         coyote: next(),
         jump_buffer: next(),
         open_handed: next(),
+        untouched: next(),
+        holding: HoldingMemory {
+            stick,
+            along,
+            normal: held_normal,
+        },
         crouched: true,
         crushed: true,
         flying: FlyingMemory { jumping: true },
@@ -128,6 +135,9 @@ fn numbers<'a>(state: &'a mut ClimberState, input: &'a mut ClimberInput) -> Vec<
         &mut state.heading,
         &mut state.shake,
         &mut state.hanging.legs,
+        &mut state.holding.stick,
+        &mut state.holding.along,
+        &mut state.holding.normal,
         &mut input.walk,
         &mut input.climb,
         &mut input.aim,
@@ -162,6 +172,7 @@ fn numbers<'a>(state: &'a mut ClimberState, input: &'a mut ClimberInput) -> Vec<
         &mut state.coyote,
         &mut state.jump_buffer,
         &mut state.open_handed,
+        &mut state.untouched,
     ]);
     list.extend(&mut state.memory);
     list
@@ -171,8 +182,8 @@ fn numbers<'a>(state: &'a mut ClimberState, input: &'a mut ClimberInput) -> Vec<
 fn every_number_reads_back_bit_for_bit_negative_zeros_and_denormals_too() {
     let (mut state, mut input) = everything();
     let count = numbers(&mut state, &mut input).len();
-    // Fifteen vectors and the coordinates, a rotation, the damage, nine numbers, and the memory of the game's modes.
-    assert_eq!(count, 3 * 16 + 4 + 1 + 9 + 8);
+    // Eighteen vectors and the coordinates, a rotation, the damage, ten numbers, and the memory of the game's modes.
+    assert_eq!(count, 3 * 19 + 4 + 1 + 10 + 8);
     for index in 0..count {
         for value in [-0.0, 0.0, f64::from_bits(1), -f64::MAX, -f64::MIN_POSITIVE] {
             let (mut state, mut input) = everything();

@@ -72,6 +72,10 @@ pub(crate) fn line(
         ClimberEvent::Custom { mode, what, value } => {
             (Level::Info, format!("mode {mode}: {what}, {value:.3}"))
         }
+        ClimberEvent::AlreadyInMode { mode } => (
+            Level::Warning,
+            format!("{mode:?} changed to itself, which does nothing"),
+        ),
         ClimberEvent::NotFinite => (
             Level::Error,
             "an obstacle gave numbers that are not finite: the step was skipped".to_owned(),

@@ -2,6 +2,7 @@
 
 use clamber_climber::{
     Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, ClimberState, StepReport,
+    StepRules,
 };
 use clamber_world::{Obstacle, ObstacleId, WorldCapsule};
 use glam::DVec3;
@@ -116,9 +117,15 @@ impl Run {
     fn step_only(&mut self, input: &ClimberInput) -> StepReport {
         let (climber, dt) = (&mut self.climber, self.stage.dt);
         let input = in_world(input, self.stage.place().scale);
-        let report = self
-            .stage
-            .in_world(|obstacles| climber.step(&input, obstacles, dt).unwrap());
+        // The air moves with the frame.
+        let rules = StepRules {
+            air_velocity: self.stage.place().velocity,
+            ..StepRules::default()
+        };
+        let report = self.stage.in_world(|obstacles| {
+            let stepped = climber.step_with(&input, obstacles, &rules, dt);
+            stepped.unwrap()
+        });
         self.note(report)
     }
 
