@@ -45,6 +45,14 @@ pub enum ClimberEvent {
         /// The gripped point, in world space.
         point: DVec3,
     },
+    /// Its hands slipped off a hold or a ledge, which passed them too fast
+    /// ([`GripConfig::catch_speed`](crate::GripConfig::catch_speed)), or for which its stamina did not suffice.
+    HandsSlipped {
+        /// The obstacle that it could not hold.
+        obstacle: ObstacleId,
+        /// Speed of the climber relative to the hold, metres a second.
+        speed: f64,
+    },
     /// Climbed around a corner, convex or concave.
     TurnedCorner {
         /// Angle between the normals of the face that it held before and the one that it holds now, radians.

@@ -175,6 +175,9 @@ pub(crate) struct State {
     /// What it remembers of a held stick while it climbs.
     #[prost(message, optional, tag = "25")]
     pub(crate) held_stick: Option<HeldStick>,
+    /// How long ago a tumbling climber first touched ground, seconds.
+    #[prost(double, tag = "26")]
+    pub(crate) down: f64,
 }
 
 /// A stick that is held while the climber climbs.
@@ -377,6 +380,7 @@ impl State {
             self.jump_buffer,
             self.open_handed,
             self.untouched,
+            self.down,
         ];
         vectors.iter().any(Vector::has_negative_zero)
             || numbers.iter().chain(&memory).any(negative_zero)
@@ -544,6 +548,7 @@ impl From<&ClimberState> for State {
             memory: state.memory.into(),
             shoved: state.standing.shoved,
             untouched: state.untouched,
+            down: state.tumbling.down,
             held_stick: Some(HeldStick {
                 stick: state.holding.stick.into(),
                 along: state.holding.along.into(),
@@ -626,7 +631,10 @@ impl State {
             ledge_hanging: LedgeHangingMemory {
                 pull_up: self.pull_up,
             },
-            tumbling: TumblingMemory { still: self.still },
+            tumbling: TumblingMemory {
+                still: self.still,
+                down: self.down,
+            },
             coyote: self.coyote,
             jump_buffer: self.jump_buffer,
             open_handed: self.open_handed,

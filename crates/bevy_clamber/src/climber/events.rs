@@ -77,6 +77,13 @@ events! {
         /// The point that its hands hold.
         point: Vec3,
     }
+    /// A climber's hands slipped off a hold or a ledge: it passed too fast, or stamina did not suffice.
+    ClimberHandsSlipped {
+        /// What it could not hold.
+        hold: Option<Entity>,
+        /// Speed of the climber relative to the hold, metres a second.
+        speed: f32,
+    }
     /// A climber pulled itself up over a ledge, and stands on top.
     ClimberMantled {}
     /// A climber let go, because [`ClimberInput::grip`](crate::ClimberInput::grip) ended.

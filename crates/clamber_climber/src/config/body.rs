@@ -13,7 +13,7 @@ pub struct BodyConfig {
     /// the capsule around both balls while it stands, slides, falls, tumbles or is in a custom mode. It is the first
     /// ball alone while the climber grips or hangs, and where there is no room to stand up. Default 0: always a ball.
     pub height: f64,
-    /// Thickness of the body's outer layer, which may overlap obstacles, metres, not negative and less than the radius.
+    /// Thickness of the body's outer layer, which may overlap obstacles, metres, from a thousandth to half of the radius.
     /// Default 0.01. The core inside it enters nothing, unless the climber is crushed or the solver's rounds do not
     /// suffice ([`StepReport::is_clear`](crate::StepReport::is_clear)). A wider margin forgives rougher deformation and
     /// shows more overlap.
@@ -37,8 +37,10 @@ impl BodyConfig {
     pub(super) fn validate(&self) -> Result<(), ClimberError> {
         check::positive("body.radius", self.radius)?;
         check::not_negative("body.height", self.height)?;
-        let range = "not negative and less than the radius";
-        check::less_than("body.margin", range, self.margin, self.radius)?;
+        // A thinner layer is less than the rounding by which ground is found.
+        let range = "from a thousandth to half of the radius";
+        let holds = (self.radius * 1e-3..=self.radius * 0.5).contains(&self.margin);
+        check::check("body.margin", range, self.margin, holds)?;
         check::positive("body.mass", self.mass)?;
         check::not_negative("body.push_force", self.push_force)
     }

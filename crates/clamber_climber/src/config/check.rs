@@ -36,12 +36,3 @@ pub(super) fn limit(name: &'static str, x: f64) -> Result<(), ClimberError> {
 pub(super) fn share(name: &'static str, x: f64) -> Result<(), ClimberError> {
     check(name, "from 0 to 1", x, (0.0..=1.0).contains(&x))
 }
-
-pub(super) fn less_than(
-    name: &'static str,
-    range: &'static str,
-    x: f64,
-    end: f64,
-) -> Result<(), ClimberError> {
-    check(name, range, x, x >= 0.0 && x < end)
-}

@@ -8,7 +8,7 @@ use crate::ClimberError;
 #[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
 pub struct GripConfig {
     /// How far from its ball it can grip, metres, not negative. Default 0.35, an arm. Raise it to grab more easily in
-    /// flight.
+    /// flight. At 0 it grips nothing.
     pub reach: f64,
     /// Climbing speed under full input, relative to the hold, metres a second, not negative. Default 1.5.
     pub climb_speed: f64,
@@ -26,6 +26,10 @@ pub struct GripConfig {
     /// Speed at which a jump leaves a hold or a ledge, away from it and upwards, metres a second, not negative. Default
     /// 4. A faster blow takes the climber off its hold.
     pub jump_speed: f64,
+    /// Fastest that hands catch a hold in flight, metres a second relative to the hold, not negative, may be infinite.
+    /// Default 15, a fall of 11 m. Beyond it they slip ([`ClimberEvent::HandsSlipped`](crate::ClimberEvent)). A slower
+    /// catch costs [`StaminaConfig::catch_cost`](crate::StaminaConfig::catch_cost).
+    pub catch_speed: f64,
 }
 
 impl GripConfig {
@@ -36,6 +40,7 @@ impl GripConfig {
         hang_acceleration: 15.0,
         calm_time: 0.4,
         jump_speed: 4.0,
+        catch_speed: 15.0,
     };
 
     pub(super) fn validate(&self) -> Result<(), ClimberError> {
@@ -44,6 +49,7 @@ impl GripConfig {
         check::not_negative("grip.max_overhang", self.max_overhang)?;
         check::limit("grip.hang_acceleration", self.hang_acceleration)?;
         check::not_negative("grip.calm_time", self.calm_time)?;
-        check::not_negative("grip.jump_speed", self.jump_speed)
+        check::not_negative("grip.jump_speed", self.jump_speed)?;
+        check::limit("grip.catch_speed", self.catch_speed)
     }
 }

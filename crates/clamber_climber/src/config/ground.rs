@@ -6,7 +6,7 @@ use crate::ClimberError;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
 pub struct GroundConfig {
-    /// Steepest slope to stand on, radians from level, from 0 to below a right angle. Default 50 degrees. A climber
+    /// Steepest slope to stand on, radians from level, from one degree to below a right angle. Default 50 degrees. A climber
     /// that stands already stays on slopes up to 2 degrees steeper.
     pub max_slope: f64,
     /// Speed along the ground under full input, metres a second, not negative. Default 3.
@@ -33,6 +33,12 @@ pub struct GroundConfig {
     /// Acceleration by input in the air, metres a second squared, not negative. Default 0: no steering. Platformers
     /// have about 10.
     pub air_acceleration: f64,
+    /// Fastest fall relative to the air, along gravity, metres a second, positive, may be infinite. Default 60, that of a
+    /// person. A body that is thrown down faster is slowed by as much as gravity would speed it up.
+    pub terminal_speed: f64,
+    /// Coefficient of friction on slopes that are too steep to stand on, not negative. Default 0. However large it is, a
+    /// body slides on, down slopes that it cannot stand on.
+    pub slide_friction: f64,
     /// Factor on gravity while a jump still rises and [`jump_held`](crate::ClimberInput::jump_held) is false, at least
     /// 1 and finite. Default 1: every jump is equally high. At 3 a tap jumps a third as high.
     pub jump_release_gravity: f64,
@@ -65,14 +71,18 @@ impl GroundConfig {
         acceleration: 1_000.0,
         friction: 15.0,
         air_acceleration: 0.0,
+        terminal_speed: 60.0,
+        slide_friction: 0.0,
         jump_release_gravity: 1.0,
         throw_acceleration: 20.0,
     };
 
     pub(super) fn validate(&self) -> Result<(), ClimberError> {
-        let range = "from 0 to below a right angle";
+        // The normals of level skin are rounded.
+        let range = "from one degree to below a right angle";
         let right_angle = core::f64::consts::FRAC_PI_2;
-        check::less_than("ground.max_slope", range, self.max_slope, right_angle)?;
+        let holds = (DEGREE..right_angle).contains(&self.max_slope);
+        check::check("ground.max_slope", range, self.max_slope, holds)?;
         check::not_negative("ground.walk_speed", self.walk_speed)?;
         check::not_negative("ground.jump_speed", self.jump_speed)?;
         check::not_negative("ground.snap_distance", self.snap_distance)?;
@@ -82,6 +92,14 @@ impl GroundConfig {
         check::not_negative("ground.acceleration", self.acceleration)?;
         check::not_negative("ground.friction", self.friction)?;
         check::not_negative("ground.air_acceleration", self.air_acceleration)?;
+        let terminal = self.terminal_speed;
+        check::check(
+            "ground.terminal_speed",
+            "positive",
+            terminal,
+            terminal > 0.0,
+        )?;
+        check::not_negative("ground.slide_friction", self.slide_friction)?;
         let gravity = self.jump_release_gravity;
         let name = "ground.jump_release_gravity";
         check::check(

@@ -17,6 +17,9 @@ pub struct LedgeConfig {
     pub shimmy_speed: f64,
     /// Duration of a pull-up, seconds, positive. Default 0.6.
     pub pull_up_time: f64,
+    /// Fastest that hands catch a ledge in flight, metres a second relative to the ledge, not negative, may be infinite.
+    /// Default 15. See [`GripConfig::catch_speed`](crate::GripConfig::catch_speed).
+    pub catch_speed: f64,
 }
 
 impl LedgeConfig {
@@ -26,6 +29,7 @@ impl LedgeConfig {
         drop: 0.6,
         shimmy_speed: 1.0,
         pull_up_time: 0.6,
+        catch_speed: 15.0,
     };
 
     pub(super) fn validate(&self) -> Result<(), ClimberError> {
@@ -33,6 +37,7 @@ impl LedgeConfig {
         check::not_negative("ledge.reach", self.reach)?;
         check::not_negative("ledge.drop", self.drop)?;
         check::not_negative("ledge.shimmy_speed", self.shimmy_speed)?;
-        check::positive("ledge.pull_up_time", self.pull_up_time)
+        check::positive("ledge.pull_up_time", self.pull_up_time)?;
+        check::limit("ledge.catch_speed", self.catch_speed)
     }
 }

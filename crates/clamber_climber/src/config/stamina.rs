@@ -17,6 +17,14 @@ pub struct StaminaConfig {
     /// Stamina regained per second while the climber stands on ground whose shake is not above the threshold, not
     /// negative. Default 1/5.
     pub refill: f64,
+    /// Stamina spent by a jump off a hold or a ledge, 0 to 1. Default 0.03: a jump gains less height than climbing for as
+    /// much. A climber with less stamina does not jump.
+    pub jump_cost: f64,
+    /// Stamina spent by catching a hold or a ledge in flight, for each metre a second by which the speed relative to it
+    /// exceeds that of a walk, not negative. Default 1/400. A climber whose stamina does not suffice slips.
+    pub catch_cost: f64,
+    /// Stamina spent by a pull-up over a ledge, 0 to 1. Default 0.01.
+    pub mantle_cost: f64,
 }
 
 impl StaminaConfig {
@@ -25,12 +33,18 @@ impl StaminaConfig {
         shake_threshold: 4.0,
         shake_drain: 1.0 / 60.0,
         refill: 0.2,
+        jump_cost: 0.03,
+        catch_cost: 1.0 / 400.0,
+        mantle_cost: 0.01,
     };
 
     pub(super) fn validate(&self) -> Result<(), ClimberError> {
         check::not_negative("stamina.hold_drain", self.hold_drain)?;
         check::not_negative("stamina.shake_threshold", self.shake_threshold)?;
         check::not_negative("stamina.shake_drain", self.shake_drain)?;
-        check::not_negative("stamina.refill", self.refill)
+        check::not_negative("stamina.refill", self.refill)?;
+        check::share("stamina.jump_cost", self.jump_cost)?;
+        check::not_negative("stamina.catch_cost", self.catch_cost)?;
+        check::share("stamina.mantle_cost", self.mantle_cost)
     }
 }

@@ -160,7 +160,7 @@ impl ClimberState {
     }
 
     /// Every number, with its name.
-    fn numbers(&self) -> [(&'static str, f64); 10] {
+    fn numbers(&self) -> [(&'static str, f64); 11] {
         [
             ("stamina", self.stamina),
             ("hit_points", self.hit_points),
@@ -168,6 +168,7 @@ impl ClimberState {
             ("ledge_hanging.pull_up", self.ledge_hanging.pull_up),
             ("hanging.calm", self.hanging.calm),
             ("tumbling.still", self.tumbling.still),
+            ("tumbling.down", self.tumbling.down),
             ("coyote", self.coyote),
             ("jump_buffer", self.jump_buffer),
             ("open_handed", self.open_handed),

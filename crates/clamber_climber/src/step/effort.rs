@@ -1,11 +1,13 @@
 //! Blows, shakes, stamina and damage.
 
+use clamber_mover::Touch;
 use clamber_world::{ObstacleId, PointMotion};
 use glam::DVec3;
 
+use super::holding::OPEN_HANDED;
 use super::{NextMode, Tick};
-use crate::Shake;
-use crate::{ClimberEvent, ClimberMode};
+use crate::config::StaminaConfig;
+use crate::{ClimberEvent, ClimberMode, Shake};
 
 /// How long it grips nothing after its stamina was used up, seconds.
 const EXHAUSTED: f64 = 1.0;
@@ -103,6 +105,38 @@ impl Tick<'_> {
         self.state.shake = shake.acceleration;
     }
 
+    /// Spends stamina on a single effort. False if it does not suffice; nothing is spent then.
+    pub(super) fn spend(&mut self, cost: impl Fn(&StaminaConfig) -> f64) -> bool {
+        let Some(stamina) = &self.config.stamina else {
+            return true;
+        };
+        let left = self.state.stamina - cost(stamina);
+        if left < 0.0 {
+            return false;
+        }
+        self.state.stamina = left;
+        true
+    }
+
+    /// Whether hands that are in flight can hold a contact: not if it passes them too fast, nor if stamina does not
+    /// suffice. A catch costs stamina by its speed; on the ground and on holds, gripping is free.
+    pub(super) fn catches(&mut self, touch: &Touch, fastest: f64) -> bool {
+        if self.state.mode.is_supported() {
+            return true;
+        }
+        let speed = (self.state.velocity - self.mover.velocity_of(touch)).length();
+        let hard = (speed - self.config.ground.walk_speed).max(0.0);
+        if speed <= fastest && self.spend(|stamina| stamina.catch_cost * hard) {
+            return true;
+        }
+        self.state.open_handed = OPEN_HANDED;
+        self.event(ClimberEvent::HandsSlipped {
+            obstacle: touch.obstacle,
+            speed,
+        });
+        false
+    }
+
     /// Drains or refills stamina, and opens the grip when stamina is used up.
     pub(super) fn update_stamina(&mut self, shake_before: DVec3) {
         if !self.state.mode.is_supported() {
@@ -116,7 +150,14 @@ impl Tick<'_> {
             [shake_before, self.state.shake].map(|acceleration| Shake { acceleration });
         let beyond = after.excess(&before, stamina.shake_threshold, dt);
         if self.state.mode.is_holding() {
-            let spent = stamina.hold_drain * dt + stamina.shake_drain * beyond;
+            // Arms that draw the body up work as hard as climbing as far.
+            let climb_speed = self.config.grip.map_or(0.0, |grip| grip.climb_speed);
+            let drawing = if climb_speed > 0.0 {
+                self.drawn_up / climb_speed
+            } else {
+                0.0
+            };
+            let spent = stamina.hold_drain * (dt + drawing) + stamina.shake_drain * beyond;
             self.state.stamina = (self.state.stamina - spent).max(0.0);
             if self.state.stamina == 0.0 {
                 self.be_shaken_off();

@@ -11,11 +11,15 @@ use crate::{ClimberEvent, ClimberMode};
 /// A contact at no more than this multiple of the speed that gravity adds in a tick is no impact.
 const RESTS: f64 = 1.5;
 
-/// A tumbling body bounces if its impact speed is above this share of the speed of a jump.
-const BOUNCE: f64 = 0.1;
+/// How long a tumbling body that does not come to rest stays down after it has first touched ground, beyond the time in
+/// which it gets up, seconds. Without friction it would slide on for ever.
+const STAYS_DOWN: f64 = 6.0;
 
-/// A tumbling body lies still if its speed relative to the ground is below this share of the speed of a jump.
-const STILL: f64 = 0.1;
+/// Friction on a steep slope takes at most this share of what gravity gives along it.
+const BRAKES: f64 = 0.9;
+
+/// A share of the speed at which a body falls from the height of its radius: slower contacts do not bounce.
+const SLOW: f64 = 0.25;
 
 /// Memory of a climber that is in the air or slides: whether it rises from a jump. The climber's step sets it; a game
 /// only stores it.
@@ -34,6 +38,8 @@ pub struct FlyingMemory {
 pub struct TumblingMemory {
     /// How long it has lain still, seconds.
     pub still: f64,
+    /// How long ago it first touched ground that can be stood on, seconds.
+    pub down: f64,
 }
 
 impl Tick<'_> {
@@ -121,16 +127,72 @@ impl Tick<'_> {
         } else {
             1.0
         };
-        let change = self.config.gravity * (weight * dt);
+        let change = self.limited_by_air(self.config.gravity * (weight * dt));
         let target = self.state.position + (self.state.velocity + change * 0.5) * dt;
         let falling = self.state.velocity + change;
         let moved = self.slide_at(&self.path(target), Intent::Go, falling);
         self.state.position = moved.position;
         self.state.velocity = self.clipped(falling);
+        if self.state.mode == ClimberMode::Sliding {
+            self.be_braked_by_slope(falling);
+        }
         // Gravity changed it, and what it hit got its pushes.
         self.rides = self.state.velocity;
         self.be_hurt_by_impact(falling);
         falling
+    }
+
+    /// The change of velocity by gravity in a tick, less what the air takes from a fall at the terminal speed.
+    fn limited_by_air(&self, change: DVec3) -> DVec3 {
+        let down = change.normalize_or_zero();
+        let most = self.config.ground.terminal_speed;
+        let speed = (self.state.velocity - self.rules.air_velocity).dot(down);
+        let gained = change.length();
+        let after = if speed > most {
+            (speed - gained).max(most)
+        } else {
+            (speed + gained).min(most)
+        };
+        if after == speed + gained {
+            change
+        } else {
+            down * (after - speed)
+        }
+    }
+
+    /// Brakes a body on slopes that are too steep to stand on, by as much as their contact takes from its fall, times
+    /// the coefficient of friction. What gravity gives it along the slope is braked by less than all, so that it never
+    /// comes to rest where it cannot stand.
+    fn be_braked_by_slope(&mut self, falling: DVec3) {
+        let friction = self.config.ground.slide_friction;
+        if friction == 0.0 {
+            return;
+        }
+        let (up, dt) = (self.config.up(), self.dt());
+        let slopes = self.mover.touched().iter();
+        let slope = slopes.copied().reduce(|best, touch| {
+            if touch.normal.dot(up) > best.normal.dot(up) {
+                touch
+            } else {
+                best
+            }
+        });
+        let Some(touch) = slope.filter(|touch| touch.normal.dot(up) > GRAZING) else {
+            return;
+        };
+        let own = self.state.velocity - self.mover.velocity_of(&touch);
+        let along = own - touch.normal * own.dot(touch.normal);
+        let pressed = (self.state.velocity - falling).dot(touch.normal).max(0.0);
+        let gravity = self.config.gravity * dt;
+        let pull = gravity - touch.normal * gravity.dot(touch.normal);
+        let leads_down = along.dot(pull) > 0.0;
+        let braked = if leads_down {
+            (friction * pressed).min(BRAKES * pull.length())
+        } else {
+            friction * pressed
+        };
+        let left = (along.length() - braked).max(0.0);
+        self.state.velocity += along.normalize_or_zero() * left - along;
     }
 
     /// Costs hit points for the hardest of the last movement's impacts, by its speed along the contact's normal: on
@@ -145,6 +207,11 @@ impl Tick<'_> {
         if speed > RESTS * self.config.gravity.length() * self.dt() {
             self.hurt_by_fall(speed);
         }
+    }
+
+    /// A speed that is slow for a body of its size under its gravity, metres a second: 0.5 for a radius of 0.4 m.
+    pub(super) fn slow(&self) -> f64 {
+        SLOW * libm::sqrt(self.config.gravity.length() * self.config.body.radius)
     }
 
     /// Stands on the ground that it came down on, or slides down it. A crushed climber does neither.
@@ -198,6 +265,9 @@ impl Tick<'_> {
             return NextMode::Change(ClimberMode::Falling);
         };
         let falling = self.fall();
+        if self.state.tumbling.down > 0.0 {
+            self.state.tumbling.down += self.dt();
+        }
         let slope = self.config.ground.max_slope;
         let held_up = self.held_up(self.state.position, slope);
         // A crushed climber does not get up.
@@ -206,11 +276,16 @@ impl Tick<'_> {
             return NextMode::Stay;
         };
         let touch = &ground.touch;
-        let jump = self.config.ground.jump_speed;
+        if self.state.tumbling.down == 0.0 {
+            self.state.tumbling.down = self.dt();
+        }
         self.state.position = ground.position;
         let base = self.mover.velocity_of(touch);
         let speed = -(falling - base).dot(touch.normal);
-        if speed > BOUNCE * jump {
+        let slow = self
+            .slow()
+            .max(RESTS * self.config.gravity.length() * self.dt());
+        if speed > slow {
             self.state.velocity += touch.normal * (speed * tumble.restitution);
         }
         let along = self.state.velocity - base;
@@ -219,17 +294,19 @@ impl Tick<'_> {
         let left = (sliding.length() - braked).max(0.0);
         self.state.velocity += sliding.normalize_or_zero() * left - sliding;
         let rest = (self.state.velocity - base).length();
-        self.state.tumbling.still = if rest < STILL * jump {
+        self.state.tumbling.still = if rest < slow {
             self.state.tumbling.still + self.dt()
         } else {
             0.0
         };
         self.state.base_velocity = base;
-        if self.state.tumbling.still < tumble.recover_time {
+        let stays_down = self.state.tumbling.down < tumble.recover_time + STAYS_DOWN;
+        if self.state.tumbling.still < tumble.recover_time && stays_down {
             return NextMode::Stay;
         }
         self.attach(touch, ground.position);
-        self.state.velocity = self.state.base_velocity;
+        // Its feet brake what its body could not.
+        self.state.velocity = self.state.base_velocity + sliding.clamp_length_max(left);
         NextMode::Change(ClimberMode::Standing)
     }
 }

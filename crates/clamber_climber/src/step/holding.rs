@@ -9,8 +9,8 @@ use super::{NextMode, Tick};
 use crate::config::GripConfig;
 use crate::{ClimberEvent, ClimberInput, ClimberMode};
 
-/// Speed at which arms draw the body to its hold, as a share of the climbing speed.
-const DRAW: f64 = 8.0 / 3.0;
+/// Time in which arms draw the body to its hold over the length of its radius, seconds: 4 m/s for a radius of 0.4 m.
+const DRAW_TIME: f64 = 0.1;
 
 /// How long it grips nothing after it jumped off a hold, let go or was torn off, seconds.
 pub(super) const OPEN_HANDED: f64 = 0.3;
@@ -65,7 +65,8 @@ impl Tick<'_> {
         if let Some(grip) = self.config.grip
             && let Some(touch) = self.find_grip(place, &grip, None)
         {
-            return Some(self.take_hold(&touch, place));
+            let catches = self.catches(&touch, grip.catch_speed);
+            return catches.then(|| self.take_hold(&touch, place));
         }
         self.catch_ledge(place)
     }
@@ -90,7 +91,7 @@ impl Tick<'_> {
         if !self.input.grip {
             return self.let_go(&carried);
         }
-        if self.state.jump_buffer > 0.0 {
+        if self.state.jump_buffer > 0.0 && self.spend(|stamina| stamina.jump_cost) {
             return self.jump_off(normal, grip.jump_speed);
         }
         let leans_over = self.config.slope(normal) > grip.max_overhang;
@@ -160,7 +161,8 @@ impl Tick<'_> {
         let normal = carried.normal();
         let offset = carried.position - carried.motion.position;
         let too_far = (offset.dot(normal) - self.config.body.radius).max(0.0);
-        let drawn = normal * too_far.min(DRAW * grip.climb_speed * dt);
+        let drawn = normal * too_far.min(self.draw_speed() * dt);
+        self.drawn_up -= drawn.dot(self.config.up()).min(0.0);
         let velocity = wish * grip.climb_speed;
         let step = velocity * dt;
         let target = carried.position + step - drawn;
@@ -208,6 +210,11 @@ impl Tick<'_> {
         NextMode::Stay
     }
 
+    /// Speed at which arms draw the body, metres a second.
+    pub(super) fn draw_speed(&self) -> f64 {
+        self.config.body.radius / DRAW_TIME
+    }
+
     /// Largest distance of its centre from its hold, metres: arms at full stretch, and some give.
     fn reach(&self, grip: &GripConfig) -> f64 {
         self.config.body.radius * 1.25 + grip.reach
@@ -249,6 +256,9 @@ impl Tick<'_> {
             };
             (held, wish)
         });
+        if grip.reach == 0.0 {
+            return None;
+        }
         let touch = self.mover.find_grip(
             &body,
             position,

@@ -85,6 +85,8 @@ pub(crate) struct Tick<'a> {
     struck: DVec3,
     /// How its support has carried it in this tick.
     carried: Option<Carried>,
+    /// How far arms have drawn the body upwards in this tick, metres.
+    drawn_up: f64,
     /// True if the target of a movement was not finite.
     is_lost: bool,
     /// True if the body has made its movement.
@@ -137,6 +139,7 @@ impl<'a> Tick<'a> {
             state,
             struck: DVec3::ZERO,
             carried: None,
+            drawn_up: 0.0,
             is_lost: false,
             has_moved: false,
             has_flown: false,

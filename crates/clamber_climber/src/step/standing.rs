@@ -15,9 +15,6 @@ const SHOVED: f64 = 0.1;
 /// A climber that is crushed into its ground by up to this share of its radius still stands on it.
 const SUNK: f64 = 0.5;
 
-/// A blow lifts the climber off if its own speed away from the ground is then above this share of the speed of a jump.
-const LIFTS: f64 = 0.1;
-
 /// A walking climber is pressed onto its ground by this share of the margin.
 const PRESS: f64 = 0.5;
 
@@ -65,7 +62,7 @@ impl Tick<'_> {
 
     /// Lifts the climber off the ground if a blow moves it fast enough away from it.
     fn be_lifted_off(&mut self, normal: DVec3, own: DVec3) -> Option<NextMode> {
-        let lifts = own.dot(normal) > LIFTS * self.config.ground.jump_speed;
+        let lifts = own.dot(normal) > self.slow();
         (lifts && self.struck != DVec3::ZERO).then(|| {
             self.state.velocity += own;
             self.be_knocked_off()

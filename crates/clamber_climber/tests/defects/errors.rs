@@ -32,12 +32,15 @@ fn holds(range: &str, x: f64) -> bool {
         "not negative" => x >= 0.0,
         "not negative and finite" => x >= 0.0 && x.is_finite(),
         "from 0 to 1" => (0.0..=1.0).contains(&x),
-        "from 0 to below a right angle" => (0.0..core::f64::consts::FRAC_PI_2).contains(&x),
+        "from one degree to below a right angle" => {
+            (1f64.to_radians()..core::f64::consts::FRAC_PI_2).contains(&x)
+        }
         "at least 1" => x >= 1.0,
         "at least 1 and finite" => x >= 1.0 && x.is_finite(),
         "1" => x == 1.0,
         // The test's body has a radius of 0.4 m.
         "not negative and less than the radius" => (0.0..0.4).contains(&x),
+        "from a thousandth to half of the radius" => (0.0004..=0.2).contains(&x),
         _ => panic!("this test does not know the range {range}"),
     }
 }
@@ -62,12 +65,16 @@ type Set<T> = fn(&mut T, f64);
 
 #[test]
 fn messages_about_configurations_are_true() {
-    let sets: [(&str, Set<ClimberConfig>); 30] = [
+    let sets: [(&str, Set<ClimberConfig>); 37] = [
         ("gravity", |c, x| c.gravity = DVec3::new(0.0, x, 0.0)),
         ("shake_time", |c, x| c.shake_time = x),
         ("body.radius", |c, x| {
             c.body.radius = x;
-            c.body.margin = 0.0;
+            c.body.margin = if x > 0.0 && x.is_finite() {
+                x / 40.0
+            } else {
+                0.01
+            };
         }),
         ("body.height", |c, x| c.body.height = x),
         ("body.margin", |c, x| c.body.margin = x),
@@ -86,7 +93,24 @@ fn messages_about_configurations_are_true() {
         ("ground.throw_acceleration", |c, x| {
             c.ground.throw_acceleration = x
         }),
+        ("ground.terminal_speed", |c, x| c.ground.terminal_speed = x),
+        ("ground.slide_friction", |c, x| c.ground.slide_friction = x),
         ("grip.reach", |c, x| c.grip.as_mut().unwrap().reach = x),
+        ("grip.catch_speed", |c, x| {
+            c.grip.as_mut().unwrap().catch_speed = x
+        }),
+        ("ledge.catch_speed", |c, x| {
+            c.ledge.as_mut().unwrap().catch_speed = x
+        }),
+        ("stamina.jump_cost", |c, x| {
+            c.stamina.as_mut().unwrap().jump_cost = x
+        }),
+        ("stamina.catch_cost", |c, x| {
+            c.stamina.as_mut().unwrap().catch_cost = x
+        }),
+        ("stamina.mantle_cost", |c, x| {
+            c.stamina.as_mut().unwrap().mantle_cost = x
+        }),
         ("grip.max_overhang", |c, x| {
             c.grip.as_mut().unwrap().max_overhang = x
         }),

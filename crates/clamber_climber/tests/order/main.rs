@@ -13,7 +13,7 @@ mod herd;
 use clamber_climber::{ClimberEvent, ClimberMode, StepReport};
 use herd::{CLIMBERS, CREATURES, Herd, Order};
 
-const TICKS: u32 = 600;
+const TICKS: u32 = 900;
 
 /// The fingerprint and report of every climber, tick by tick.
 type Told = Vec<Vec<(u64, StepReport)>>;

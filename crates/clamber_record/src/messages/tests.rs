@@ -52,7 +52,10 @@ fn everything() -> (ClimberState, ClimberInput) {
             legs,
         },
         ledge_hanging: LedgeHangingMemory { pull_up: next() },
-        tumbling: TumblingMemory { still: next() },
+        tumbling: TumblingMemory {
+            still: next(),
+            down: next(),
+        },
         coyote: next(),
         jump_buffer: next(),
         open_handed: next(),
@@ -169,6 +172,7 @@ fn numbers<'a>(state: &'a mut ClimberState, input: &'a mut ClimberInput) -> Vec<
         &mut state.hanging.calm,
         &mut state.ledge_hanging.pull_up,
         &mut state.tumbling.still,
+        &mut state.tumbling.down,
         &mut state.coyote,
         &mut state.jump_buffer,
         &mut state.open_handed,
@@ -182,8 +186,8 @@ fn numbers<'a>(state: &'a mut ClimberState, input: &'a mut ClimberInput) -> Vec<
 fn every_number_reads_back_bit_for_bit_negative_zeros_and_denormals_too() {
     let (mut state, mut input) = everything();
     let count = numbers(&mut state, &mut input).len();
-    // Eighteen vectors and the coordinates, a rotation, the damage, ten numbers, and the memory of the game's modes.
-    assert_eq!(count, 3 * 19 + 4 + 1 + 10 + 8);
+    // Eighteen vectors and the coordinates, a rotation, the damage, eleven numbers, and the memory of the game's modes.
+    assert_eq!(count, 3 * 19 + 4 + 1 + 11 + 8);
     for index in 0..count {
         for value in [-0.0, 0.0, f64::from_bits(1), -f64::MAX, -f64::MIN_POSITIVE] {
             let (mut state, mut input) = everything();

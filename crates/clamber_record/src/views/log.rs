@@ -72,6 +72,13 @@ pub(crate) fn line(
         ClimberEvent::Custom { mode, what, value } => {
             (Level::Info, format!("mode {mode}: {what}, {value:.3}"))
         }
+        ClimberEvent::HandsSlipped { obstacle, speed } => (
+            Level::Info,
+            format!(
+                "its hands slipped off {} at {speed:.1} m/s",
+                named(obstacle)
+            ),
+        ),
         ClimberEvent::AlreadyInMode { mode } => (
             Level::Warning,
             format!("{mode:?} changed to itself, which does nothing"),

@@ -148,11 +148,13 @@ impl Place {
         c.ground.friction *= s;
         c.ground.air_acceleration *= s;
         c.ground.throw_acceleration *= s;
+        c.ground.terminal_speed *= s;
         if let Some(grip) = &mut c.grip {
             grip.reach *= s;
             grip.climb_speed *= s;
             grip.hang_acceleration *= s;
             grip.jump_speed *= s;
+            grip.catch_speed *= s;
         }
         c.hang.arm_length *= s;
         c.hang.leg_length *= s;
@@ -161,10 +163,12 @@ impl Place {
             ledge.reach *= s;
             ledge.drop *= s;
             ledge.shimmy_speed *= s;
+            ledge.catch_speed *= s;
         }
         if let Some(stamina) = &mut c.stamina {
             stamina.shake_threshold *= s;
             stamina.shake_drain /= s;
+            stamina.catch_cost /= s;
         }
         if let Some(tumble) = &mut c.tumble {
             tumble.knock_acceleration *= s;
