@@ -169,6 +169,16 @@ pub(crate) struct State {
     pub(crate) legs: Vector,
     #[prost(bool, tag = "23")]
     pub(crate) crushed: bool,
+    /// How long it has been kept from pulling itself up, seconds.
+    #[prost(double, tag = "24")]
+    pub(crate) blocked: f64,
+    #[prost(bool, tag = "25")]
+    pub(crate) gave_up: bool,
+    #[prost(bool, tag = "26")]
+    pub(crate) returns: bool,
+    /// Direction of the input that leads to its right along a ledge that has turned a corner.
+    #[prost(message, required, tag = "27")]
+    pub(crate) right: Vector,
 }
 
 /// A summary of the step's report.
@@ -347,6 +357,7 @@ impl State {
             self.heading,
             self.shake,
             self.legs,
+            self.right,
         ];
         let memory: [f64; MEMORY] = self.memory.into();
         let numbers = [
@@ -354,6 +365,7 @@ impl State {
             self.hit_points,
             self.arm,
             self.pull_up,
+            self.blocked,
             self.calm,
             self.still,
             self.coyote,
@@ -509,6 +521,10 @@ impl From<&ClimberState> for State {
             hit_points: state.hit_points,
             arm: state.hanging.arm,
             pull_up: state.ledge_hanging.pull_up,
+            blocked: state.ledge_hanging.blocked,
+            gave_up: state.ledge_hanging.gave_up,
+            returns: state.ledge_hanging.returns,
+            right: state.ledge_hanging.right.into(),
             calm: state.hanging.calm,
             legs: state.hanging.legs.into(),
             crushed: state.crushed,
@@ -597,6 +613,10 @@ impl State {
             },
             ledge_hanging: LedgeHangingMemory {
                 pull_up: self.pull_up,
+                blocked: self.blocked,
+                gave_up: self.gave_up,
+                returns: self.returns,
+                right: self.right.into(),
             },
             tumbling: TumblingMemory { still: self.still },
             coyote: self.coyote,

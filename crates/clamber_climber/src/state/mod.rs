@@ -137,7 +137,7 @@ impl ClimberState {
         Ok(())
     }
 
-    fn vectors(&self) -> [DVec3; 6] {
+    fn vectors(&self) -> [DVec3; 7] {
         [
             self.position,
             self.velocity,
@@ -145,16 +145,18 @@ impl ClimberState {
             self.heading,
             self.shake,
             self.hanging.legs,
+            self.ledge_hanging.right,
         ]
     }
 
     /// Every number, with its name.
-    fn numbers(&self) -> [(&'static str, f64); 9] {
+    fn numbers(&self) -> [(&'static str, f64); 10] {
         [
             ("stamina", self.stamina),
             ("hit_points", self.hit_points),
             ("hanging.arm", self.hanging.arm),
             ("ledge_hanging.pull_up", self.ledge_hanging.pull_up),
+            ("ledge_hanging.blocked", self.ledge_hanging.blocked),
             ("hanging.calm", self.hanging.calm),
             ("tumbling.still", self.tumbling.still),
             ("coyote", self.coyote),

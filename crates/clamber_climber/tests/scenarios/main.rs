@@ -20,6 +20,7 @@ mod nonsense;
 mod open;
 mod platforms;
 mod plays;
+mod pull_ups;
 mod queries;
 mod skins;
 mod stage;

@@ -17,7 +17,7 @@ fn everything() -> (ClimberState, ClimberInput) {
     let [contact, offset, normal, face] = [vector(), vector(), vector(), vector()];
     let coordinates = vector();
     let [support_velocity, walk, climb, struck] = [vector(), vector(), vector(), vector()];
-    let [base_velocity, aim, legs] = [vector(), vector(), vector()];
+    let [base_velocity, aim, legs, right] = [vector(), vector(), vector(), vector()];
     let state = ClimberState {
         position,
         velocity,
@@ -50,7 +50,13 @@ fn everything() -> (ClimberState, ClimberInput) {
             calm: next(),
             legs,
         },
-        ledge_hanging: LedgeHangingMemory { pull_up: next() },
+        ledge_hanging: LedgeHangingMemory {
+            pull_up: next(),
+            blocked: next(),
+            gave_up: true,
+            returns: true,
+            right,
+        },
         tumbling: TumblingMemory { still: next() },
         coyote: next(),
         jump_buffer: next(),
@@ -128,6 +134,7 @@ fn numbers<'a>(state: &'a mut ClimberState, input: &'a mut ClimberInput) -> Vec<
         &mut state.heading,
         &mut state.shake,
         &mut state.hanging.legs,
+        &mut state.ledge_hanging.right,
         &mut input.walk,
         &mut input.climb,
         &mut input.aim,
@@ -158,6 +165,7 @@ fn numbers<'a>(state: &'a mut ClimberState, input: &'a mut ClimberInput) -> Vec<
         &mut state.hanging.arm,
         &mut state.hanging.calm,
         &mut state.ledge_hanging.pull_up,
+        &mut state.ledge_hanging.blocked,
         &mut state.tumbling.still,
         &mut state.coyote,
         &mut state.jump_buffer,
@@ -171,8 +179,8 @@ fn numbers<'a>(state: &'a mut ClimberState, input: &'a mut ClimberInput) -> Vec<
 fn every_number_reads_back_bit_for_bit_negative_zeros_and_denormals_too() {
     let (mut state, mut input) = everything();
     let count = numbers(&mut state, &mut input).len();
-    // Fifteen vectors and the coordinates, a rotation, the damage, nine numbers, and the memory of the game's modes.
-    assert_eq!(count, 3 * 16 + 4 + 1 + 9 + 8);
+    // Sixteen vectors and the coordinates, a rotation, the damage, ten numbers, and the memory of the game's modes.
+    assert_eq!(count, 3 * 17 + 4 + 1 + 10 + 8);
     for index in 0..count {
         for value in [-0.0, 0.0, f64::from_bits(1), -f64::MAX, -f64::MIN_POSITIVE] {
             let (mut state, mut input) = everything();
