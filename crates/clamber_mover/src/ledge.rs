@@ -1,3 +1,10 @@
+//! Ledges: the first one that a body catches, and how a ledge goes on beside a body that hangs from it.
+//!
+//! A hanging body is below the edge, at the wall, and its hands lie on the top. Straight ahead of it, rays look for the
+//! wall below the edge, and a ball for the hand looks for the top. Where the wall ends, the same is tried farther on.
+//! Failing that, the body goes around the corner: its wall is then whatever is nearest, which is the corner's vertical
+//! edge until the next wall is nearer, so that it turns on a circle.
+
 use clamber_world::WorldCapsule;
 use glam::DVec3;
 
@@ -33,6 +40,61 @@ impl LedgeProbe {
         self.body.radius * (1.0 + HAND + BEYOND)
     }
 }
+
+/// A body that hangs from a ledge: the parameters of the queries for how the ledge goes on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LedgeHold {
+    /// The body.
+    pub body: MoverBody,
+    /// Unit vector that points up.
+    pub up: DVec3,
+    /// Level unit vector towards the wall.
+    pub facing: DVec3,
+    /// The point on the ledge's top that the hands hold, in world space. It is as far beyond the edge as in
+    /// [`LedgeProbe::hands_ahead`].
+    pub held: DVec3,
+    /// Steepest slope of a ledge's top, radians from level. Steeper faces are walls.
+    pub max_slope: f64,
+}
+
+impl LedgeHold {
+    /// Height of the hands above a position, metres.
+    fn height(&self, position: DVec3) -> f64 {
+        (self.held - position).dot(self.up)
+    }
+
+    /// Distance along the facing from a position to the wall below the hands, metres.
+    fn wall_ahead(&self, position: DVec3) -> f64 {
+        (self.held - position).dot(self.facing) - (HAND + BEYOND) * self.body.radius
+    }
+}
+
+/// A ledge goes on where its top is higher or lower by at most this fraction of the body's radius, and its wall farther
+/// ahead or back. Beyond half of the radius a body that rolls along the wall would have to turn by more than 60 degrees.
+const STEP: f64 = 0.5;
+
+/// What a contact may differ from [`STEP`], as a fraction of the body's radius, so that a step of exactly that height
+/// counts.
+const SLACK: f64 = 0.05;
+
+/// Depths below the hands at which the wall is looked for, as fractions of the body's radius. The first is just below
+/// the edge; the others are below the edge of a top that rises from it, and of one that is a step lower.
+const DEPTHS: [f64; 3] = [0.05, 0.3, STEP + SLACK];
+
+/// Heights above the ledge over which hands reach for its top, as fractions of the body's radius: low, where there is
+/// a ceiling, then over a step.
+const RISES: [f64; 2] = [0.1, STEP + SLACK];
+
+/// Cosine of the largest angle by which the wall turns from one place to the next: 20 degrees. A sharper edge is a
+/// corner.
+const STRAIGHT: f64 = 0.94;
+
+/// Distance between places at which a ledge is looked for, as a fraction of the body's radius: less than a hand's
+/// width, so that no ledge that is wide enough is missed.
+const PLACES: f64 = 0.1;
+
+/// Length of the level part of a unit normal above which a face counts as a wall's: 60 degrees from level.
+const UPRIGHT: f64 = 0.5;
 
 /// A ledge that a body can hang from.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -83,6 +145,130 @@ impl Mover<'_> {
     }
 }
 
+impl Mover<'_> {
+    /// The ledge straight ahead of a position at which the body could hang next: at about the height of the one that it
+    /// holds, with a wall in about the same place. Both may differ by up to half of the body's radius.
+    ///
+    /// `None` where the ledge ends, where its wall turns by more than 20 degrees, and for input that is not finite.
+    pub fn ledge_ahead(&mut self, hold: &LedgeHold, position: DVec3) -> Option<Ledge> {
+        let LedgeHold { up, facing, .. } = *hold;
+        let step = (STEP + SLACK) * hold.body.radius;
+        let to_wall = hold.wall_ahead(position);
+        let height = hold.height(position);
+        DEPTHS.into_iter().find_map(|depth| {
+            let from = position + up * (height - depth * hold.body.radius);
+            let wall = self.cast_ray(from, facing, to_wall + step)?;
+            let (toward, is_upright) = toward(wall.contact.normal, up)?;
+            let is_wall = is_upright
+                && slope(wall.contact.normal, up) > hold.max_slope
+                && toward.dot(facing) >= STRAIGHT
+                && wall.contact.distance >= to_wall - step;
+            let ahead = (wall.contact.point - position).dot(toward);
+            is_wall.then(|| self.hand_on(hold, position, toward, ahead))?
+        })
+    }
+
+    /// The first ledge beside a position that [`Mover::ledge_ahead`] finds and `counts` accepts, up to `way`, metres in
+    /// world space: across a gap, or past the edge of a step. `None` if something is between the position and the
+    /// ledge.
+    pub fn ledge_beside(
+        &mut self,
+        hold: &LedgeHold,
+        position: DVec3,
+        way: DVec3,
+        mut counts: impl FnMut(&Ledge) -> bool,
+    ) -> Option<Ledge> {
+        let LedgeHold { up, facing, .. } = *hold;
+        let radius = hold.body.radius;
+        // Walls that stand forward by a step are not in the way.
+        let before = hold.wall_ahead(position) - (STEP + SLACK + PLACES) * radius;
+        let aside = up * (hold.height(position) - DEPTHS[1] * radius) + facing * before;
+        let hand = WorldCapsule::ball(position + aside, PLACES * radius);
+        let free = self.cast(&hand, way).map_or(1.0, |hit| hit.time);
+        let places = (way.length() / (PLACES * radius)).ceil();
+        let mut place = 0.0;
+        while place < places {
+            place += 1.0;
+            let share = place / places;
+            if share > free {
+                return None;
+            }
+            let ledge = self.ledge_ahead(hold, position + way * share);
+            if let Some(ledge) = ledge.filter(&mut counts) {
+                return Some(ledge);
+            }
+        }
+        None
+    }
+
+    /// The ledge around the corner at a position: above what is nearest to it of all walls that the body faces, within
+    /// one and a half of its radius. At an outer corner that is the corner's edge, which the body faces as it goes
+    /// around it. With `facing` along the ledge, it is the wall in the way at an inner corner.
+    ///
+    /// `None` if there is no such wall, or no ledge on it. Height differences are as in [`Mover::ledge_ahead`].
+    pub fn ledge_around(&mut self, hold: &LedgeHold, position: DVec3) -> Option<Ledge> {
+        let LedgeHold { up, facing, .. } = *hold;
+        let radius = hold.body.radius;
+        let height = hold.height(position);
+        let below = |depth: f64| up * (height - depth * radius);
+        let band = MoverBody {
+            axis: [below(DEPTHS[2]), below(DEPTHS[0])],
+            radius: HAND * radius,
+            margin: 0.0,
+        };
+        let reach = (1.0 + STEP - HAND) * radius;
+        let mut nearest: Option<(f64, DVec3)> = None;
+        for touch in self.overlap(&band, position, reach) {
+            let Some((toward, true)) = toward(touch.normal, up) else {
+                continue;
+            };
+            let ahead = (touch.contact.point - position).dot(toward);
+            let is_nearer = nearest.is_none_or(|(least, _)| ahead < least);
+            if is_nearer && toward.dot(facing) >= OBLIQUE {
+                nearest = Some((ahead, toward));
+            }
+        }
+        let (ahead, toward) = nearest?;
+        self.hand_on(hold, position, toward, ahead)
+    }
+
+    /// The top under a hand beyond the edge of a wall, `to_wall` metres ahead of a position, with room for the hand on
+    /// its way there.
+    fn hand_on(
+        &mut self,
+        hold: &LedgeHold,
+        position: DVec3,
+        facing: DVec3,
+        to_wall: f64,
+    ) -> Option<Ledge> {
+        let LedgeHold { body, up, .. } = *hold;
+        let radius = body.radius;
+        let inward = facing * (to_wall + (HAND + BEYOND) * radius);
+        for rise in RISES {
+            let above = position + up * (hold.height(position) + (rise + HAND) * radius);
+            let above = WorldCapsule::ball(above, HAND * radius);
+            if !self.is_free(&above, inward) {
+                continue;
+            }
+            let down = -up * ((rise + STEP + SLACK) * radius);
+            let top = self.cast(&above.moved(inward), down)?;
+            let is_top = !top.started_inside && slope(top.touch.normal, up) <= hold.max_slope;
+            return is_top.then_some(Ledge {
+                touch: top.touch,
+                facing,
+            });
+        }
+        None
+    }
+}
+
+/// The level direction into a face with a normal, and whether the face is upright. `None` for level faces.
+fn toward(normal: DVec3, up: DVec3) -> Option<(DVec3, bool)> {
+    let level = normal - up * normal.dot(up);
+    let toward = (-level).try_normalize()?;
+    Some((toward, level.length() >= UPRIGHT))
+}
+
 /// The level direction straight towards a wall; `None` if the probe faces the wall too obliquely.
 fn straight_at(wall: &Touch, probe: &LedgeProbe) -> Option<DVec3> {
     let normal = wall.normal;
@@ -90,3 +276,6 @@ fn straight_at(wall: &Touch, probe: &LedgeProbe) -> Option<DVec3> {
     let straight = (-level).normalize_or(probe.facing);
     (straight.dot(probe.facing) >= OBLIQUE).then_some(straight)
 }
+
+#[cfg(test)]
+mod tests;

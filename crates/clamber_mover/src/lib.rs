@@ -18,7 +18,7 @@ pub use error::MoverError;
 pub use glam;
 pub use ground::{Ground, GroundProbe, StepUp, slope};
 pub use half_spaces::{HalfSpace, Projection, project_onto_half_spaces};
-pub use ledge::{Ledge, LedgeProbe};
+pub use ledge::{Ledge, LedgeHold, LedgeProbe};
 pub use mover::{Mover, MoverMemory};
 pub use slide::{Arm, Begin, Moved, Path, Walking};
 pub use touch::{Hit, Touch};

@@ -178,6 +178,16 @@ pub(crate) struct State {
     /// How long ago a tumbling climber first touched ground, seconds.
     #[prost(double, tag = "26")]
     pub(crate) down: f64,
+    /// How long it has been kept from pulling itself up, seconds.
+    #[prost(double, tag = "27")]
+    pub(crate) blocked: f64,
+    #[prost(bool, tag = "28")]
+    pub(crate) gave_up: bool,
+    #[prost(bool, tag = "29")]
+    pub(crate) returns: bool,
+    /// Direction of the input that leads to its right along a ledge that has turned a corner.
+    #[prost(message, required, tag = "30")]
+    pub(crate) right: Vector,
 }
 
 /// A stick that is held while the climber climbs.
@@ -367,6 +377,7 @@ impl State {
             self.heading,
             self.shake,
             self.legs,
+            self.right,
         ];
         let memory: [f64; MEMORY] = self.memory.into();
         let numbers = [
@@ -374,6 +385,7 @@ impl State {
             self.hit_points,
             self.arm,
             self.pull_up,
+            self.blocked,
             self.calm,
             self.still,
             self.coyote,
@@ -535,6 +547,10 @@ impl From<&ClimberState> for State {
             hit_points: state.hit_points,
             arm: state.hanging.arm,
             pull_up: state.ledge_hanging.pull_up,
+            blocked: state.ledge_hanging.blocked,
+            gave_up: state.ledge_hanging.gave_up,
+            returns: state.ledge_hanging.returns,
+            right: state.ledge_hanging.right.into(),
             calm: state.hanging.calm,
             legs: state.hanging.legs.into(),
             crushed: state.crushed,
@@ -630,6 +646,10 @@ impl State {
             },
             ledge_hanging: LedgeHangingMemory {
                 pull_up: self.pull_up,
+                blocked: self.blocked,
+                gave_up: self.gave_up,
+                returns: self.returns,
+                right: self.right.into(),
             },
             tumbling: TumblingMemory {
                 still: self.still,

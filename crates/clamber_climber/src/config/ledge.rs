@@ -13,7 +13,7 @@ pub struct LedgeConfig {
     /// How far the centre of the body's ball, the climber's position, is below the ledge from which it hangs, metres,
     /// not negative. Default 0.6.
     pub drop: f64,
-    /// Speed along a ledge, metres a second, not negative. Default 1.
+    /// Speed along a ledge, metres a second, not negative. Default 1. At 0 it does not go along ledges.
     pub shimmy_speed: f64,
     /// Duration of a pull-up, seconds, positive. Default 0.6.
     pub pull_up_time: f64,

@@ -38,6 +38,8 @@ impl ClimberState {
             self.flying.jumping,
             self.standing.shoved,
             self.crushed,
+            self.ledge_hanging.gave_up,
+            self.ledge_hanging.returns,
         ];
         let flags = flags.iter().rev();
         hash.word(flags.fold(0, |word, flag| word << 1 | u64::from(*flag)));

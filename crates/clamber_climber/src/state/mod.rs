@@ -145,7 +145,7 @@ impl ClimberState {
         Ok(())
     }
 
-    fn vectors(&self) -> [DVec3; 9] {
+    fn vectors(&self) -> [DVec3; 10] {
         [
             self.position,
             self.velocity,
@@ -156,16 +156,18 @@ impl ClimberState {
             self.holding.stick,
             self.holding.along,
             self.holding.normal,
+            self.ledge_hanging.right,
         ]
     }
 
     /// Every number, with its name.
-    fn numbers(&self) -> [(&'static str, f64); 11] {
+    fn numbers(&self) -> [(&'static str, f64); 12] {
         [
             ("stamina", self.stamina),
             ("hit_points", self.hit_points),
             ("hanging.arm", self.hanging.arm),
             ("ledge_hanging.pull_up", self.ledge_hanging.pull_up),
+            ("ledge_hanging.blocked", self.ledge_hanging.blocked),
             ("hanging.calm", self.hanging.calm),
             ("tumbling.still", self.tumbling.still),
             ("tumbling.down", self.tumbling.down),

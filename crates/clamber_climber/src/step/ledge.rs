@@ -1,30 +1,35 @@
 //! Hanging from a ledge, climbing along it and over it. Ledges are found by queries, on terrain and on skin alike.
 
+mod pull_up;
+mod shimmy;
+
 use clamber_mover::{Ledge, LedgeProbe, Moved};
 use glam::DVec3;
 
 use super::carrying::Carried;
 use super::holding::OPEN_HANDED;
-use super::moving::Intent;
 use super::{NextMode, Tick};
 use crate::config::LedgeConfig;
 use crate::{ClimberEvent, ClimberMode};
 
-/// Speed at which arms draw the body into place below the ledge, as a share of the speed along it.
-const DRAW: f64 = 3.0;
-
-/// Share of the pull-up in which it goes up. In the rest it goes in over the ledge.
-const OVER: f64 = 0.6;
-
-/// How far it may lag behind a pull-up's path before it counts as blocked, as a share of its radius. It lags below an
-/// overhang, where it goes outwards as it goes up.
-const KEPT: f64 = 0.5;
-
-/// A climber that makes less than this share of a tick's draw into place is as near to its place as it can get.
-const DRAWN: f64 = 0.5;
+/// Speed at which arms draw the body into place below the ledge, radii a second: 3 m/s for a radius of 0.4 m.
+const DRAW: f64 = 7.5;
 
 /// A climber farther from its place than this share of its radius is drawn there before it pulls itself up.
 const OUT_OF_PLACE: f64 = 0.1;
+
+/// Hands may be this share of the radius to the side of where the body hangs: their own radius.
+const BESIDE: f64 = 0.15;
+
+/// Share of the input towards the wall above which the climber pulls itself up, and away from it, climbs down.
+const UPWARD: f64 = 0.5;
+
+/// Share of the input along the ledge that moves the climber at least. Less is the rounding of a wall's normal.
+const ASIDE: f64 = 1e-3;
+
+/// Cosine of the largest angle by which a stick that has led the climber around a corner may turn and still lead on: 20
+/// degrees, more than a thumb wavers, and less than it turns to ask for something else.
+const HELD: f64 = 0.94;
 
 /// Memory of a climber that hangs from a ledge.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -33,6 +38,15 @@ const OUT_OF_PLACE: f64 = 0.1;
 pub struct LedgeHangingMemory {
     /// Progress of a pull-up, 0 (hangs) to 1 (stands on top).
     pub pull_up: f64,
+    /// How long an obstacle has kept it from pulling itself up farther, seconds.
+    pub blocked: f64,
+    /// True after a pull-up was given up for lack of room, until the input no longer asks for one.
+    pub gave_up: bool,
+    /// True while it goes back to its place below the edge, from a pull-up that was given up or from the top.
+    pub returns: bool,
+    /// Direction of the input that leads to the climber's right, a level unit vector in world space. Set while the input
+    /// has led it around a corner, so that the same input leads on; otherwise zero.
+    pub right: DVec3,
 }
 
 impl Tick<'_> {
@@ -43,6 +57,9 @@ impl Tick<'_> {
         let lift = (touch.contact.point - place).dot(self.config.up()) - config.drop;
         if self.state.mode == ClimberMode::Standing && lift <= 0.0 {
             // It would hang no higher than it stands.
+            return None;
+        }
+        if !self.catches(&touch, config.catch_speed) {
             return None;
         }
         self.attach(&touch, place);
@@ -94,19 +111,20 @@ impl Tick<'_> {
             self.state.open_handed = OPEN_HANDED;
             return self.leave(ClimberMode::Falling);
         }
-        if self.state.jump_buffer > 0.0 {
+        if self.state.jump_buffer > 0.0 && self.spend(|stamina| stamina.jump_cost) {
             let grip = self.config.grip;
             let speed = grip.map_or(self.config.ground.jump_speed, |grip| grip.jump_speed);
             return self.jump_off(-self.state.heading, speed);
         }
         let wish = self.ledge_wish();
-        if wish.up < -0.5
-            && self.state.ledge_hanging.pull_up == 0.0
+        let pulls_up = self.is_pulling_up(wish.up);
+        if wish.up < -UPWARD
+            && !pulls_up
             && let Some(next) = self.grip_at(carried.position)
         {
             return next;
         }
-        if self.state.ledge_hanging.pull_up > 0.0 || wish.up > 0.5 {
+        if pulls_up {
             self.pull_up(&carried, &config)
         } else {
             self.shimmy(&carried, &config, wish.aside)
@@ -120,16 +138,36 @@ impl Tick<'_> {
         Some(self.take_hold(&touch, place))
     }
 
-    fn ledge_wish(&self) -> LedgeWish {
+    /// The level part of the input for ledges.
+    fn stick(&self) -> DVec3 {
+        let up = self.config.up();
+        let input = if self.input.climb == DVec3::ZERO {
+            self.input.walk
+        } else {
+            self.input.climb
+        };
+        input - up * input.dot(up)
+    }
+
+    /// What the input asks for, relative to the wall. Since the ledge turned a corner, the stick leads on along the ledge
+    /// as it did before, as long as it is held there or straight back.
+    fn ledge_wish(&mut self) -> LedgeWish {
         let up = self.config.up();
         let facing = self.state.heading;
         let side = facing.cross(up);
-        let (walk, climb) = (self.input.walk, self.input.climb);
-        let (over, along) = if climb == DVec3::ZERO {
-            (walk.dot(facing), walk.dot(side))
+        let stick = self.stick();
+        let rises = self.input.climb.dot(up);
+        let right = &mut self.state.ledge_hanging.right;
+        if stick.dot(*right).abs() < HELD * stick.length() || rises.abs() > UPWARD {
+            *right = DVec3::ZERO;
+        }
+        let (over, along) = if *right == DVec3::ZERO {
+            (rises + stick.dot(facing), stick.dot(side))
         } else {
-            (climb.dot(up) + climb.dot(facing), climb.dot(side))
+            (rises, stick.dot(*right))
         };
+        let is_aside = along.abs() > ASIDE * stick.length();
+        let along = if is_aside { along } else { 0.0 };
         LedgeWish {
             up: over,
             aside: side * along.clamp(-1.0, 1.0),
@@ -142,44 +180,22 @@ impl Tick<'_> {
         carried.motion.position - self.state.heading * out - self.config.up() * config.drop
     }
 
-    /// The part of a displacement that arms make in a tick.
-    fn drawn(&self, way: DVec3, config: &LedgeConfig) -> DVec3 {
-        way.clamp_length_max(DRAW * config.shimmy_speed * self.dt())
+    /// The way from a position to the place where it hangs. Hands may be a little to the side of the body, as at a
+    /// ledge's end, or where the top slopes.
+    fn way_to(&self, place: DVec3, position: DVec3) -> DVec3 {
+        let side = self.state.heading.cross(self.config.up());
+        let way = place - position;
+        let beside = BESIDE * self.config.body.radius;
+        way - side * way.dot(side).clamp(-beside, beside)
     }
 
-    /// Hangs still, or moves along the ledge.
-    fn shimmy(&mut self, carried: &Carried, config: &LedgeConfig, aside: DVec3) -> NextMode {
-        let place = self.hanging_place(carried, config);
-        let drawn = self.drawn(place - carried.position, config);
-        let velocity = aside * config.shimmy_speed;
-        let step = velocity * self.dt();
-        let intent = if step == DVec3::ZERO {
-            Intent::Stay
-        } else {
-            Intent::Go
-        };
-        let moved = self.slide(&self.path(carried.position + drawn + step), intent);
-        self.settle(carried, moved.position, carried.velocity() + velocity);
-        if self.is_pressed_off(place, &moved, config) {
-            return self.be_torn_off(carried);
-        }
-        if let Some(next) = self.stand_where_it_hangs() {
-            return next;
-        }
-        if step == DVec3::ZERO {
-            return NextMode::Stay;
-        }
-        let facing = self.state.heading;
-        if let Some(ledge) = self.find_ledge(moved.position, facing, config) {
-            let velocity = self.state.velocity;
-            self.attach(&ledge.touch, moved.position);
-            self.face(ledge.facing);
-            self.state.velocity = velocity;
-        } else {
-            let moved = self.slide(&self.path(carried.position + drawn), Intent::Stay);
-            self.settle(carried, moved.position, carried.velocity());
-        }
-        NextMode::Stay
+    /// The part of a displacement that arms make in a tick.
+    fn drawn(&self, way: DVec3) -> DVec3 {
+        way.clamp_length_max(DRAW * self.config.body.radius * self.dt())
+    }
+
+    fn is_out_of_place(&self, way: DVec3) -> bool {
+        way.length() > OUT_OF_PLACE * self.config.body.radius
     }
 
     /// True if its ledge leaves it no room, or an obstacle holds it out of reach. If it held on, it would be dragged
@@ -188,76 +204,6 @@ impl Tick<'_> {
         let is_crushed = moved.missing_room > self.config.body.margin;
         let reach = self.config.body.radius + config.reach + config.reach_up;
         is_crushed || moved.position.distance(place) > reach
-    }
-
-    /// Pulls itself up, and in over the ledge.
-    fn pull_up(&mut self, carried: &Carried, config: &LedgeConfig) -> NextMode {
-        let before = self.state.ledge_hanging.pull_up;
-        let place = self.hanging_place(carried, config);
-        let up = self.config.up();
-        let body = self.body();
-        let over = carried.motion.position + up * (body.radius + body.margin);
-        let level = place + up * (over - place).dot(up);
-        let at = |share: f64| {
-            if share < OVER {
-                place.lerp(level, share / OVER)
-            } else {
-                level.lerp(over, (share - OVER) / (1.0 - OVER))
-            }
-        };
-        // It caught the ledge from farther away: first draw it to where the pull-up begins.
-        let is_out_of_place =
-            before == 0.0 && place.distance(carried.position) > OUT_OF_PLACE * body.radius;
-        let share = self.dt() / config.pull_up_time;
-        let after = if is_out_of_place {
-            0.0
-        } else {
-            (before + share).min(1.0)
-        };
-        let way = at(after) - carried.position;
-        let speed = (at(after) - at(before)).length() / self.dt();
-        let fastest = speed.max(DRAW * config.shimmy_speed) * self.dt();
-        let target = carried.position + way.clamp_length_max(fastest);
-        let moved = self.slide(&self.path(target), Intent::Go);
-        let velocity = (at(after) - at(before)) / self.dt();
-        self.settle(carried, moved.position, carried.velocity() + velocity);
-        if self.is_pressed_off(place, &moved, config) {
-            return self.be_torn_off(carried);
-        }
-        if is_out_of_place {
-            let made = (moved.position - carried.position).dot(way.normalize_or_zero());
-            if made < DRAWN * (target - carried.position).length() {
-                // An obstacle bulges into its place: pull up from where it is.
-                self.state.ledge_hanging.pull_up = share;
-            }
-            return NextMode::Stay;
-        }
-        // Bulging walls and ground push it ahead or aside. Only obstacles that keep it back are in its way.
-        let onwards = (at(after) - at(before)).normalize_or_zero();
-        if (at(after) - moved.position).dot(onwards) > KEPT * body.radius {
-            // No room: go back down, unless there is room in the next tick.
-            self.state.ledge_hanging.pull_up = (before - share).max(0.0);
-            return NextMode::Stay;
-        }
-        self.state.ledge_hanging.pull_up = after;
-        if after < 1.0 {
-            return NextMode::Stay;
-        }
-        let Some(ground) = self.ground_below(moved.position, self.config.ground.snap_distance)
-        else {
-            // If the top is too steep to stand on, grip it, or lose the ledge.
-            let gripped = self.grip_at(moved.position);
-            return gripped.unwrap_or_else(|| self.lose_footing());
-        };
-        if !self.is_corrected_clear(carried, ground.position) {
-            self.state.ledge_hanging.pull_up = before;
-            return NextMode::Stay;
-        }
-        self.state.position = ground.position;
-        self.attach(&ground.touch, ground.position);
-        self.state.velocity = self.state.base_velocity;
-        self.event(ClimberEvent::Mantled);
-        NextMode::Change(ClimberMode::Standing)
     }
 }
 

@@ -1,7 +1,9 @@
-//! Ledges that are approached obliquely, or caught from anywhere in reach.
+//! Ledges that are approached obliquely, or caught from anywhere in reach, and friends on top of them.
 
-use clamber_climber::{Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode};
-use glam::{DVec3, Vec3};
+use clamber_climber::{
+    Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, ClimberObstacle,
+};
+use glam::{DQuat, DVec3, Vec3};
 
 use crate::common::{tick, v};
 use crate::scene::{DT, HOLD, STONE, climber, cuboid};
@@ -113,4 +115,47 @@ fn catching_a_ledge_moves_no_faster_than_arms_do() {
         }
     }
     assert!(caught * 3 > starts, "{caught} of {starts}");
+}
+
+/// A friend stands behind the edge of each side of a tower. The climber goes back to hanging, and gets up once the friend
+/// has gone.
+#[test]
+fn a_friend_at_the_edge_is_waited_for_from_below() {
+    let tower = cuboid(Vec3::splat(3.0), STONE);
+    for (side, behind) in (0..4).flat_map(|side| [0.2, 0.3, 0.35].map(|behind| (side, behind))) {
+        let turn = DQuat::from_rotation_y(f64::from(side) * core::f64::consts::FRAC_PI_2);
+        let told = format!("side {side}, friend {behind} m behind the edge");
+        let up = ClimberInput {
+            walk: turn * -DVec3::Z,
+            ..HOLD
+        };
+        let toward = ClimberInput {
+            walk: up.walk * 0.1,
+            ..HOLD
+        };
+        let mut climber = climber(turn * v(0.3, 2.75, 3.5));
+        let at = |z: f64| Climber::new(ClimberConfig::walker(), turn * v(0.3, 3.4, z)).unwrap();
+        let friend = ClimberObstacle::new(&at(2.6 - behind), DT);
+        for _ in 0..60 {
+            let is_caught = climber.state().mode == ClimberMode::LedgeHanging;
+            let input = if is_caught { HOLD } else { toward };
+            tick(&mut climber, &[&tower, &friend], &input);
+        }
+        let hung = climber.state().position;
+        for _ in 0..120 {
+            tick(&mut climber, &[&tower, &friend], &up);
+        }
+        let state = climber.state();
+        assert_eq!(state.mode, ClimberMode::LedgeHanging, "{told}: {state:?}");
+        let off = state.position.distance(hung);
+        assert!(off < 5e-3, "{told}: {off} m from {hung}: {state:?}");
+        let friend = ClimberObstacle::new(&at(0.0), DT);
+        for input in [HOLD, up] {
+            for _ in 0..60 {
+                tick(&mut climber, &[&tower, &friend], &input);
+            }
+        }
+        let state = climber.state();
+        assert_eq!(state.mode, ClimberMode::Standing, "{told}: {state:?}");
+    }
 }

@@ -22,6 +22,7 @@ mod nonsense;
 mod open;
 mod platforms;
 mod plays;
+mod pull_ups;
 mod queries;
 mod skins;
 mod stage;

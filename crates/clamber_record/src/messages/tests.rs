@@ -17,7 +17,7 @@ fn everything() -> (ClimberState, ClimberInput) {
     let [contact, offset, normal, face] = [vector(), vector(), vector(), vector()];
     let coordinates = vector();
     let [support_velocity, walk, climb, struck] = [vector(), vector(), vector(), vector()];
-    let [base_velocity, aim, legs] = [vector(), vector(), vector()];
+    let [base_velocity, aim, legs, right] = [vector(), vector(), vector(), vector()];
     let [stick, along, held_normal] = [vector(), vector(), vector()];
     let state = ClimberState {
         position,
@@ -51,7 +51,13 @@ fn everything() -> (ClimberState, ClimberInput) {
             calm: next(),
             legs,
         },
-        ledge_hanging: LedgeHangingMemory { pull_up: next() },
+        ledge_hanging: LedgeHangingMemory {
+            pull_up: next(),
+            blocked: next(),
+            gave_up: true,
+            returns: true,
+            right,
+        },
         tumbling: TumblingMemory {
             still: next(),
             down: next(),
@@ -141,6 +147,7 @@ fn numbers<'a>(state: &'a mut ClimberState, input: &'a mut ClimberInput) -> Vec<
         &mut state.holding.stick,
         &mut state.holding.along,
         &mut state.holding.normal,
+        &mut state.ledge_hanging.right,
         &mut input.walk,
         &mut input.climb,
         &mut input.aim,
@@ -171,6 +178,7 @@ fn numbers<'a>(state: &'a mut ClimberState, input: &'a mut ClimberInput) -> Vec<
         &mut state.hanging.arm,
         &mut state.hanging.calm,
         &mut state.ledge_hanging.pull_up,
+        &mut state.ledge_hanging.blocked,
         &mut state.tumbling.still,
         &mut state.tumbling.down,
         &mut state.coyote,
@@ -186,8 +194,8 @@ fn numbers<'a>(state: &'a mut ClimberState, input: &'a mut ClimberInput) -> Vec<
 fn every_number_reads_back_bit_for_bit_negative_zeros_and_denormals_too() {
     let (mut state, mut input) = everything();
     let count = numbers(&mut state, &mut input).len();
-    // Eighteen vectors and the coordinates, a rotation, the damage, eleven numbers, and the memory of the game's modes.
-    assert_eq!(count, 3 * 19 + 4 + 1 + 11 + 8);
+    // Nineteen vectors and the coordinates, a rotation, the damage, twelve numbers, and the memory of the game's modes.
+    assert_eq!(count, 3 * 20 + 4 + 1 + 12 + 8);
     for index in 0..count {
         for value in [-0.0, 0.0, f64::from_bits(1), -f64::MAX, -f64::MIN_POSITIVE] {
             let (mut state, mut input) = everything();

@@ -1,0 +1,166 @@
+//! Pulling up over a ledge, and going back where there is no room.
+
+use glam::DVec3;
+
+use super::super::carrying::Carried;
+use super::super::moving::Intent;
+use super::super::{NextMode, Tick};
+use super::{DRAW, UPWARD};
+use crate::config::LedgeConfig;
+use crate::{ClimberEvent, ClimberMode};
+
+/// Share of the pull-up in which it goes up. In the rest it goes in over the ledge.
+const OVER: f64 = 0.6;
+
+/// How far it may lag behind a pull-up's path before it counts as blocked, as a share of its radius. It lags below an
+/// overhang, where it goes outwards as it goes up.
+const KEPT: f64 = 0.5;
+
+/// A blocked climber goes on for good once it lags by less than this share of its radius. Otherwise one that creeps
+/// along an obstacle would hardly ever give up.
+const FREED: f64 = 0.25;
+
+/// A pull-up that makes no progress for this long is given up, seconds: longer than a friend takes to step aside from
+/// the edge, shorter than a player takes to call it stuck.
+const GIVES_UP: f64 = 0.3;
+
+/// A climber that makes less than this share of a tick's draw into place is as near to its place as it can get.
+const DRAWN: f64 = 0.5;
+
+/// A velocity that differs from the planned one by less than this share of it is the planned one: more than rounding,
+/// less than is seen.
+const ABOUT: f64 = 0.05;
+
+impl Tick<'_> {
+    /// Whether it pulls itself up in this tick. A pull-up that is blocked ends at once if the input no longer asks for
+    /// it; one that was given up is not tried again before.
+    pub(super) fn is_pulling_up(&mut self, up: f64) -> bool {
+        let asks = up > UPWARD;
+        let memory = &mut self.state.ledge_hanging;
+        memory.gave_up &= asks;
+        if memory.blocked > 0.0 && !asks {
+            self.go_back();
+        }
+        self.state.ledge_hanging.pull_up > 0.0 || asks && !self.state.ledge_hanging.gave_up
+    }
+
+    /// Ends a pull-up: it hangs again, and goes back to its place.
+    fn go_back(&mut self) {
+        let memory = &mut self.state.ledge_hanging;
+        memory.pull_up = 0.0;
+        memory.blocked = 0.0;
+        memory.returns = true;
+    }
+
+    /// Holds the pull-up where it is, and gives up after a while.
+    fn wait_for_room(&mut self) -> NextMode {
+        self.state.ledge_hanging.blocked += self.dt();
+        if self.state.ledge_hanging.blocked >= GIVES_UP {
+            self.state.ledge_hanging.gave_up = true;
+            self.go_back();
+        }
+        NextMode::Stay
+    }
+
+    /// Pulls itself up, and in over the ledge.
+    pub(super) fn pull_up(&mut self, carried: &Carried, config: &LedgeConfig) -> NextMode {
+        let before = self.state.ledge_hanging.pull_up;
+        let place = self.hanging_place(carried, config);
+        let up = self.config.up();
+        let body = self.body();
+        let over = carried.motion.position + up * (body.radius + body.margin);
+        let level = place + up * (over - place).dot(up);
+        let at = |share: f64| {
+            if share < OVER {
+                place.lerp(level, share / OVER)
+            } else {
+                level.lerp(over, (share - OVER) / (1.0 - OVER))
+            }
+        };
+        // It caught the ledge from farther away: first draw it to where the pull-up begins.
+        let is_out_of_place =
+            before == 0.0 && self.is_out_of_place(self.way_to(place, carried.position));
+        self.state.ledge_hanging.returns &= is_out_of_place;
+        if before == 0.0 && !is_out_of_place && !self.spend(|stamina| stamina.mantle_cost) {
+            self.state.ledge_hanging.gave_up = true;
+            return self.shimmy(carried, config, DVec3::ZERO);
+        }
+        let share = self.dt() / config.pull_up_time;
+        let after = if is_out_of_place {
+            0.0
+        } else {
+            (before + share).min(1.0)
+        };
+        let way = at(after) - carried.position;
+        let speed = (at(after) - at(before)).length() / self.dt();
+        let fastest = speed.max(DRAW * body.radius) * self.dt();
+        let target = carried.position + way.clamp_length_max(fastest);
+        let moved = self.slide(&self.path(target), Intent::Go);
+        // Being drawn into place is no motion of its own.
+        let most = if is_out_of_place { 0.0 } else { fastest };
+        let planned = (at(after) - at(before)) / self.dt();
+        self.settle_by_arms(carried, moved.position, most, planned);
+        if self.is_pressed_off(place, &moved, config) {
+            return self.be_torn_off(carried);
+        }
+        if is_out_of_place {
+            self.drawn_up += (moved.position - carried.position).dot(up).max(0.0);
+            let made = (moved.position - carried.position).dot(way.normalize_or_zero());
+            if made < DRAWN * (target - carried.position).length() {
+                // An obstacle bulges into its place: pull up from where it is.
+                self.state.ledge_hanging.pull_up = share.min(1.0);
+            }
+            return NextMode::Stay;
+        }
+        // Bulging walls and ground push it ahead or aside. Only obstacles that keep it back are in its way.
+        let onwards = (at(after) - at(before)).normalize_or_zero();
+        let lag = (at(after) - moved.position).dot(onwards);
+        if lag > KEPT * body.radius {
+            return self.wait_for_room();
+        }
+        if lag <= FREED * body.radius {
+            self.state.ledge_hanging.blocked = 0.0;
+        }
+        self.state.ledge_hanging.pull_up = after;
+        if after < 1.0 {
+            return NextMode::Stay;
+        }
+        let Some(ground) = self.ground_below(moved.position, self.config.ground.snap_distance)
+        else {
+            // If the top is too steep to stand on, grip it, or lose the ledge.
+            let gripped = self.grip_at(moved.position);
+            return gripped.unwrap_or_else(|| self.lose_footing());
+        };
+        if !self.is_corrected_clear(carried, ground.position) {
+            self.state.ledge_hanging.pull_up = before;
+            return self.wait_for_room();
+        }
+        self.state.position = ground.position;
+        self.attach(&ground.touch, ground.position);
+        self.state.velocity = self.state.base_velocity;
+        self.event(ClimberEvent::Mantled);
+        NextMode::Change(ClimberMode::Standing)
+    }
+
+    /// Keeps its ledge at a position to which its arms moved it, by at most `most` metres. Its velocity, relative to the
+    /// ledge, is the one that it got: `planned` if that is about the same, which has no rounding.
+    pub(super) fn settle_by_arms(
+        &mut self,
+        carried: &Carried,
+        position: DVec3,
+        most: f64,
+        planned: DVec3,
+    ) {
+        self.keep_support(carried, position);
+        let made = (position - carried.position).clamp_length_max(most) / self.dt();
+        let is_as_planned = made.distance(planned) <= ABOUT * planned.length();
+        let own = if self.state.crushed {
+            DVec3::ZERO
+        } else if is_as_planned {
+            planned
+        } else {
+            made
+        };
+        self.state.velocity = carried.velocity() + own;
+    }
+}

@@ -1,0 +1,208 @@
+//! Hanging from a ledge, and going along it: over steps, across gaps and around corners.
+
+use clamber_mover::{Ledge, LedgeHold};
+use glam::DVec3;
+
+use super::super::carrying::Carried;
+use super::super::moving::Intent;
+use super::super::{NextMode, Tick};
+use super::BESIDE;
+use crate::config::LedgeConfig;
+
+/// A climber that makes less than this share of its way along the ledge is blocked, and looks for a way around.
+const STUCK: f64 = 0.25;
+
+/// How far along the ledge a wall that stands forward is looked for by a climber that it blocks, as a share of the
+/// radius: the ball is a radius away from the corner at most, and the hands go a hand's width beyond it.
+const PAST: f64 = 1.3;
+
+/// How far hands reach at least for the next hold, as a share of the radius: past the edge of a step, where a hand does
+/// not lie flat.
+const HAND_OVER: f64 = 0.5;
+
+/// A wall that is ahead by this share of the radius less than the one that the climber hangs at stands forward.
+const FORWARD: f64 = 0.02;
+
+/// Cosine of the angle by which the facing turns at least where a ledge turns: less is the unevenness of a wall.
+const TURNS: f64 = 0.9999;
+
+/// A climber that is far from its place is drawn there up to this many times as fast as it goes along the ledge.
+const FASTER: f64 = 3.0;
+
+/// Where hands go on to, and the displacement of the body in this tick.
+struct Next {
+    ledge: Option<Ledge>,
+    way: DVec3,
+}
+
+impl Tick<'_> {
+    /// Hangs still, or moves along the ledge.
+    pub(super) fn shimmy(
+        &mut self,
+        carried: &Carried,
+        config: &LedgeConfig,
+        aside: DVec3,
+    ) -> NextMode {
+        let place = self.hanging_place(carried, config);
+        let step = aside * (config.shimmy_speed * self.dt());
+        let next = self.along_ledge(carried, config, place, step);
+        let goes_on = next.is_some();
+        let next = next.unwrap_or_else(|| Next {
+            ledge: None,
+            way: self.drawn(self.way_to(place, carried.position)),
+        });
+        let intent = if goes_on { Intent::Go } else { Intent::Stay };
+        let moved = self.slide(&self.path(carried.position + next.way), intent);
+        let rise = (moved.position - carried.position).dot(self.config.up());
+        self.drawn_up += rise.max(0.0);
+        if goes_on {
+            let planned = step / self.dt();
+            self.settle_by_arms(carried, moved.position, next.way.length(), planned);
+        } else {
+            self.settle(carried, moved.position, carried.velocity());
+        }
+        if self.is_pressed_off(place, &moved, config) {
+            return self.be_torn_off(carried);
+        }
+        let left = self.way_to(place, moved.position);
+        self.state.ledge_hanging.returns &= self.is_out_of_place(left);
+        let returns = self.state.ledge_hanging.returns;
+        if !returns && let Some(next) = self.stand_where_it_hangs() {
+            return next;
+        }
+        let made = (moved.position - carried.position).dot(step);
+        let is_blocked = goes_on && !returns && made < STUCK * step.length_squared();
+        let around = if is_blocked {
+            self.way_around(carried.motion.position, moved.position, step)
+        } else {
+            None
+        };
+        if let Some(ledge) = around.or(next.ledge) {
+            self.hold_ledge(&ledge, moved.position, step);
+        }
+        NextMode::Stay
+    }
+
+    /// Where it goes along its ledge; `None` if it hangs still, or the ledge ends.
+    fn along_ledge(
+        &mut self,
+        carried: &Carried,
+        config: &LedgeConfig,
+        place: DVec3,
+        step: DVec3,
+    ) -> Option<Next> {
+        let from = carried.position;
+        let ahead = step.try_normalize()?;
+        let most = config.shimmy_speed * self.dt();
+        let left = (place - from).dot(ahead);
+        if left > step.length() && left > BESIDE * self.config.body.radius {
+            // Its hands are there already.
+            return Some(Next {
+                ledge: None,
+                way: step + self.beside(ahead, place - from, most),
+            });
+        }
+        let returns = self.state.ledge_hanging.returns;
+        let hung = if returns {
+            // It is still above the edge.
+            let way = place - from;
+            from + way - ahead * way.dot(ahead)
+        } else {
+            from
+        };
+        let hold = self.ledge_hold(carried.motion.position, self.state.heading);
+        let ledge = self.next_ledge(&hold, config, hung + step, ahead)?;
+        let next = self.place_below(&ledge, config);
+        let way = if returns {
+            let back = next - from;
+            step + self.drawn(back - ahead * back.dot(ahead))
+        } else {
+            step + self.beside(ahead, next - from - step, most)
+        };
+        Some(Next {
+            ledge: Some(ledge),
+            way,
+        })
+    }
+
+    /// The part of a displacement that is not along the ledge, limited to what arms make in a tick. A climber that is far
+    /// from its place, since it has just caught the ledge, is drawn there faster.
+    fn beside(&self, ahead: DVec3, way: DVec3, most: f64) -> DVec3 {
+        let beside = way - ahead * way.dot(ahead);
+        let far = beside.length() / (HAND_OVER * self.config.body.radius);
+        beside.clamp_length_max(most * far.clamp(1.0, FASTER))
+    }
+
+    fn ledge_hold(&self, held: DVec3, facing: DVec3) -> LedgeHold {
+        LedgeHold {
+            body: self.body(),
+            up: self.config.up(),
+            facing,
+            held,
+            max_slope: self.config.ground.max_slope,
+        }
+    }
+
+    /// The ledge at a position: straight ahead, or the next one aside, or around the corner.
+    fn next_ledge(
+        &mut self,
+        hold: &LedgeHold,
+        config: &LedgeConfig,
+        position: DVec3,
+        aside: DVec3,
+    ) -> Option<Ledge> {
+        let reach = config.reach.max(HAND_OVER * hold.body.radius);
+        let ledge = self
+            .mover
+            .ledge_ahead(hold, position)
+            .or_else(|| {
+                self.mover
+                    .ledge_beside(hold, position, aside * reach, |_| true)
+            })
+            .or_else(|| self.mover.ledge_around(hold, position))?;
+        self.carries(&ledge.touch).then_some(ledge)
+    }
+
+    /// The ledge of the wall that blocks its way along the ledge: one that stands forward, or that of the other wall in
+    /// an inner corner.
+    fn way_around(&mut self, held: DVec3, position: DVec3, step: DVec3) -> Option<Ledge> {
+        let (heading, radius) = (self.state.heading, self.config.body.radius);
+        let aside = step.try_normalize()?;
+        let hold = self.ledge_hold(held, heading);
+        let least = (held - position).dot(heading) - FORWARD * radius;
+        let stands_forward =
+            |ledge: &Ledge| (ledge.touch.contact.point - position).dot(heading) < least;
+        let way = aside * (PAST * radius);
+        let ledge = self
+            .mover
+            .ledge_beside(&hold, position, way, stands_forward)
+            .or_else(|| {
+                let hold = LedgeHold {
+                    facing: aside,
+                    ..hold
+                };
+                self.mover.ledge_around(&hold, position)
+            })?;
+        self.carries(&ledge.touch).then_some(ledge)
+    }
+
+    /// The place where it hangs from a ledge.
+    fn place_below(&self, ledge: &Ledge, config: &LedgeConfig) -> DVec3 {
+        let out = self.ledge_probe(ledge.facing, config).hands_ahead();
+        ledge.touch.contact.point - ledge.facing * out - self.config.up() * config.drop
+    }
+
+    /// Puts its hands on the next ledge, and turns to its wall. The input then leads on as it did before.
+    fn hold_ledge(&mut self, ledge: &Ledge, position: DVec3, step: DVec3) {
+        let velocity = self.state.velocity;
+        self.attach(&ledge.touch, position);
+        let turns = self.state.heading.dot(ledge.facing) < TURNS;
+        if turns && self.state.ledge_hanging.right == DVec3::ZERO {
+            let side = self.state.heading.cross(self.config.up());
+            let stick = self.stick().normalize_or_zero();
+            self.state.ledge_hanging.right = stick * step.dot(side).signum();
+        }
+        self.face(ledge.facing);
+        self.state.velocity = velocity;
+    }
+}
