@@ -73,7 +73,9 @@ group!(
     friction,
     air_acceleration,
     jump_release_gravity,
-    throw_acceleration
+    throw_acceleration,
+    terminal_speed,
+    slide_friction
 );
 group!(
     GripConfig,
@@ -83,7 +85,8 @@ group!(
     max_overhang,
     hang_acceleration,
     calm_time,
-    jump_speed
+    jump_speed,
+    catch_speed
 );
 group!(HangConfig, "climber.hang", arm_length, leg_length, damping);
 group!(
@@ -93,7 +96,8 @@ group!(
     reach,
     drop,
     shimmy_speed,
-    pull_up_time
+    pull_up_time,
+    catch_speed
 );
 group!(
     StaminaConfig,
@@ -101,7 +105,10 @@ group!(
     hold_drain,
     shake_threshold,
     shake_drain,
-    refill
+    refill,
+    jump_cost,
+    catch_cost,
+    mantle_cost
 );
 group!(
     TumbleConfig,

@@ -223,6 +223,14 @@ pub(super) fn tell_event(event: &ClimberEvent, told: &Told<'_>, commands: &mut C
                 point: point.as_vec3(),
             },
         ),
+        ClimberEvent::HandsSlipped { obstacle, speed } => tell(
+            commands,
+            ClimberHandsSlipped {
+                entity,
+                hold: touched(obstacle),
+                speed: *speed as f32,
+            },
+        ),
         ClimberEvent::Mantled => tell(commands, ClimberMantled { entity }),
         ClimberEvent::Released => tell(commands, ClimberReleased { entity }),
         ClimberEvent::ShakenOff { shake, from } => tell(
