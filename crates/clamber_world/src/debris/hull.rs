@@ -1,7 +1,7 @@
 //! The outside of a body, and the region that it may reach in a tick.
 
 use clamber_surface::geometry::Similarity;
-use clamber_surface::surface::MovingTriangle;
+use clamber_surface::surface::{MovingTriangle, SkinnedSurface};
 use glam::{DMat3, DQuat, DVec3, Vec3};
 use rapier3d::dynamics::RigidBody;
 use rapier3d::geometry::{ColliderSet, TypedShape};
@@ -43,6 +43,11 @@ impl Hull {
         })
     }
 
+    /// True for a ball, which is its own core.
+    pub(super) fn is_ball(&self) -> bool {
+        self.is_ball
+    }
+
     /// Radius of a ball about its middle that encloses it.
     pub(super) fn radius(&self) -> f64 {
         if self.is_ball {
@@ -50,6 +55,22 @@ impl Hull {
         } else {
             self.half.length()
         }
+    }
+
+    /// True if skin may have touched it in this tick, on the way from one pose to the other. `origin` is the world position
+    /// of rapier's origin.
+    pub(super) fn may_touch(
+        &self,
+        surface: &SkinnedSurface,
+        poses: [&Pose; 2],
+        origin: DVec3,
+    ) -> bool {
+        let reach = Reach::new(*self, poses, 0.0).on(surface.world_from_model(), origin);
+        let (mut touched, space) = (false, surface.in_model());
+        space.visit_box(reach.low, reach.high, |moving| {
+            touched |= reach.apart(moving) <= 0.0;
+        });
+        touched
     }
 
     /// Its middle under a pose, in rapier's space.

@@ -16,6 +16,10 @@ const TOLERANCE: f64 = 1e-3;
 /// A sweep meets no skin that stays farther than this from the core's segment, as a fraction of the core's radius.
 pub(super) const MET: f64 = SWEPT * (1.0 + 2.0 * TOLERANCE);
 
+/// A body is free of skin that it is pushed out of by less than this fraction of the core's radius: that is rounding, or
+/// within the tolerance of a sweep.
+const FREE: f64 = 2.0 * TOLERANCE;
+
 /// Rounds of pushing out: one for each piece of skin that a body can be caught between, and one to find that it is
 /// free. More rounds would not help a body in a closing fold.
 const ROUNDS: usize = 4;
@@ -71,7 +75,6 @@ pub(super) fn keep_out(
             kept.free = true;
             return Some(kept);
         };
-        kept.free = false;
         let world_from_model = surface.world_from_model();
         let anchor = surface.anchor_at(&hit).ok()?;
         let motion = surface.in_model().motion(&anchor, dt).ok()?;
@@ -84,6 +87,7 @@ pub(super) fn keep_out(
             kept.free = true;
             return Some(kept);
         }
+        kept.free = depth <= core.radius * FREE;
         kept.shift += normal * depth;
         let velocity = world_from_model.transform_vector(motion.velocity.as_dvec3());
         kept.pushed = Some((normal, velocity));

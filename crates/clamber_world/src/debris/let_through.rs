@@ -1,8 +1,9 @@
 //! Bodies caught between skin and something immovable: under a foot, or between a flank and a cliff. Nothing ever
-//! pushes a creature, so the skin gives way: it passes through the body.
+//! pushes a creature, so the skin gives way: it passes through the body. It also passes through bodies around which it
+//! has appeared.
 
 use clamber_surface::geometry;
-use clamber_surface::surface::SkinnedSurface;
+use clamber_surface::surface::{SkinnedSurface, SurfaceHit};
 use glam::DVec3;
 use rapier3d::dynamics::{RigidBody, RigidBodyHandle, RigidBodySet};
 use rapier3d::geometry::{
@@ -12,6 +13,8 @@ use rapier3d::math::Pose;
 use rapier3d::parry::query::{DefaultQueryDispatcher, ShapeCastOptions};
 use rapier3d::pipeline::QueryFilter;
 
+use super::enclosed::is_within;
+use super::hull::Hull;
 use super::inner_capsule::InnerCapsule;
 use super::keep_out::SWEPT;
 
@@ -89,19 +92,23 @@ pub(super) fn owner_in(
     Some(skin[index.ok()?].1)
 }
 
-/// True if the body's core touches no skin, and its middle is not inside the creature. `origin` is the world position
-/// of rapier's origin. `None` if the body is out of reach.
+/// True if a body touches no skin, and its middle is not inside the creature, after a tick that took it from one pose to
+/// the other. `origin` is the world position of rapier's origin, `hits` reused memory. `None` if the body is out of reach.
+///
+/// All of the body counts, not only its core: rapier would drag a body along by a corner that sticks in the skin.
 pub(super) fn is_outside(
     surface: &SkinnedSurface,
-    core: &InnerCapsule,
-    pose: &Pose,
+    (core, hull): (&InnerCapsule, &Hull),
+    poses: [&Pose; 2],
     origin: DVec3,
+    hits: &mut Vec<SurfaceHit>,
 ) -> Option<bool> {
     let world_from_model = surface.world_from_model();
-    let ends = core.ends_at(pose).map(|end| origin + end);
+    let ends = core.ends_at(poses[1]).map(|end| origin + end);
     let [a, b] = ends.map(|end| world_from_model.inverse_transform_point_f32(end));
     let radius = (core.radius / world_from_model.scale) as f32;
     let (space, core) = (surface.in_model(), geometry::Capsule::new(a, b, radius)?);
-    let touched = space.closest_to_capsule(&core, 0.0).is_some();
-    Some(!touched && !space.is_inside((a + b) * 0.5))
+    let touched = space.closest_to_capsule(&core, 0.0).is_some()
+        || !hull.is_ball() && hull.may_touch(surface, poses, origin);
+    Some(!touched && !is_within(space, (a + b) * 0.5, hits))
 }

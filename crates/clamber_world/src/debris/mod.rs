@@ -1,17 +1,22 @@
 //! Debris on a moving creature, such as rocks, tree trunks and walls: dynamic rapier bodies that collide with skin.
 
+mod after_step;
 mod config;
 mod corners;
+mod enclosed;
 mod error;
 mod fit;
 mod hull;
 mod inner_capsule;
 mod keep_out;
 mod let_through;
+mod passage;
 mod patch_shape;
 mod piece;
 mod pieces;
+mod put_out;
 mod report;
+mod seen;
 mod skin_patch;
 mod snapshot;
 

@@ -21,9 +21,11 @@ const REACH: f64 = 0.025;
 pub(super) struct Piece {
     pub(super) body: RigidBodyHandle,
     pub(super) core: InnerCapsule,
-    hull: Hull,
+    pub(super) hull: Hull,
     /// The body's pose before the step, and its pose after it if nothing stopped it.
-    course: [Pose; 2],
+    pub(super) course: [Pose; 2],
+    /// The body's pose after the last step; `None` if there was none.
+    pub(super) left_at: Option<Pose>,
     /// One for each surface of the last tick, by ascending id.
     pub(super) patches: Vec<(ObstacleId, SkinPatch)>,
 }
@@ -35,6 +37,7 @@ impl Piece {
             core,
             hull,
             course: [at; 2],
+            left_at: None,
             patches: Vec::new(),
         }
     }
@@ -42,12 +45,19 @@ impl Piece {
     /// Replaces the shapes, after the body's colliders have changed.
     pub(super) fn reshape(&mut self, core: InnerCapsule, hull: Hull) {
         (self.core, self.hull) = (core, hull);
+        self.left_at = None;
     }
 
     /// Stores the body's expected motion in a step of `dt` seconds. Returns where skin is needed for it.
     pub(super) fn set_course(&mut self, body: &RigidBody, origin: DVec3, dt: f64) -> Place {
         let end = body.predict_position_using_velocity(dt as f32);
         self.course = [*body.position(), end];
+        if self.left_at != Some(self.course[0]) {
+            // The body is new, or somebody has moved it.
+            for (_, patch) in &mut self.patches {
+                patch.is_looked_at = false;
+            }
+        }
         Place {
             origin,
             reach: Reach::new(self.hull, [body.position(), &end], REACH),

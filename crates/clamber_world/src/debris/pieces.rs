@@ -1,16 +1,18 @@
 use clamber_surface::mesh::TriangleId;
-use clamber_surface::surface::SkinnedSurface;
+use clamber_surface::surface::{SkinnedSurface, SurfaceHit};
 use glam::DVec3;
 use rapier3d::dynamics::{RigidBody, RigidBodyHandle, RigidBodySet};
-use rapier3d::geometry::{BroadPhaseBvh, ColliderHandle, ColliderSet, NarrowPhase, SolverFlags};
+use rapier3d::geometry::{ColliderHandle, ColliderSet, SolverFlags};
 use rapier3d::pipeline::{PairFilterContext, PhysicsHooks};
 
 use super::hull::Hull;
 use super::inner_capsule::InnerCapsule;
-use super::let_through::{Immovable, is_outside, owner_in};
+use super::let_through::owner_in;
+use super::passage::{Looked, Passage};
 use super::piece::Piece;
+use super::seen::{self, Seen};
 use super::skin_patch::SkinPatch;
-use super::{DebrisConfig, DebrisError, DebrisReport};
+use super::{DebrisConfig, DebrisError};
 use crate::ObstacleId;
 
 /// Dynamic bodies of a rapier world that collide with the skin of moving creatures: rocks, tree trunks,
@@ -25,6 +27,15 @@ use crate::ObstacleId;
 /// A creature cannot be pushed, so it would drive a body that it steps on through the ground. Such a body is left where
 /// it is, and skin passes through it until it is outside the creature again. The same happens to a body on which a fold of
 /// the skin closes, such as between head and shoulder.
+///
+/// Skin may also appear around a body: a stone breaks off below the skin, or a creature is new, is
+/// [placed](SkinnedSurface::place) or shows a part again where bodies are. A body that is no deeper below the skin than
+/// the radius of the largest ball in it is moved out of the creature within a split second, by the shortest way
+/// ([`Debris::is_put_out`]). Skin passes through a deeper one, and through one whose way out is blocked
+/// ([`Debris::is_let_through`]): it falls through the creature, or lies on the ground until the creature goes on.
+/// [`DebrisReport::enclosed`](crate::DebrisReport::enclosed) counts such bodies when they are found. A game that wants
+/// something else moves the body itself, before the next tick, or removes it. Open skin encloses nothing: a body behind
+/// a sheet, or in a flat bowl, collides with it as ever.
 ///
 /// The state of a body against a creature is stored under the creature's [`ObstacleId`], which must stay the same from
 /// tick to tick. The order of the list does not change any result. The state of a creature that leaves the list is
@@ -92,15 +103,21 @@ use crate::ObstacleId;
 #[derive(Clone, Debug)]
 pub struct Debris {
     config: DebrisConfig,
-    origin: DVec3,
+    pub(super) origin: DVec3,
     /// By ascending handle of the body.
-    pieces: Vec<Piece>,
+    pub(super) pieces: Vec<Piece>,
     /// The body that each patch is for, by ascending handle of the patch's collider.
-    owners: Vec<(ColliderHandle, RigidBodyHandle)>,
+    pub(super) owners: Vec<(ColliderHandle, RigidBodyHandle)>,
     /// Patches of bodies and surfaces that are gone, for reuse.
     spare: Vec<SkinPatch>,
     /// Ids of a call's surfaces, ascending, with their indices in its list. Reused memory.
-    order: Vec<(ObstacleId, usize)>,
+    pub(super) order: Vec<(ObstacleId, usize)>,
+    /// The surfaces of the last tick, by ascending id.
+    pub(super) seen: Vec<(ObstacleId, Seen)>,
+    /// Number of times in this tick that skin was found to have appeared around a body.
+    pub(super) enclosed: u32,
+    /// Memory for hits of rays.
+    pub(super) hits: Vec<SurfaceHit>,
 }
 
 impl Debris {
@@ -113,6 +130,9 @@ impl Debris {
             owners: Vec::new(),
             spare: Vec::new(),
             order: Vec::new(),
+            seen: Vec::new(),
+            enclosed: 0,
+            hits: Vec::new(),
         }
     }
 
@@ -174,10 +194,21 @@ impl Debris {
         self.place_of(body).is_ok()
     }
 
-    /// True while skin passes through a body because it was caught between skin and something immovable, or other skin.
+    /// True while skin passes through a body because it was caught between skin and something immovable, or other skin,
+    /// or because skin appeared around it and it lay too deep to be [put out](Debris::is_put_out).
     pub fn is_let_through(&self, body: RigidBodyHandle) -> bool {
+        self.passes(body, Passage::is_let_through)
+    }
+
+    /// True while a body around which skin appeared is moved out of the creature.
+    pub fn is_put_out(&self, body: RigidBodyHandle) -> bool {
+        self.passes(body, Passage::is_put_out)
+    }
+
+    /// True if a body gets past the skin of some creature in a certain way.
+    fn passes(&self, body: RigidBodyHandle, way: impl Fn(&Passage) -> bool) -> bool {
         let piece = self.place_of(body).map(|index| &self.pieces[index]);
-        piece.is_ok_and(|piece| piece.patches.iter().any(|(_, patch)| patch.let_through))
+        piece.is_ok_and(|piece| piece.patches.iter().any(|(_, patch)| way(&patch.passage)))
     }
 
     /// The surface and the triangle of a contact. `collider` and `subshape` are those of the contact's side that is not
@@ -212,6 +243,7 @@ impl Debris {
         check_tick(dt)?;
         self.set_order(surfaces)?;
         self.drop_lost(bodies, colliders);
+        self.look_at_surfaces(surfaces);
         let mut changed = false;
         let shown = self.show_skin(surfaces, bodies, colliders, dt, &mut changed);
         // Also after an error, since some bodies may have their skin.
@@ -219,6 +251,23 @@ impl Debris {
             self.list_owners();
         }
         shown
+    }
+
+    /// Finds the surfaces whose skin may have appeared around bodies, whatever becomes of this tick.
+    fn look_at_surfaces(&mut self, surfaces: &[(ObstacleId, &SkinnedSurface)]) {
+        self.enclosed = 0;
+        if self.pieces.is_empty() {
+            // Bodies to come are looked at anyway.
+            return;
+        }
+        seen::look(&mut self.seen, &self.order, surfaces);
+        for (obstacle, _) in self.seen.iter().filter(|(_, seen)| seen.jumped) {
+            for piece in &mut self.pieces {
+                if let Ok(index) = piece.index_of(*obstacle) {
+                    piece.patches[index].1.is_looked_at = false;
+                }
+            }
+        }
     }
 
     fn show_skin(
@@ -237,15 +286,29 @@ impl Debris {
             let enabled = body.is_enabled();
             // A patch that another body had belongs to this one now.
             *changed |= piece.follow(&self.order, &mut self.spare, colliders);
+            let looked = Looked {
+                core: &piece.core,
+                course: &piece.course,
+                origin: self.origin,
+            };
             for ((_, patch), (obstacle, index)) in piece.patches.iter_mut().zip(&self.order) {
-                if !enabled || patch.let_through {
+                let surface = surfaces[*index].1;
+                if !enabled {
+                    patch.rest(colliders);
+                    patch.is_looked_at = false;
+                    continue;
+                }
+                if !patch.is_looked_at && patch.look(&looked, surface, &mut self.hits) {
+                    self.enclosed += 1;
+                }
+                if patch.passes() {
                     patch.rest(colliders);
                     continue;
                 }
                 let had = patch.handles();
                 patch
                     .update(
-                        (*obstacle, surfaces[*index].1),
+                        (*obstacle, surface),
                         &place,
                         &self.config,
                         bodies,
@@ -261,100 +324,6 @@ impl Debris {
         Ok(())
     }
 
-    /// Puts bodies that skin entered during the step back in front of it, and makes them at least as fast as the skin.
-    /// If this would press a body into something immovable, skin passes through the body instead, from then on until
-    /// the body is outside.
-    ///
-    /// # Errors
-    /// As for [`Debris::before_step`]. On [`DebrisError::OutOfReach`], earlier bodies have been moved already, and
-    /// their report is lost.
-    pub fn after_step(
-        &mut self,
-        surfaces: &[(ObstacleId, &SkinnedSurface)],
-        bodies: &mut RigidBodySet,
-        colliders: &ColliderSet,
-        broad_phase: &BroadPhaseBvh,
-        narrow_phase: &NarrowPhase,
-        dt: f64,
-    ) -> Result<DebrisReport, DebrisError> {
-        check_tick(dt)?;
-        self.set_order(surfaces)?;
-        let mut report = DebrisReport::default();
-        let immovable = Immovable {
-            colliders,
-            broad_phase,
-            narrow_phase,
-            skin: &self.owners,
-        };
-        for piece in &mut self.pieces {
-            let near = piece.patches.iter().any(|(_, patch)| !patch.is_empty());
-            report.near += u32::from(near);
-            for (obstacle, index) in &self.order {
-                let (obstacle, surface) = (*obstacle, surfaces[*index].1);
-                let Some(body) = bodies.get(piece.body).filter(|body| body.is_enabled()) else {
-                    break;
-                };
-                let (start, end) = (*piece.start(), *body.position());
-                let moved = (end.translation - start.translation).as_dvec3();
-                let (known, handle) = (piece.index_of(obstacle).ok(), piece.body);
-                let failed = DebrisError::OutOfReach {
-                    body: handle,
-                    obstacle,
-                };
-                if let Some((_, patch)) = known.and_then(|at| piece.patches.get_mut(at))
-                    && patch.let_through
-                {
-                    let outside = is_outside(surface, &piece.core, &end, self.origin);
-                    patch.let_through = !outside.ok_or(failed)?;
-                    report.caught += u32::from(patch.let_through);
-                    continue;
-                }
-                // Rapier lets a kinematic body press a dynamic body into a fixed one.
-                if let Some((_, patch)) = known.and_then(|at| piece.patches.get_mut(at))
-                    && !patch.is_empty()
-                    && immovable.touches(bodies, body)
-                    && let Some(share) = immovable.blocks(bodies, &piece.core, &start, moved)
-                {
-                    patch.let_through = true;
-                    report.caught += 1;
-                    if let Some(body) = bodies.get_mut(piece.body) {
-                        let back = start.translation + (moved * share).as_vec3();
-                        body.set_translation(back, true);
-                    }
-                    continue;
-                }
-                let kept = piece.keep_out(obstacle, surface, &end, self.origin, dt);
-                let kept = kept.ok_or(failed)?;
-                let Some((normal, skin)) = kept.pushed else {
-                    continue;
-                };
-                if let Some((_, patch)) = known.and_then(|at| piece.patches.get_mut(at))
-                    && immovable
-                        .blocks(bodies, &piece.core, &end, kept.shift)
-                        .is_some()
-                {
-                    patch.let_through = true;
-                    report.caught += 1;
-                    continue;
-                }
-                // A fold of the skin closes on the body, which has no way out.
-                report.caught += u32::from(!kept.free);
-                if let Some((_, patch)) = known.and_then(|at| piece.patches.get_mut(at)) {
-                    patch.let_through = !kept.free;
-                }
-                if let Some(body) = bodies.get_mut(piece.body) {
-                    report.put_back += 1;
-                    let place = body.translation() + kept.shift.as_vec3();
-                    let velocity = body.linvel().as_dvec3();
-                    let short = (skin - velocity).dot(normal).max(0.0);
-                    body.set_translation(place, true);
-                    body.set_linvel((velocity + normal * short).as_vec3(), true);
-                }
-            }
-        }
-        Ok(report)
-    }
-
     fn place_of(&self, body: RigidBodyHandle) -> Result<usize, usize> {
         let key = |piece: &Piece| piece.body.into_raw_parts();
         self.pieces
@@ -367,7 +336,10 @@ impl Debris {
     }
 
     /// Lists the ids of the surfaces in ascending order, so that the order of the argument does not change any result.
-    fn set_order(&mut self, surfaces: &[(ObstacleId, &SkinnedSurface)]) -> Result<(), DebrisError> {
+    pub(super) fn set_order(
+        &mut self,
+        surfaces: &[(ObstacleId, &SkinnedSurface)],
+    ) -> Result<(), DebrisError> {
         self.order.clear();
         let ids = surfaces.iter().map(|(id, _)| *id);
         self.order.extend(ids.zip(0..));
@@ -423,7 +395,7 @@ impl PhysicsHooks for Debris {
     }
 }
 
-fn check_tick(dt: f64) -> Result<(), DebrisError> {
+pub(super) fn check_tick(dt: f64) -> Result<(), DebrisError> {
     if dt > 0.0 && dt.is_finite() {
         Ok(())
     } else {

@@ -1,7 +1,7 @@
 //! The skin near one body, as a kinematic rapier body.
 
 use clamber_surface::geometry::Similarity;
-use clamber_surface::surface::{Patch, PatchChange, SkinnedSurface};
+use clamber_surface::surface::{Patch, PatchChange, SkinnedSurface, SurfaceHit};
 use glam::DVec3;
 use rapier3d::dynamics::{RigidBodyBuilder, RigidBodyHandle, RigidBodySet};
 use rapier3d::geometry::{ColliderBuilder, ColliderHandle, ColliderSet, SharedShape};
@@ -13,6 +13,7 @@ use rapier3d::pipeline::ActiveHooks;
 use super::DebrisConfig;
 use super::fit::RigidMotion;
 use super::hull::Reach;
+use super::passage::{Looked, Passage};
 use super::patch_shape::PatchShape;
 use crate::ObstacleId;
 
@@ -35,8 +36,10 @@ pub(super) struct SkinPatch {
     motion: RigidMotion,
     /// Distance of the skin from the middle of the body's hull a tick ago; `None` if it was not measured in this tick.
     gap: Option<f64>,
-    /// Skin passes through the body, and rapier gets no patch.
-    pub(super) let_through: bool,
+    /// Unless skin and body collide, rapier gets no patch.
+    pub(super) passage: Passage,
+    /// Skin that had appeared around the body would have been found. False for a new patch.
+    pub(super) is_looked_at: bool,
     /// The surface's `world_from_model`, if the patch's skin is at rest in model space.
     still_at: Option<Similarity>,
 }
@@ -115,7 +118,8 @@ impl SkinPatch {
     /// Clears the patch and disables its collider, for reuse with another surface or body.
     pub(super) fn retire(&mut self, colliders: &mut ColliderSet) {
         self.rest(colliders);
-        self.let_through = false;
+        self.passage = Passage::Closed;
+        self.is_looked_at = false;
     }
 
     /// Clears the patch and disables its collider until an update finds skin again.
@@ -129,6 +133,32 @@ impl SkinPatch {
         {
             collider.set_enabled(false);
         }
+    }
+
+    /// Looks whether the skin has appeared around the body, and decides what becomes of the body then. True if it has.
+    /// A body that is let through already stays so until it is outside.
+    pub(super) fn look(
+        &mut self,
+        body: &Looked<'_>,
+        surface: &SkinnedSurface,
+        hits: &mut Vec<SurfaceHit>,
+    ) -> bool {
+        self.is_looked_at = true;
+        let before = match self.passage {
+            Passage::LetThrough => return false,
+            Passage::Closed => None,
+            Passage::PutOut(before) => Some(before),
+        };
+        self.passage = Passage::around(body, surface, hits);
+        if let (Passage::PutOut(now), Some(before)) = (&mut self.passage, &before) {
+            *now = now.instead_of(before);
+        }
+        before.is_none() && self.passes()
+    }
+
+    /// True if skin passes through the body.
+    pub(super) fn passes(&self) -> bool {
+        !matches!(self.passage, Passage::Closed)
     }
 
     pub(super) fn is_empty(&self) -> bool {

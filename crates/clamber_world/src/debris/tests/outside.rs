@@ -8,9 +8,10 @@ use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
 use clamber_surface::rig::JointId;
 use clamber_surface::surface::SkinnedSurface;
 use glam::{DVec3, Vec3};
-use rapier3d::math::Pose;
+use rapier3d::prelude::*;
 
 use super::scene::{at, lifted};
+use crate::debris::hull::Hull;
 use crate::debris::inner_capsule::InnerCapsule;
 use crate::debris::let_through::is_outside;
 
@@ -60,11 +61,12 @@ fn creature(positions: &[Vec3], triangles: &[[u32; 3]]) -> SkinnedSurface {
     SkinnedSurface::new(Arc::new(mesh))
 }
 
-fn ball(radius: f64) -> InnerCapsule {
-    InnerCapsule {
-        ends: [DVec3::ZERO; 2],
-        radius,
-    }
+fn ball(radius: f32) -> (InnerCapsule, Hull) {
+    let mut world = PhysicsWorld::default();
+    let (body, _) = world.insert(RigidBodyBuilder::dynamic(), ColliderBuilder::ball(radius));
+    let (body, colliders) = (&world.bodies[body], &world.colliders);
+    let core = InnerCapsule::of(body, colliders).unwrap();
+    (core, Hull::of(body, colliders).unwrap())
 }
 
 #[test]
@@ -81,12 +83,12 @@ fn a_body_is_outside_if_its_winding_number_is_0_and_it_touches_nothing() {
     let mut positions = Vec::new();
     surface.skin_all(&mut positions);
     let mut rng = fastrand::Rng::with_seed(4);
-    let mut counts = [0; 3];
+    let (mut counts, ball) = ([0; 3], ball(0.05));
     for _ in 0..20_000 {
         let mut coordinate = |size: f32| (rng.f32() * 2.0 - 1.0) * size;
         let in_model = Vec3::new(coordinate(2.5), coordinate(3.5), coordinate(3.5));
         let place = turned.transform_point_f32(in_model) - origin;
-        let core = ball(0.05);
+        let (core, hull) = &ball;
         let pose = Pose::from_translation(place.as_vec3());
         let exact = pose.translation.as_dvec3() + origin;
         let middle = surface
@@ -94,7 +96,8 @@ fn a_body_is_outside_if_its_winding_number_is_0_and_it_touches_nothing() {
             .inverse_transform_point_f32(exact);
         let touches = surface.in_model().closest_point(middle, 0.05).is_some();
         let winding = winding_number(&positions, surface.mesh(), middle.as_dvec3());
-        let found = is_outside(&surface, &core, &pose, origin).unwrap();
+        let found =
+            is_outside(&surface, (core, hull), [&pose; 2], origin, &mut Vec::new()).unwrap();
         assert_eq!(
             found,
             !touches && winding < 0.5,
@@ -116,7 +119,10 @@ fn a_body_under_an_open_roof_is_outside() {
             .unwrap();
         for height in [0.0, 1.0, 3.0] {
             let pose = Pose::from_translation(Vec3::new(0.3, height, 0.2));
-            let found = is_outside(&roof, &ball(0.3), &pose, DVec3::ZERO).unwrap();
+            let (core, hull) = &ball(0.3);
+            let origin = DVec3::ZERO;
+            let found =
+                is_outside(&roof, (core, hull), [&pose; 2], origin, &mut Vec::new()).unwrap();
             assert!(found, "{height} m");
         }
     }

@@ -1,0 +1,232 @@
+//! Rocks around which skin appears: they break off below it, or a creature is placed or spawned where they are.
+
+mod breaking_off;
+mod coming;
+mod open_skin;
+mod restored;
+
+use clamber_surface::geometry::Similarity;
+use clamber_surface::surface::SkinnedSurface;
+use glam::{DQuat, DVec3, Vec3};
+use rapier3d::prelude::*;
+
+use super::scene::{lifted, slab};
+use crate::ObstacleId;
+use crate::debris::inner_capsule::InnerCapsule;
+use crate::debris::{Debris, DebrisConfig, DebrisReport};
+
+/// A box-shaped creature on one joint.
+struct Creature {
+    id: ObstacleId,
+    surface: SkinnedSurface,
+    /// Half its size in the world, metres.
+    half: DVec3,
+}
+
+/// What a creature does in a tick: its place at the end of it.
+#[derive(Clone, Copy, Debug)]
+enum Does {
+    Moves(DVec3),
+    IsPlaced(DVec3),
+    /// It is not in the list.
+    IsAway,
+}
+
+/// Creatures and rocks in a frame that moves evenly. All places are in that frame.
+struct Stage {
+    creatures: Vec<Creature>,
+    world: PhysicsWorld,
+    debris: Debris,
+    rocks: Vec<RigidBodyHandle>,
+    frame: DVec3,
+    dt: f64,
+    ticks: u32,
+}
+
+impl Stage {
+    fn new(rate: u32, frame: DVec3) -> Self {
+        let dt = 1.0 / f64::from(rate);
+        let mut world = PhysicsWorld::default();
+        world.integration_parameters.dt = dt as f32;
+        Self {
+            creatures: Vec::new(),
+            world,
+            debris: Debris::new(DebrisConfig::default()),
+            rocks: Vec::new(),
+            frame,
+            dt: f64::from(dt as f32),
+            ticks: 0,
+        }
+    }
+
+    /// A creature of a size in the world, `scale` times as large there as in its model space.
+    fn creature(&mut self, id: u64, half: DVec3, scale: f64) {
+        let in_model = (half / scale).as_vec3();
+        self.creatures.push(Creature {
+            id: ObstacleId(id),
+            surface: slab(in_model, in_model.min_element() * 0.5, 1),
+            half,
+        });
+    }
+
+    /// Ground below a height, which moves with the frame.
+    fn ground(&mut self, height: f32) {
+        let body = RigidBodyBuilder::kinematic_velocity_based().linvel(self.frame.as_vec3());
+        let ground = ColliderBuilder::cuboid(900.0, 50.0, 900.0);
+        let ground = ground.translation(Vector::new(0.0, height - 50.0, 0.0));
+        self.world.insert(body, ground.friction(0.6));
+    }
+
+    /// A rock that rests in the frame.
+    fn rock(&mut self, shape: &ColliderBuilder, place: DVec3) -> RigidBodyHandle {
+        let place = place + self.shift();
+        let body = RigidBodyBuilder::dynamic()
+            .translation(place.as_vec3())
+            .linvel(self.frame.as_vec3());
+        let (body, _) = self
+            .world
+            .insert(body, shape.clone().friction(0.8).density(2500.0));
+        self.debris
+            .add(body, &mut self.world.bodies, &self.world.colliders)
+            .unwrap();
+        self.rocks.push(body);
+        body
+    }
+
+    /// How far the frame has come.
+    fn shift(&self) -> DVec3 {
+        self.frame * (self.dt * f64::from(self.ticks))
+    }
+
+    fn pose(&mut self, does: &[Does]) {
+        let shift = self.shift();
+        for (creature, does) in self.creatures.iter_mut().zip(does) {
+            let scale = creature.half.x / f64::from(extent(&creature.surface).x);
+            let to = |place: DVec3| Similarity {
+                rotation: DQuat::IDENTITY,
+                scale,
+                translation: place + shift,
+            };
+            let palette = lifted(1, |_| 0.0);
+            match *does {
+                Does::Moves(place) => creature.surface.advance(&palette, to(place)).unwrap(),
+                Does::IsPlaced(place) => creature.surface.place(&palette, to(place)).unwrap(),
+                Does::IsAway => {}
+            }
+        }
+    }
+
+    /// A tick, in which every rock that is inside a creature must be on its way out of it.
+    fn tick(&mut self, case: &str, does: &[Does]) -> DebrisReport {
+        self.ticks += 1;
+        self.pose(does);
+        let here = self.creatures.iter().zip(does);
+        let here = here.filter(|(_, does)| !matches!(does, Does::IsAway));
+        let list: Vec<_> = here.map(|(one, _)| (one.id, &one.surface)).collect();
+        let world = &mut self.world;
+        self.debris
+            .before_step(&list, &mut world.bodies, &mut world.colliders, self.dt)
+            .unwrap();
+        world.step_with_events(&self.debris, &());
+        let report = self
+            .debris
+            .after_step(
+                &list,
+                &mut world.bodies,
+                &world.colliders,
+                &world.broad_phase,
+                &world.narrow_phase,
+                self.dt,
+            )
+            .unwrap();
+        let mut told = 0;
+        for rock in &self.rocks {
+            let passes = self.debris.is_let_through(*rock) || self.debris.is_put_out(*rock);
+            told += u32::from(passes);
+            for (creature, _) in self.creatures.iter().zip(does).filter(|(one, _)| {
+                // Only creatures that are here.
+                list.iter().any(|(id, _)| *id == one.id)
+            }) {
+                let off = self.place(*rock) - creature.middle(self.shift());
+                let inside = off.abs().cmplt(creature.half * 0.999).all();
+                assert!(
+                    !inside || passes,
+                    "{case}, tick {}: a rock stays {off} from the middle",
+                    self.ticks
+                );
+            }
+        }
+        assert!(
+            told <= report.caught + report.put_out,
+            "{case}: {told} rocks, {report:?}"
+        );
+        report
+    }
+
+    /// Where a rock is.
+    fn place(&self, rock: RigidBodyHandle) -> DVec3 {
+        self.world.bodies[rock].translation().as_dvec3() - self.shift()
+    }
+
+    /// How fast a rock is.
+    fn velocity(&self, rock: RigidBodyHandle) -> DVec3 {
+        self.world.bodies[rock].linvel().as_dvec3() - self.frame
+    }
+
+    fn bits(&self) -> Vec<u32> {
+        let bodies = self.rocks.iter().map(|rock| &self.world.bodies[*rock]);
+        let numbers = bodies.flat_map(|body| {
+            let place = body.translation().to_array().into_iter();
+            let turn = body.rotation().to_array();
+            let speed = body.linvel().to_array();
+            place
+                .chain(turn)
+                .chain(speed)
+                .chain(body.angvel().to_array())
+        });
+        numbers.map(f32::to_bits).collect()
+    }
+}
+
+impl Creature {
+    fn middle(&self, shift: DVec3) -> DVec3 {
+        self.surface.world_from_model().translation - shift
+    }
+}
+
+/// Half the size of a creature in its model space.
+fn extent(surface: &SkinnedSurface) -> Vec3 {
+    let corners = surface.mesh().positions().iter();
+    corners.fold(Vec3::ZERO, |most, p| most.max(p.abs()))
+}
+
+/// Rocks about as large as a ball of a radius, with the radius of the largest ball inside.
+fn shapes(size: f32) -> Vec<(ColliderBuilder, f64)> {
+    let corners = [
+        [0.9, 0.3, -0.2],
+        [-0.8, 0.4, 0.3],
+        [0.1, 1.0, 0.1],
+        [0.2, -0.9, 0.4],
+        [-0.3, -0.2, 1.0],
+        [0.4, 0.1, -0.9],
+        [-0.5, -0.7, -0.6],
+    ];
+    let corners = corners.map(Vec3::from_array);
+    let low = corners.iter().fold(Vec3::ZERO, |low, p| low.min(*p));
+    let high = corners.iter().fold(Vec3::ZERO, |high, p| high.max(*p));
+    // The ball inside is about the middle of its box.
+    let corners = corners.map(|p| (p - (low + high) * 0.5) * size);
+    let all = [
+        ColliderBuilder::ball(size),
+        ColliderBuilder::cuboid(size, size * 0.8, size * 0.9),
+        ColliderBuilder::capsule_z(size * 0.8, size * 0.6),
+        ColliderBuilder::convex_hull(&corners).unwrap(),
+    ];
+    let radius = |shape: &ColliderBuilder| {
+        let mut world = PhysicsWorld::default();
+        let (body, _) = world.insert(RigidBodyBuilder::dynamic(), shape.clone());
+        let core = InnerCapsule::of(&world.bodies[body], &world.colliders);
+        core.unwrap().radius
+    };
+    all.map(|shape| (shape.clone(), radius(&shape))).into()
+}

@@ -1,0 +1,208 @@
+//! Rocks that are spawned below the skin, as pieces that break off.
+
+use glam::DVec3;
+
+use super::{Does, Stage, shapes};
+
+/// A creature on which rocks of a size lie.
+fn stage(rate: u32, frame: DVec3, size: f32, scale: f64) -> Stage {
+    let mut stage = Stage::new(rate, frame);
+    let size = f64::from(size);
+    stage.creature(7, DVec3::new(8.0, 4.0, 8.0) * size, scale);
+    stage.pose(&[Does::IsPlaced(DVec3::ZERO)]);
+    stage
+}
+
+/// Rates, frames, and scales of creatures, one after the other.
+fn settings() -> impl Iterator<Item = (u32, DVec3, f64)> {
+    let frames = [DVec3::ZERO, DVec3::X * 30.0, DVec3::new(-3.0, 30.0, 8.0)];
+    let rates = [30, 60, 120, 240].into_iter().cycle();
+    let frames = frames.into_iter().cycle();
+    let scales = [1.0, 0.1, 10.0, 1.0, 3.0].into_iter().cycle();
+    rates.zip(frames).zip(scales).map(|((a, b), c)| (a, b, c))
+}
+
+#[test]
+fn a_rock_of_which_something_shows_comes_out_and_lies_on_the_skin() {
+    let mut settings = settings();
+    for size in [0.05, 0.3, 1.0, 5.0] {
+        for (shape, radius) in shapes(size) {
+            for depth in [0.0, 0.02, 0.1, 0.3, 0.49, 0.51, 0.7, 0.97] {
+                let (rate, frame, scale) = settings.next().unwrap();
+                let case = format!(
+                    "{:?} of {size} m, {depth} radii deep, {rate} Hz, {frame} m/s, scale {scale}",
+                    shape.shape.shape_type()
+                );
+                let mut stage = stage(rate, frame, size, scale);
+                let top = stage.creatures[0].half.y;
+                let start = DVec3::new(0.3, 0.0, -0.4) * f64::from(size);
+                // Skin has moved before the rock comes.
+                for _ in 0..3 {
+                    stage.tick(&case, &[Does::Moves(DVec3::ZERO)]);
+                }
+                let rock = stage.rock(&shape, start + DVec3::Y * (top - depth * radius));
+                let (mut highest, mut last) = (f64::NEG_INFINITY, stage.place(rock));
+                for tick in 0..3 * rate {
+                    stage.tick(&case, &[Does::Moves(DVec3::ZERO)]);
+                    let place = stage.place(rock);
+                    let out = tick as f64 * stage.dt > 0.45;
+                    assert!(
+                        !out || !stage.debris.is_put_out(rock) && place.y > top,
+                        "{case}: at {place} in tick {tick}"
+                    );
+                    if depth > 0.5 {
+                        // A body that the skin reaches less far into is put back in front of it at once.
+                        let risen = (place.y - last.y) / stage.dt;
+                        assert!(
+                            risen < radius / 0.2 * 1.2 + 1.0,
+                            "{case}: rises at {risen} m/s in tick {tick}"
+                        );
+                    }
+                    highest = highest.max(place.y);
+                    last = place;
+                }
+                let tall = f64::from(size) * 1.1 + 0.02;
+                assert!(
+                    highest < top + 1.5 * tall && last.y > top && last.y < top + tall,
+                    "{case}: was {} over the skin, lies at {}",
+                    highest - top,
+                    last.y - top
+                );
+                assert!(!stage.debris.is_let_through(rock), "{case}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_rock_of_which_nothing_shows_falls_through_the_creature() {
+    let mut settings = settings();
+    for size in [0.05, 0.3, 5.0] {
+        for (shape, radius) in shapes(size) {
+            for depth in [1.1, 2.0, 3.0] {
+                let (rate, frame, scale) = settings.next().unwrap();
+                let case = format!(
+                    "{:?} of {size} m, {depth} radii deep, {rate} Hz, {frame} m/s, scale {scale}",
+                    shape.shape.shape_type()
+                );
+                let mut stage = stage(rate, frame, size, scale);
+                let top = stage.creatures[0].half.y;
+                for _ in 0..3 {
+                    stage.tick(&case, &[Does::Moves(DVec3::ZERO)]);
+                }
+                let rock = stage.rock(&shape, DVec3::Y * (top - depth * radius));
+                let report = stage.tick(&case, &[Does::Moves(DVec3::ZERO)]);
+                assert_eq!((report.enclosed, report.caught), (1, 1), "{case}");
+                assert!(stage.debris.is_let_through(rock), "{case}");
+                // It falls freely: through the creature, and then as far again.
+                let seconds = (2.0 * 16.0 * f64::from(size) / 9.81).sqrt();
+                for _ in 0..(seconds / stage.dt) as u32 {
+                    let report = stage.tick(&case, &[Does::Moves(DVec3::ZERO)]);
+                    assert_eq!(report.enclosed, 0, "{case}");
+                }
+                let place = stage.place(rock);
+                assert!(place.y < -top - radius, "{case}: it is at {place}");
+                assert!(!stage.debris.is_let_through(rock), "{case}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_rock_comes_out_of_the_side_that_is_nearest() {
+    for (rate, frame, scale) in settings().take(12) {
+        for way in [DVec3::X, DVec3::NEG_X, DVec3::NEG_Y, DVec3::Z] {
+            let case = format!("towards {way}, {rate} Hz, {frame} m/s, scale {scale}");
+            let mut stage = stage(rate, frame, 0.4, scale);
+            let half = stage.creatures[0].half;
+            let (shape, radius) = shapes(0.4).remove(0);
+            let start = way * (half.dot(way.abs()) - 0.8 * radius);
+            let rock = stage.rock(&shape, start);
+            for _ in 0..rate {
+                stage.tick(&case, &[Does::Moves(DVec3::ZERO)]);
+            }
+            // It has fallen beside or below the creature.
+            let place = stage.place(rock);
+            let ahead = place.dot(way);
+            assert!(
+                ahead > half.dot(way.abs()) + 0.9 * radius,
+                "{case}: at {place}"
+            );
+            let aside = (place - start).with_y(0.0) - way * (place - start).with_y(0.0).dot(way);
+            assert!(aside.length() < 0.01, "{case}: at {place}");
+        }
+    }
+}
+
+#[test]
+fn a_rock_with_a_velocity_of_its_own_keeps_it() {
+    for rate in [30, 60, 240] {
+        let case = format!("{rate} Hz");
+        let mut stage = stage(rate, DVec3::X * 30.0, 0.3, 1.0);
+        let top = stage.creatures[0].half.y;
+        let (shape, radius) = shapes(0.3).remove(0);
+        let rock = stage.rock(&shape, DVec3::Y * (top - 0.8 * radius));
+        let own = stage.frame + DVec3::new(1.0, 6.0, 0.5);
+        stage.world.bodies[rock].set_linvel(own.as_vec3(), true);
+        let mut highest = f64::NEG_INFINITY;
+        for _ in 0..rate {
+            stage.tick(&case, &[Does::Moves(DVec3::ZERO)]);
+            highest = highest.max(stage.place(rock).y - top);
+        }
+        // As high as a throw takes it: v^2 / 2 g, less what it lay deep.
+        assert!(
+            highest > 1.4 && highest < 1.7,
+            "{case}: {highest} m over the skin"
+        );
+    }
+}
+
+#[test]
+fn several_rocks_come_out_together() {
+    for rate in [30, 60, 240] {
+        let case = format!("{rate} Hz");
+        let mut stage = stage(rate, DVec3::ZERO, 0.5, 1.0);
+        let top = stage.creatures[0].half.y;
+        let shapes = shapes(0.3);
+        let rocks: Vec<_> = (0..12)
+            .map(|number| {
+                let (shape, radius) = &shapes[number % shapes.len()];
+                let [row, column] = [number / 4, number % 4].map(|one| one as f64);
+                let place = DVec3::new(0.62 * column - 0.9, 0.0, 0.62 * row - 0.6);
+                let depth = 0.08 * number as f64;
+                stage.rock(shape, place + DVec3::Y * (top - depth * radius))
+            })
+            .collect();
+        for _ in 0..4 * rate {
+            stage.tick(&case, &[Does::Moves(DVec3::ZERO)]);
+            for rock in &rocks {
+                let velocity = stage.velocity(*rock);
+                assert!(velocity.length() < 4.0, "{case}: {velocity} m/s");
+            }
+        }
+        for rock in rocks {
+            let place = stage.place(rock);
+            assert!(place.y > top && place.y < top + 0.7, "{case}: {place}");
+        }
+    }
+}
+#[test]
+fn tmp_debug() {
+    let mut stage = stage(30, DVec3::X * 30.0, 1.0, 1.0);
+    let (shape, radius) = shapes(1.0).remove(3);
+    let top = stage.creatures[0].half.y;
+    for _ in 0..3 {
+        stage.tick("", &[Does::Moves(DVec3::ZERO)]);
+    }
+    let rock = stage.rock(&shape, DVec3::new(0.3, top, -0.4));
+    for tick in 0..20 {
+        let r = stage.tick("", &[Does::Moves(DVec3::ZERO)]);
+        println!(
+            "{tick} r {radius} {} v {} {r:?} {} {}",
+            stage.place(rock),
+            stage.velocity(rock),
+            stage.debris.is_put_out(rock),
+            stage.debris.is_let_through(rock)
+        );
+    }
+}
