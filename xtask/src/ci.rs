@@ -7,10 +7,11 @@ use crate::run::{IGNORE_RUST_VERSION, cargo, cargo_with};
 use crate::steps::Step;
 use crate::test_run::TestRun;
 use crate::{
-    arrows, benches, coverage, crates, examples, face, features, golden, modules, packages,
+    arrows, benches, commands, coverage, crates, examples, face, features, golden, modules,
+    packages,
 };
 
-pub(crate) const STEPS: [Step; 13] = [
+pub(crate) const STEPS: [Step; 14] = [
     Step::runs("tests", tests),
     Step {
         name: "golden",
@@ -20,6 +21,7 @@ pub(crate) const STEPS: [Step; 13] = [
     Step::runs("examples", |_| examples::runs()),
     Step::runs("benches", benches::runs),
     Step::other("coverage", coverage::check),
+    Step::other("commands", commands::check),
     Step::other("format", |_| cargo(&["fmt", "--all", "--check"])),
     Step::other("arrows", |metadata| {
         arrows::check(metadata)?;

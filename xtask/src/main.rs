@@ -8,6 +8,7 @@ mod battle;
 mod benches;
 mod build;
 mod ci;
+mod commands;
 mod coverage;
 mod crates;
 mod examples;
@@ -61,6 +62,9 @@ enum Task {
     },
     /// Stores the public items of each crate, with which `ci` compares those that it finds.
     Face,
+    /// Writes docs/commands.md, which says of every command in the documentation who runs it. `ci` compares it with the
+    /// one that it would write.
+    Commands,
     /// Draws the picture of the crates, docs/crates.svg, with which `ci` compares the one that it draws.
     Crates,
     /// The app on all of Bevy, which stands outside the workspace: its format, and a picture that it draws and
@@ -107,6 +111,7 @@ fn main() -> ExitCode {
             steps::run(&nightly::STEPS, &metadata, only.as_deref(), results::add)
         }
         Task::App => ended(app::check(&metadata)),
+        Task::Commands => ended(commands::store(&metadata)),
         Task::Face => ended(face::store(&metadata)),
         Task::Crates => ended(crates::store(&metadata)),
         Task::Soak {
