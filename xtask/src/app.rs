@@ -1,8 +1,18 @@
 //! `examples/bevy_app`, which is no part of the workspace.
 
-use crate::run::{IGNORE_RUST_VERSION, cargo, cargo_output, cargo_refuses};
+use cargo_metadata::Metadata;
 
-const MANIFEST: [&str; 2] = ["--manifest-path", "examples/bevy_app/Cargo.toml"];
+use crate::build::owned;
+use crate::run::{IGNORE_RUST_VERSION, cargo, cargo_output, cargo_refuses};
+use crate::test_run::{self, Targets, TestRun};
+
+const WORKSPACE: &str = "examples/bevy_app/Cargo.toml";
+
+/// The options that the game is given.
+const GIVEN: [&str; 3] = [SCRIPT, SCREENSHOT, FILMED];
+const SCRIPT: &str = "--script";
+const SCREENSHOT: &str = "--screenshot";
+const FILMED: &str = "--film";
 
 const PICTURE: &str = "target/bevy_app.png";
 const FILM: &str = "target/bevy_app.gif";
@@ -34,11 +44,40 @@ const LINES: &str = r#"{
     "buffers": [{"byteLength": 33, "uri": "data:application/octet-stream;base64,BUFFER"}]
 }"#;
 
-/// Builds the game, lets scripts play it, and gives it files that it must refuse.
-pub(crate) fn check() -> Result<(), String> {
-    cargo(&[&["fmt", "--check"][..], &MANIFEST].concat())?;
-    let test = ["test", "--locked", IGNORE_RUST_VERSION, "--quiet"];
-    cargo(&[&test[..], &MANIFEST, &["--all-targets"]].concat())?;
+/// Its tests, and the game, played by scripts.
+pub(crate) fn runs() -> Vec<TestRun> {
+    vec![run(Targets::All), run(Targets::Program)]
+}
+
+fn run(targets: Targets) -> TestRun {
+    let perform = match targets {
+        Targets::Program => |_: &Metadata, _: &TestRun| play_all(),
+        _ => test_run::test,
+    };
+    TestRun {
+        workspace: WORKSPACE,
+        targets: vec![targets],
+        options: owned(&["--locked", IGNORE_RUST_VERSION, "--quiet"]),
+        given: |_| GIVEN.to_vec(),
+        perform,
+        ..TestRun::default()
+    }
+}
+
+/// The format, and all of its [`runs`].
+pub(crate) fn check(metadata: &Metadata) -> Result<(), String> {
+    format()?;
+    runs()
+        .iter()
+        .try_for_each(|run| (run.perform)(metadata, run))
+}
+
+pub(crate) fn format() -> Result<(), String> {
+    cargo(&["fmt", "--check", "--manifest-path", WORKSPACE])
+}
+
+/// Lets scripts play the game, and gives it files that it must refuse.
+fn play_all() -> Result<(), String> {
     std::fs::create_dir_all("target").map_err(|error| format!("target: {error}"))?;
     play()?;
     film()?;
@@ -57,7 +96,7 @@ pub(crate) fn check() -> Result<(), String> {
 fn play() -> Result<(), String> {
     remove(PICTURE)?;
     let script = "examples/bevy_app/climb.script";
-    let said = cargo_output(&run(&["--script", script, "--screenshot", PICTURE]))?;
+    let said = cargo_output(&played(&[SCRIPT, script, SCREENSHOT, PICTURE]))?;
     print!("{said}");
     let number = |before: &str| {
         let rest = said.split_once(before).map(|(_, rest)| rest);
@@ -82,7 +121,7 @@ fn film() -> Result<(), String> {
     let script = "target/short.script";
     let lines = "{\"at\": 0, \"walk\": [0, 0, 1]}\n{\"at\": 1, \"end\": true}\n";
     std::fs::write(script, lines).map_err(|error| format!("{script}: {error}"))?;
-    cargo(&run(&["--script", script, "--film", FILM]))?;
+    cargo(&played(&[SCRIPT, script, FILMED, FILM]))?;
     check_size(FILM)
 }
 
@@ -109,12 +148,10 @@ fn refuse(file: &str, content: Option<&str>, says: &str) -> Result<(), String> {
     if let Some(content) = content {
         std::fs::write(file, content).map_err(|error| format!("{file}: {error}"))?;
     }
-    let script = ["--script", "examples/bevy_app/climb.script"];
-    let said = cargo_refuses(&run(&[
-        &script[..],
-        &["--screenshot", "target/none.png", file],
-    ]
-    .concat()))?;
+    let script = [SCRIPT, "examples/bevy_app/climb.script"];
+    let said = cargo_refuses(&played(
+        &[&script[..], &[SCREENSHOT, "target/none.png", file]].concat(),
+    ))?;
     let line = said.lines().find(|line| line.contains(file));
     if line.is_some_and(|line| line.contains(says)) {
         Ok(())
@@ -125,7 +162,7 @@ fn refuse(file: &str, content: Option<&str>, says: &str) -> Result<(), String> {
     }
 }
 
-fn run<'a>(app: &[&'a str]) -> Vec<&'a str> {
-    let run = ["run", "--locked", IGNORE_RUST_VERSION, "--quiet"];
-    [&run[..], &MANIFEST, &["--"], app].concat()
+/// How cargo is called to play the game with these options.
+fn played(options: &[&str]) -> Vec<String> {
+    run(Targets::Program).arguments("run", options)
 }

@@ -8,8 +8,10 @@
 
 use cargo_metadata::{Metadata, Package};
 
-use crate::build::selected;
+use crate::build::owned;
+use crate::parts::Kind;
 use crate::run::{IGNORE_RUST_VERSION, cargo};
+use crate::test_run::{Packages, Targets, TestRun};
 
 /// Features that bring in crates which declare a newer Rust than ours, and build on ours.
 const NEWER_RUST: [&str; 3] = [
@@ -65,19 +67,30 @@ fn lint(package: &Package, feature: Option<&str>) -> Result<(), String> {
     cargo(&[&lint[..], &with, &["--", "-D", "warnings"]].concat())
 }
 
-/// The tests of each library with each of its features that the tests of the workspace do not turn on.
-pub(crate) fn test(metadata: &Metadata) -> Result<(), String> {
-    let selected = selected(metadata);
+/// The tests of each library with each of its features that is not on in the tests that are already run.
+pub(crate) fn runs(metadata: &Metadata, tests: &[TestRun]) -> Vec<TestRun> {
+    let mut runs = Vec::new();
     for package in metadata.workspace_packages() {
+        let name = package.name.as_str();
+        let is_library = |run: &&TestRun| {
+            let mut parts = run.covers(metadata).into_iter();
+            parts.any(|part| part.package == name && part.kind == Kind::Library)
+        };
+        let tests: Vec<_> = tests.iter().filter(is_library).collect();
+        let tested: Vec<_> = tests.iter().map(|run| run.turned_on(metadata)).collect();
         for feature in package.features.keys().filter(|name| *name != "default") {
+            let feature = format!("{name}/{feature}");
             // The facade has no tests in its library: its features are those of other crates.
-            let tested = selected.contains(&format!("{}/{feature}", package.name));
-            if !tested && package.name != "clamber" {
-                let test = ["test", "--quiet", "-p", &package.name, "--lib"];
-                let with = [IGNORE_RUST_VERSION, "--features", feature];
-                cargo(&[&test[..], &with].concat())?;
+            if name != "clamber" && !tested.iter().any(|on| on.contains(&feature)) {
+                runs.push(TestRun {
+                    packages: Packages::Named(owned(&[name])),
+                    features: vec![feature],
+                    targets: vec![Targets::Library],
+                    options: owned(&["--quiet", IGNORE_RUST_VERSION]),
+                    ..TestRun::default()
+                });
             }
         }
     }
-    Ok(())
+    runs
 }

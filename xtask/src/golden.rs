@@ -3,39 +3,52 @@
 
 use cargo_metadata::Metadata;
 
-use crate::build;
-use crate::examples;
-use crate::run::{cargo, cargo_with};
-
-/// As released: the run of the core at all SIMD levels down to scalar code, and a battle.
-pub(crate) fn run(metadata: &Metadata) -> Result<(), String> {
-    cargo(&[&["test"][..], &build::RELEASED, &["--test", "golden"]].concat())?;
-    examples::compare_builds(metadata)
-}
+use crate::battle;
+use crate::build::{owned, released};
+use crate::test_run::{Packages, Profile, Targets, TestRun};
 
 /// Bytes of a test's stack, an eighth of what Bevy's threads have: without optimisation functions need much.
 const SMALL_STACK: &str = "262144";
 
-/// As released, recorded and fought again by the other build; not optimised; and for the very processor at hand, with
-/// rapier, whose instructions depend on the processor unless it is told otherwise.
-pub(crate) fn other_builds(metadata: &Metadata) -> Result<(), String> {
-    examples::exchange_recordings(metadata)?;
-    let test = ["test", "-p", "clamber_climber", "--test", "golden"];
-    let plain = "profile.dev.opt-level=0";
+fn test(name: &str) -> Targets {
+    Targets::Test(name.into())
+}
+
+/// As released: the run of the core at all SIMD levels down to scalar code, and the battles with rapier.
+pub(crate) fn runs() -> Vec<TestRun> {
+    let mut run = released().of(vec![test("golden"), test("golden_battle")]);
+    // Which of them fail tells where to look.
+    run.options.push("--no-fail-fast".into());
+    vec![run]
+}
+
+/// A battle as released, and as built for tests.
+pub(crate) fn rest(_: &Metadata) -> Result<(), String> {
+    battle::compare_builds()
+}
+
+/// Not optimised; and for the very processor at hand, with rapier, whose instructions depend on the processor unless it
+/// is told otherwise.
+pub(crate) fn other_builds(metadata: &Metadata) -> Vec<TestRun> {
     // Apart, or each of these builds would have the other's dependencies built anew.
-    let folder = metadata.target_directory.join("plain");
-    cargo_with(
-        &[
-            &test[..],
-            &["--config", plain, "--target-dir", folder.as_str()],
-        ]
-        .concat(),
-        &[("RUST_MIN_STACK", SMALL_STACK)],
-    )?;
-    let folder = metadata.target_directory.join("native");
-    let native = "build.rustflags=[\"-C\", \"target-cpu=native\"]";
-    let battle = ["-p", "clamber", "--features", "clamber/deterministic"];
-    let native = ["--release", "--config", native];
-    let folder = ["--target-dir", folder.as_str(), "--test", "golden_battle"];
-    cargo(&[&test[..], &native, &battle, &folder].concat())
+    let apart = |folder: &str, config: &str| {
+        let folder = metadata.target_directory.join(folder);
+        owned(&["--config", config, "--target-dir", folder.as_str()])
+    };
+    let plain = TestRun {
+        packages: Packages::Named(owned(&["clamber_climber"])),
+        targets: vec![test("golden")],
+        options: apart("plain", "profile.dev.opt-level=0"),
+        variables: &[("RUST_MIN_STACK", SMALL_STACK)],
+        ..TestRun::default()
+    };
+    let native = TestRun {
+        profile: Profile::Release,
+        packages: Packages::Named(owned(&["clamber", "clamber_climber"])),
+        features: owned(&["clamber/deterministic"]),
+        targets: vec![test("golden"), test("golden_battle")],
+        options: apart("native", "build.rustflags=[\"-C\", \"target-cpu=native\"]"),
+        ..TestRun::default()
+    };
+    vec![plain, native]
 }

@@ -4,27 +4,36 @@
 
 mod app;
 mod arrows;
+mod battle;
 mod benches;
 mod build;
+mod ci;
+mod commands;
+mod coverage;
 mod crates;
 mod examples;
 mod face;
 mod features;
+mod files;
 mod golden;
 mod modules;
 mod nightly;
 mod packages;
+mod parts;
 mod peers;
+mod plan;
+mod results;
 mod run;
 mod soak;
 mod steps;
+mod targets;
+mod test_run;
+mod turned_on;
+mod workspaces;
 
 use std::process::ExitCode;
 
-use cargo_metadata::MetadataCommand;
 use clap::{Parser, Subcommand};
-use run::{IGNORE_RUST_VERSION, cargo};
-use steps::Step;
 
 /// Tasks of this workspace.
 #[derive(Parser)]
@@ -44,7 +53,8 @@ enum Task {
         only: Option<String>,
     },
     /// What takes too long for CI: every case of tests that have short forms, golden runs in other builds, other
-    /// libraries, the app on all of Bevy, a soak of half an hour. Takes some two hours on a cold target.
+    /// libraries, the app on all of Bevy, a soak of half an hour. Takes some two hours on a cold target. Adds a line for
+    /// each step to nightly.md in the target folder.
     Nightly {
         /// Run only the steps whose name contains this.
         #[arg(long, value_name = "NAME")]
@@ -52,6 +62,9 @@ enum Task {
     },
     /// Stores the public items of each crate, with which `ci` compares those that it finds.
     Face,
+    /// Writes docs/commands.md, which says of every command in the documentation who runs it. `ci` compares it with the
+    /// one that it would write.
+    Commands,
     /// Draws the picture of the crates, docs/crates.svg, with which `ci` compares the one that it draws.
     Crates,
     /// The app on all of Bevy, which stands outside the workspace: its format, and a picture that it draws and
@@ -75,64 +88,30 @@ enum Task {
     },
 }
 
-const STEPS: [Step; 12] = [
-    ("tests", |_| {
-        // The command of the front page; then all that it leaves out.
-        cargo(&["test"])?;
-        cargo(&[&["test"][..], &build::beyond_default()].concat())
-    }),
-    ("golden", golden::run),
-    ("examples", examples::run),
-    ("benches", benches::run),
-    ("format", |_| cargo(&["fmt", "--all", "--check"])),
-    ("arrows", |metadata| {
-        arrows::check(metadata)?;
-        modules::check()
-    }),
-    ("crates", crates::check),
-    ("packages", packages::check),
-    ("lints", |_| {
-        let lint = ["clippy", "--all-targets", "--quiet", "--workspace"];
-        let all = ["--all-features", IGNORE_RUST_VERSION];
-        cargo(&[&lint[..], &all, &["--", "-D", "warnings"]].concat())
-    }),
-    ("documentation", |_| {
-        let doc = [
-            "doc",
-            "--workspace",
-            "--no-deps",
-            "--all-features",
-            IGNORE_RUST_VERSION,
-            "--quiet",
-        ];
-        run::cargo_with(&doc, &[("RUSTDOCFLAGS", "-D warnings")])
-    }),
-    ("face", face::check),
-    ("features", features::check),
-];
-
 fn main() -> ExitCode {
     if let Some(ended) = face::as_rustdoc() {
         return ended;
     }
     let task = Arguments::parse().task;
-    let metadata = match MetadataCommand::new().exec() {
+    let metadata = match workspaces::main() {
         Ok(metadata) => metadata,
         Err(error) => {
-            eprintln!("cargo metadata failed: {error}");
+            eprintln!("{error}");
             return ExitCode::FAILURE;
         }
     };
-    // Wherever it was called from.
     let root = &metadata.workspace_root;
     if let Err(error) = std::env::set_current_dir(root) {
         eprintln!("{root}: {error}");
         return ExitCode::FAILURE;
     }
     match task {
-        Task::Ci { only } => steps::run(&STEPS, &metadata, only.as_deref()),
-        Task::Nightly { only } => steps::run(&nightly::STEPS, &metadata, only.as_deref()),
-        Task::App => ended(app::check()),
+        Task::Ci { only } => steps::run(&ci::STEPS, &metadata, only.as_deref(), |_, _| Ok(())),
+        Task::Nightly { only } => {
+            steps::run(&nightly::STEPS, &metadata, only.as_deref(), results::add)
+        }
+        Task::App => ended(app::check(&metadata)),
+        Task::Commands => ended(commands::store(&metadata)),
         Task::Face => ended(face::store(&metadata)),
         Task::Crates => ended(crates::store(&metadata)),
         Task::Soak {

@@ -2,69 +2,71 @@
 //! golden runs in other builds, packages that build by themselves, other libraries held against ours, the app on all of
 //! Bevy, and the soak.
 
-use cargo_metadata::Metadata;
-
-use crate::run::{IGNORE_RUST_VERSION, cargo, cargo_with};
+use crate::build::owned;
+use crate::run::IGNORE_RUST_VERSION;
 use crate::steps::Step;
-use crate::{app, features, golden, packages, peers, soak};
-
-/// Minutes of the soak.
-const MINUTES: f64 = 30.0;
+use crate::test_run::{Ignored, Packages, Profile, Targets, TestRun};
+use crate::{app, battle, ci, features, golden, packages, peers, soak};
 
 pub(crate) const STEPS: [Step; 8] = [
-    ("all cases", all_cases),
-    ("features", |metadata| {
-        features::check_heavy(metadata)?;
-        features::test(metadata)
-    }),
-    ("engines", |_| engines()),
-    ("golden", golden::other_builds),
-    ("packages", packages::build),
-    ("peers", |_| peers::check()),
-    ("app", |_| app::check()),
-    ("soak", |_| soak::run(MINUTES, 1, None)),
+    Step::runs("all cases", |_| vec![all_cases()]),
+    Step {
+        name: "features",
+        runs: |metadata| features::runs(metadata, &ci::tests(metadata)),
+        rest: features::check_heavy,
+    },
+    Step::runs("engines", |_| vec![engines()]),
+    Step {
+        name: "golden",
+        runs: golden::other_builds,
+        rest: battle::exchange_recordings,
+    },
+    Step::other("packages", packages::build),
+    Step {
+        name: "peers",
+        runs: |_| peers::runs(),
+        rest: peers::rest,
+    },
+    Step {
+        name: "app",
+        runs: |_| app::runs(),
+        rest: |_| app::format(),
+    },
+    Step::runs("soak", |_| vec![soak::nightly()]),
 ];
 
 /// The plugins in apps with avian and `bevy_rapier3d`: climbers on their terrain, bodies on skin, and all the rest. These
 /// two take minutes to build.
-fn engines() -> Result<(), String> {
-    cargo(&[
-        "test",
-        "-p",
-        "bevy_clamber",
-        "--features",
-        "avian,rapier",
-        IGNORE_RUST_VERSION,
-        "--test",
-        "plugin",
-    ])
+fn engines() -> TestRun {
+    TestRun {
+        packages: Packages::Named(owned(&["bevy_clamber"])),
+        features: owned(&["bevy_clamber/avian", "bevy_clamber/rapier"]),
+        targets: vec![Targets::Test("plugin".into())],
+        options: owned(&[IGNORE_RUST_VERSION]),
+        ..TestRun::default()
+    }
 }
+
+/// The packages that have tests which are ignored elsewhere, or which run a fifth of their cases there.
+const LONG: [&str; 4] = [
+    "clamber",
+    "clamber_climber",
+    "clamber_fuzz",
+    "clamber_surface",
+];
 
 /// The tests that are ignored elsewhere, and all cases of those that run a fifth of them. One at a time: some take
 /// gigabytes, some measure.
-fn all_cases(_: &Metadata) -> Result<(), String> {
-    let test = ["test", "--release", "--no-fail-fast"];
-    let packages = [
-        "-p",
-        "clamber",
-        "-p",
-        "clamber_climber",
-        "-p",
-        "clamber_fuzz",
-        "-p",
-        "clamber_surface",
-    ];
-    let features = ["--features", "clamber_surface/scalar"];
-    let ignored = ["--", "--include-ignored", "--test-threads", "1"];
-    cargo_with(
-        &[
-            &test[..],
-            &packages,
-            &features,
-            &["--lib", "--tests"],
-            &ignored,
-        ]
-        .concat(),
-        &[("CLAMBER_ALL_CASES", "1")],
-    )
+fn all_cases() -> TestRun {
+    TestRun {
+        profile: Profile::Release,
+        packages: Packages::Named(owned(&LONG)),
+        features: owned(&["clamber_surface/scalar"]),
+        targets: vec![Targets::Library, Targets::Tests],
+        ignored: Ignored::Included,
+        options: owned(&["--no-fail-fast"]),
+        harness: &["--test-threads", "1"],
+        variables: &[("CLAMBER_ALL_CASES", "1")],
+        ..TestRun::default()
+    }
 }

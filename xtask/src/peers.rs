@@ -3,9 +3,13 @@
 
 use std::path::Path;
 
-use crate::run::cargo;
+use cargo_metadata::Metadata;
 
-const MANIFEST: [&str; 3] = ["--locked", "--manifest-path", "peers/Cargo.toml"];
+use crate::build::owned;
+use crate::run::cargo;
+use crate::test_run::{self, Targets, TestRun};
+
+const WORKSPACE: &str = "peers/Cargo.toml";
 
 /// Features, where their headers are, and in which package. Jolt and PhysX, which cargo compiles, take minutes in each
 /// profile: they are run by hand, as `peers/README.md` says.
@@ -15,31 +19,50 @@ const LIBRARIES: [(&str, &str, &str); 3] = [
     ("fcl", "/usr/include/fcl", "libfcl-dev"),
 ];
 
-/// Format, lints, tests, and each bench briefly; fails if a library is missing, after it has checked the rest.
-pub(crate) fn check() -> Result<(), String> {
-    let here = |(_, headers, _): &&(&str, &str, &str)| Path::new(headers).exists();
-    let installed: Vec<&str> = LIBRARIES
-        .iter()
-        .filter(here)
-        .map(|(name, ..)| *name)
-        .collect();
-    let installed = installed.join(",");
-    let features = ["--features", &installed];
-    cargo(&["fmt", "--manifest-path", MANIFEST[2], "--check"])?;
-    let strict = ["--", "-D", "warnings"];
-    cargo(
-        &[
-            &["clippy", "--all-targets", "--quiet"][..],
-            &MANIFEST,
-            &features,
-            &strict,
-        ]
-        .concat(),
-    )?;
-    cargo(&[&["test"][..], &MANIFEST, &features].concat())?;
-    let brief = ["--benches", "--", "--test"];
-    cargo(&[&["test"][..], &MANIFEST, &features, &brief].concat())?;
-    let missing = LIBRARIES.iter().filter(|library| !here(library));
+/// True if a library's headers are installed.
+fn is_here((_, headers, _): &&(&str, &str, &str)) -> bool {
+    Path::new(headers).exists()
+}
+
+/// Tests, and each bench briefly, with the libraries that are installed; [`rest`] fails if one is missing.
+pub(crate) fn runs() -> Vec<TestRun> {
+    let tests = TestRun {
+        workspace: WORKSPACE,
+        features: LIBRARIES
+            .iter()
+            .map(|(name, ..)| format!("clamber_peers/{name}"))
+            .collect(),
+        options: owned(&["--locked"]),
+        perform: |metadata, run| test_run::test(metadata, &installed(run)),
+        ..TestRun::default()
+    };
+    let benches = TestRun {
+        harness: &["--test"],
+        ..tests.clone().of(vec![Targets::Benches])
+    };
+    vec![tests, benches]
+}
+
+/// A run without the libraries that are not installed.
+fn installed(run: &TestRun) -> TestRun {
+    let mut run = run.clone();
+    let missing = LIBRARIES.iter().filter(|library| !is_here(library));
+    for (name, ..) in missing {
+        run.features
+            .retain(|feature| *feature != format!("clamber_peers/{name}"));
+    }
+    run
+}
+
+/// Format and lints; then fails if a library is missing.
+pub(crate) fn rest(_: &Metadata) -> Result<(), String> {
+    cargo(&["fmt", "--manifest-path", WORKSPACE, "--check"])?;
+    let all = runs().into_iter().next().unwrap_or_default();
+    let lints = installed(&all.of(vec![Targets::All]));
+    let mut lints = lints.arguments("clippy", &["-D", "warnings"]);
+    lints.insert(1, "--quiet".into());
+    cargo(&lints)?;
+    let missing = LIBRARIES.iter().filter(|library| !is_here(library));
     let missing: Vec<&str> = missing.map(|(.., package)| *package).collect();
     if missing.is_empty() {
         Ok(())

@@ -37,13 +37,17 @@ pub(crate) fn skipped() -> Vec<String> {
 }
 
 /// Runs cargo; an error if it fails.
-pub(crate) fn cargo(arguments: &[&str]) -> Result<(), String> {
+pub(crate) fn cargo<S: AsRef<str>>(arguments: &[S]) -> Result<(), String> {
     cargo_with(arguments, &[])
 }
 
 /// Runs cargo with environment variables.
-pub(crate) fn cargo_with(arguments: &[&str], variables: &[(&str, &str)]) -> Result<(), String> {
-    println!("   cargo {}", arguments.join(" "));
+pub(crate) fn cargo_with<S: AsRef<str>>(
+    arguments: &[S],
+    variables: &[(&str, &str)],
+) -> Result<(), String> {
+    let line = line(arguments);
+    println!("   {line}");
     let start = Instant::now();
     let failed = |error: std::io::Error| format!("cannot run cargo: {error}");
     let mut command = command(arguments);
@@ -67,16 +71,14 @@ pub(crate) fn cargo_with(arguments: &[&str], variables: &[(&str, &str)]) -> Resu
     if status.success() {
         Ok(())
     } else {
-        Err(format!(
-            "`cargo {}` ended with {status}",
-            arguments.join(" ")
-        ))
+        Err(format!("`{line}` ended with {status}"))
     }
 }
 
 /// Runs cargo and gives what it prints on standard output.
-pub(crate) fn cargo_output(arguments: &[&str]) -> Result<String, String> {
-    println!("   cargo {}", arguments.join(" "));
+pub(crate) fn cargo_output<S: AsRef<str>>(arguments: &[S]) -> Result<String, String> {
+    let line = line(arguments);
+    println!("   {line}");
     let output = command(arguments)
         .stderr(Stdio::inherit())
         .output()
@@ -84,18 +86,15 @@ pub(crate) fn cargo_output(arguments: &[&str]) -> Result<String, String> {
     if output.status.success() {
         Ok(String::from_utf8_lossy(&output.stdout).into_owned())
     } else {
-        Err(format!(
-            "`cargo {}` ended with {}",
-            arguments.join(" "),
-            output.status
-        ))
+        Err(format!("`{line}` ended with {}", output.status))
     }
 }
 
 /// Runs cargo for a program that must end with an error of its own, not a panic; gives what it prints on standard
 /// error.
-pub(crate) fn cargo_refuses(arguments: &[&str]) -> Result<String, String> {
-    println!("   cargo {}", arguments.join(" "));
+pub(crate) fn cargo_refuses<S: AsRef<str>>(arguments: &[S]) -> Result<String, String> {
+    let line = line(arguments);
+    println!("   {line}");
     let output = command(arguments)
         .stdout(Stdio::null())
         .output()
@@ -104,10 +103,9 @@ pub(crate) fn cargo_refuses(arguments: &[&str]) -> Result<String, String> {
     if output.status.code() == Some(1) {
         Ok(said)
     } else {
+        let status = output.status;
         Err(format!(
-            "`cargo {}` ended with {} where 1 was due:\n{said}",
-            arguments.join(" "),
-            output.status
+            "`{line}` ended with {status} where 1 was due:\n{said}"
         ))
     }
 }
@@ -149,9 +147,19 @@ pub(crate) fn refuses(binary: &Utf8Path, arguments: &[&str], reason: &str) -> Re
     ))
 }
 
-fn command(arguments: &[&str]) -> Command {
+/// A call of cargo as one types it.
+fn line<S: AsRef<str>>(arguments: &[S]) -> String {
+    let words = arguments.iter().map(AsRef::as_ref);
+    ["cargo"]
+        .into_iter()
+        .chain(words)
+        .collect::<Vec<_>>()
+        .join(" ")
+}
+
+fn command<S: AsRef<str>>(arguments: &[S]) -> Command {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let mut command = Command::new(cargo);
-    command.args(arguments);
+    command.args(arguments.iter().map(AsRef::as_ref));
     command
 }

@@ -1,19 +1,36 @@
 //! `clamber_fuzz`'s example `soak`, as released.
 
+use crate::build::owned;
 use crate::run::cargo;
+use crate::test_run::{Packages, Profile, Targets, TestRun};
+
+/// Minutes of the nightly one.
+const MINUTES: f64 = 30.0;
+
+/// Its options.
+const GIVEN: [&str; 2] = ["--minutes", "--seed"];
+
+/// The nightly one.
+pub(crate) fn nightly() -> TestRun {
+    TestRun {
+        profile: Profile::Release,
+        packages: Packages::Named(owned(&["clamber_fuzz"])),
+        features: owned(&["clamber_surface/scalar"]),
+        targets: vec![Targets::Example("soak".into())],
+        given: |_| GIVEN.to_vec(),
+        perform: |_, run| soak(run, MINUTES, 1, None),
+        ..TestRun::default()
+    }
+}
 
 /// Builds and runs it; an error if it found something.
 pub(crate) fn run(minutes: f64, seed: u64, case: Option<&str>) -> Result<(), String> {
+    soak(&nightly(), minutes, seed, case)
+}
+
+fn soak(run: &TestRun, minutes: f64, seed: u64, case: Option<&str>) -> Result<(), String> {
     let (minutes, seed) = (minutes.to_string(), seed.to_string());
-    let run = [
-        "run",
-        "--release",
-        "--package",
-        "clamber_fuzz",
-        "--features",
-        "clamber_surface/scalar",
-    ];
-    let soak = ["--example", "soak", "--", "--minutes", &minutes];
-    let case = case.map_or(vec![], |case| vec!["--case", case]);
-    cargo(&[&run[..], &soak, &["--seed", &seed], &case].concat())
+    let mut options = vec![GIVEN[0], &minutes, GIVEN[1], &seed];
+    options.extend(case.iter().flat_map(|case| ["--case", case]));
+    cargo(&run.arguments("run", &options))
 }

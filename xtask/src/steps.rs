@@ -7,53 +7,118 @@ use std::time::Instant;
 use cargo_metadata::Metadata;
 
 use crate::run;
+use crate::test_run::TestRun;
 
-/// Its name and what it does.
-pub(crate) type Step = (&'static str, fn(&Metadata) -> Result<(), String>);
+/// What a step does beside its runs.
+type Rest = fn(&Metadata) -> Result<(), String>;
 
-/// Runs the steps whose names contain `only`, or all of them.
-pub(crate) fn run(steps: &[Step], metadata: &Metadata, only: Option<&str>) -> ExitCode {
+/// A part of a task that can be asked for by its name.
+pub(crate) struct Step {
+    pub(crate) name: &'static str,
+    /// The tests, benches and examples that it runs, for the main workspace. No step runs any in another way, or the
+    /// check of coverage would not see them.
+    pub(crate) runs: fn(&Metadata) -> Vec<TestRun>,
+    /// What it does after them.
+    pub(crate) rest: Rest,
+}
+
+impl Step {
+    /// A step that only runs tests, benches or examples.
+    pub(crate) const fn runs(name: &'static str, runs: fn(&Metadata) -> Vec<TestRun>) -> Self {
+        Self {
+            name,
+            runs,
+            rest: |_| Ok(()),
+        }
+    }
+
+    /// A step that runs none of them.
+    pub(crate) const fn other(name: &'static str, rest: Rest) -> Self {
+        Self {
+            name,
+            runs: |_| Vec::new(),
+            rest,
+        }
+    }
+
+    /// A failure does not keep what comes next from running.
+    fn perform(&self, metadata: &Metadata) -> Result<(), String> {
+        let runs = (self.runs)(metadata);
+        let ran = runs.iter().map(|run| (run.perform)(metadata, run));
+        let all = ran.chain(std::iter::once_with(|| (self.rest)(metadata)));
+        let failures: Vec<String> = all.filter_map(Result::err).collect();
+        if failures.is_empty() {
+            Ok(())
+        } else {
+            Err(failures.join("; "))
+        }
+    }
+}
+
+/// How a step ended.
+pub(crate) struct Ended {
+    pub(crate) name: &'static str,
+    pub(crate) seconds: f64,
+    pub(crate) passed: bool,
+}
+
+/// Runs the steps whose names contain `only`, or all of them; tells of each as it ends.
+pub(crate) fn run(
+    steps: &[Step],
+    metadata: &Metadata,
+    only: Option<&str>,
+    tell: fn(&Metadata, &Ended) -> Result<(), String>,
+) -> ExitCode {
     let asked = |name: &str| only.is_none_or(|only| name.contains(only));
-    let (mut failures, mut times) = (Vec::new(), Vec::new());
-    for (name, step) in steps.iter().filter(|(name, _)| asked(name)) {
+    let mut all = Vec::new();
+    for step in steps.iter().filter(|step| asked(step.name)) {
+        let name = step.name;
         println!("== {name}");
         let start = Instant::now();
-        if let Err(reason) = step(metadata) {
+        let came = step.perform(metadata);
+        let mut ended = Ended {
+            name,
+            seconds: start.elapsed().as_secs_f64(),
+            passed: came.is_ok(),
+        };
+        if let Err(reason) = came.and(tell(metadata, &ended)) {
             eprintln!("{name} FAILED: {reason}");
-            failures.push(*name);
+            ended.passed = false;
         }
-        let seconds = start.elapsed().as_secs_f64();
-        println!("   {name}: {seconds:.0} s");
-        times.push((*name, seconds));
+        println!("   {name}: {:.0} s", ended.seconds);
+        all.push(ended);
     }
-    if times.is_empty() {
-        let names: Vec<&str> = steps.iter().map(|(name, _)| *name).collect();
+    if all.is_empty() {
+        let names: Vec<&str> = steps.iter().map(|step| step.name).collect();
         eprintln!("no step has such a name; there are {}", names.join(", "));
         return ExitCode::FAILURE;
     }
+    summary(&all, steps.len())
+}
+
+/// Prints times, failures and skipped tests.
+fn summary(all: &[Ended], steps: usize) -> ExitCode {
     println!("== summary");
-    for (name, seconds) in &times {
+    for Ended { name, seconds, .. } in all {
         println!("   {seconds:6.0} s  {name}");
     }
     let skipped = run::skipped();
     for line in &skipped {
         println!("   {line}");
     }
-    let total: f64 = times.iter().map(|(_, seconds)| seconds).sum();
-    let ran = format!(
-        "{} of {} steps ran in {total:.0} s",
-        times.len(),
-        steps.len()
-    );
+    let total: f64 = all.iter().map(|ended| ended.seconds).sum();
+    let ran = format!("{} of {steps} steps ran in {total:.0} s", all.len());
     let skipped = match skipped.len() {
         0 => "nothing skipped".to_owned(),
         count => format!("{count} SKIPPED, see above"),
     };
-    if failures.is_empty() {
+    let failed = all.iter().filter(|ended| !ended.passed);
+    let failed: Vec<&str> = failed.map(|ended| ended.name).collect();
+    if failed.is_empty() {
         println!("{ran}, all passed, {skipped}");
         ExitCode::SUCCESS
     } else {
-        eprintln!("{ran}, failed: {}, {skipped}", failures.join(", "));
+        eprintln!("{ran}, failed: {}, {skipped}", failed.join(", "));
         ExitCode::FAILURE
     }
 }

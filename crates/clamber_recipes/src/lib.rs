@@ -18,6 +18,8 @@ pub mod own_model {}
 pub mod own_engine {}
 #[doc = include_str!("../../../docs/recipes/person.md")]
 pub mod person {}
+#[doc = include_str!("../../../docs/recipes/recording.md")]
+pub mod recording {}
 #[doc = include_str!("../../../docs/recipes/saving.md")]
 pub mod saving {}
 #[doc = include_str!("../../../docs/recipes/scaling.md")]

@@ -1,0 +1,115 @@
+//! Every command in the documentation is run by a step of `cargo xtask ci` or `cargo xtask nightly`, or is listed in
+//! `docs/commands.md` with the reason why not.
+//!
+//! Pages are all Markdown files except the list itself and the changelog. A command is a line of a block that is marked
+//! `sh`, `bash` or `console`, or words in backticks that begin with a known program. A step runs a command if it runs
+//! the same targets, with all features that the command names, and ignored tests if the command includes them. Programs
+//! must be given the same options. What is left out of account:
+//!
+//! - the profile: a step decides it, and mostly has that of tests;
+//! - the values of a program's options, such as of `--seconds`, and the files that it gets: a step is to be brief;
+//! - which of a target's tests or benches are named, and `--nocapture`; a name of a test must stand in the sources;
+//! - `CLAMBER_TEST_DATA`, which says where files are. With any other variable it is another command.
+//!
+//! `clamber` runs if a test that starts the program has the same words and options in its text. A command with a pipe, or
+//! of any other program, is run by no step.
+//!
+//! Whoever runs it, the packages, targets, features and steps that a command names must exist.
+
+mod asked;
+mod cli;
+mod list;
+mod pages;
+mod path;
+mod who;
+
+use cargo_metadata::Metadata;
+use list::Row;
+use who::Who;
+
+/// The list.
+const LIST: &str = "docs/commands.md";
+
+/// The list says of every command in the pages who runs it.
+pub(crate) fn check(main: &Metadata) -> Result<(), String> {
+    let stored = std::fs::read_to_string(main.workspace_root.join(LIST)).unwrap_or_default();
+    let stored = stored.replace("\r\n", "\n");
+    let (page, wrong) = write(main, &stored)?;
+    for line in &wrong {
+        eprintln!("   {line}");
+    }
+    if !wrong.is_empty() {
+        Err(format!("{} commands in the documentation", wrong.len()))
+    } else if page != stored {
+        Err(format!(
+            "{LIST} is out of date: `cargo xtask commands` writes it"
+        ))
+    } else {
+        Ok(())
+    }
+}
+
+/// Stores the list. The reasons in it stay, and those that are missing are left empty.
+pub(crate) fn store(main: &Metadata) -> Result<(), String> {
+    let path = main.workspace_root.join(LIST);
+    let (page, _) = write(main, &std::fs::read_to_string(&path).unwrap_or_default())?;
+    let (page, wrong) = write(main, &page)?;
+    std::fs::write(&path, page).map_err(|error| format!("{LIST}: {error}"))?;
+    println!("   {LIST}");
+    match wrong.is_empty() {
+        true => Ok(()),
+        false => Err(wrong.join("\n")),
+    }
+}
+
+/// The list as it should be, with the reasons of the stored one; and what is wrong.
+fn write(main: &Metadata, stored: &str) -> Result<(String, Vec<String>), String> {
+    let who = Who::new(main)?;
+    let mut reasons = list::reasons(stored);
+    let (commands, without_link) = pages::read_all(&main.workspace_root)?;
+    let (mut run, mut not_run, mut wrong) = (Vec::new(), Vec::new(), Vec::new());
+    for (command, pages) in &commands {
+        let place = || {
+            pages
+                .iter()
+                .map(|page| page.as_str())
+                .collect::<Vec<_>>()
+                .join(", ")
+        };
+        let reason = reasons.remove(command).unwrap_or_default();
+        let runs = who.runs(command, pages);
+        if let Err(why) = &runs {
+            wrong.push(format!("{}: `{command}`: {why}", place()));
+        }
+        let says = runs.unwrap_or_default();
+        let row = |says| Row {
+            command,
+            pages,
+            says,
+        };
+        if let Some(says) = says {
+            run.push(row(says));
+            continue;
+        }
+        if reason.is_empty() {
+            wrong.push(format!(
+                "{}: no step runs `{command}`: have one run it, or give the reason in {LIST}, into which \
+                 `cargo xtask commands` writes it",
+                place()
+            ));
+        }
+        not_run.push(row(reason));
+    }
+    for command in reasons.keys() {
+        wrong.push(format!(
+            "{LIST}: no page has `{command}`: `cargo xtask commands` removes it"
+        ));
+    }
+    for page in without_link {
+        wrong.push(format!("{page} has commands, and no link to {LIST}"));
+    }
+    Ok((list::write(&run, &not_run), wrong))
+}
+
+#[cfg(test)]
+mod tests;
