@@ -76,7 +76,7 @@ pub(crate) fn line(
             Level::Info,
             format!(
                 "its hands slipped off {} at {speed:.1} m/s",
-                named(obstacle)
+                named(*obstacle)
             ),
         ),
         ClimberEvent::AlreadyInMode { mode } => (

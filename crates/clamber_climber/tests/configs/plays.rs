@@ -1,0 +1,217 @@
+//! What each configuration plays, at 60 Hz.
+
+use clamber_climber::{Blow, Climber, ClimberConfig, ClimberInput, ClimberMode, StepReport};
+use clamber_world::{HalfSpace, Obstacle, ObstacleId, SurfaceKind, SurfaceTag};
+use glam::DVec3;
+
+const RATE: f64 = 60.0;
+const DT: f64 = 1.0 / RATE;
+
+/// Longest time in a mode other than standing, holding and hanging, seconds.
+const LONGEST: f64 = 10.0;
+
+const FUR: SurfaceTag = SurfaceTag::new(SurfaceKind::Fur);
+
+const IDLE: ClimberInput = ClimberInput::IDLE;
+
+const HOLD: ClimberInput = ClimberInput { grip: true, ..IDLE };
+
+type Outcome = Result<(), String>;
+
+struct Run {
+    climber: Climber,
+    obstacles: Vec<Box<dyn Obstacle>>,
+}
+
+impl Run {
+    fn new(config: &ClimberConfig, position: DVec3, obstacles: Vec<Box<dyn Obstacle>>) -> Self {
+        let climber = Climber::new(*config, position).unwrap();
+        Self { climber, obstacles }
+    }
+
+    fn step(&mut self, input: &ClimberInput) -> StepReport {
+        let each = self.obstacles.iter().enumerate();
+        let listed: Vec<(ObstacleId, &dyn Obstacle)> = each
+            .map(|(index, obstacle)| (ObstacleId(index as u64), &**obstacle))
+            .collect();
+        self.climber.step(input, &listed, DT).unwrap()
+    }
+
+    fn mode(&self) -> ClimberMode {
+        self.climber.state().mode
+    }
+
+    fn place(&self) -> DVec3 {
+        self.climber.state().position
+    }
+
+    /// Without input it stands after a while.
+    fn comes_to_stand(&mut self) -> Outcome {
+        for _ in 0..(LONGEST * RATE) as u32 {
+            self.step(&IDLE);
+            if self.mode() == ClimberMode::Standing {
+                return Ok(());
+            }
+        }
+        let state = self.climber.state();
+        Err(format!("is {:?} at {} m/s", state.mode, state.velocity))
+    }
+
+    /// Its mean speed along a direction over a second, after another second.
+    fn speed(&mut self, input: &ClimberInput, along: DVec3) -> f64 {
+        (0..RATE as u32).for_each(|_| drop(self.step(input)));
+        let from = self.place();
+        (0..RATE as u32).for_each(|_| drop(self.step(input)));
+        (self.place() - from).dot(along)
+    }
+}
+
+fn floor() -> Box<dyn Obstacle> {
+    Box::new(HalfSpace::below(0.0))
+}
+
+fn near(what: &str, found: f64, due: f64, slack: f64) -> Outcome {
+    let is_near = (found - due).abs() <= 0.05 * due + slack;
+    let told = || format!("{what} {found}, configured {due}");
+    if is_near { Ok(()) } else { Err(told()) }
+}
+
+fn standing(config: &ClimberConfig) -> Result<Run, String> {
+    let height = config.body.radius * 1.5;
+    let mut run = Run::new(config, DVec3::Y * height, vec![floor()]);
+    run.comes_to_stand()?;
+    Ok(run)
+}
+
+pub(crate) fn drops_and_stands(config: &ClimberConfig) -> Outcome {
+    let mut run = standing(config)?;
+    (0..60).for_each(|_| drop(run.step(&IDLE)));
+    match run.mode() {
+        ClimberMode::Standing => Ok(()),
+        mode => Err(format!("{mode:?} a second after it stood")),
+    }
+}
+
+pub(crate) fn walks(config: &ClimberConfig) -> Outcome {
+    let mut run = standing(config)?;
+    let walk = ClimberInput {
+        walk: DVec3::X,
+        ..IDLE
+    };
+    let due = config.ground.walk_speed;
+    if config.ground.acceleration * 0.9 < due {
+        return Ok(());
+    }
+    let found = run.speed(&walk, DVec3::X);
+    near("walks at", found, due, 1e-9)
+}
+
+pub(crate) fn jumps(config: &ClimberConfig) -> Outcome {
+    let mut run = standing(config)?;
+    let from = run.place().y;
+    let speed = config.ground.jump_speed;
+    let gravity = config.gravity.length();
+    let mut top = 0.0f64;
+    let jump = ClimberInput {
+        jump: true,
+        jump_held: true,
+        ..IDLE
+    };
+    run.step(&jump);
+    top = top.max(run.place().y - from);
+    let held = ClimberInput {
+        jump: false,
+        ..jump
+    };
+    for _ in 0..(2.0 * speed / gravity * RATE) as u32 {
+        run.step(&held);
+        top = top.max(run.place().y - from);
+    }
+    // The highest point is seen at the end of a tick.
+    let slack = 0.5 * gravity * DT * DT + config.body.margin;
+    near("jumps", top, speed * speed / (2.0 * gravity), slack)?;
+    run.comes_to_stand()
+}
+
+pub(crate) fn falls_from_high(config: &ClimberConfig) -> Outcome {
+    let start = DVec3::Y * (config.body.radius * 30.0);
+    Run::new(config, start, vec![floor()]).comes_to_stand()
+}
+
+pub(crate) fn slides_down(config: &ClimberConfig) -> Outcome {
+    let angle = (config.ground.max_slope + 0.2).min(1.55);
+    let normal = DVec3::new(-libm::sin(angle), libm::cos(angle), 0.0);
+    let slope = HalfSpace::behind(DVec3::ZERO, normal).unwrap();
+    let along = DVec3::new(libm::cos(angle), libm::sin(angle), 0.0);
+    // Friction leaves a tenth of what gravity gives along the slope.
+    let radius = config.body.radius;
+    let pull = 0.1 * config.gravity.length() * libm::sin(angle);
+    let way = (3.0 * radius).min(0.5 * pull * 16.0);
+    let start = along * way + normal * (1.01 * radius);
+    let lift = DVec3::Y * (radius * (1.0 / libm::cos(angle * 0.5)) - radius).clamp(0.0, radius);
+    let mut run = Run::new(config, start + lift, vec![floor(), Box::new(slope)]);
+    run.comes_to_stand()
+}
+
+pub(crate) fn is_knocked_over(config: &ClimberConfig) -> Outcome {
+    let mut run = standing(config)?;
+    let speed = libm::sqrt(config.gravity.length() * config.body.radius);
+    let blow = ClimberInput {
+        blow: Some(Blow {
+            velocity: DVec3::new(3.0, 1.0, 0.5) * speed,
+            damage: 0.0,
+            by: None,
+        }),
+        ..IDLE
+    };
+    run.step(&blow);
+    run.comes_to_stand()
+}
+
+/// A climber that holds on to a wall of fur above the ground, if its configuration can.
+fn holding(config: &ClimberConfig) -> Result<Option<Run>, String> {
+    let radius = config.body.radius;
+    let wall = HalfSpace::behind(DVec3::X * radius, DVec3::NEG_X).unwrap();
+    let ground = HalfSpace::below(-10.0 * radius);
+    let obstacles: Vec<Box<dyn Obstacle>> = vec![Box::new(ground), Box::new(wall.with_tag(FUR))];
+    let mut run = Run::new(config, DVec3::ZERO, obstacles);
+    run.step(&HOLD);
+    let grip = config.grip.unwrap();
+    let slow = config.gravity.length() * DT;
+    let catches = grip.reach > 0.0 && grip.catch_speed >= slow;
+    match (run.mode(), catches) {
+        (ClimberMode::Holding, true) => Ok(Some(run)),
+        (ClimberMode::Falling, false) => Ok(None),
+        (mode, _) => Err(format!("{mode:?} at the wall, catches {catches}")),
+    }
+}
+
+pub(crate) fn climbs(config: &ClimberConfig) -> Outcome {
+    let config = &ClimberConfig {
+        stamina: None,
+        ..*config
+    };
+    let Some(mut run) = holding(config)? else {
+        return Ok(());
+    };
+    let grip = config.grip.unwrap();
+    if grip.max_overhang < 1.58 {
+        return Ok(());
+    }
+    let up = ClimberInput {
+        walk: DVec3::X,
+        ..HOLD
+    };
+    let found = run.speed(&up, DVec3::Y);
+    near("climbs at", found, grip.climb_speed, 1e-9)
+}
+
+pub(crate) fn lets_go(config: &ClimberConfig) -> Outcome {
+    let Some(mut run) = holding(config)? else {
+        return Ok(());
+    };
+    for _ in 0..120 {
+        run.step(&HOLD);
+    }
+    run.comes_to_stand()
+}
