@@ -41,7 +41,7 @@ pub(crate) fn check(main: &Metadata) -> Result<(), String> {
     for gap in &found {
         eprintln!("   {gap}");
     }
-    Err(format!("{} gaps in what ci and nightly run", found.len()))
+    Err(format!("gaps in what ci and nightly run: {}", found.len()))
 }
 
 impl Tree {

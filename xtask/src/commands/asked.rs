@@ -108,7 +108,7 @@ impl<'a> Asked<'a> {
             if found.is_empty() && !self.is_unnamed {
                 return Err(match one.covers_with_all_features(metadata).first() {
                     Some(part) => format!("{part} needs features that are not named"),
-                    None => format!("there is no {targets:?} in these packages"),
+                    None => format!("no package has `{}`", targets.options().join(" ")),
                 });
             }
             parts.extend(found);

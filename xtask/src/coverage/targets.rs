@@ -37,7 +37,7 @@ pub(super) fn gaps(workspace: &Workspace, plan: &[Planned]) -> Vec<String> {
             target.required_features.join(", ")
         ),
         false => format!(
-            "{part} ({}) is run by no step: add it to one in xtask/src/ci.rs if it takes seconds, else in \
+            "no step runs {part} ({}): add it to one in xtask/src/ci.rs if it takes seconds, else in \
              xtask/src/nightly.rs",
             workspace.manifest
         ),
