@@ -202,7 +202,8 @@ impl Tick<'_> {
     /// through that obstacle.
     fn is_pressed_off(&self, place: DVec3, moved: &Moved, config: &LedgeConfig) -> bool {
         let is_crushed = moved.missing_room > self.config.body.margin;
-        let reach = self.config.body.radius + config.reach + config.reach_up;
+        // It may have caught the ledge from above its place as well as from below.
+        let reach = self.config.body.radius + config.reach + config.reach_up.max(config.drop);
         is_crushed || moved.position.distance(place) > reach
     }
 }

@@ -1,8 +1,10 @@
 //! What each configuration plays, at 60 Hz.
 
-use clamber_climber::{Blow, Climber, ClimberConfig, ClimberInput, ClimberMode, StepReport};
-use clamber_world::{HalfSpace, Obstacle, ObstacleId, SurfaceKind, SurfaceTag};
-use glam::DVec3;
+use clamber_climber::{
+    Blow, Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, StepReport,
+};
+use clamber_world::{HalfSpace, Obstacle, ObstacleId, SurfaceKind, SurfaceTag, TriangleTerrain};
+use glam::{DVec3, Vec3};
 
 const RATE: f64 = 60.0;
 const DT: f64 = 1.0 / RATE;
@@ -214,4 +216,97 @@ pub(crate) fn lets_go(config: &ClimberConfig) -> Outcome {
         run.step(&HOLD);
     }
     run.comes_to_stand()
+}
+
+/// A block whose top is at height 0 and whose front is at x = 0, with ground far below.
+fn block(radius: f64) -> Vec<Box<dyn Obstacle>> {
+    let size = (20.0 * radius) as f32;
+    let corner = |x: f32, y: f32, z: f32| Vec3::new(x, y, z) * size;
+    let positions = [
+        corner(0.0, 0.0, -1.0),
+        corner(0.0, 0.0, 1.0),
+        corner(2.0, 0.0, 1.0),
+        corner(2.0, 0.0, -1.0),
+        corner(0.0, -2.0, -1.0),
+        corner(0.0, -2.0, 1.0),
+    ];
+    let triangles = [[0, 1, 2], [0, 2, 3], [4, 5, 1], [4, 1, 0]];
+    let terrain = TriangleTerrain::new(&positions, &triangles, &[], DVec3::ZERO).unwrap();
+    let ground = HalfSpace::below(-20.0 * radius);
+    vec![Box::new(terrain), Box::new(ground)]
+}
+
+/// A climber that hangs from a ledge, if its configuration can.
+fn hanging(config: &ClimberConfig) -> Result<Option<Run>, String> {
+    let (radius, ledge) = (config.body.radius, config.ledge.unwrap());
+    // Hands need room above the edge, and the wall within reach.
+    let below = 0.7 * ledge.reach_up;
+    let start = DVec3::new(-1.02 * radius, -below, 0.0);
+    let mut run = Run::new(config, start, block(radius));
+    let ahead = ClimberInput {
+        walk: DVec3::X * 0.01,
+        ..HOLD
+    };
+    run.step(&ahead);
+    let can = below > radius && ledge.reach > 0.05 * radius;
+    match run.mode() {
+        ClimberMode::LedgeHanging => Ok(Some(run)),
+        _ if can && ledge.catch_speed > config.gravity.length() * DT => {
+            Err(format!("{:?} below the ledge", run.mode()))
+        }
+        _ => Ok(None),
+    }
+}
+
+pub(crate) fn hangs(config: &ClimberConfig) -> Outcome {
+    let config = &ClimberConfig {
+        stamina: None,
+        ..*config
+    };
+    let Some(mut run) = hanging(config)? else {
+        return Ok(());
+    };
+    for _ in 0..180 {
+        run.step(&HOLD);
+    }
+    let speed = run.climber.state().velocity.length();
+    match run.mode() {
+        ClimberMode::LedgeHanging if speed == 0.0 => Ok(()),
+        // With hands so low that the body rests on the edge.
+        ClimberMode::Standing => Ok(()),
+        mode => Err(format!("{mode:?} at {speed} m/s after three seconds")),
+    }
+}
+
+pub(crate) fn pulls_up(config: &ClimberConfig) -> Outcome {
+    let config = &ClimberConfig {
+        stamina: None,
+        ..*config
+    };
+    let Some(mut run) = hanging(config)? else {
+        return Ok(());
+    };
+    // Into its place first.
+    for _ in 0..120 {
+        run.step(&HOLD);
+    }
+    if run.mode() == ClimberMode::Standing {
+        return Ok(());
+    }
+    let up = ClimberInput {
+        walk: DVec3::X,
+        ..HOLD
+    };
+    let due = config.ledge.unwrap().pull_up_time;
+    for tick in 1..=((due + 1.0) * 1.1 * RATE) as u32 {
+        let report = run.step(&up);
+        if report.events.contains(&ClimberEvent::Mantled) {
+            return near("pulls up in", f64::from(tick) * DT, due, 2.0 * DT);
+        }
+    }
+    let memory = run.climber.state().ledge_hanging;
+    Err(format!(
+        "{:?}, {memory:?} after {due} s and one",
+        run.mode()
+    ))
 }

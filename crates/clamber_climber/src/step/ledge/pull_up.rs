@@ -12,6 +12,9 @@ use crate::{ClimberEvent, ClimberMode};
 /// Share of the pull-up in which it goes up. In the rest it goes in over the ledge.
 const OVER: f64 = 0.6;
 
+/// A tick that makes more than this share of the pull-up does not go round the corner between up and in.
+const LONG: f64 = 0.1;
+
 /// How far it may lag behind a pull-up's path before it counts as blocked, as a share of its radius. It lags below an
 /// overhang, where it goes outwards as it goes up.
 const KEPT: f64 = 0.5;
@@ -88,6 +91,9 @@ impl Tick<'_> {
         let share = self.dt() / config.pull_up_time;
         let after = if is_out_of_place {
             0.0
+        } else if before < OVER && share > LONG {
+            // Up first: a longer step would cut the edge.
+            (before + share).min(OVER)
         } else {
             (before + share).min(1.0)
         };
@@ -100,7 +106,7 @@ impl Tick<'_> {
         let most = if is_out_of_place { 0.0 } else { fastest };
         let planned = (at(after) - at(before)) / self.dt();
         self.settle_by_arms(carried, moved.position, most, planned);
-        if self.is_pressed_off(place, &moved, config) {
+        if self.is_pressed_off(at(after), &moved, config) {
             return self.be_torn_off(carried);
         }
         if is_out_of_place {
@@ -125,8 +131,9 @@ impl Tick<'_> {
         if after < 1.0 {
             return NextMode::Stay;
         }
-        let Some(ground) = self.ground_below(moved.position, self.config.ground.snap_distance)
-        else {
+        // It ends a margin above the top.
+        let reach = self.config.ground.snap_distance.max(2.0 * body.margin);
+        let Some(ground) = self.ground_below(moved.position, reach) else {
             // If the top is too steep to stand on, grip it, or lose the ledge.
             let gripped = self.grip_at(moved.position);
             return gripped.unwrap_or_else(|| self.lose_footing());
