@@ -3,7 +3,8 @@
 use clamber_climber::{
     Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, ClimberObstacle,
 };
-use glam::{DQuat, DVec3, Vec3};
+use clamber_surface::geometry::rotation_from_axis_angle;
+use glam::{DVec3, Vec3};
 
 use crate::common::{tick, v};
 use crate::scene::{DT, HOLD, STONE, climber, cuboid};
@@ -123,7 +124,8 @@ fn catching_a_ledge_moves_no_faster_than_arms_do() {
 fn a_friend_at_the_edge_is_waited_for_from_below() {
     let tower = cuboid(Vec3::splat(3.0), STONE);
     for (side, behind) in (0..4).flat_map(|side| [0.2, 0.3, 0.35].map(|behind| (side, behind))) {
-        let turn = DQuat::from_rotation_y(f64::from(side) * core::f64::consts::FRAC_PI_2);
+        let turn =
+            rotation_from_axis_angle(DVec3::Y, f64::from(side) * core::f64::consts::FRAC_PI_2);
         let told = format!("side {side}, friend {behind} m behind the edge");
         let up = ClimberInput {
             walk: turn * -DVec3::Z,
