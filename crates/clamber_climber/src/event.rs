@@ -137,9 +137,9 @@ pub enum ClimberEvent {
 ///   [`BodyConfig::push_force`](crate::BodyConfig::push_force) times the tick.
 ///
 /// - The support gets the reaction to all of this that the climber does while it stands or holds on: to running into
-///   something, to starting, stopping and turning, and to a jump off it. So a passenger does not drive its cart by pushing.
-///   Bodies do not feel the climber's inertia while they carry it: their momentum and the climber's together stay the same
-///   only as long as nothing else speeds them up or slows them down.
+///   something, to starting, stopping and turning, and to a jump off it. So a passenger does not drive its cart by
+///   pushing. Bodies do not feel the climber's inertia while they carry it: the momentum of both together stays the
+///   same only as long as nothing else speeds them up or slows them down.
 ///
 /// If it hits several obstacles at once, each of the impulses of hits is divided by their number.
 #[derive(Clone, Copy, Debug, PartialEq)]
