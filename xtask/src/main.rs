@@ -1,6 +1,6 @@
 //! `cargo xtask ci` runs what CI runs, for a person as well: tests, golden runs, format, lints, each feature,
-//! documentation, public items, examples, benches, dependency arrows and their picture, packages. `cargo xtask nightly`
-//! runs what takes hours.
+//! documentation, public items, examples, benches, dependency arrows and their picture, packages; and checks that nothing
+//! is left out of this, and no command of the documentation. `cargo xtask nightly` runs what takes hours.
 
 mod app;
 mod arrows;
