@@ -9,8 +9,12 @@ use super::{NextMode, Tick};
 use crate::config::GripConfig;
 use crate::{ClimberEvent, ClimberInput, ClimberMode};
 
-/// Time in which arms draw the body to its hold over the length of its radius, seconds: 4 m/s for a radius of 0.4 m.
-const DRAW_TIME: f64 = 0.1;
+/// Speed at which arms draw the body to its hold, as a share of the climbing speed.
+const DRAW: f64 = 8.0 / 3.0;
+
+/// Longest time in which arms draw the body over the length of its radius, seconds: at least 1 m/s for a radius of 0.4 m,
+/// for a climber that climbs slowly or not at all.
+const DRAW_TIME: f64 = 0.4;
 
 /// How long it grips nothing after it jumped off a hold, let go or was torn off, seconds.
 pub(super) const OPEN_HANDED: f64 = 0.3;
@@ -212,7 +216,8 @@ impl Tick<'_> {
 
     /// Speed at which arms draw the body, metres a second.
     pub(super) fn draw_speed(&self) -> f64 {
-        self.config.body.radius / DRAW_TIME
+        let climb_speed = self.config.grip.map_or(0.0, |grip| grip.climb_speed);
+        (DRAW * climb_speed).max(self.config.body.radius / DRAW_TIME)
     }
 
     /// Largest distance of its centre from its hold, metres: arms at full stretch, and some give.
