@@ -54,10 +54,8 @@ impl Detour {
 
     /// Leads a point that comes to be in something back to its surface. The detour grows as fast as the point would sink
     /// in; if it is deep already, or comes out on another side, by [`CHANGES`].
-    pub(crate) fn step(&mut self, context: &Context<'_>, swing: &Swing) {
+    pub(crate) fn step(&mut self, context: &Context<'_>, touching: DVec3) {
         let size = context.size();
-        let place = swing.place();
-        let touching = place.point(swing.to.touching);
         let near = context.around.nearest(touching, THROUGH * size);
         let depth = near.map(|found| {
             let normal = found.contact.normal;
@@ -71,6 +69,14 @@ impl Detour {
         let most = sinks + CHANGES * size * context.dt;
         self.way += (wanted - self.way).clamp_length_max(most);
         self.depth = depth.map(|(depth, _)| depth);
+    }
+
+    /// Leads a hand that is free; `None` if it is in nothing's way.
+    pub(crate) fn lead_free(&self, place: &Place) -> Option<Place> {
+        (self.way != DVec3::ZERO).then(|| Place {
+            position: place.position + self.way,
+            ..*place
+        })
     }
 
     /// Where a hand or foot is on its way.

@@ -215,7 +215,8 @@ impl<'a> Update<'a> {
             climb.step(&schedule, &mut limbs, plants);
             for limb in &mut limbs {
                 if let Doing::Swinging(swing) = &limb.doing {
-                    limb.detour.step(&context, swing);
+                    let touching = swing.place().point(swing.to.touching);
+                    limb.detour.step(&context, touching);
                 }
             }
         } else if self.stance == Stance::Upright {
@@ -240,6 +241,12 @@ impl<'a> Update<'a> {
         } else if self.stance.is_held() {
             pull = self.pull(&context, &stand, &schedule, &mut limbs, &mut ends);
             root.position += pull.value;
+            let moved = root.position - shown_before.position;
+            for hand in (0..2).filter(|&hand| goals[hand].is_some()) {
+                let shoulder = shoulders[hand] + moved;
+                ends[hand] = ends[hand]
+                    .or_else(|| self.free_hand(&context, &root, hand, shoulder, &mut limbs[hand]));
+            }
         }
         let legs = self.legs(&context, pose, &root, before);
         let moved = root.position - shown_before.position;
@@ -665,6 +672,24 @@ impl<'a> Update<'a> {
                 (Doing::Swinging(swing), _) => Some(limb.detour.lead(swing)),
             }
         })
+    }
+
+    /// Where a hand goes that has nothing to hold, and would be in what the body holds on to.
+    fn free_hand(
+        &self,
+        context: &Context<'_>,
+        root: &Root,
+        hand: usize,
+        shoulder: DVec3,
+        limb: &mut LimbMemory,
+    ) -> Option<Place> {
+        let extremity = Extremity::ALL[hand];
+        let shape = self.figure.limb(extremity);
+        let mut place = limb.kept(&context.clip_in_world(root, extremity));
+        let way = place.position - shoulder;
+        place.position = shoulder + way.clamp_length_max(shape.length);
+        limb.detour.step(context, place.point(shape.contact));
+        limb.detour.lead_free(&place)
     }
 
     /// What the body has to stay near to.

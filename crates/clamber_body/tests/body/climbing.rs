@@ -277,13 +277,13 @@ fn palms_stay_on_skin() {
                 let deep = seen.depths.iter().filter(|depth| **depth > 0.005).count();
                 let share = deep as f64 / seen.depths.len() as f64;
                 missed += usize::from(share > 0.001);
-                // 0.001 are asked for: missed in 2 rides of 36, by hands on their way to a next hold.
+                // 0.001 are asked for: missed in 1 ride of 36, by hands on their way to a next hold.
                 assert!(share <= 0.0015, "{what}: {share} of all frames");
                 played += 1;
             }
         }
     }
-    assert!(played >= 3 && missed <= 2, "{missed} of {played} rides");
+    assert!(played >= 3 && missed <= 1, "{missed} of {played} rides");
 }
 
 /// Scene B23: arms and trunk under a shake of 3 Hz.
