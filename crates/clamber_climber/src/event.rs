@@ -58,7 +58,7 @@ pub enum ClimberEvent {
         /// Angle between the normals of the face that it held before and the one that it holds now, radians.
         angle: f64,
     },
-    /// Caught a ledge with its hands.
+    /// Caught a ledge with its hands, or the edge that it stepped off.
     LedgeCaught {
         /// The obstacle of the ledge.
         obstacle: ObstacleId,

@@ -96,6 +96,17 @@ const PLACES: f64 = 0.1;
 /// Length of the level part of a unit normal above which a face counts as a wall's: 60 degrees from level.
 const UPRIGHT: f64 = 0.5;
 
+/// Where hands look for the top of a corner, to the side of the direction straight ahead, as fractions of the body's
+/// radius: enough for a corner of 45 degrees.
+const BESIDE: [f64; 5] = [0.0, 0.2, -0.2, 0.45, -0.45];
+
+/// Radius of a finger, as a fraction of the body's radius: it falls into a gap that a hand would cover.
+const FINGER: f64 = 0.05;
+
+/// A wall within this multiple of the body's radius touches the body. It has to be less than for the parts of its own
+/// wall that are [`OBLIQUE`] to it, 1.05.
+const TOUCHES: f64 = 1.04;
+
 /// A ledge that a body can hang from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
@@ -104,6 +115,8 @@ pub struct Ledge {
     pub touch: Touch,
     /// Level unit vector straight towards the wall.
     pub facing: DVec3,
+    /// Where the wall is, straight ahead of the position that the ledge was found from, and at its height, in world space.
+    pub wall: DVec3,
 }
 
 /// Cosine of the largest angle between the facing and the direction straight towards a wall: 72 degrees.
@@ -141,6 +154,7 @@ impl Mover<'_> {
         is_top.then_some(Ledge {
             touch: top.touch,
             facing,
+            wall: position + facing * to_wall,
         })
     }
 }
@@ -185,7 +199,8 @@ impl Mover<'_> {
         let aside = up * (hold.height(position) - DEPTHS[1] * radius) + facing * before;
         let hand = WorldCapsule::ball(position + aside, PLACES * radius);
         let free = self.cast(&hand, way).map_or(1.0, |hit| hit.time);
-        let places = (way.length() / (PLACES * radius)).ceil();
+        // A whole number of places stays that number whatever the rounding.
+        let places = (way.length() / (PLACES * radius) - SLACK).ceil().max(1.0);
         let mut place = 0.0;
         while place < places {
             place += 1.0;
@@ -201,35 +216,82 @@ impl Mover<'_> {
         None
     }
 
-    /// The ledge around the corner at a position: above what is nearest to it of all walls that the body faces, within
-    /// one and a half of its radius. At an outer corner that is the corner's edge, which the body faces as it goes
-    /// around it. With `facing` along the ledge, it is the wall in the way at an inner corner.
+    /// The ledge in an inner corner: above the wall that the body touches along `aside`, a level unit vector.
     ///
-    /// `None` if there is no such wall, or no ledge on it. Height differences are as in [`Mover::ledge_ahead`].
-    pub fn ledge_around(&mut self, hold: &LedgeHold, position: DVec3) -> Option<Ledge> {
-        let LedgeHold { up, facing, .. } = *hold;
+    /// `None` if there is no such wall, or no ledge on it, or if the ledge that the body holds does not lead there, as
+    /// where a gap is between the walls. Height differences are as in [`Mover::ledge_ahead`].
+    pub fn ledge_in_corner(
+        &mut self,
+        hold: &LedgeHold,
+        position: DVec3,
+        aside: DVec3,
+    ) -> Option<Ledge> {
+        let ledge = self.nearest_ledge(hold, position, aside, TOUCHES * hold.body.radius)?;
+        self.leads_to(hold, &ledge).then_some(ledge)
+    }
+
+    /// The ledge around the corner at a position: above what is nearest to it of all walls that the body faces, no more
+    /// than `within` metres away. At an outer corner that is the corner's edge, which the body faces as it goes around it.
+    ///
+    /// `None` as for [`Mover::ledge_in_corner`].
+    pub fn ledge_around(
+        &mut self,
+        hold: &LedgeHold,
+        position: DVec3,
+        within: f64,
+    ) -> Option<Ledge> {
+        let ledge = self.nearest_ledge(hold, position, hold.facing, within)?;
+        self.leads_to(hold, &ledge).then_some(ledge)
+    }
+
+    /// The ledge above the nearest of the walls that are about in one direction, no more than `within` metres away.
+    fn nearest_ledge(
+        &mut self,
+        hold: &LedgeHold,
+        position: DVec3,
+        direction: DVec3,
+        within: f64,
+    ) -> Option<Ledge> {
         let radius = hold.body.radius;
         let height = hold.height(position);
-        let below = |depth: f64| up * (height - depth * radius);
+        let below = |depth: f64| hold.up * (height - depth * radius);
         let band = MoverBody {
             axis: [below(DEPTHS[2]), below(DEPTHS[0])],
             radius: HAND * radius,
             margin: 0.0,
         };
-        let reach = (1.0 + STEP - HAND) * radius;
         let mut nearest: Option<(f64, DVec3)> = None;
-        for touch in self.overlap(&band, position, reach) {
-            let Some((toward, true)) = toward(touch.normal, up) else {
+        for touch in self.overlap(&band, position, within - HAND * radius) {
+            let Some((toward, true)) = toward(touch.normal, hold.up) else {
                 continue;
             };
             let ahead = (touch.contact.point - position).dot(toward);
             let is_nearer = nearest.is_none_or(|(least, _)| ahead < least);
-            if is_nearer && toward.dot(facing) >= OBLIQUE {
+            let is_below = hold.height(touch.contact.point) <= (DEPTHS[2] + SLACK) * radius;
+            if is_nearer && is_below && toward.dot(direction) >= OBLIQUE {
                 nearest = Some((ahead, toward));
             }
         }
         let (ahead, toward) = nearest?;
         self.hand_on(hold, position, toward, ahead)
+    }
+
+    /// True if the ledge that the body holds leads its hands up to the wall of another one.
+    fn leads_to(&mut self, hold: &LedgeHold, ledge: &Ledge) -> bool {
+        let turn = ledge.facing.dot(hold.facing);
+        let aside = (ledge.facing - hold.facing * turn).normalize_or_zero();
+        let (closing, radius) = (aside.dot(ledge.facing), hold.body.radius);
+        if turn >= STRAIGHT || (ledge.wall - hold.held).dot(ledge.facing) <= 0.0 {
+            return true;
+        }
+        // Along the edge, where the two walls meet.
+        let finger = FINGER * radius;
+        let to_edge = (HAND + BEYOND) * radius - 2.0 * finger;
+        let edge = hold.held - hold.facing * to_edge;
+        let along = (ledge.wall - edge).dot(ledge.facing) / closing - 2.0 * finger;
+        let there = edge + aside * along;
+        let mut rises = RISES.into_iter();
+        rises.any(|rise| self.top_below(hold, there, rise, finger).is_some())
     }
 
     /// The top under a hand beyond the edge of a wall, `to_wall` metres ahead of a position, with room for the hand on
@@ -241,24 +303,38 @@ impl Mover<'_> {
         facing: DVec3,
         to_wall: f64,
     ) -> Option<Ledge> {
-        let LedgeHold { body, up, .. } = *hold;
-        let radius = body.radius;
+        let up = hold.up;
+        let radius = hold.body.radius;
         let inward = facing * (to_wall + (HAND + BEYOND) * radius);
+        let over = position + up * hold.height(position);
         for rise in RISES {
-            let above = position + up * (hold.height(position) + (rise + HAND) * radius);
+            let above = over + up * ((rise + HAND) * radius);
             let above = WorldCapsule::ball(above, HAND * radius);
-            if !self.is_free(&above, inward) {
-                continue;
+            if self.is_free(&above, inward) {
+                let mut beside = BESIDE.into_iter();
+                let side = facing.cross(up) * radius;
+                let touch = beside.find_map(|beside| {
+                    let point = over + inward + side * beside;
+                    self.top_below(hold, point, rise, HAND * radius)
+                })?;
+                return Some(Ledge {
+                    touch,
+                    facing,
+                    wall: position + facing * to_wall,
+                });
             }
-            let down = -up * ((rise + STEP + SLACK) * radius);
-            let top = self.cast(&above.moved(inward), down)?;
-            let is_top = !top.started_inside && slope(top.touch.normal, up) <= hold.max_slope;
-            return is_top.then_some(Ledge {
-                touch: top.touch,
-                facing,
-            });
         }
         None
+    }
+
+    /// The top under a ball that comes down from `rise` above a point at the height of the ledge, as a fraction of the
+    /// body's radius.
+    fn top_below(&mut self, hold: &LedgeHold, point: DVec3, rise: f64, ball: f64) -> Option<Touch> {
+        let LedgeHold { body, up, .. } = *hold;
+        let above = WorldCapsule::ball(point + up * (rise * body.radius + ball), ball);
+        let top = self.cast(&above, -up * ((rise + STEP + SLACK) * body.radius))?;
+        let is_top = !top.started_inside && slope(top.touch.normal, up) <= hold.max_slope;
+        is_top.then_some(top.touch)
     }
 }
 

@@ -107,19 +107,25 @@ impl Stance {
                 let Some(ledge) = config.ledge else {
                     return Root::with_point_at(postures.edge, edge, rotation);
                 };
-                // From hanging to standing on top, the model goes as far as from below the edge onto it.
-                let hangs = Root::with_point_at(postures.edge, edge, rotation).position;
-                let stands = edge + up * config.body.margin;
                 let out = config.body.radius * HANDS_AHEAD;
                 let place = edge - state.heading * out - up * ledge.drop;
                 let way = state.position - place;
+                // By the ball's centre: hands go from hold to hold, and around a corner the body turns.
+                let front = rotation * ahead;
+                let front = (front - up * front.dot(up)).normalize_or(state.heading);
+                let edge = place + front * out + up * ledge.drop;
+                let hangs = Root::with_point_at(postures.edge, edge, rotation).position;
+                // From hanging to standing on top, the model goes as far as from below the edge onto it.
+                let stands = edge + up * config.body.margin;
                 let rises = ledge.drop + config.body.radius + config.body.margin;
-                let [high, deep] = [(way.dot(up), rises), (way.dot(state.heading), out)]
-                    .map(|(gone, whole)| gone / whole.max(1e-6));
                 let whole = stands - hangs;
                 let level = whole - up * whole.dot(up);
+                let near = NEAR * config.body.radius;
+                let high = gone(way.dot(up), [rises, whole.dot(up)], near);
+                let deep = gone(way.dot(state.heading), [out, level.length()], near);
+                let inward = level.normalize_or(state.heading);
                 let aside = way - up * way.dot(up) - state.heading * way.dot(state.heading);
-                let position = hangs + up * (whole.dot(up) * high) + level * deep + aside;
+                let position = hangs + up * high + inward * deep + aside;
                 Root { position, rotation }
             }
             _ => Root {
@@ -128,6 +134,20 @@ impl Stance {
             },
         }
     }
+}
+
+/// A body that is off its place below a ledge by up to this share of the ball's radius moves with the ball: hands that
+/// go on to the next hold, over a step, do not move it.
+const NEAR: f64 = 0.5;
+
+/// How far the model has gone when the ball has gone `way`: as far at first, and the `whole` way of the model where the
+/// ball has gone its own.
+fn gone(way: f64, [ball, whole]: [f64; 2], near: f64) -> f64 {
+    let near = near.min(ball);
+    if way <= near {
+        return way;
+    }
+    near + (way - near) * (whole - near) / (ball - near).max(1e-6)
 }
 
 /// Distance of a ledge's contact ahead of the ball's centre, as a share of its radius: what

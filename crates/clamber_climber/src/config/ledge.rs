@@ -8,7 +8,8 @@ use crate::ClimberError;
 pub struct LedgeConfig {
     /// Greatest height of a ledge above the ball's centre, metres, not negative. Default 0.9.
     pub reach_up: f64,
-    /// Greatest distance of the wall in front from the ball, metres, not negative. Default 0.35.
+    /// Greatest distance of the wall in front from the ball, and width of a gap in a ledge that hands reach across,
+    /// metres, not negative. Default 0.35.
     pub reach: f64,
     /// How far the centre of the body's ball, the climber's position, is below the ledge from which it hangs, metres,
     /// not negative. Default 0.6.

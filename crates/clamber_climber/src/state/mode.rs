@@ -32,7 +32,11 @@ use ClimberMode::{Custom, Falling, Hanging, Holding, LedgeHanging, Sliding, Stan
 pub const TRANSITIONS: &[(ClimberMode, ClimberMode, &str)] = &[
     (Standing, Sliding, "the ground is or becomes too steep"),
     (Standing, Holding, "grips"),
-    (Standing, LedgeHanging, "grips a ledge"),
+    (
+        Standing,
+        LedgeHanging,
+        "grips a ledge, or the edge that it steps off",
+    ),
     (
         Standing,
         Falling,

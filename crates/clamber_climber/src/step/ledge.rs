@@ -1,5 +1,6 @@
 //! Hanging from a ledge, climbing along it and over it. Ledges are found by queries, on terrain and on skin alike.
 
+mod drop;
 mod pull_up;
 mod shimmy;
 
@@ -18,8 +19,9 @@ const DRAW: f64 = 7.5;
 /// A climber farther from its place than this share of its radius is drawn there before it pulls itself up.
 const OUT_OF_PLACE: f64 = 0.1;
 
-/// Hands may be this share of the radius to the side of where the body hangs: their own radius.
-const BESIDE: f64 = 0.15;
+/// Hands may be up to this share of the radius to the side of where the body hangs, as on a sharp corner, where there is
+/// nothing straight ahead to hold: 0.45 of it, and what a hand leans over an edge.
+const BESIDE: f64 = 0.6;
 
 /// Share of the input towards the wall above which the climber pulls itself up, and away from it, climbs down.
 const UPWARD: f64 = 0.5;
@@ -204,7 +206,8 @@ impl Tick<'_> {
         let is_crushed = moved.missing_room > self.config.body.margin;
         // It may have caught the ledge from above its place as well as from below.
         let reach = self.config.body.radius + config.reach + config.reach_up.max(config.drop);
-        is_crushed || moved.position.distance(place) > reach
+        let is_far = moved.position.distance(place) > reach && !self.state.ledge_hanging.returns;
+        is_crushed || is_far
     }
 }
 

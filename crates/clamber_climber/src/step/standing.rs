@@ -46,6 +46,9 @@ impl Tick<'_> {
             return next;
         }
         if self.config.slope(normal) > self.standing_slope() && !self.is_wedged(&carried) {
+            if let Some(next) = self.drop_to_hang(carried.position, normal, own) {
+                return next;
+            }
             self.event(ClimberEvent::Slipped);
             return self.leave(ClimberMode::Sliding);
         }
@@ -199,6 +202,9 @@ impl Tick<'_> {
         let limit = self.standing_slope();
         if let Some(ground) = self.held_up(self.state.position, limit) {
             return self.stand_on(&ground, walk);
+        }
+        if let Some(next) = self.drop_to_hang(self.state.position, carried.normal(), walk) {
+            return next;
         }
         self.state.velocity = carried.velocity() + walk;
         if self.is_on_slope(self.state.position, limit) {

@@ -11,7 +11,9 @@
 )]
 
 mod air;
+mod along_ledges;
 mod belt;
+mod drops;
 mod edges;
 mod failures;
 mod frames;

@@ -350,6 +350,25 @@ scenarios! {
             pull_ups::a_pull_up_goes_on_once_there_is_room,
             pull_ups::a_pull_up_with_room_goes_on_by_itself,
         ];
+    55 "ours: along ledges" Climber
+        "Goes along ledges with the stick kept, at 30 to 240 Hz, from all sides and both ways: to their end, over steps \
+         up, down, back and forward, across gaps, around outer and inner corners of 45 to 135 degrees."
+        "Steps no longer than arms draw; no reversal; the velocity is how it moves, to 5 %; at an end it rests, to 1e-4; \
+         faces the wall where it ends, to 1e-3."
+        [
+            along_ledges::a_climber_rests_at_the_end_of_a_ledge_with_the_stick_kept,
+            along_ledges::a_ledge_is_followed_over_steps_and_across_gaps,
+            along_ledges::a_ledge_is_followed_around_corners,
+        ];
+    56 "ours: drops to hang" Climber
+        "Walks off an edge with the grip held, straight and obliquely, at 30 to 240 Hz, as a ball and as a capsule, on a \
+         block and a plate; and without the grip, onto steps and onto ground that it could not hang above."
+        "Hangs from the edge to 2e-3, faces the wall to 1e-3, steps no longer than arms draw; otherwise steps down or \
+         falls."
+        [
+            drops::a_climber_that_steps_off_an_edge_hangs_from_it,
+            drops::a_climber_that_can_step_down_or_has_no_room_does_not_hang,
+        ];
 }
 
 #[test]
@@ -366,7 +385,7 @@ fn every_open_entry_names_a_test() {
 #[test]
 fn the_table_has_every_scenario_once_with_its_tests() {
     let numbers: Vec<u32> = ROWS.iter().map(|row| row.number).collect();
-    assert_eq!(numbers, (1..=54).collect::<Vec<_>>());
+    assert_eq!(numbers, (1..=56).collect::<Vec<_>>());
     for row in ROWS {
         let texts = [row.source, row.scene, row.demand];
         assert!(texts.iter().all(|text| !text.is_empty()), "{}", row.number);

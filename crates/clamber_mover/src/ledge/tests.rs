@@ -191,7 +191,7 @@ fn a_body_goes_around_an_outer_corner_on_a_circle() {
                     facing: -turned(before, turn),
                     ..*hold
                 };
-                mover.ledge_around(&hold, position)
+                mover.ledge_around(&hold, position, 0.45 * size)
             });
             let point = DVec3::new(1.0, 0.0, 0.0) - out * 0.16;
             assert_found(ledge, (point, -out), scene, &told);
@@ -205,21 +205,19 @@ fn a_body_finds_the_other_wall_of_an_inner_corner() {
         let (size, turn) = scene;
         let other = (Vec3::new(1.0, -4.0, -4.0), Vec3::new(2.0, 0.1, 4.0));
         let ledge = asked(&[wall(-4.0, 1.0), other], scene, 0.6, |mover, hold, at| {
-            let hold = LedgeHold {
-                facing: turned(DVec3::X, turn),
-                ..*hold
-            };
-            mover.ledge_around(&hold, at)
+            mover.ledge_in_corner(hold, at, turned(DVec3::X, turn))
         });
         let found = (DVec3::new(1.16, 0.1, 0.4), DVec3::X);
         assert_found(ledge, found, scene, told);
         let alone = asked(&[wall(-4.0, 1.0)], (size, turn), 0.6, |mover, hold, at| {
-            let hold = LedgeHold {
-                facing: turned(DVec3::X, turn),
-                ..*hold
-            };
-            mover.ledge_around(&hold, at)
+            mover.ledge_in_corner(hold, at, turned(DVec3::X, turn))
         });
         assert_eq!(alone, None, "{told}");
+        // A gap before the other wall.
+        let gap = asked(&[wall(-4.0, 0.5), other], scene, 0.49, |mover, hold, at| {
+            let nearer = at + turned(DVec3::X, turn) * (0.11 * size);
+            mover.ledge_in_corner(hold, nearer, turned(DVec3::X, turn))
+        });
+        assert_eq!(gap, None, "{told}: a gap");
     });
 }

@@ -30,6 +30,9 @@ const GIVES_UP: f64 = 0.3;
 /// A climber that makes less than this share of a tick's draw into place is as near to its place as it can get.
 const DRAWN: f64 = 0.5;
 
+/// A velocity below this share of the planned one is rest, and rounding.
+const STILL: f64 = 1e-3;
+
 /// A velocity that differs from the planned one by less than this share of it is the planned one: more than rounding,
 /// less than is seen.
 const ABOUT: f64 = 0.05;
@@ -161,7 +164,8 @@ impl Tick<'_> {
         self.keep_support(carried, position);
         let made = (position - carried.position).clamp_length_max(most) / self.dt();
         let is_as_planned = made.distance(planned) <= ABOUT * planned.length();
-        let own = if self.state.crushed {
+        let is_still = made.length() <= STILL * planned.length();
+        let own = if self.state.crushed || is_still {
             DVec3::ZERO
         } else if is_as_planned {
             planned

@@ -1,0 +1,110 @@
+//! Stepping off an edge, and hanging from it.
+
+use clamber_mover::{Ledge, LedgeProbe};
+use glam::DVec3;
+
+use super::super::{NextMode, Tick};
+use crate::config::LedgeConfig;
+use crate::{ClimberEvent, ClimberMode};
+
+/// Share of a normal that is level, above which it tells where an edge leads out. Less is a slope, or rounding.
+const OUTWARD: f64 = 0.3;
+
+/// The top of an edge that it steps off is below the ball's centre by at least this share of the radius.
+const BELOW: f64 = 0.3;
+
+/// How far the wall below an edge may bulge out, as a share of the radius: it is then hung from a little farther out.
+const BULGES: f64 = 0.25;
+
+impl Tick<'_> {
+    /// Takes hold of the edge that it steps off, and turns to the wall below it, if it holds on and has room there. The
+    /// position is where its ground ends, `normal` that of the last contact with the ground, and `own` its velocity
+    /// relative to the ground.
+    pub(in super::super) fn drop_to_hang(
+        &mut self,
+        position: DVec3,
+        normal: DVec3,
+        own: DVec3,
+    ) -> Option<NextMode> {
+        let config = self.config.ledge?;
+        let has_hands = self.state.stamina > 0.0 && self.state.open_handed == 0.0;
+        if !self.input.grip || !has_hands {
+            return None;
+        }
+        let up = self.config.up();
+        let level = |v: DVec3| v - up * v.dot(up);
+        let going = level(own).try_normalize()?;
+        let tilt = level(normal);
+        let out = if tilt.length() > OUTWARD {
+            tilt.normalize_or(going)
+        } else {
+            going
+        };
+        if going.dot(out) <= 0.0 {
+            return None;
+        }
+        let passed = own.length() * self.dt();
+        let ledge = self.edge_behind(position, out, passed, &config)?;
+        if !self.has_room_below(position, &ledge, &config) {
+            return None;
+        }
+        let touch = ledge.touch;
+        self.attach(&touch, position);
+        self.face(ledge.facing);
+        self.state.velocity = self.state.base_velocity;
+        self.state.ledge_hanging.returns = true;
+        self.event(ClimberEvent::LedgeCaught {
+            obstacle: touch.obstacle,
+            point: touch.contact.point,
+        });
+        Some(NextMode::Change(ClimberMode::LedgeHanging))
+    }
+
+    /// The edge behind a position above it, which has passed it along `out` by a radius at most, and by as much as the
+    /// climber moves in a tick.
+    fn edge_behind(
+        &mut self,
+        position: DVec3,
+        out: DVec3,
+        passed: f64,
+        config: &LedgeConfig,
+    ) -> Option<Ledge> {
+        let up = self.config.up();
+        let body = self.body().crouched();
+        let deep = config.drop + body.radius;
+        // From where it would hang at most: a radius before the edge, with its centre as far below.
+        let probe = LedgeProbe {
+            body,
+            up,
+            facing: -out,
+            reach_up: deep,
+            reach: body.radius + passed,
+            max_slope: self.config.ground.max_slope,
+        };
+        let from = position + out * body.radius - up * deep;
+        let ledge = self.mover.find_ledge(&probe, from)?;
+        let below = (position - ledge.touch.contact.point).dot(up);
+        let is_edge = below > BELOW * body.radius && self.carries(&ledge.touch);
+        is_edge.then_some(ledge)
+    }
+
+    /// True if the ball has room to go out over the edge, down to where it hangs, and there; and if there is no ground on
+    /// the way that it could step down to.
+    fn has_room_below(&mut self, position: DVec3, ledge: &Ledge, config: &LedgeConfig) -> bool {
+        let up = self.config.up();
+        let body = self.body().crouched();
+        let place = self.place_below(ledge, config);
+        let deep = (position - place).dot(up);
+        let step = self.config.ground.step_height;
+        if deep <= step {
+            return false;
+        }
+        [0.0, BULGES].into_iter().any(|bulge| {
+            let hung = place - ledge.facing * (bulge * body.radius);
+            let beside = hung + up * deep;
+            let over = body.core_at(position);
+            let before = body.core_at(beside);
+            self.mover.is_free(&over, beside - position) && self.mover.is_free(&before, -up * deep)
+        })
+    }
+}

@@ -1,0 +1,398 @@
+//! Ledges that are followed to their end, over steps, across gaps and around corners, with the stick kept.
+
+use clamber_climber::ClimberMode::LedgeHanging;
+use clamber_climber::{ClimberConfig, ClimberInput};
+use clamber_surface::geometry::Similarity;
+use glam::DVec3;
+
+use crate::stage::{IDLE, Played, Run, Shape, Stage, Trace, every, turned, within};
+
+const HOLD: ClimberInput = ClimberInput { grip: true, ..IDLE };
+
+/// A scene with an edge at height 0, which the climber hangs from at the origin, facing -Z.
+struct Scene {
+    name: &'static str,
+    walls: Vec<Shape>,
+    /// The stick, which is kept.
+    stick: DVec3,
+    /// Seconds for which it is kept.
+    seconds: f64,
+    /// Where the climber is then, and where it faces; zero where it has begun to turn.
+    ends: (DVec3, DVec3),
+    /// True if it is at rest there although the stick is kept.
+    rests: bool,
+    /// How often its way turns back: once in a sharp inner corner.
+    turns_back: u32,
+}
+
+/// How far the centre of the ball is below the edge, and from the wall.
+const DROP: f64 = 0.6;
+const RADIUS: f64 = 0.4;
+
+/// Speed along a ledge, and at which arms draw, metres a second.
+const SHIMMY: f64 = 1.0;
+const DRAW: f64 = 3.0;
+
+/// Where it starts, before any shimmy.
+const START: DVec3 = DVec3::new(0.0, -DROP, RADIUS);
+
+/// A wall 4 m high whose top is at a height, from one x to another, with its face at a z.
+fn wall(from: f64, to: f64, top: f64, face: f64) -> Shape {
+    Shape::boxed(DVec3::new(from, -4.0, -3.0), DVec3::new(to, top, face))
+}
+
+/// An upright prism over a polygon, counter-clockwise seen from above, with its top at height 0.
+fn prism(corners: &[(f64, f64)]) -> Shape {
+    let count = corners.len() as u32;
+    let at = |y: f64| corners.iter().map(move |&(x, z)| DVec3::new(x, y, z));
+    let mut shape = Shape {
+        positions: at(-4.0).chain(at(0.0)).collect(),
+        triangles: Vec::new(),
+    };
+    for k in 0..count {
+        let next = (k + 1) % count;
+        shape.triangles.push([k, next, next + count]);
+        shape.triangles.push([k, next + count, k + count]);
+    }
+    for k in 2..count {
+        shape.triangles.push([0, k, k - 1]);
+        shape.triangles.push([count, count + k - 1, count + k]);
+    }
+    shape
+}
+
+/// The position at a wall whose face is `normal`, at a point of its edge.
+fn at(edge: DVec3, normal: DVec3) -> DVec3 {
+    edge + normal * RADIUS - DVec3::Y * DROP
+}
+
+fn ends() -> Vec<Scene> {
+    let stop = |name, walls, x: f64| Scene {
+        name,
+        walls,
+        stick: (DVec3::X * 2.0 - DVec3::Z * f64::from(u8::from(name.ends_with("well"))))
+            .normalize(),
+        seconds: 4.0,
+        ends: (
+            START + DVec3::X * x,
+            if x > 1.0 { DVec3::ZERO } else { DVec3::NEG_Z },
+        ),
+        rests: true,
+        turns_back: 0,
+    };
+    vec![
+        stop(
+            "a higher wall",
+            vec![wall(-2.0, 1.0, 0.0, 0.0), wall(1.0, 3.0, 0.6, 0.0)],
+            0.95,
+        ),
+        stop(
+            "a lower wall",
+            vec![wall(-2.0, 1.0, 0.0, 0.0), wall(1.0, 3.0, -0.4, 0.0)],
+            1.05,
+        ),
+        stop(
+            "a higher wall across",
+            vec![wall(-2.0, 1.0, 0.0, 0.0), wall(1.0, 3.0, 0.6, 2.0)],
+            0.6,
+        ),
+        stop(
+            "a gap wider than the reach",
+            vec![wall(-2.0, 1.0, 0.0, 0.0), wall(1.5, 3.0, 0.0, 0.0)],
+            1.25,
+        ),
+        stop(
+            "a higher wall, with the stick towards the wall as well",
+            vec![wall(-2.0, 1.0, 0.0, 0.0), wall(1.0, 3.0, 0.6, 0.0)],
+            0.95,
+        ),
+    ]
+}
+
+/// Ledges that go on straight: up or down, back or forward, across a gap.
+fn straight() -> Vec<Scene> {
+    let mut scenes = Vec::new();
+    let mut on = |name, gap: f64, top: f64, face: f64| {
+        let second = wall(0.8137 + gap, 9.0, top, face);
+        scenes.push(Scene {
+            name,
+            walls: vec![wall(-2.0, 0.8137, 0.0, 0.0), second],
+            stick: DVec3::X,
+            seconds: 3.0,
+            ends: (START + DVec3::new(3.0, top, face), DVec3::NEG_Z),
+            rests: false,
+            turns_back: 0,
+        });
+    };
+    on("5 cm up", 0.0, 0.05, 0.0);
+    on("5 cm down", 0.0, -0.05, 0.0);
+    on("half a radius up", 0.0, 0.2, 0.0);
+    on("half a radius down", 0.0, -0.2, 0.0);
+    on("5 cm back", 0.0, 0.0, -0.05);
+    on("5 cm forward", 0.0, 0.0, 0.05);
+    on("half a radius back", 0.0, 0.0, -0.2);
+    on("half a radius forward", 0.0, 0.0, 0.2);
+    on("up and forward", 0.0, 0.1, 0.1);
+    on("down and back", 0.0, -0.1, -0.1);
+    on("a gap of 2 cm", 0.02, 0.0, 0.0);
+    on("a gap of 10 cm", 0.1, 0.0, 0.0);
+    on("a gap of the arms' reach", 0.35, 0.0, 0.0);
+    on("a gap, and up", 0.3, 0.1, 0.0);
+    scenes
+}
+
+fn corners() -> Vec<Scene> {
+    let scene = |name, walls, seconds, ends| Scene {
+        name,
+        walls,
+        stick: DVec3::X,
+        seconds,
+        ends,
+        rests: false,
+        turns_back: u32::from(name == "a sharp inner corner"),
+    };
+    // To the corner, around it on a circle, and along the next wall.
+    let arc = |degrees: f64| degrees.to_radians() * RADIUS;
+    let square = prism(&[(-3.0, 0.0), (0.8, 0.0), (0.8, -9.0), (-3.0, -9.0)]);
+    let obtuse = prism(&[(-3.0, 0.0), (0.8, 0.0), (6.8, -6.0), (-3.0, -6.0)]);
+    let sharp = prism(&[(-6.0, 0.0), (0.8, 0.0), (-5.2, -6.0)]);
+    let thin = prism(&[(-6.0, 0.0), (0.8, 0.0), (0.8, -0.3), (-6.0, -0.3)]);
+    let diagonal = DVec3::new(1.0, 0.0, -1.0).normalize();
+    let other = |x: f64, z: f64| DVec3::new(x, 0.0, z);
+    vec![
+        scene(
+            "an outer corner",
+            vec![square],
+            3.0,
+            (at(other(0.8, -(2.2 - arc(90.0))), DVec3::X), DVec3::NEG_X),
+        ),
+        scene("an obtuse outer corner", vec![obtuse], 3.0, {
+            let normal = DVec3::new(1.0, 0.0, 1.0).normalize();
+            let made = 2.2 - arc(45.0);
+            (at(other(0.8, 0.0) + diagonal * made, normal), -normal)
+        }),
+        scene("a sharp outer corner", vec![sharp], 3.5, {
+            let normal = DVec3::new(1.0, 0.0, -1.0).normalize();
+            let along = DVec3::new(-1.0, 0.0, -1.0).normalize();
+            let made = 2.7 - arc(135.0);
+            (at(other(0.8, 0.0) + along * made, normal), -normal)
+        }),
+        scene(
+            "the end of a thin wall",
+            vec![thin],
+            4.0,
+            (
+                at(other(0.8 - (2.9 - 2.0 * arc(90.0)), -0.3), DVec3::NEG_Z),
+                DVec3::Z,
+            ),
+        ),
+        scene(
+            "an inner corner",
+            vec![wall(-2.0, 0.8, 0.0, 0.0), wall(0.8, 3.0, 0.0, 9.0)],
+            3.0,
+            (at(other(0.8, RADIUS + 2.6), DVec3::NEG_X), DVec3::X),
+        ),
+        scene(
+            "an inner corner to a higher wall",
+            vec![wall(-2.0, 0.8, 0.0, 0.0), wall(0.8, 3.0, 0.15, 9.0)],
+            3.0,
+            (
+                at(DVec3::new(0.8, 0.15, RADIUS + 2.6), DVec3::NEG_X),
+                DVec3::X,
+            ),
+        ),
+        scene(
+            "an obtuse inner corner",
+            vec![
+                prism(&[(-3.0, 0.0), (0.8, 0.0), (0.8, -3.0), (-3.0, -3.0)]),
+                prism(&[(0.8, 0.0), (6.8, 6.0), (6.8, -3.0), (0.8, -3.0)]),
+            ],
+            3.0,
+            {
+                let along = DVec3::new(1.0, 0.0, 1.0).normalize();
+                let normal = DVec3::new(-1.0, 0.0, 1.0).normalize();
+                // The ball stops short of the corner.
+                let short = RADIUS * libm::tan(22.5f64.to_radians());
+                (
+                    at(other(0.8, 0.0) + along * (2.2 + 2.0 * short), normal),
+                    -normal,
+                )
+            },
+        ),
+        scene(
+            "a sharp inner corner",
+            vec![
+                wall(-2.0, 1.6, 0.0, 0.0),
+                prism(&[(1.6, 0.0), (-3.4, 5.0), (3.0, 5.0), (3.0, 0.0)]),
+            ],
+            3.0,
+            {
+                let along = DVec3::new(-1.0, 0.0, 1.0).normalize();
+                let normal = DVec3::new(-1.0, 0.0, -1.0).normalize();
+                let short = RADIUS * libm::tan(67.5f64.to_radians());
+                let made = 3.0 - (1.6 - short);
+                (
+                    at(other(1.6, 0.0) + along * (short + made), normal),
+                    -normal,
+                )
+            },
+        ),
+    ]
+}
+
+const RATES: [f64; 4] = [60.0, 30.0, 120.0, 240.0];
+
+/// A climber that hangs at the origin.
+fn hung(stage: Stage, yaw: &Similarity, case: &str) -> Run {
+    let mut config = ClimberConfig::colossus_climber();
+    config.stamina = None;
+    config.grip = None;
+    let start = yaw.rotation * DVec3::new(0.0, -0.5, 0.45) - DVec3::Y * RADIUS;
+    let ticks = (1.0 / stage.dt).round() as u32;
+    let mut run = Run::new(stage, config, start);
+    let walk = yaw.rotation * DVec3::NEG_Z * 0.1;
+    for _ in 0..ticks {
+        let is_caught = run.mode() == LedgeHanging;
+        run.step(&if is_caught {
+            HOLD
+        } else {
+            ClimberInput { walk, ..HOLD }
+        });
+    }
+    let off = run.position().distance(yaw.rotation * START);
+    within!(off, 2e-3, "{case}: hangs at {}", run.position());
+    run
+}
+
+/// Plays a scene, turned about the vertical and mirrored, and checks every tick.
+fn play(scene: &Scene, played: Played, rate: f64, is_mirrored: bool, angle: f64) -> Trace {
+    let dt = 1.0 / rate;
+    let case = format!(
+        "{played:?}, {}, {rate} Hz, mirrored: {is_mirrored}",
+        scene.name
+    );
+    let yaw = turned(DVec3::Y, angle);
+    let map = |v: DVec3| {
+        let x = if is_mirrored { -v.x } else { v.x };
+        yaw.rotation * DVec3::new(x, v.y, v.z)
+    };
+    let mut stage = Stage::at(played, dt, DVec3::ZERO);
+    for shape in &scene.walls {
+        let mut shape = shape.clone();
+        for p in &mut shape.positions {
+            *p = map(*p);
+        }
+        if is_mirrored {
+            for triangle in &mut shape.triangles {
+                triangle.swap(1, 2);
+            }
+        }
+        stage = stage.with_still(&shape);
+    }
+    let mut run = hung(stage, &yaw, &case);
+    let walk = map(scene.stick);
+    let input = ClimberInput { walk, ..HOLD };
+    let (mut last, mut last_way, mut reversals) = (run.position(), DVec3::ZERO, 0);
+    let ticks = (scene.seconds * rate).round() as u32;
+    for tick in 0..ticks {
+        run.step(&input);
+        let told = format!("{case}, tick {tick} at {}", run.position());
+        assert_eq!(run.mode(), LedgeHanging, "{told}");
+        let way = run.position() - last;
+        within!(
+            way.length(),
+            DRAW * dt * (1.0 + 1e-9) + 1e-5,
+            "{told}: a step of {way}"
+        );
+        let is_reversal = way.dot(last_way) < 0.0 && way.length().min(last_way.length()) > 1e-4;
+        reversals += u32::from(is_reversal);
+        assert!(
+            reversals <= scene.turns_back,
+            "{told}: {last_way}, then {way}"
+        );
+        let velocity = run.state().velocity;
+        let off = velocity.distance(way / dt);
+        within!(
+            off,
+            0.05 * velocity.length() + 2e-2,
+            "{told}: velocity {velocity}, {}",
+            way / dt
+        );
+        (last, last_way) = (run.position(), way);
+    }
+    let (position, facing) = (map(scene.ends.0), map(scene.ends.1));
+    let off = run.position().distance(position);
+    // Where the ball rolls around an edge or moves up a step, its way is longer.
+    let allowed = if scene.rests {
+        SHIMMY * dt + 0.15
+    } else {
+        0.25
+    };
+    within!(
+        off,
+        allowed,
+        "{case}: ends at {} instead of {position}",
+        run.position()
+    );
+    if facing != DVec3::ZERO {
+        within!(
+            run.state().heading.distance(facing),
+            1e-3,
+            "{case}: faces {}",
+            run.state().heading
+        );
+    }
+    if scene.rests {
+        for _ in 0..ticks / 4 {
+            run.step(&input);
+            let told = format!("{case}: at rest at {}", run.position());
+            within!(run.position().distance(last), 1e-4, "{told}, was {last}");
+            within!(
+                run.state().velocity.length(),
+                1e-4,
+                "{told}: {}",
+                run.state().velocity
+            );
+        }
+    }
+    // Back again: the same way, and with the stick released it rests where it is.
+    run.steps((1.5 * rate) as u32, &HOLD);
+    let rest = run.position();
+    for _ in 0..(0.5 * rate) as u32 {
+        run.step(&HOLD);
+        within!(
+            run.position().distance(rest),
+            1e-4,
+            "{case}: rests at {rest}"
+        );
+        within!(
+            run.state().velocity.length(),
+            1e-4,
+            "{case}: {}",
+            run.state().velocity
+        );
+    }
+    run.sound()
+}
+
+fn play_all(scenes: &[Scene]) {
+    for (index, scene) in scenes.iter().enumerate() {
+        for turn in 0..2 {
+            let rate = RATES[(2 * turn + index) % 4];
+            let angle = 0.7 * index as f64;
+            every(0.0, |played| play(scene, played, rate, turn == 1, angle));
+        }
+    }
+}
+
+pub(crate) fn a_climber_rests_at_the_end_of_a_ledge_with_the_stick_kept() {
+    play_all(&ends());
+}
+
+pub(crate) fn a_ledge_is_followed_over_steps_and_across_gaps() {
+    play_all(&straight());
+}
+
+pub(crate) fn a_ledge_is_followed_around_corners() {
+    play_all(&corners());
+}
