@@ -47,7 +47,12 @@ impl Ticks {
         let found = measure(|| {
             report = Some(
                 climber
-                    .step_with(input, obstacles, &StepRules::gripping(&|_, _| true), DT)
+                    .step_with(
+                        input,
+                        obstacles,
+                        &StepRules::by(&|query| query.usual().with_grip(true)),
+                        DT,
+                    )
                     .unwrap(),
             );
         });

@@ -12,11 +12,12 @@ pub mod guide;
 mod input;
 mod obstacle;
 mod pendulum;
+mod rule;
 mod shake;
 mod state;
 mod step;
 
-pub use climber::{CanGrip, Climber, StepRules};
+pub use climber::{Climber, StepRules};
 pub use config::{
     BodyConfig, ClimberConfig, GripConfig, GroundConfig, HangConfig, HealthConfig, LedgeConfig,
     StaminaConfig, TumbleConfig,
@@ -28,6 +29,7 @@ pub use event::{ClimberEvent, Push, StepReport};
 pub use glam;
 pub use input::{Blow, ClimberInput};
 pub use obstacle::ClimberObstacle;
+pub use rule::{ContactQuery, ContactRule, ContactRuleFn};
 pub use shake::Shake;
 pub use state::{ClimberMode, ClimberState, MEMORY, Support, TRANSITIONS};
 pub use step::{

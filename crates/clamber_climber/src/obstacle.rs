@@ -154,6 +154,10 @@ fn between(body: &WorldCapsule, other: &WorldCapsule) -> Apart {
 }
 
 impl Obstacle for ClimberObstacle {
+    fn is_character(&self, _: &MaterialPoint) -> bool {
+        true
+    }
+
     fn bounds(&self) -> Option<(DVec3, f64)> {
         let (middle, radius) = self.now.bounding_ball();
         Some((middle - self.way * 0.5, radius + self.way.length() * 0.5))

@@ -461,9 +461,8 @@ impl Mover<'_> {
 
     /// Adds a contact with its half-space. `position` is where the body would be without it.
     fn add_half_space(&mut self, path: &Path, touch: Touch, offset: f64, position: DVec3) {
-        let memory = &mut *self.memory;
-        memory.touched.push(touch);
-        memory.half_spaces.push(HalfSpace {
+        self.memory.touched.push(touch);
+        self.memory.half_spaces.push(HalfSpace {
             normal: touch.normal,
             offset,
         });
@@ -471,11 +470,14 @@ impl Mover<'_> {
             let rise = touch.normal.dot(up);
             let level = (touch.normal - up * rise).normalize_or_zero();
             let lean = touch.normal.dot(level);
+            let is_wall = || {
+                rise < libm::cos(max_slope) && lean > 0.0 || lean > FLUSH && !self.is_step(&touch)
+            };
             // Too steep to stand on, and no ceiling: treated as vertical.
-            if rise > LEVEL && rise < libm::cos(max_slope) && lean > 0.0 {
+            if rise > LEVEL && is_wall() {
                 let displacement = position - path.start;
                 let into = offset - touch.normal.dot(displacement);
-                memory.walls.push(HalfSpace {
+                self.memory.walls.push(HalfSpace {
                     normal: level,
                     offset: level.dot(displacement) + into / lean,
                 });
@@ -574,3 +576,7 @@ const OUT: f64 = 30.0;
 
 /// Slopes this close to vertical are walls already: sine of the angle from the vertical.
 const LEVEL: f64 = 1e-3;
+
+/// What may not be stepped onto is no wall where it is this close to level: sine of the slope. As a wall, nearly level
+/// ground would push a body far aside. A ball rolls over edges up to a 400th of its radius unhindered.
+const FLUSH: f64 = 0.07;

@@ -44,7 +44,8 @@ impl Arena {
         self.step_with(inputs, terrain, &StepRules::default())
     }
 
-    /// [`Arena::step`] by a game's own rules for climbers: what can be gripped, and custom modes.
+    /// [`Arena::step`] by a game's own rules for climbers: for contacts, and custom modes. Each fighter's climber has
+    /// [`fighter_obstacle`] as [`StepRules::climber`], whatever the rules say.
     ///
     /// # Errors
     /// As [`Arena::step`].
@@ -178,8 +179,12 @@ impl Arena {
             let is_held = fighter.be_held(dt);
             let input = fighter.begin(player, is_held);
             let before = BodyFrame::of(fighter.climber());
-            fighter.step(&input, &obstacles, rules, dt)?;
             let id = fighter.id();
+            let rules = StepRules {
+                climber: Some(fighter_obstacle(id)),
+                ..*rules
+            };
+            fighter.step(&input, &obstacles, &rules, dt)?;
             let events = fighter.report().events.iter();
             self.events.extend(events.map(|event| ArenaEvent::Climber {
                 fighter: id,
