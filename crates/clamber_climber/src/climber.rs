@@ -24,6 +24,9 @@ pub struct StepRules<'a> {
     /// a second takes it as its frame ([`ClimberState::base_velocity`]): steering in the air is measured against it.
     /// By default zero.
     pub air_velocity: DVec3,
+    /// Id of this climber among the obstacles of others ([`ClimberGroup`](crate::ClimberGroup)). Of two climbers at one
+    /// place, the ids decide who parts to which side. By default `None`.
+    pub id: Option<ObstacleId>,
 }
 
 impl<'a> StepRules<'a> {
@@ -33,6 +36,7 @@ impl<'a> StepRules<'a> {
             can_grip,
             modes: &[],
             air_velocity: DVec3::ZERO,
+            id: None,
         }
     }
 
@@ -51,6 +55,7 @@ impl Default for StepRules<'_> {
             can_grip: &|_, contact| is_fur(&contact.tag),
             modes: &[],
             air_velocity: DVec3::ZERO,
+            id: None,
         }
     }
 }

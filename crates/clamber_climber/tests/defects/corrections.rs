@@ -291,7 +291,7 @@ fn a_climber_obstacle_predicts_the_climbers_position() {
             let mut run = one_step(hz, config, DVec3::ZERO);
             run.step(&walk(DVec3::Z));
             for k in 0..(1.5 * hz) as u32 {
-                let obstacle = ClimberObstacle::new(&run.climber, 1.0 / hz);
+                let obstacle = ClimberObstacle::new(&run.climber, &[], 1.0 / hz);
                 let (expected, _) = obstacle.bounds().unwrap();
                 let from = run.position();
                 let way = run.state().velocity / hz;
