@@ -94,7 +94,7 @@ impl Climber {
     /// Replaces the configuration: another gravity, a faster walk, a mode switched on or off.
     ///
     /// The state stays, except that the heading is made level with the new up. In the next step, a body that has grown
-    /// is pushed out of the obstacles that it overlaps.
+    /// is pushed out of the obstacles that it overlaps; [`Climber::try_resize`] lets it grow only where it has room.
     ///
     /// # Errors
     /// [`ClimberError`] for a configuration outside its ranges, and [`ClimberError::ModeInUse`] for one that switches
@@ -117,6 +117,15 @@ impl Climber {
         self.state.heading = level.normalize_or(up.any_orthonormal_vector());
         self.config = config;
         Ok(())
+    }
+
+    /// Sets a state that is known to be valid.
+    pub(crate) fn replace_state(&mut self, state: ClimberState) {
+        self.state = state;
+    }
+
+    pub(crate) fn mover_memory(&mut self) -> &mut clamber_mover::MoverMemory {
+        self.scratch.mover_memory()
     }
 
     /// The state after the last step.

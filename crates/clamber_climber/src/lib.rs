@@ -13,6 +13,7 @@ pub mod guide;
 mod input;
 mod obstacle;
 mod pendulum;
+mod resize;
 mod shake;
 mod state;
 mod step;

@@ -52,6 +52,8 @@ pub(crate) struct Input {
     pub(crate) actions: u32,
     #[prost(message, required, tag = "8")]
     pub(crate) aim: Vector,
+    #[prost(bool, tag = "9")]
+    pub(crate) crouch: bool,
 }
 
 /// A blow that struck the climber.
@@ -514,6 +516,7 @@ impl From<&ClimberInput> for Input {
             jump_held: input.jump_held,
             actions: input.actions,
             aim: input.aim.into(),
+            crouch: input.crouch,
         }
     }
 }
@@ -533,6 +536,7 @@ impl From<Input> for ClimberInput {
             jump_held: input.jump_held,
             actions: input.actions,
             aim: input.aim.into(),
+            crouch: input.crouch,
         }
     }
 }

@@ -50,6 +50,12 @@ pub(crate) struct Scratch {
     pub(crate) contacts: Vec<ClimberContact>,
 }
 
+impl Scratch {
+    pub(crate) fn mover_memory(&mut self) -> &mut MoverMemory {
+        &mut self.mover
+    }
+}
+
 /// Capacity for contacts, reserved from the first tick on.
 const CONTACTS: usize = 64;
 
@@ -273,13 +279,13 @@ impl<'a> Tick<'a> {
         }
     }
 
-    /// Crouches while it holds on, and stands up where there is room.
+    /// Crouches while it holds on or is asked to, and stands up where there is room.
     fn stand_up(&mut self) {
         let height = self.config.body.height;
         if height == 0.0 {
             return;
         }
-        if self.state.mode.is_holding() {
+        if self.state.mode.is_holding() || self.input.crouch {
             self.state.crouched = true;
         } else if self.state.crouched {
             let up = self.config.up();

@@ -84,6 +84,7 @@ fn everything() -> (ClimberState, ClimberInput) {
         jump: true,
         jump_held: true,
         grip: true,
+        crouch: true,
         blow: Some(Blow {
             velocity: struck,
             damage: next(),
