@@ -24,6 +24,9 @@ pub struct StepRules<'a> {
     /// a second takes it as its frame ([`ClimberState::base_velocity`]): steering in the air is measured against it.
     /// By default zero.
     pub air_velocity: DVec3,
+    /// Id of this climber among the obstacles of others ([`ClimberGroup`](crate::ClimberGroup)). Of two climbers at one
+    /// place, the ids decide who parts to which side. By default `None`.
+    pub id: Option<ObstacleId>,
 }
 
 impl<'a> StepRules<'a> {
@@ -33,6 +36,7 @@ impl<'a> StepRules<'a> {
             can_grip,
             modes: &[],
             air_velocity: DVec3::ZERO,
+            id: None,
         }
     }
 
@@ -51,6 +55,7 @@ impl Default for StepRules<'_> {
             can_grip: &|_, contact| is_fur(&contact.tag),
             modes: &[],
             air_velocity: DVec3::ZERO,
+            id: None,
         }
     }
 }
@@ -89,7 +94,7 @@ impl Climber {
     /// Replaces the configuration: another gravity, a faster walk, a mode switched on or off.
     ///
     /// The state stays, except that the heading is made level with the new up. In the next step, a body that has grown
-    /// is pushed out of the obstacles that it overlaps.
+    /// is pushed out of the obstacles that it overlaps; [`Climber::try_resize`] lets it grow only where it has room.
     ///
     /// # Errors
     /// [`ClimberError`] for a configuration outside its ranges, and [`ClimberError::ModeInUse`] for one that switches
@@ -112,6 +117,15 @@ impl Climber {
         self.state.heading = level.normalize_or(up.any_orthonormal_vector());
         self.config = config;
         Ok(())
+    }
+
+    /// Sets a state that is known to be valid.
+    pub(crate) fn replace_state(&mut self, state: ClimberState) {
+        self.state = state;
+    }
+
+    pub(crate) fn mover_memory(&mut self) -> &mut clamber_mover::MoverMemory {
+        self.scratch.mover_memory()
     }
 
     /// The state after the last step.

@@ -5,7 +5,7 @@ use bevy_ecs::query::QueryData;
 use bevy_math::{Quat, Vec3};
 use bevy_time::Time;
 use bevy_transform::components::Transform;
-use clamber_climber::{ClimberConfig, ClimberObstacle, CustomMode, StepReport, StepRules};
+use clamber_climber::{ClimberConfig, ClimberGroup, CustomMode, StepReport, StepRules};
 use clamber_surface::mesh::MeshId;
 use clamber_world::{Attachment, Contact, MaterialPoint, ObstacleId, SurfaceKind};
 use glam::{DMat3, DQuat, DVec3};
@@ -154,16 +154,22 @@ pub(super) fn step_climbers(
     grip_rule: Option<Res<GripRule>>,
     modes: Option<Res<ClimberModes>>,
     mut climbers: Query<Stepped, With<Climber>>,
+    mut group: Local<ClimberGroup>,
 ) {
     let dt = time.delta_secs_f64();
     if dt <= 0.0 {
         return;
     }
-    let bodies = climbers.iter().map(|climber| {
-        let body = ClimberObstacle::new(&climber.body.climber, dt);
-        (climber.entity, body)
+    let all: Vec<(ObstacleId, &clamber_climber::Climber)> = climbers
+        .iter()
+        .map(|climber| (ObstacleId(climber.entity.to_bits()), &climber.body.climber))
+        .collect();
+    let count = all.len();
+    // Their supports alone are asked, which no filter hides.
+    touchable.around(Entity::PLACEHOLDER, None, None, None, |obstacles| {
+        group.update(all.iter().copied(), obstacles, dt);
     });
-    let bodies: Vec<(Entity, ClimberObstacle)> = bodies.collect();
+    let group = &*group;
     let modes = modes.as_ref().map_or(&[][..], |modes| &modes.0[..]);
     let step = |mut stepped: SteppedItem<'_, '_>| {
         let entity = stepped.entity;
@@ -184,12 +190,13 @@ pub(super) fn step_climbers(
         let rules = StepRules {
             can_grip: &can_grip,
             modes: &modes,
+            id: Some(ObstacleId(entity.to_bits())),
             ..StepRules::default()
         };
         let gone = body.lost_point(&touchable);
         body.forget_jump(&touchable);
         let climber = &mut body.climber;
-        let result = touchable.around(entity, stepped.filter, &bodies, gone, |obstacles| {
+        let result = touchable.around(entity, stepped.filter, Some(group), gone, |obstacles| {
             climber.step_with(&input, obstacles, &rules, dt)
         });
         match result {
@@ -205,7 +212,7 @@ pub(super) fn step_climbers(
         let state = ClimberState(*body.climber.state());
         stepped.state.set_if_neq(state);
     };
-    if bodies.len() <= FEW {
+    if count <= FEW {
         climbers.iter_mut().for_each(step);
     } else {
         climbers.par_iter_mut().for_each(step);

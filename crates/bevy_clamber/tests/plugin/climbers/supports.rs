@@ -100,7 +100,7 @@ fn climbers_stand_on_each_other_and_on_obstacles_of_the_app() {
     .unwrap();
     let own = app
         .world_mut()
-        .spawn(CustomObstacle::new(ClimberObstacle::new(&still, 0.1)))
+        .spawn(CustomObstacle::new(ClimberObstacle::new(&still, &[], 0.1)))
         .id();
     let on_own = self::climber(&mut app, Vec3::new(50.0, 7.0, 0.0));
     app.init_resource::<Told>();

@@ -1,8 +1,8 @@
 //! A climber on a stage, and the trace of its run.
 
 use clamber_climber::{
-    Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, ClimberState, StepReport,
-    StepRules,
+    Climber, ClimberConfig, ClimberError, ClimberEvent, ClimberInput, ClimberMode, ClimberState,
+    StepReport, StepRules,
 };
 use clamber_world::{Obstacle, ObstacleId, WorldCapsule};
 use glam::DVec3;
@@ -180,6 +180,17 @@ impl Run {
     }
 
     /// Throws the climber into the air at a velocity.
+    /// Resizes the climber among what is on the stage. The configuration is in the scenario's units.
+    pub(crate) fn resize(&mut self, config: ClimberConfig) -> Result<(), ClimberError> {
+        let (climber, place) = (&mut self.climber, self.stage.place());
+        let scaled = place.config(&config);
+        self.stage
+            .in_world(|obstacles| climber.try_resize(scaled, obstacles))?;
+        self.config = config;
+        self.state = place.inverse().state(self.climber.state());
+        Ok(())
+    }
+
     pub(crate) fn thrown(mut self, velocity: DVec3) -> Self {
         self.put(ClimberState {
             velocity,
