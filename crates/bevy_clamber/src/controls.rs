@@ -20,6 +20,7 @@ use crate::{ClimberCamera, ClimberCameraInput, ClimberInput};
 /// | walk, climb | W, A, S, D or arrows | left stick, or directional pad |
 /// | jump | space | south button (A, cross) |
 /// | grip, hold on | left shift, or right mouse button | right trigger, or right shoulder button |
+/// | crouch | C, or left control | east button (B, circle) |
 /// | turn the camera | mouse | right stick |
 ///
 /// Directions are those of the camera that follows the climber; without one, those of the world, -Z ahead.
@@ -67,6 +68,7 @@ struct Pressed {
     jump: bool,
     jump_held: bool,
     grip: bool,
+    crouch: bool,
 }
 
 fn steer(
@@ -92,6 +94,7 @@ fn steer(
         }
         input.walk = walk(ahead, pressed.walk);
         input.grip = pressed.grip;
+        input.crouch = pressed.crouch;
         input.jump |= pressed.jump;
         input.jump_held = pressed.jump_held;
     }
@@ -126,6 +129,7 @@ fn of_keys(keys: &ButtonInput<KeyCode>, buttons: &ButtonInput<MouseButton>) -> P
         jump: keys.just_pressed(KeyCode::Space),
         jump_held: keys.pressed(KeyCode::Space),
         grip: keys.pressed(KeyCode::ShiftLeft) || buttons.pressed(MouseButton::Right),
+        crouch: keys.any_pressed([KeyCode::KeyC, KeyCode::ControlLeft]),
     }
 }
 
@@ -139,6 +143,7 @@ impl Pressed {
         self.jump_held |= gamepad.pressed(GamepadButton::South);
         self.grip |= gamepad.pressed(GamepadButton::RightTrigger)
             || gamepad.pressed(GamepadButton::RightTrigger2);
+        self.crouch |= gamepad.pressed(GamepadButton::East);
     }
 }
 

@@ -14,9 +14,6 @@ pub struct StepRules<'a> {
     /// What may be stood on, stepped onto, hung from, gripped, and passed through, and with which friction. By default
     /// [`ContactQuery::usual`](crate::ContactQuery::usual).
     pub contact: Option<&'a ContactRuleFn<'a>>,
-    /// The climber's own id, which `contact` gets with each query: by it, one rule can tell climbers apart. By default
-    /// none.
-    pub climber: Option<ObstacleId>,
     /// Handlers of the game's custom modes. In each tick, all but the current mode's are asked in this order whether
     /// they begin, until one does. A climber in a custom mode whose handler is missing falls. By default none.
     pub modes: &'a [&'a dyn CustomMode],
@@ -24,6 +21,10 @@ pub struct StepRules<'a> {
     /// a second takes it as its frame ([`ClimberState::base_velocity`]): steering in the air is measured against it.
     /// By default zero.
     pub air_velocity: DVec3,
+    /// Id of this climber among the obstacles of others ([`ClimberGroup`](crate::ClimberGroup)). Of two climbers at one
+    /// place, the ids decide who parts to which side. `contact` gets it with each query, so that one rule can tell climbers
+    /// apart. By default `None`.
+    pub id: Option<ObstacleId>,
 }
 
 impl<'a> StepRules<'a> {
@@ -31,9 +32,9 @@ impl<'a> StepRules<'a> {
     pub const fn by(contact: &'a ContactRuleFn<'a>) -> Self {
         Self {
             contact: Some(contact),
-            climber: None,
             modes: &[],
             air_velocity: DVec3::ZERO,
+            id: None,
         }
     }
 
@@ -80,7 +81,7 @@ impl Climber {
     /// Replaces the configuration: another gravity, a faster walk, a mode switched on or off.
     ///
     /// The state stays, except that the heading is made level with the new up. In the next step, a body that has grown
-    /// is pushed out of the obstacles that it overlaps.
+    /// is pushed out of the obstacles that it overlaps; [`Climber::try_resize`] lets it grow only where it has room.
     ///
     /// # Errors
     /// [`ClimberError`] for a configuration outside its ranges, and [`ClimberError::ModeInUse`] for one that switches
@@ -103,6 +104,15 @@ impl Climber {
         self.state.heading = level.normalize_or(up.any_orthonormal_vector());
         self.config = config;
         Ok(())
+    }
+
+    /// Sets a state that is known to be valid.
+    pub(crate) fn replace_state(&mut self, state: ClimberState) {
+        self.state = state;
+    }
+
+    pub(crate) fn mover_memory(&mut self) -> &mut clamber_mover::MoverMemory {
+        self.scratch.mover_memory()
     }
 
     /// The state after the last step.

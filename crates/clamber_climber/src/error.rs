@@ -21,6 +21,14 @@ pub enum ClimberError {
          `None`); end the mode first: step the climber without `ClimberInput::grip`, or until it has got up"
     )]
     ModeInUse(ClimberMode),
+    /// The body of a new configuration has no room where the climber is.
+    #[error(
+        "the new body lacks {lacks} m of room where the climber is; try again elsewhere, or with a smaller one"
+    )]
+    NoRoom {
+        /// How deep the body would be in what is around it, metres.
+        lacks: f64,
+    },
     /// Two custom modes have the same id.
     #[error("two custom modes have the id {0}")]
     SameMode(u16),

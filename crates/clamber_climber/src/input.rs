@@ -26,6 +26,10 @@ pub struct ClimberInput {
     pub jump_held: bool,
     /// True as long as the grip button is down: grips what is in reach and holds on. False lets go.
     pub grip: bool,
+    /// True as long as the crouch button is down: a standing climber with a height
+    /// ([`BodyConfig::height`](crate::BodyConfig::height)) is its lower ball alone. It stands up again where there is
+    /// room.
+    pub crouch: bool,
     /// A blow that struck the climber since the last tick.
     pub blow: Option<Blow>,
     /// The game's own buttons, one bit each, for its custom modes. This crate ignores them; `clamber_fight` reads the lower
@@ -57,6 +61,7 @@ impl ClimberInput {
         jump: false,
         jump_held: false,
         grip: false,
+        crouch: false,
         blow: None,
         actions: 0,
         aim: DVec3::ZERO,

@@ -8,10 +8,12 @@ mod config;
 mod contact;
 mod error;
 mod event;
+mod group;
 pub mod guide;
 mod input;
 mod obstacle;
 mod pendulum;
+mod resize;
 mod rule;
 mod shake;
 mod state;
@@ -20,13 +22,14 @@ mod step;
 pub use climber::{Climber, StepRules};
 pub use config::{
     BodyConfig, ClimberConfig, GripConfig, GroundConfig, HangConfig, HealthConfig, LedgeConfig,
-    StaminaConfig, TumbleConfig,
+    Others, OthersError, StaminaConfig, TumbleConfig,
 };
 pub use contact::{ClimberContact, ContactPhase};
 pub use error::ClimberError;
 pub use event::{ClimberEvent, Push, StepReport};
 /// The crate of the vectors and quaternions in this API.
 pub use glam;
+pub use group::ClimberGroup;
 pub use input::{Blow, ClimberInput};
 pub use obstacle::ClimberObstacle;
 pub use rule::{ContactQuery, ContactRule, ContactRuleFn};

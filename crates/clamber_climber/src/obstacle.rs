@@ -1,8 +1,8 @@
 //! A climber as an obstacle to other climbers.
 
 use clamber_world::{
-    Contact, MaterialPoint, Obstacle, PointMotion, SurfaceTag, SweepContact, TargetMotion,
-    WorldCapsule,
+    CharacterBody, Contact, Continuity, MaterialPoint, Obstacle, ObstacleId, PointMotion,
+    SurfaceTag, SweepContact, TargetMotion, WorldCapsule,
 };
 use glam::DVec3;
 
@@ -11,45 +11,55 @@ use crate::Climber;
 /// Most steps of a sweep. Capsules that pass each other take a few, capsules that just graze a few dozen.
 const STEPS: u32 = 64;
 
-/// A climber as an obstacle to other climbers: for one tick, a solid capsule that keeps its velocity.
+/// Bodies whose axes are nearer to each other than this share of their radii are at one place, and do not stop each
+/// other.
+pub(crate) const SAME_PLACE: f64 = 1e-7;
+
+/// Contacts whose normal is farther from up than this cosine are on a climber's side: 60 degrees, where nobody stands.
+const SIDE: f64 = 0.5;
+
+/// Largest gap, as a share of the radius, between where a support was after the last tick and where its obstacle says
+/// that it was: as for the climber itself.
+const CONTINUOUS: f64 = crate::step::CONTINUOUS;
+
+/// A climber as an obstacle to other climbers, for one tick: a solid capsule that is where its support carries it.
 ///
-/// Make the obstacles of all climbers before any of them is stepped, and give each climber those of the others. Then
-/// the results do not depend on the order, or the threads, in which they are stepped. Climbers stop each other but do
-/// not push each other: the obstacle moves, but reports a velocity of zero.
+/// Make the obstacles of all climbers before any of them is stepped, and give each climber those of the others
+/// ([`ClimberGroup`](crate::ClimberGroup) does). Then the results do not depend on the order, or the threads, in which
+/// they are stepped.
 ///
-/// ```
-/// use clamber_climber::{Climber, ClimberObstacle, ClimberConfig, ClimberInput};
-/// use clamber_world::{Obstacle, ObstacleId};
-/// use glam::DVec3;
-///
-/// let dt = 1.0 / 60.0;
-/// let at = |x| Climber::new(ClimberConfig::walker(), DVec3::new(x, 0.0, 0.0));
-/// let mut climbers = [at(0.0)?, at(3.0)?];
-///
-/// let bodies: Vec<ClimberObstacle> = climbers.iter().map(|climber| ClimberObstacle::new(climber, dt)).collect();
-/// for (index, climber) in climbers.iter_mut().enumerate() {
-///     let others = bodies.iter().enumerate().filter(|(other, _)| *other != index);
-///     let obstacles: Vec<(ObstacleId, &dyn Obstacle)> =
-///         others.map(|(other, body)| (ObstacleId(100 + other as u64), body as &dyn Obstacle)).collect();
-///     climber.step(&ClimberInput::default(), &obstacles, dt)?;
-/// }
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
+/// Climbers stop each other, and stand on each other. They do not push, carry off or crush each other: what a climber
+/// does by itself in this tick is unknown when its obstacle is made, so the obstacle moves by it one tick later, and
+/// stops others without pushing them. Its velocity is that of its support; its own counts only where it moves away
+/// from the contact. So whoever follows another one keeps pace, two that fall together meet at the speed between
+/// them, and two that run into each other stop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClimberObstacle {
-    /// The capsule at the tick's end if the climber keeps its velocity, in world space.
+    /// The capsule at the tick's end, in world space.
     now: WorldCapsule,
     /// Its displacement over the tick, metres.
     way: DVec3,
+    /// True if its support was placed elsewhere.
+    placed: bool,
+    /// The capsule after its own last tick, in world space.
+    before: WorldCapsule,
+    /// Unit vector that points up for it.
+    up: DVec3,
+    /// Velocity of its support, or of its frame in the air, metres a second.
+    base: DVec3,
+    /// Its own velocity, relative to that.
+    own: DVec3,
+    /// Mass, kg.
+    mass: f64,
 }
 
 /// The nearest points of two capsules' axes.
-struct Apart {
+pub(crate) struct Apart {
     /// Unit vector from this body's axis to the other's; where the axes meet, a vector perpendicular to this body's
     /// axis.
-    away: DVec3,
+    pub(crate) away: DVec3,
     /// Distance between the axes, metres.
-    distance: f64,
+    pub(crate) distance: f64,
     /// The nearest point on this body's axis.
     on_axis: DVec3,
     /// The nearest point on the other's axis, as a share of its length from its first end.
@@ -57,12 +67,58 @@ struct Apart {
 }
 
 impl ClimberObstacle {
-    /// The obstacle of a climber for the next tick of `dt` seconds; call it before the climber is stepped.
-    pub fn new(climber: &Climber, dt: f64) -> Self {
-        let way = climber.state().velocity * dt;
-        Self {
-            now: climber.body().moved(way),
-            way,
+    /// The obstacle of a climber for the next tick of `dt` seconds. Call it before the climber is stepped, when
+    /// `obstacles` are where they are at the tick's end. Of these, only the climber's support is asked: who stands on
+    /// another climber comes after that one, whose obstacle is then among them.
+    pub fn new(climber: &Climber, obstacles: &[(ObstacleId, &dyn Obstacle)], dt: f64) -> Self {
+        let id = climber.state().support.map(|on| on.attachment.obstacle);
+        let on = obstacles.iter().find(|(other, _)| Some(*other) == id);
+        Self::on(climber, on.map(|(_, obstacle)| *obstacle), dt)
+    }
+
+    /// The obstacle of a climber on its support; `None` if there is none, or if it is gone.
+    pub(crate) fn on(climber: &Climber, support: Option<&dyn Obstacle>, dt: f64) -> Self {
+        let (state, config) = (climber.state(), climber.config());
+        let begin = state.position - state.own_way;
+        let own = state.velocity - state.base_velocity;
+        let mut attachment = state.support.map(|support| support.attachment);
+        let slack = CONTINUOUS * config.body.radius;
+        let followed = support.and_then(|obstacle| {
+            let attachment = attachment.as_mut()?;
+            let followed = attachment.follow(obstacle, dt, slack)?;
+            let carried = followed.motion.is_finite();
+            carried.then(|| (attachment.position(), followed))
+        });
+        let body = climber.body();
+        let to = |position: DVec3| body.moved(position - state.position);
+        match followed {
+            Some((position, followed)) => {
+                let placed = followed.continuity == Continuity::Placed;
+                let begin = if placed { position } else { begin };
+                Self {
+                    now: to(position),
+                    way: position - begin,
+                    placed: placed || position == begin,
+                    before: body,
+                    up: config.up(),
+                    base: followed.motion.velocity,
+                    own: followed.motion.turn * own,
+                    mass: config.body.mass,
+                }
+            }
+            None => {
+                let position = state.position + state.own_displacement(config, dt);
+                Self {
+                    now: to(position),
+                    way: position - begin,
+                    placed: position == begin,
+                    before: body,
+                    up: config.up(),
+                    base: state.base_velocity,
+                    own: own + state.fall(config) * dt,
+                    mass: config.body.mass,
+                }
+            }
         }
     }
 
@@ -80,6 +136,21 @@ impl ClimberObstacle {
         }
     }
 
+    /// The part of its own velocity with which a point of its surface moves away from what touches it there: above, its
+    /// fall; on its sides, the level part away from the other. With all of its velocity, two climbers that run into each
+    /// other would swap theirs, as balls do, and who stands on another one would feel each of its steps.
+    fn receding(&self, point: DVec3) -> DVec3 {
+        let out = (point - self.now.nearest_on_axis(point)).normalize_or_zero();
+        let (rise, high) = (self.own.dot(self.up), out.dot(self.up));
+        let fall = if high > 0.0 { rise.min(0.0) } else { 0.0 };
+        let side = if high < SIDE {
+            (out - self.up * high).normalize_or_zero()
+        } else {
+            DVec3::ZERO
+        };
+        self.up * fall + side * self.own.dot(side).min(0.0)
+    }
+
     /// The first contact of a capsule whose ends move by `ways`, with this body at rest at its position at the tick's
     /// end.
     fn meet(&self, capsule: &WorldCapsule, ways: [DVec3; 2]) -> Option<SweepContact> {
@@ -92,6 +163,10 @@ impl ClimberObstacle {
             let moved = capsule.with_ends_moved(ways.map(|way| way * time));
             let apart = between(&self.now, &moved);
             let gap = apart.distance - sum;
+            if apart.distance <= SAME_PLACE * sum {
+                // There is no way out that both would agree on.
+                return None;
+            }
             let there = ways[0].lerp(ways[1], apart.on_other);
             let is_near = gap <= capsule.sweep_tolerance();
             let touches = gap <= 0.0 || is_near && apart.away.dot(there) < 0.0;
@@ -122,7 +197,7 @@ impl ClimberObstacle {
 }
 
 /// The nearest points of two capsules' axes (Ericson 2005, *Real-Time Collision Detection*, 5.1.9).
-fn between(body: &WorldCapsule, other: &WorldCapsule) -> Apart {
+pub(crate) fn between(body: &WorldCapsule, other: &WorldCapsule) -> Apart {
     let ([a, b], [c, d]) = (body.ends, other.ends);
     let (u, v, w) = (b - a, d - c, a - c);
     let (uu, vv, uv) = (u.length_squared(), v.length_squared(), u.dot(v));
@@ -154,10 +229,6 @@ fn between(body: &WorldCapsule, other: &WorldCapsule) -> Apart {
 }
 
 impl Obstacle for ClimberObstacle {
-    fn is_character(&self, _: &MaterialPoint) -> bool {
-        true
-    }
-
     fn bounds(&self) -> Option<(DVec3, f64)> {
         let (middle, radius) = self.now.bounding_ball();
         Some((middle - self.way * 0.5, radius + self.way.length() * 0.5))
@@ -170,8 +241,10 @@ impl Obstacle for ClimberObstacle {
     }
 
     fn overlap_capsule(&self, capsule: &WorldCapsule, contacts: &mut Vec<Contact>) {
-        let contact = self.contact(&between(&self.now, capsule));
-        if capsule.is_valid() && contact.distance <= capsule.radius {
+        let apart = between(&self.now, capsule);
+        let contact = self.contact(&apart);
+        let is_elsewhere = apart.distance > SAME_PLACE * (self.now.radius + capsule.radius);
+        if capsule.is_valid() && is_elsewhere && contact.distance <= capsule.radius {
             contacts.push(contact);
         }
     }
@@ -196,10 +269,16 @@ impl Obstacle for ClimberObstacle {
         let position = self.now.ends[0] + DVec3::from_array(point.coordinates);
         let usable = dt > 0.0 && position.is_finite();
         usable.then(|| PointMotion {
-            // Otherwise two climbers that run into each other would swap their velocities, as balls do.
-            velocity: DVec3::ZERO,
-            placed: self.way == DVec3::ZERO,
+            velocity: self.base + self.receding(position),
+            placed: self.placed,
             ..PointMotion::translated(position - self.way, position, dt)
+        })
+    }
+
+    fn character(&self) -> Option<CharacterBody> {
+        Some(CharacterBody {
+            capsule: self.before,
+            mass: self.mass,
         })
     }
 }

@@ -22,7 +22,7 @@ pub struct ContactRule {
     /// Whether the climber may stand on it. If not, it slides off, as off a slope that is too steep. Level ground of this
     /// kind leaves it lying in [`ClimberMode::Sliding`].
     pub stand: bool,
-    /// Whether walking may lead up onto it. If not, its steps, slopes and edges block like a vertical wall to a climber
+    /// Whether walking may lead up onto it; other characters are never steps. If not, its steps, slopes and edges block like a vertical wall to a climber
     /// that stands on something with `step`. Ground that is flush with the feet, or lower, is walked onto all the same;
     /// `stand` decides there.
     pub step: bool,
@@ -140,7 +140,7 @@ pub type ContactRuleFn<'a> = dyn Fn(&ContactQuery<'_>) -> ContactRule + 'a;
 #[derive(Clone, Copy)]
 #[non_exhaustive]
 pub struct ContactQuery<'a> {
-    /// The climber, by [`StepRules::climber`](crate::StepRules::climber).
+    /// The climber, by [`StepRules::id`](crate::StepRules::id).
     pub climber: Option<ObstacleId>,
     /// The climber's state at the tick's beginning. With its [`memory`](ClimberState::memory), a rule can depend on what
     /// the game's modes remember.
@@ -202,10 +202,10 @@ impl<'a> ContactQuery<'a> {
         self.obstacle.body_of(point)
     }
 
-    /// True if the contact is with another character ([`Obstacle::is_character`]), such as a
+    /// True if the contact is with another character ([`Obstacle::character`]), such as a
     /// [`ClimberObstacle`](crate::ClimberObstacle).
     pub fn is_character(&self) -> bool {
-        self.obstacle.is_character(&self.contact.material)
+        self.obstacle.character().is_some()
     }
 
     /// Where the contact's material was at the tick's beginning, where it is at its end, and its velocity. `None` if

@@ -19,6 +19,7 @@ pub const THROW: u32 = 1 << 3;
 const JUMP: u16 = 1 << 8;
 const JUMP_HELD: u16 = 1 << 9;
 const GRIP: u16 = 1 << 10;
+const CROUCH: u16 = 1 << 11;
 const ACTIONS: u16 = 0xff;
 
 /// Steps of a unit vector's component.
@@ -80,7 +81,8 @@ impl PlayerInput {
             buttons: (input.actions as u16 & ACTIONS)
                 | flag(input.jump, JUMP)
                 | flag(input.jump_held, JUMP_HELD)
-                | flag(input.grip, GRIP),
+                | flag(input.grip, GRIP)
+                | flag(input.crouch, CROUCH),
         }
     }
 
@@ -96,6 +98,7 @@ impl PlayerInput {
             jump: self.buttons & JUMP != 0,
             jump_held: self.buttons & JUMP_HELD != 0,
             grip: self.buttons & GRIP != 0,
+            crouch: self.buttons & CROUCH != 0,
             blow: None,
             actions: u32::from(self.buttons & ACTIONS),
             aim: DVec3::new(level * sin, up, level * cos),
@@ -120,6 +123,7 @@ mod tests {
                 jump: lot() > 0.0,
                 jump_held: lot() > 0.0,
                 grip: lot() > 0.0,
+                crouch: lot() > 0.0,
                 blow: None,
                 actions: (lot().abs() * 255.0) as u32,
             };
@@ -128,7 +132,7 @@ mod tests {
             assert!(back.walk.distance(input.walk) < 0.006, "{input:?}");
             assert!(back.climb.distance(input.climb) < 0.008, "{input:?}");
             assert!(back.aim.distance(input.aim) < 1e-4, "{input:?}");
-            let flags = |i: &ClimberInput| (i.jump, i.jump_held, i.grip, i.actions);
+            let flags = |i: &ClimberInput| (i.jump, i.jump_held, i.grip, i.crouch, i.actions);
             assert_eq!(flags(&back), flags(&input));
             assert_eq!(PlayerInput::from_input(&back), sent);
         }

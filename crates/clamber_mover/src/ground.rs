@@ -241,6 +241,10 @@ impl Mover<'_> {
             ..*probe
         };
         let ground = self.find_ground_below(&down, over)?;
+        if self.is_character(&ground.touch) {
+            // Nobody is a step.
+            return None;
+        }
         let rise = (ground.position - position).dot(probe.up);
         if rise <= probe.body.margin || !self.is_step(&ground.touch) {
             return None;

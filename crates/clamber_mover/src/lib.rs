@@ -1,6 +1,7 @@
 #![doc = include_str!("../README.md")]
 
 mod body;
+mod characters;
 mod error;
 mod filters;
 mod grip;
@@ -22,5 +23,5 @@ pub use ground::{Ground, GroundProbe, StepUp, slope};
 pub use half_spaces::{HalfSpace, Projection, project_onto_half_spaces};
 pub use ledge::{Ledge, LedgeHold, LedgeProbe};
 pub use mover::{Mover, MoverMemory};
-pub use slide::{Arm, Begin, Moved, Path, Walking};
+pub use slide::{Arm, Begin, IntoOthers, Moved, Path, Walking};
 pub use touch::{Hit, Touch};

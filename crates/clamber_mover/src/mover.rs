@@ -24,6 +24,10 @@ pub struct MoverMemory {
     pub(crate) half_spaces: Vec<HalfSpace>,
     /// Steep slopes a second time, as vertical walls.
     pub(crate) walls: Vec<HalfSpace>,
+    /// The same of other characters.
+    pub(crate) yielding_walls: Vec<HalfSpace>,
+    /// True if walls and other characters left no room in the last movement, so that the walls alone counted.
+    pub(crate) characters_yield: bool,
     pub(crate) touched: Vec<Touch>,
     /// Velocities of the contacts in `touched`, at the same indices.
     pub(crate) velocities: Vec<Option<DVec3>>,
@@ -46,7 +50,8 @@ impl MoverMemory {
         }
         self.velocities.clear();
         self.velocities.reserve(CONTACTS);
-        for half_spaces in [&mut self.half_spaces, &mut self.walls] {
+        let walls = [&mut self.walls, &mut self.yielding_walls];
+        for half_spaces in walls.into_iter().chain([&mut self.half_spaces]) {
             half_spaces.clear();
             half_spaces.reserve(HALF_SPACES);
         }
@@ -64,6 +69,8 @@ pub struct Mover<'a> {
     pub(crate) obstacles: &'a [(ObstacleId, &'a dyn Obstacle)],
     dt: f64,
     pub(crate) filters: ContactFilters<'a>,
+    /// True if there is another character among the obstacles.
+    pub(crate) has_characters: bool,
     pub(crate) memory: &'a mut MoverMemory,
 }
 
@@ -97,10 +104,13 @@ impl<'a> Mover<'a> {
             });
         }
         memory.make_room();
+        let mut all = obstacles.iter();
+        let has_characters = all.any(|(_, obstacle)| obstacle.character().is_some());
         Ok(Self {
             obstacles,
             dt,
             filters: ContactFilters::default(),
+            has_characters,
             memory,
         })
     }
@@ -384,7 +394,7 @@ impl<'a> Mover<'a> {
     }
 }
 
-fn find<'a>(
+pub(crate) fn find<'a>(
     obstacles: &[(ObstacleId, &'a dyn Obstacle)],
     id: ObstacleId,
 ) -> Option<&'a dyn Obstacle> {

@@ -29,7 +29,7 @@ const PUSHES: usize = 16;
 
 /// An overlap up to this fraction of the radius counts as none: more than the rounding of a creature's f32 coordinates,
 /// far less than is visible.
-const TOUCH: f64 = 2.5e-5;
+pub(crate) const TOUCH: f64 = 2.5e-5;
 
 /// Search distance around the body for contacts that a push may lead into, as a fraction of the margin. A body that is
 /// pushed farther is swept again. It is more than the half margin by which a walking body is pressed onto the ground;
@@ -58,6 +58,8 @@ pub struct Path {
     pub walking: Option<Walking>,
     /// The arm that the body hangs by, if it hangs.
     pub arm: Option<Arm>,
+    /// How far the body may come into other characters, instead of being stopped by them.
+    pub into_others: Option<IntoOthers>,
     /// Whether the body moves from start to target, or was placed at the target.
     pub begin: Begin,
     /// Set this if the last movement ended crushed ([`Moved::missing_room`] above the margin). It limits the speed at
@@ -82,6 +84,16 @@ pub struct Walking {
     pub up: DVec3,
     /// The steepest slope that the body may climb, radians from level ground.
     pub max_slope: f64,
+}
+
+/// How far a body may come into the sides of other characters
+/// ([`Obstacle::character`](clamber_world::Obstacle::character)). What is above or below stops it all the same.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct IntoOthers {
+    /// Unit vector that points up.
+    pub up: DVec3,
+    /// Largest depth, metres; may be infinite.
+    pub depth: f64,
 }
 
 /// An arm that the body hangs by: it keeps the body's position within `length` of `pivot`.
@@ -123,6 +135,7 @@ impl Path {
             frame: DVec3::ZERO,
             walking: None,
             arm: None,
+            into_others: None,
             begin: Begin::Start,
             crushed: false,
         }
@@ -162,7 +175,7 @@ impl Path {
 
     /// The point of the axis that is nearest to `place` at a time of a movement by `way`. Given at the end of the tick,
     /// relative to the body's position.
-    fn end_of(&self, way: DVec3, time: f64, place: DVec3) -> DVec3 {
+    pub(crate) fn end_of(&self, way: DVec3, time: f64, place: DVec3) -> DVec3 {
         let then = self
             .core()
             .with_ends_moved(self.ways(way).map(|way| way * time));
@@ -237,6 +250,8 @@ impl Mover<'_> {
         self.memory.passed.clear();
         self.memory.half_spaces.clear();
         self.memory.walls.clear();
+        self.memory.yielding_walls.clear();
+        self.memory.characters_yield = false;
         self.memory.touched.clear();
         self.memory.velocities.clear();
         let mut moved = Moved {
@@ -302,6 +317,10 @@ impl Mover<'_> {
             if is_known || Self::is_pressed_into(&path.body, touch) {
                 continue;
             }
+            let depth = path.body.radius - touch.contact.distance;
+            if depth < self.characters().allowed(path, touch) {
+                continue;
+            }
             let motion = self.path_of(touch);
             let way = motion.map_or(DVec3::ZERO, |motion| {
                 motion.position - motion.previous_position
@@ -327,13 +346,13 @@ impl Mover<'_> {
         } else {
             self.sweep_from(path, way)
         };
-        let Some(Hit { touch, time, .. }) = hit else {
+        let Some(hit) = hit else {
             return false;
         };
+        let touch = hit.touch;
         let motion = self.path_of(&touch);
         let end = motion.map_or(touch.contact.point, |motion| motion.position);
-        let on_axis = path.end_of(way, time, touch.contact.point);
-        let offset = touch.normal.dot(end - path.start - on_axis) + path.body.radius;
+        let offset = self.characters().half_space_of_hit(path, &hit, way).offset;
         self.add_half_space(path, touch, offset, moved.position);
         self.know_velocity(motion.as_ref());
         self.solve(path, moved);
@@ -351,11 +370,12 @@ impl Mover<'_> {
         let core = path.core();
         let mut inside = std::mem::take(&mut self.memory.passed);
         inside.clear();
+        let characters = self.characters();
         let hit = self.sweep_where(&core, path.ways(way), |hit| {
             if hit.started_inside && hit.touch.is_finite() {
                 inside.push(hit.touch);
             }
-            !hit.started_inside
+            !hit.started_inside && characters.stop(path, hit, way)
         });
         self.memory.passed = inside;
         hit
@@ -367,7 +387,11 @@ impl Mover<'_> {
         let inside = std::mem::take(&mut self.memory.passed);
         let margin = path.body.margin;
         let (obstacles, dt) = (self.obstacles, self.dt());
+        let characters = self.characters();
         let hit = self.sweep_past_overlaps(&core, path.ways(way), |hit| {
+            if !characters.stop(path, hit, way) {
+                return false;
+            }
             let touch = &hit.touch;
             let mut of_its_face = inside
                 .iter()
@@ -406,9 +430,12 @@ impl Mover<'_> {
             // Half-spaces that are already relaxed allow this much more depth.
             let mut deepest = moved.missing_room + touching;
             let mut worst: Option<Touch> = None;
+            let characters = self.characters();
+            let way = moved.position - path.start;
             for touch in self.overlaps() {
                 let now = touch.after_push(&capsule, moved.position - found);
                 let depth = body.radius - now.contact.distance;
+                let depth = characters.depth(path, &now, way, depth);
                 if depth > deepest {
                     (deepest, worst) = (depth, Some(now));
                 }
@@ -428,9 +455,11 @@ impl Mover<'_> {
             self.touch_the_rest(path, moved, found);
         }
         let capsule = body.at(moved.position);
+        let characters = self.characters();
+        let way = moved.position - path.start;
         let depths = self.overlaps().iter().map(|touch| {
             let now = touch.after_push(&capsule, moved.position - found);
-            body.radius - now.contact.distance
+            characters.depth(path, &now, way, body.radius - now.contact.distance)
         });
         moved.penetration = (depths.fold(0.0, f64::max) - body.margin).max(0.0);
         pushes
@@ -461,12 +490,11 @@ impl Mover<'_> {
 
     /// Adds a contact with its half-space. `position` is where the body would be without it.
     fn add_half_space(&mut self, path: &Path, touch: Touch, offset: f64, position: DVec3) {
-        self.memory.touched.push(touch);
-        self.memory.half_spaces.push(HalfSpace {
+        let half_space = HalfSpace {
             normal: touch.normal,
             offset,
-        });
-        if let Some(Walking { up, max_slope }) = path.walking {
+        };
+        let wall = path.walking.and_then(|Walking { up, max_slope }| {
             let rise = touch.normal.dot(up);
             let level = (touch.normal - up * rise).normalize_or_zero();
             let lean = touch.normal.dot(level);
@@ -474,22 +502,27 @@ impl Mover<'_> {
                 rise < libm::cos(max_slope) && lean > 0.0 || lean > FLUSH && !self.is_step(&touch)
             };
             // Too steep to stand on, and no ceiling: treated as vertical.
-            if rise > LEVEL && is_wall() {
-                let displacement = position - path.start;
-                let into = offset - touch.normal.dot(displacement);
-                self.memory.walls.push(HalfSpace {
-                    normal: level,
-                    offset: level.dot(displacement) + into / lean,
-                });
+            if !(rise > LEVEL && is_wall()) {
+                return None;
             }
-        }
+            let displacement = position - path.start;
+            let into = offset - touch.normal.dot(displacement);
+            Some(HalfSpace {
+                normal: level,
+                offset: level.dot(displacement) + into / lean,
+            })
+        });
+        self.add_contact(path, touch, half_space, wall);
     }
 
     fn solve(&mut self, path: &Path, moved: &mut Moved) {
         let margin = path.body.margin;
         // A crushed body stays crushed, however many half-spaces are added.
         if self.memory.lacking <= margin {
-            let nearest = self.nearest_to_wanted(path);
+            let mut nearest = self.nearest_to_wanted(path);
+            if nearest.missed > TOUCH * path.body.radius && self.leave_characters_out() {
+                nearest = self.nearest_to_wanted(path);
+            }
             (moved.position, moved.missing_room) = (path.start + nearest.point, nearest.missed);
             self.memory.lacking = nearest.missed;
         }
@@ -510,9 +543,11 @@ impl Mover<'_> {
         let memory = &mut *self.memory;
         let count = memory.half_spaces.len();
         memory.half_spaces.extend_from_slice(&memory.walls);
+        memory.half_spaces.extend_from_slice(&memory.yielding_walls);
+        let has_walls = memory.half_spaces.len() > count;
         let nearest = self.nearest_displacement(wanted, free);
         self.memory.half_spaces.truncate(count);
-        if nearest.missed > TOUCH * path.body.radius && !self.memory.walls.is_empty() {
+        if nearest.missed > TOUCH * path.body.radius && has_walls {
             // Steep slopes on all sides hold the body up, as they hold up a body that falls between them.
             return self.nearest_displacement(wanted, free);
         }

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use clamber_climber::{
     BodyConfig, ClimberConfig, GripConfig, GroundConfig, HangConfig, HealthConfig, LedgeConfig,
-    StaminaConfig, TumbleConfig,
+    Others, StaminaConfig, TumbleConfig,
 };
 use glam::DVec3;
 
@@ -26,6 +26,23 @@ trait Group: Sized {
     fn read(metadata: &Metadata) -> Result<Self, RecordError>;
 }
 
+/// The text of a value, which reads back to the same value.
+trait AsText {
+    fn as_text(&self) -> String;
+}
+
+impl AsText for f64 {
+    fn as_text(&self) -> String {
+        format!("{self:?}")
+    }
+}
+
+impl AsText for Others {
+    fn as_text(&self) -> String {
+        self.to_string()
+    }
+}
+
 /// Implements [`Group`] for a struct. Every field must be listed: a missing or unknown one does not compile.
 macro_rules! group {
     ($group:ident, $prefix:literal, $($field:ident),+) => {
@@ -36,7 +53,7 @@ macro_rules! group {
                 let Self { $($field),+ } = self;
                 $(metadata.insert(
                     concat!($prefix, ".", stringify!($field)).to_owned(),
-                    format!("{:?}", $field),
+                    $field.as_text(),
                 );)+
             }
 
@@ -57,7 +74,8 @@ group!(
     height,
     margin,
     mass,
-    push_force
+    push_force,
+    others
 );
 group!(
     GroundConfig,
@@ -205,6 +223,7 @@ mod tests {
         let mut config = ClimberConfig::colossus_climber();
         config.gravity = DVec3::new(0.1 + 0.2, -1.0 / 3.0, -0.0);
         config.shake_time = f64::MIN_POSITIVE;
+        config.body.others = Others::Push;
         config.ground.throw_acceleration = f64::INFINITY;
         let back = read_back(&config);
         assert_eq!(back, config);
@@ -215,8 +234,8 @@ mod tests {
     fn no_two_numbers_share_an_entry() {
         let mut metadata = Metadata::new();
         write(&ClimberConfig::colossus_climber(), &mut metadata);
-        // 3 of gravity, 1 for `shake_time`, and 5, 14, 7, 3, 6, 7, 6, 2 of the groups.
-        assert_eq!(metadata.len(), 54, "{metadata:?}");
+        // 3 of gravity, 1 for `shake_time`, and 6, 14, 7, 3, 6, 7, 6, 2 of the groups.
+        assert_eq!(metadata.len(), 55, "{metadata:?}");
     }
 
     #[test]

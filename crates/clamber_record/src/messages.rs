@@ -52,6 +52,8 @@ pub(crate) struct Input {
     pub(crate) actions: u32,
     #[prost(message, required, tag = "8")]
     pub(crate) aim: Vector,
+    #[prost(bool, tag = "9")]
+    pub(crate) crouch: bool,
 }
 
 /// A blow that struck the climber.
@@ -188,6 +190,9 @@ pub(crate) struct State {
     /// Direction of the input that leads to its right along a ledge that has turned a corner.
     #[prost(message, required, tag = "30")]
     pub(crate) right: Vector,
+    /// Its displacement in the last tick beyond that of its support.
+    #[prost(message, required, tag = "31")]
+    pub(crate) own_way: Vector,
 }
 
 /// A stick that is held while the climber climbs.
@@ -374,6 +379,7 @@ impl State {
             self.position,
             self.velocity,
             self.base_velocity,
+            self.own_way,
             self.heading,
             self.shake,
             self.legs,
@@ -510,6 +516,7 @@ impl From<&ClimberInput> for Input {
             jump_held: input.jump_held,
             actions: input.actions,
             aim: input.aim.into(),
+            crouch: input.crouch,
         }
     }
 }
@@ -529,6 +536,7 @@ impl From<Input> for ClimberInput {
             jump_held: input.jump_held,
             actions: input.actions,
             aim: input.aim.into(),
+            crouch: input.crouch,
         }
     }
 }
@@ -560,6 +568,7 @@ impl From<&ClimberState> for State {
             open_handed: state.open_handed,
             crouched: state.crouched,
             base_velocity: state.base_velocity.into(),
+            own_way: state.own_way.into(),
             jumping: state.flying.jumping,
             memory: state.memory.into(),
             shoved: state.standing.shoved,
@@ -661,6 +670,7 @@ impl State {
             crouched: self.crouched,
             crushed: self.crushed,
             base_velocity: self.base_velocity.into(),
+            own_way: self.own_way.into(),
             flying: FlyingMemory {
                 jumping: self.jumping,
             },

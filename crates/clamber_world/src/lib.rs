@@ -27,7 +27,9 @@ pub use debris::{Debris, DebrisConfig, DebrisError, DebrisReport, DebrisSnapshot
 /// The version of glam that this crate's API uses.
 pub use glam;
 pub use half_space::HalfSpace;
-pub use obstacle::{Contact, MaterialPoint, Obstacle, ObstacleId, PointMotion, SweepContact};
+pub use obstacle::{
+    CharacterBody, Contact, MaterialPoint, Obstacle, ObstacleId, PointMotion, SweepContact,
+};
 /// The version of parry that [`shapes`] uses.
 #[cfg(feature = "parry")]
 pub use parry3d;

@@ -132,6 +132,15 @@ impl PointMotion {
     }
 }
 
+/// The body of a character that is an obstacle to others.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CharacterBody {
+    /// Its capsule at the start of the tick, in world space.
+    pub capsule: WorldCapsule,
+    /// Mass, kg.
+    pub mass: f64,
+}
+
 /// Something that a character can stand on, hit, or be carried by.
 ///
 /// Three methods are required: [`overlap_capsule`](Obstacle::overlap_capsule), [`cast_capsule`](Obstacle::cast_capsule)
@@ -299,19 +308,19 @@ pub trait Obstacle {
         0.0
     }
 
+    /// The body of another character, if the obstacle is one. Such an obstacle stops bodies, but it neither pushes them
+    /// nor presses them into anything: what overlaps it is free to go with its own support, and walls win. Two
+    /// characters that overlap part from each other.
+    fn character(&self) -> Option<CharacterBody> {
+        None
+    }
+
     /// Id of the rigid body that owns the point; in a rapier world, each collider counts as a body. When a character is
     /// pressed through a surface, the contacts of one body are judged together. The default treats the obstacle as one
     /// body, 0.
     fn body_of(&self, point: &MaterialPoint) -> u64 {
         let _ = point;
         0
-    }
-
-    /// True if the point belongs to a character's body. By default, climbers neither grip other characters nor hang
-    /// from them. The default is false.
-    fn is_character(&self, point: &MaterialPoint) -> bool {
-        let _ = point;
-        false
     }
 }
 

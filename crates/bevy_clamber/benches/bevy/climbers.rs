@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use bevy_app::{FixedPostUpdate, PostUpdate};
 use bevy_clamber::clamber_climber::{
-    Climber as Character, ClimberConfig, ClimberInput as Input, ClimberMode, ClimberObstacle,
+    Climber as Character, ClimberConfig, ClimberGroup, ClimberInput as Input, ClimberMode,
     ClimberState as State, StaminaConfig, StepRules,
 };
 use bevy_clamber::clamber_surface::geometry::Similarity;
@@ -101,6 +101,7 @@ pub(crate) fn measure(
             pose,
             &mut palette,
             (giant, &mut surface),
+            &mut group,
         )?;
         core.push(start.elapsed().as_secs_f64() * 1e6);
         if !tick.is_multiple_of(2) {
@@ -212,25 +213,24 @@ fn step(
     pose: &Pose,
     palette: &mut Palette,
     (giant, surface): (Entity, &mut SkinnedSurface),
+    group: &mut ClimberGroup,
 ) -> Result<(), Box<dyn Error>> {
     creature.skeleton.palette_into(pose, palette)?;
     surface.advance(palette, Similarity::IDENTITY)?;
-    let bodies = climbers.iter().map(|twins| {
-        let body = ClimberObstacle::new(&twins.core, 1.0 / RATE);
-        (ObstacleId(twins.bevy.to_bits()), body)
-    });
-    let bodies: Vec<_> = bodies.collect();
-    for (index, twins) in climbers.iter_mut().enumerate() {
-        let giant = (ObstacleId(giant.to_bits()), &*surface as &dyn Obstacle);
-        let others = bodies
-            .iter()
-            .enumerate()
-            .filter(|(other, _)| *other != index);
-        let others = others.map(|(_, (id, body))| (*id, body as &dyn Obstacle));
-        let obstacles: Vec<_> = std::iter::once(giant).chain(others).collect();
+    let giant = (ObstacleId(giant.to_bits()), &*surface as &dyn Obstacle);
+    let cores = climbers.iter();
+    let cores = cores.map(|twins| (ObstacleId(twins.bevy.to_bits()), &twins.core));
+    group.update(cores, &[giant], 1.0 / RATE);
+    for twins in climbers {
+        let id = ObstacleId(twins.bevy.to_bits());
+        let obstacles: Vec<_> = [giant].into_iter().chain(group.others(id)).collect();
+        let rules = StepRules {
+            id: Some(id),
+            ..StepRules::default()
+        };
         twins
             .core
-            .step_with(&twins.input, &obstacles, &StepRules::default(), 1.0 / RATE)?;
+            .step_with(&twins.input, &obstacles, &rules, 1.0 / RATE)?;
     }
     Ok(())
 }

@@ -28,6 +28,8 @@ pub struct ClimberInput {
     pub jump_held: bool,
     /// True as long as the grip button is down: grips what is in reach and holds on. False lets go.
     pub grip: bool,
+    /// True as long as the crouch button is down: who stands is its lower ball alone, and stands up where there is room.
+    pub crouch: bool,
     /// The game's own buttons, one bit each, for its [`ClimberModes`](crate::ClimberModes).
     pub actions: u32,
     /// Where the player aims: a direction in world space, for the game's [`ClimberModes`](crate::ClimberModes).
@@ -75,6 +77,7 @@ pub(crate) struct LatchedInput {
     jump: bool,
     jump_held: bool,
     grip: bool,
+    crouch: bool,
     actions: u32,
     blow: Option<ClimberBlow>,
 }
@@ -84,6 +87,7 @@ impl LatchedInput {
         self.jump |= std::mem::take(&mut input.jump);
         self.jump_held |= input.jump_held;
         self.grip |= input.grip;
+        self.crouch |= input.crouch;
         self.actions |= input.actions;
         if let Some(blow) = input.blow.take() {
             self.blow = Some(sum(self.blow, blow));
@@ -100,6 +104,7 @@ impl LatchedInput {
             jump: latched.jump,
             jump_held: latched.jump_held,
             grip: latched.grip,
+            crouch: latched.crouch,
             blow: latched.blow.map(|blow| Blow {
                 velocity: blow.velocity.as_dvec3(),
                 damage: blow.damage.into(),

@@ -9,7 +9,7 @@ use bevy_ecs::system::SystemParam;
 use bevy_ecs::system::SystemParamValidationError;
 #[cfg(feature = "rapier")]
 use bevy_rapier3d::rapier::geometry::{Collider as RapierCollider, ColliderHandle as RapierHandle};
-use clamber_climber::{ClimberContact, ClimberObstacle};
+use clamber_climber::{ClimberContact, ClimberGroup};
 use clamber_surface::geometry::WorldCapsule;
 use clamber_surface::surface::TargetMotion;
 use clamber_world::{
@@ -38,7 +38,7 @@ use crate::{DrawnSurface, PosedSurface};
 /// # use bevy_math::DVec3;
 /// fn spawn(mut commands: Commands) {
 ///     # let character = Character::new(ClimberConfig::walker(), DVec3::ZERO).unwrap();
-///     # let my_terrain = ClimberObstacle::new(&character, 0.1);
+///     # let my_terrain = ClimberObstacle::new(&character, &[], 0.1);
 ///     commands.spawn(CustomObstacle::new(my_terrain));
 /// }
 /// ```
@@ -145,7 +145,7 @@ impl Touchable<'_, '_> {
         &self,
         climber: Entity,
         filter: Option<&ClimberFilter>,
-        climbers: &[(Entity, ClimberObstacle)],
+        climbers: Option<&ClimberGroup>,
         gone: Option<(ObstacleId, MaterialPoint)>,
         step: impl FnOnce(&[(ObstacleId, &dyn Obstacle)]) -> T,
     ) -> T {
@@ -195,11 +195,13 @@ impl Touchable<'_, '_> {
                 all.push((id(entity), &*custom.0));
             }
         }
-        for (entity, body) in climbers {
-            if touches(*entity) {
-                all.push((id(*entity), body));
-            }
-        }
+        let others = climbers
+            .into_iter()
+            .flat_map(|group| group.others(id(climber)));
+        all.extend(others.filter(|(other, _)| {
+            let entity = Entity::try_from_bits(other.0);
+            entity.is_some_and(touches)
+        }));
         step(&all)
     }
 

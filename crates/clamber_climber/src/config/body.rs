@@ -23,6 +23,58 @@ pub struct BodyConfig {
     /// Largest force with which it pushes obstacles that it runs into, newtons, not negative. Default 600. Neither its
     /// weight nor the impulse of an airborne climber is limited by it.
     pub push_force: f64,
+    /// What it does where it walks into another climber ([`ClimberObstacle`](crate::ClimberObstacle)). Default
+    /// [`Others::Block`].
+    pub others: Others,
+}
+
+/// What a climber does where it comes into the side of another one. Whatever it is, climbers stand on each other, nobody
+/// is pressed through a wall, and those that overlap part by their masses.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
+pub enum Others {
+    /// It stops.
+    #[default]
+    Block,
+    /// It pushes, and is pushed: two that meet go on at the common velocity that their masses give. They overlap by what
+    /// they would have made against each other in a tick, at most by three quarters of the
+    /// radius.
+    Push,
+    /// It goes through, and slides aside softly while it does.
+    Pass,
+}
+
+impl core::fmt::Display for Others {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            Self::Block => "block",
+            Self::Push => "push",
+            Self::Pass => "pass",
+        })
+    }
+}
+
+/// A text that names none of [`Others`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct OthersError;
+
+impl core::fmt::Display for OthersError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str("expected block, push or pass")
+    }
+}
+
+impl core::error::Error for OthersError {}
+
+impl core::str::FromStr for Others {
+    type Err = OthersError;
+
+    fn from_str(text: &str) -> Result<Self, OthersError> {
+        let all = [Self::Block, Self::Push, Self::Pass];
+        let known = all.into_iter().find(|one| one.to_string() == text);
+        known.ok_or(OthersError)
+    }
 }
 
 impl BodyConfig {
@@ -32,6 +84,7 @@ impl BodyConfig {
         margin: 0.01,
         mass: 80.0,
         push_force: 600.0,
+        others: Others::Block,
     };
 
     pub(super) fn validate(&self) -> Result<(), ClimberError> {

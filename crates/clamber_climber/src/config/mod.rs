@@ -9,7 +9,7 @@ mod harm;
 mod ledge;
 mod stamina;
 
-pub use body::BodyConfig;
+pub use body::{BodyConfig, Others, OthersError};
 pub use grip::GripConfig;
 pub use ground::GroundConfig;
 pub use hang::HangConfig;

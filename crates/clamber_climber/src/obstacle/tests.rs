@@ -15,6 +15,19 @@ fn capsule(rng: &mut fastrand::Rng) -> WorldCapsule {
     }
 }
 
+fn solid(now: WorldCapsule, way: DVec3) -> ClimberObstacle {
+    ClimberObstacle {
+        now,
+        way,
+        placed: way == DVec3::ZERO,
+        before: now.moved(-way),
+        up: DVec3::Y,
+        base: DVec3::ZERO,
+        own: DVec3::ZERO,
+        mass: 80.0,
+    }
+}
+
 /// Distance of two axes by a numeric search: repeatedly halves the range around the best of sampled points.
 fn distance_by_search(a: &WorldCapsule, b: &WorldCapsule) -> f64 {
     let at = |c: &WorldCapsule, s: f64| c.ends[0].lerp(c.ends[1], s);
@@ -66,7 +79,7 @@ fn sweeps_agree_with_small_steps() {
             other = other.moved(-apart.away * (gap - 0.01 * near));
         }
         let displacement = |time: f64| displacements.map(|end| end * time);
-        let body = ClimberObstacle { now, way };
+        let body = solid(now, way);
         let gap = |time: f64| {
             let here = now.moved(way * (time - 1.0));
             let there = other.with_ends_moved(displacement(time));
@@ -123,7 +136,7 @@ fn crowd(order: &[usize], ticks: u32) -> Vec<ClimberState> {
     for _ in 0..ticks {
         let bodies: Vec<_> = climbers
             .iter()
-            .map(|c| ClimberObstacle::new(c, DT))
+            .map(|c| ClimberObstacle::new(c, &[], DT))
             .collect();
         for &index in order {
             let others = (0..4).filter(|other| *other != index);
@@ -156,10 +169,7 @@ fn climbers_of_a_crowd_stop_each_other_in_any_step_order() {
 
 #[test]
 fn invalid_queries_find_nothing() {
-    let body = ClimberObstacle {
-        now: WorldCapsule::ball(DVec3::ZERO, 0.5),
-        way: DVec3::ZERO,
-    };
+    let body = solid(WorldCapsule::ball(DVec3::ZERO, 0.5), DVec3::ZERO);
     let mut contacts = Vec::new();
     for bad in [f64::NAN, -1.0, f64::NEG_INFINITY] {
         let ray = body.cast_ray(DVec3::X * 2.0, -DVec3::X, bad);
@@ -206,13 +216,11 @@ fn invalid_queries_find_nothing() {
 
 #[test]
 fn grazing_contacts_are_never_reported_late() {
-    let body = ClimberObstacle {
-        now: WorldCapsule {
-            ends: [DVec3::ZERO, DVec3::Y],
-            radius: 0.4,
-        },
-        way: DVec3::ZERO,
+    let now = WorldCapsule {
+        ends: [DVec3::ZERO, DVec3::Y],
+        radius: 0.4,
     };
+    let body = solid(now, DVec3::ZERO);
     // Past a round end, with ever smaller depth.
     for exponent in 0..40 {
         let deep = libm::exp2(-f64::from(exponent)) * 0.1;

@@ -7,10 +7,10 @@ pub use support::Support;
 
 use glam::DVec3;
 
-use crate::ClimberError;
 use crate::step::{
     FlyingMemory, HangingMemory, HoldingMemory, LedgeHangingMemory, StandingMemory, TumblingMemory,
 };
+use crate::{ClimberConfig, ClimberError};
 
 /// Everything that a climber remembers between ticks.
 ///
@@ -30,6 +30,9 @@ pub struct ClimberState {
     /// ([`StepRules::air_velocity`](crate::StepRules::air_velocity)) within the next. The climber's own motion is
     /// measured against it, so that a fall or a late jump is the same in every frame that moves steadily.
     pub base_velocity: DVec3,
+    /// Displacement of the last tick beyond that of its support, or beyond its velocity in the air, in world space,
+    /// metres. As an obstacle to others it makes this way one tick later.
+    pub own_way: DVec3,
     /// Direction that it faces: a unit vector perpendicular to up, in world space.
     pub heading: DVec3,
     /// The current mode.
@@ -91,6 +94,7 @@ impl ClimberState {
             position,
             velocity: DVec3::ZERO,
             base_velocity: DVec3::ZERO,
+            own_way: DVec3::ZERO,
             heading: up.any_orthonormal_vector(),
             mode: ClimberMode::Falling,
             support: None,
@@ -145,11 +149,23 @@ impl ClimberState {
         Ok(())
     }
 
-    fn vectors(&self) -> [DVec3; 10] {
+    /// Its acceleration by gravity while nothing holds it up, metres a second squared.
+    pub(crate) fn fall(&self, config: &ClimberConfig) -> DVec3 {
+        let falls = self.support.is_none() && !self.mode.is_custom();
+        if falls { config.gravity } else { DVec3::ZERO }
+    }
+
+    /// Its displacement over the next tick if nothing carries it and it meets nothing.
+    pub(crate) fn own_displacement(&self, config: &ClimberConfig, dt: f64) -> DVec3 {
+        (self.velocity + self.fall(config) * (0.5 * dt)) * dt
+    }
+
+    fn vectors(&self) -> [DVec3; 11] {
         [
             self.position,
             self.velocity,
             self.base_velocity,
+            self.own_way,
             self.heading,
             self.shake,
             self.hanging.legs,

@@ -29,7 +29,12 @@ impl Tick<'_> {
         let frame = self.state.base_velocity;
         let touched = self.mover.touched();
         let velocity = |index: usize| self.mover.velocity_of(&touched[index]);
-        let pairs = (0..touched.len()).flat_map(|a| (0..=a).map(move |b| (a, b)));
+        // Others in the air are no frame, and those on the ground have it from there.
+        let counts = |index: &usize| !self.mover.is_character(&touched[*index]);
+        let pairs = (0..touched.len()).filter(counts).flat_map(|a| {
+            let others = (0..=a).filter(counts);
+            others.map(move |b| (a, b))
+        });
         let nearest = pairs.map(|(a, b)| nearest_between(velocity(a), velocity(b), frame));
         nearest.reduce(|best, other| {
             if other.distance_squared(frame) < best.distance_squared(frame) {

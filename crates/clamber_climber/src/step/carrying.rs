@@ -10,7 +10,7 @@ use crate::{ClimberEvent, ClimberMode, Support};
 /// Largest gap, as a share of the radius, between the position that a support had after the last tick and the previous
 /// position that its obstacle reports. Beyond it, the support did not move in one step. Far above rounding, far below
 /// what is visible.
-const CONTINUOUS: f64 = 0.025;
+pub(crate) const CONTINUOUS: f64 = 0.025;
 
 /// How a support has carried the climber since the last tick.
 #[derive(Clone, Copy, Debug)]

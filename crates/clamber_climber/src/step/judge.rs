@@ -29,7 +29,7 @@ impl Judge<'_> {
         contact: &Contact,
     ) -> ContactRule {
         let query = ContactQuery {
-            climber: self.rules.climber,
+            climber: self.rules.id,
             state: self.state,
             config: self.config,
             dt: self.dt,

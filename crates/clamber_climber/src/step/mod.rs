@@ -9,6 +9,7 @@ mod carrying;
 mod custom;
 mod effort;
 mod flying;
+mod friends;
 mod ground;
 mod hanging;
 mod holding;
@@ -35,6 +36,7 @@ use crate::{
     ClimberConfig, ClimberContact, ClimberError, ClimberEvent, ClimberInput, ClimberMode,
     ClimberState, ContactRule, StepReport,
 };
+pub(crate) use carrying::CONTINUOUS;
 use carrying::Carried;
 
 /// Most changes of mode in a tick. Further changes follow in the next tick.
@@ -48,6 +50,12 @@ const LEVEL: f64 = 1e-6;
 pub(crate) struct Scratch {
     mover: MoverMemory,
     pub(crate) contacts: Vec<ClimberContact>,
+}
+
+impl Scratch {
+    pub(crate) fn mover_memory(&mut self) -> &mut MoverMemory {
+        &mut self.mover
+    }
 }
 
 /// Capacity for contacts, reserved from the first tick on.
@@ -70,12 +78,17 @@ pub(crate) struct Tick<'a> {
     input: &'a ClimberInput,
     rules: &'a StepRules<'a>,
     judge: Judge<'a>,
+    obstacles: &'a [(ObstacleId, &'a dyn Obstacle)],
     state: &'a mut ClimberState,
     mover: Mover<'a>,
     report: StepReport,
     contacts: &'a mut Vec<ClimberContact>,
     /// Position at the tick's beginning.
     began: DVec3,
+    /// Where its support carries it in this tick, or its velocity in the air.
+    expected: DVec3,
+    /// How far it gives way to climbers that it overlaps.
+    parting: DVec3,
     /// Velocity at the tick's beginning, including a blow.
     was: DVec3,
     /// True if it was crushed in the last tick.
@@ -133,6 +146,7 @@ impl<'a> Tick<'a> {
             input,
             rules: judge.rules,
             judge,
+            obstacles,
             mover,
             report: StepReport {
                 is_clear: true,
@@ -140,6 +154,8 @@ impl<'a> Tick<'a> {
             },
             contacts: &mut scratch.contacts,
             began: state.position,
+            expected: state.position + state.own_displacement(config, dt),
+            parting: DVec3::ZERO,
             was: state.velocity,
             base_was: state.base_velocity,
             rides: state.velocity,
@@ -162,12 +178,17 @@ impl<'a> Tick<'a> {
         self.be_struck();
         self.count_down();
         self.be_carried();
+        self.expected = self
+            .carried
+            .map_or(self.expected, |carried| carried.position);
+        self.parting = self.parting();
         self.rides = self.carried_velocity();
         self.run_modes();
         self.stand_up();
         self.update_stamina(shake);
         self.weigh_down();
         self.list_support();
+        self.state.own_way = self.state.position - self.expected;
         let is_sound = !self.is_lost && self.state.is_finite();
         is_sound.then_some(self.report)
     }
@@ -267,13 +288,13 @@ impl<'a> Tick<'a> {
         }
     }
 
-    /// Crouches while it holds on, and stands up where there is room.
+    /// Crouches while it holds on or is asked to, and stands up where there is room.
     fn stand_up(&mut self) {
         let height = self.config.body.height;
         if height == 0.0 {
             return;
         }
-        if self.state.mode.is_holding() {
+        if self.state.mode.is_holding() || self.input.crouch {
             self.state.crouched = true;
         } else if self.state.crouched {
             let up = self.config.up();

@@ -24,13 +24,17 @@ pub(super) enum Intent {
 }
 
 impl Tick<'_> {
-    /// The path of the body, in its current shape, from its position a tick ago to a target. Its frame is the support.
+    /// The path of the body, in its current shape, from its position a tick ago to a target, beside which it gives way
+    /// to other climbers. Its frame is the support.
     pub(super) fn path(&self, target: DVec3) -> Path {
         let body = self.body();
+        let target = target + self.parting;
         let crushed = self.was_crushed;
+        let into_others = self.into_others();
         match &self.carried {
             Some(carried) => Path {
                 crushed,
+                into_others,
                 begin: if carried.swept {
                     Begin::Start
                 } else {
@@ -41,6 +45,7 @@ impl Tick<'_> {
             },
             None => Path {
                 crushed,
+                into_others,
                 frame: self.state.base_velocity * self.dt(),
                 ..Path::new(body, self.state.position, target)
             },

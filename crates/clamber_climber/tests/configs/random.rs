@@ -2,7 +2,7 @@
 
 use clamber_climber::{
     BodyConfig, ClimberConfig, GripConfig, GroundConfig, HangConfig, HealthConfig, LedgeConfig,
-    StaminaConfig, TumbleConfig,
+    Others, StaminaConfig, TumbleConfig,
 };
 use glam::DVec3;
 
@@ -43,6 +43,7 @@ pub(crate) fn config(rng: &mut fastrand::Rng) -> ClimberConfig {
             margin: some(rng, 1e-3 * radius, 0.5 * radius),
             mass: some(rng, 1.0, 1_000.0),
             push_force: any(rng, 1.0, 1_000.0),
+            others: [Others::Block, Others::Push, Others::Pass][rng.usize(0..3)],
         },
         ground: GroundConfig {
             max_slope: some(rng, 0.02, 1.5),

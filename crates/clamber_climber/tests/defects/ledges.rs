@@ -137,7 +137,7 @@ fn a_friend_at_the_edge_is_waited_for_from_below() {
         };
         let mut climber = climber(turn * v(0.3, 2.75, 3.5));
         let at = |z: f64| Climber::new(ClimberConfig::walker(), turn * v(0.3, 3.4, z)).unwrap();
-        let friend = ClimberObstacle::new(&at(2.6 - behind), DT);
+        let friend = ClimberObstacle::new(&at(2.6 - behind), &[], DT);
         for _ in 0..60 {
             let is_caught = climber.state().mode == ClimberMode::LedgeHanging;
             let input = if is_caught { HOLD } else { toward };
@@ -151,7 +151,7 @@ fn a_friend_at_the_edge_is_waited_for_from_below() {
         assert_eq!(state.mode, ClimberMode::LedgeHanging, "{told}: {state:?}");
         let off = state.position.distance(hung);
         assert!(off < 5e-3, "{told}: {off} m from {hung}: {state:?}");
-        let friend = ClimberObstacle::new(&at(0.0), DT);
+        let friend = ClimberObstacle::new(&at(0.0), &[], DT);
         for input in [HOLD, up] {
             for _ in 0..60 {
                 tick(&mut climber, &[&tower, &friend], &input);

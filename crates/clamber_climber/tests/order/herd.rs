@@ -126,9 +126,13 @@ impl Herd {
     }
 
     fn bodies(&self) -> Vec<ClimberObstacle> {
+        let mut fixed: Vec<(ObstacleId, &dyn Obstacle)> = vec![(ObstacleId(50), &self.floor)];
+        for (place, creature) in self.creatures.iter().enumerate() {
+            fixed.push((ObstacleId(place as u64 + 1), creature));
+        }
         let climbers = self.climbers.iter();
         climbers
-            .map(|climber| ClimberObstacle::new(climber, TICK))
+            .map(|climber| ClimberObstacle::new(climber, &fixed, TICK))
             .collect()
     }
 

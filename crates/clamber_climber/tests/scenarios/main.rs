@@ -13,6 +13,7 @@
 mod air;
 mod along_ledges;
 mod belt;
+mod crouching;
 mod drops;
 mod edges;
 mod failures;

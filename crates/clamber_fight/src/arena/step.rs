@@ -1,6 +1,6 @@
 //! One step of an arena, in the order in which it happens.
 
-use clamber_climber::{Blow, ClimberInput, ClimberMode, ClimberObstacle, StepRules};
+use clamber_climber::{Blow, ClimberGroup, ClimberInput, ClimberMode, StepRules};
 use clamber_colossus::{Creature, Person, Riding, Surroundings, Wound};
 use clamber_surface::surface::SkinnedSurface;
 use clamber_world::{Obstacle, ObstacleId};
@@ -17,7 +17,7 @@ use crate::projectile::{Air, Flown};
 pub(super) struct Scratch {
     people: Vec<Person>,
     ids: Vec<ObstacleId>,
-    bodies: Vec<ClimberObstacle>,
+    group: ClimberGroup,
     outcome: Outcome,
 }
 
@@ -45,7 +45,7 @@ impl Arena {
     }
 
     /// [`Arena::step`] by a game's own rules for climbers: for contacts, and custom modes. Each fighter's climber has
-    /// [`fighter_obstacle`] as [`StepRules::climber`], whatever the rules say.
+    /// [`fighter_obstacle`] as [`StepRules::id`], whatever the rules say.
     ///
     /// # Errors
     /// As [`Arena::step`].
@@ -155,36 +155,35 @@ impl Arena {
         for fighter in &mut self.fighters {
             fighter.take_harm()?;
         }
-        // Before any of them moves, so that their order does not matter.
-        scratch.bodies.clear();
-        let bodies = self.fighters.iter();
-        scratch
-            .bodies
-            .extend(bodies.map(|fighter| ClimberObstacle::new(fighter.climber(), dt)));
         let mut obstacles: Vec<(ObstacleId, &dyn Obstacle)> = terrain.to_vec();
         for (index, creature) in (0..).map(CreatureId).zip(&self.creatures) {
             obstacles.push((creature_obstacle(index), creature.surface()));
         }
+        // Before any of them moves, so that their order does not matter.
+        let living = self.fighters.iter().filter(|fighter| !fighter.is_dead());
+        let climbers = living.map(|fighter| (fighter_obstacle(fighter.id()), fighter.climber()));
+        scratch.group.update(climbers, &obstacles, dt);
         let fixed = obstacles.len();
         let skins: Vec<&SkinnedSurface> = self.creatures.iter().map(Creature::surface).collect();
         for (index, player) in inputs.iter().enumerate() {
             obstacles.truncate(fixed);
             let ours = &self.fighters[index];
-            for (other, body) in self.fighters.iter().zip(&scratch.bodies) {
-                if other.id() != ours.id() && !other.is_dead() && are_near(ours, other, dt) {
-                    obstacles.push((fighter_obstacle(other.id()), body));
-                }
+            let id = fighter_obstacle(ours.id());
+            let mut bodies = scratch.group.others(id).peekable();
+            for other in self.fighters.iter() {
+                let body = bodies.next_if(|(body, _)| *body == fighter_obstacle(other.id()));
+                obstacles.extend(body.filter(|_| are_near(ours, other, dt)));
             }
+            let rules = StepRules {
+                id: Some(id),
+                ..*rules
+            };
             let fighter = &mut self.fighters[index];
             let is_held = fighter.be_held(dt);
             let input = fighter.begin(player, is_held);
             let before = BodyFrame::of(fighter.climber());
-            let id = fighter.id();
-            let rules = StepRules {
-                climber: Some(fighter_obstacle(id)),
-                ..*rules
-            };
             fighter.step(&input, &obstacles, &rules, dt)?;
+            let id = fighter.id();
             let events = fighter.report().events.iter();
             self.events.extend(events.map(|event| ArenaEvent::Climber {
                 fighter: id,

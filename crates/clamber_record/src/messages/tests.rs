@@ -18,11 +18,12 @@ fn everything() -> (ClimberState, ClimberInput) {
     let coordinates = vector();
     let [support_velocity, walk, climb, struck] = [vector(), vector(), vector(), vector()];
     let [base_velocity, aim, legs, right] = [vector(), vector(), vector(), vector()];
-    let [stick, along, held_normal] = [vector(), vector(), vector()];
+    let [stick, along, held_normal, own_way] = [vector(), vector(), vector(), vector()];
     let state = ClimberState {
         position,
         velocity,
         base_velocity,
+        own_way,
         heading,
         mode: ClimberMode::LedgeHanging,
         support: Some(Support {
@@ -83,6 +84,7 @@ fn everything() -> (ClimberState, ClimberInput) {
         jump: true,
         jump_held: true,
         grip: true,
+        crouch: true,
         blow: Some(Blow {
             velocity: struck,
             damage: next(),
@@ -141,6 +143,7 @@ fn numbers<'a>(state: &'a mut ClimberState, input: &'a mut ClimberInput) -> Vec<
         &mut state.position,
         &mut state.velocity,
         &mut state.base_velocity,
+        &mut state.own_way,
         &mut state.heading,
         &mut state.shake,
         &mut state.hanging.legs,

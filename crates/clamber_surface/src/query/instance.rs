@@ -23,6 +23,9 @@ pub(crate) struct Instance {
     pub(crate) triangle_hidden: Vec<bool>,
     /// Number of triangles that are hidden.
     pub(crate) hidden_triangles: usize,
+    /// Hash of what is hidden: of a number for each such triangle and part, all of them combined by exclusive or. So it
+    /// does not depend on the order of changes.
+    pub(crate) mask: u64,
     pub(crate) triangles_tested: AtomicU64,
     pub(crate) most_cast_steps: AtomicU32,
 }
@@ -38,6 +41,7 @@ impl Instance {
             part_enabled: vec![true; mesh.part_count()],
             triangle_hidden: Vec::new(),
             hidden_triangles: 0,
+            mask: 0,
             triangles_tested: AtomicU64::new(0),
             most_cast_steps: AtomicU32::new(0),
             mesh,
@@ -114,6 +118,7 @@ impl Clone for Instance {
             part_enabled: self.part_enabled.clone(),
             triangle_hidden: self.triangle_hidden.clone(),
             hidden_triangles: self.hidden_triangles,
+            mask: self.mask,
             triangles_tested: AtomicU64::new(0),
             most_cast_steps: AtomicU32::new(0),
         }

@@ -13,8 +13,7 @@ impl SkinnedSurface {
     /// # Errors
     /// [`SurfaceError::Part`] if there is no such part.
     pub fn enable_part(&mut self, part: PartId) -> Result<(), SurfaceError> {
-        *self.part_flag(part)? = true;
-        Ok(())
+        self.set_part(part, true)
     }
 
     /// Hides the part's triangles from queries. They are still skinned, and anchors on them still move.
@@ -22,8 +21,7 @@ impl SkinnedSurface {
     /// # Errors
     /// [`SurfaceError::Part`] if there is no such part.
     pub fn disable_part(&mut self, part: PartId) -> Result<(), SurfaceError> {
-        *self.part_flag(part)? = false;
-        Ok(())
+        self.set_part(part, false)
     }
 
     /// Shows the triangle to queries again, if its part is enabled.
@@ -32,8 +30,10 @@ impl SkinnedSurface {
     /// [`SurfaceError::Triangle`] if it does not exist or was removed.
     pub fn enable_triangle(&mut self, triangle: TriangleId) -> Result<(), SurfaceError> {
         self.check_triangle(triangle)?;
-        if let Some(hidden) = self.instance.triangle_hidden.get_mut(triangle.index()) {
-            self.instance.hidden_triangles -= usize::from(std::mem::take(hidden));
+        let hidden = self.instance.triangle_hidden.get_mut(triangle.index());
+        if hidden.is_some_and(std::mem::take) {
+            self.instance.hidden_triangles -= 1;
+            self.instance.mask ^= number(u64::from(triangle.0));
         }
         Ok(())
     }
@@ -46,8 +46,10 @@ impl SkinnedSurface {
         self.check_triangle(triangle)?;
         let hidden = &mut self.instance.triangle_hidden;
         hidden.resize(hidden.len().max(triangle.index() + 1), false);
-        let was_hidden = std::mem::replace(&mut hidden[triangle.index()], true);
-        self.instance.hidden_triangles += usize::from(!was_hidden);
+        if !std::mem::replace(&mut hidden[triangle.index()], true) {
+            self.instance.hidden_triangles += 1;
+            self.instance.mask ^= number(u64::from(triangle.0));
+        }
         Ok(())
     }
 
@@ -97,17 +99,34 @@ impl SkinnedSurface {
         self.instance.is_enabled(triangle)
     }
 
-    fn part_flag(&mut self, part: PartId) -> Result<&mut bool, SurfaceError> {
-        self.instance
-            .part_enabled
-            .get_mut(part.index())
-            .ok_or(SurfaceError::Part(part))
+    /// Hash of which triangles and parts are hidden: the same whenever the same ones are, and 0 if none is.
+    #[doc(hidden)]
+    pub fn mask(&self) -> u64 {
+        self.instance.mask
+    }
+
+    fn set_part(&mut self, part: PartId, enabled: bool) -> Result<(), SurfaceError> {
+        let instance = &mut self.instance;
+        let known = instance.part_enabled.get_mut(part.index());
+        let known = known.ok_or(SurfaceError::Part(part))?;
+        if std::mem::replace(known, enabled) != enabled {
+            instance.mask ^= number(1 << 32 | u64::from(part.0));
+        }
+        Ok(())
     }
 
     fn check_triangle(&self, triangle: TriangleId) -> Result<(), SurfaceError> {
         let part = self.mesh().part_of(triangle);
         part.map(|_| ()).ok_or(SurfaceError::Triangle(triangle))
     }
+}
+
+/// A number with well spread bits for each key: the finalizer of SplitMix64 (Steele, Lea, Flood 2014).
+fn number(key: u64) -> u64 {
+    let mixed = key.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let mixed = (mixed ^ mixed >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    let mixed = (mixed ^ mixed >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+    mixed ^ mixed >> 31
 }
 
 #[cfg(test)]

@@ -149,10 +149,10 @@ impl PutOut {
         }
         let speed = core.radius / TIME;
         let wanted = (self.height + speed * dt).min(core.radius);
-        let lack = wanted - height;
-        let shift = lack.clamp(0.0, 2.0 * speed * dt);
-        self.height = height + shift;
-        let state = if wanted >= core.radius && shift >= lack {
+        // What gravity takes back in a tick may be more than that.
+        let shift = (wanted - height).max(0.0);
+        self.height = wanted.max(height);
+        let state = if self.height >= core.radius {
             State::Out
         } else {
             waited

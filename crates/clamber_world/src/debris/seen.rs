@@ -25,9 +25,11 @@ const ROUNDING: f64 = 16.0 * f32::EPSILON as f64;
 #[derive(Clone, Debug)]
 pub(super) struct Seen {
     mesh: MeshId,
+    /// What of it is hidden: skin that shows again appears.
+    mask: u64,
     /// Positions in world space of vertices that are spread evenly over the mesh; `None` for removed ones.
     marks: [Option<DVec3>; MARKS],
-    /// The surface is new, has jumped, or has another mesh since the tick before.
+    /// The surface is new, or has jumped or got other skin since the tick before.
     pub(super) jumped: bool,
 }
 
@@ -40,14 +42,15 @@ impl Seen {
         });
         Self {
             mesh: surface.mesh().id(),
+            mask: surface.mask(),
             marks,
             jumped: true,
         }
     }
 
-    /// True if the surface's tick starts where this one has ended.
+    /// True if the surface's tick starts where this one has ended, with the same skin.
     fn goes_on(&self, surface: &SkinnedSurface) -> bool {
-        if surface.mesh().id() != self.mesh {
+        if surface.mesh().id() != self.mesh || surface.mask() != self.mask {
             return false;
         }
         let (space, world_from_model) = (surface.in_model(), surface.world_from_model());

@@ -100,7 +100,7 @@ fn climbers_stand_on_each_other_and_on_obstacles_of_the_app() {
     .unwrap();
     let own = app
         .world_mut()
-        .spawn(CustomObstacle::new(ClimberObstacle::new(&still, 0.1)))
+        .spawn(CustomObstacle::new(ClimberObstacle::new(&still, &[], 0.1)))
         .id();
     let on_own = self::climber(&mut app, Vec3::new(50.0, 7.0, 0.0));
     app.init_resource::<Told>();
@@ -160,15 +160,17 @@ fn what_can_be_gripped_is_fur_or_what_a_rule_says() {
         grabbed
     };
     assert_eq!(grip(&mut app), None);
-    app.insert_resource(GripRule::new(move |grip| grip.entity == Some(floor.mesh)));
+    app.insert_resource(ClimberRule::new(move |at| {
+        at.usual().with_grip(at.entity == Some(floor.mesh))
+    }));
     assert_eq!(grip(&mut app), Some(Some(floor.mesh)));
-    app.insert_resource(GripRule::new(|_| false));
+    app.insert_resource(ClimberRule::new(|at| at.usual().with_grip(false)));
     let tag = ColliderTag(SurfaceTag::new(SurfaceKind::Fur));
     app.world_mut().entity_mut(floor.mesh).insert(tag);
     app.update();
     wait(&mut app, floor.mesh);
     assert_eq!(grip(&mut app), None);
-    app.world_mut().remove_resource::<GripRule>();
+    app.world_mut().remove_resource::<ClimberRule>();
     assert_eq!(grip(&mut app), Some(Some(floor.mesh)));
 }
 

@@ -1,8 +1,8 @@
 //! A climber on a stage, and the trace of its run.
 
 use clamber_climber::{
-    Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, ClimberObstacle, ClimberState,
-    ContactQuery, ContactRule, StepReport, StepRules,
+    Climber, ClimberConfig, ClimberError, ClimberEvent, ClimberInput, ClimberMode, ClimberObstacle,
+    ClimberState, ContactQuery, ContactRule, StepReport, StepRules,
 };
 use clamber_world::{Obstacle, ObstacleId, WorldCapsule};
 use glam::DVec3;
@@ -154,7 +154,7 @@ impl Run {
         // The air moves with the frame.
         let rules = StepRules {
             contact: self.rule.as_deref().map(|rule| rule as _),
-            climber: self.id,
+            id: self.id,
             air_velocity: self.stage.place().velocity,
             ..StepRules::default()
         };
@@ -163,7 +163,7 @@ impl Run {
             let mut obstacles = obstacles.to_vec();
             let body = friend
                 .as_ref()
-                .map(|friend| ClimberObstacle::new(friend, dt));
+                .map(|friend| ClimberObstacle::new(friend, &obstacles, dt));
             if let Some(friend) = friend {
                 friend.step(&IDLE, &obstacles, dt).unwrap();
             }
@@ -225,6 +225,17 @@ impl Run {
     }
 
     /// Throws the climber into the air at a velocity.
+    /// Resizes the climber among what is on the stage. The configuration is in the scenario's units.
+    pub(crate) fn resize(&mut self, config: ClimberConfig) -> Result<(), ClimberError> {
+        let (climber, place) = (&mut self.climber, self.stage.place());
+        let scaled = place.config(&config);
+        self.stage
+            .in_world(|obstacles| climber.try_resize(scaled, obstacles))?;
+        self.config = config;
+        self.state = place.inverse().state(self.climber.state());
+        Ok(())
+    }
+
     pub(crate) fn thrown(mut self, velocity: DVec3) -> Self {
         self.put(ClimberState {
             velocity,

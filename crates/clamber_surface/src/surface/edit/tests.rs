@@ -257,3 +257,37 @@ fn points_are_valid_on_meshes_that_continue_theirs_and_on_no_other() {
     assert_eq!(tagged.mesh().id(), high.mesh().id());
     assert!(holds(&tagged, &on_high));
 }
+
+#[test]
+fn surfaces_have_the_same_mask_if_they_hide_the_same() {
+    let mut rng = fastrand::Rng::with_seed(96);
+    let mut surface = SkinnedSurface::new(tube(4, 6));
+    let all = surface.mesh().triangles().len() as u32;
+    let mut known: Vec<(Vec<bool>, u64)> = Vec::new();
+    for round in 0..400 {
+        let (triangle, part) = (TriangleId(rng.u32(0..all)), PartId(rng.u32(0..3)));
+        match rng.u32(0..5) {
+            0 => surface.enable_part(part),
+            1 => surface.disable_part(part),
+            2 => surface.disable_triangle(triangle),
+            _ => surface.enable_triangle(triangle),
+        }
+        .unwrap();
+        let parts = (0..3).map(|part| surface.instance.part_enabled[part]);
+        let shows =
+            |triangle| surface.instance.triangle_hidden.get(triangle as usize) != Some(&true);
+        let state: Vec<bool> = parts.chain((0..all).map(shows)).collect();
+        assert_eq!(surface.clone().mask(), surface.mask());
+        for (other, mask) in &known {
+            let equal = *other == state;
+            assert_eq!(*mask == surface.mask(), equal, "round {round}");
+        }
+        known.push((state, surface.mask()));
+    }
+    let mut same = surface.clone();
+    surface
+        .edit(|edit| edit.remove_triangle(TriangleId(3)))
+        .unwrap();
+    same.enable_triangle(TriangleId(3)).unwrap();
+    assert_eq!(surface.mask(), same.mask());
+}

@@ -1,6 +1,7 @@
 //! Rocks around which skin appears: they break off below it, or a creature is placed or spawned where they are.
 
 mod breaking_off;
+mod changing;
 mod coming;
 mod open_skin;
 mod restored;

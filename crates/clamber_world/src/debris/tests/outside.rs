@@ -127,3 +127,28 @@ fn a_body_under_an_open_roof_is_outside() {
         }
     }
 }
+
+#[test]
+fn a_body_behind_a_large_open_sheet_is_outside_whatever_way_the_sheet_faces() {
+    let corners = [[-90.0, -90.0], [90.0, -90.0], [90.0, 90.0], [-90.0, 90.0]];
+    let (core, hull) = &ball(0.3);
+    let (mut rng, mut by_three_rays) = (fastrand::Rng::with_seed(5), 0);
+    for round in 0..300 {
+        let mut coordinate = || rng.f64() * 2.0 - 1.0;
+        let axis = DVec3::new(coordinate(), coordinate(), coordinate()).normalize();
+        let turned = at(DVec3::ZERO, axis, 3.0 * coordinate());
+        let place = |p: DVec3| turned.transform_point(p).as_vec3();
+        let positions = corners.map(|[x, z]| place(DVec3::new(x, 0.0, z)));
+        let sheet = creature(&positions, &[[0, 2, 1], [0, 3, 2]]);
+        for distance in [-5.0, -1.0, -0.4, 0.4, 1.0, 5.0] {
+            let place = place(DVec3::new(0.3, distance, -0.2));
+            let pose = Pose::from_translation(place);
+            let (poses, origin) = ([&pose; 2], DVec3::ZERO);
+            let found = is_outside(&sheet, (core, hull), poses, origin, &mut Vec::new());
+            assert_eq!(found, Some(true), "{round}: {distance} m from {turned:?}");
+            by_three_rays += u32::from(sheet.in_model().is_inside(place));
+        }
+    }
+    // The case is a hard one.
+    assert!(by_three_rays > 100, "{by_three_rays}");
+}

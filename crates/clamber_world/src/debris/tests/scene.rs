@@ -133,6 +133,11 @@ impl Scene {
 
     pub(super) fn tick(&mut self, palette: &Palette, world_from_model: Similarity) -> DebrisReport {
         self.surface.advance(palette, world_from_model).unwrap();
+        self.step()
+    }
+
+    /// A tick of the creature as it is posed.
+    pub(super) fn step(&mut self) -> DebrisReport {
         let (bodies, colliders) = (&mut self.world.bodies, &mut self.world.colliders);
         self.debris
             .before_step(&[(CREATURE, &self.surface)], bodies, colliders, DT)

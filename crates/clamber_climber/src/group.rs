@@ -1,0 +1,99 @@
+//! The climbers of a scene, as obstacles to each other.
+
+use clamber_world::{Obstacle, ObstacleId};
+
+use crate::{Climber, ClimberObstacle};
+
+/// The climbers of a scene, as obstacles to each other for one tick.
+///
+/// A climber that stands on another one is where that one carries it, which is where its own support carries that one,
+/// and so on: a group makes their obstacles from the ground up. Keep it from tick to tick, for its memory.
+///
+/// ```
+/// use clamber_climber::{Climber, ClimberConfig, ClimberGroup, ClimberInput, StepRules};
+/// use clamber_world::{HalfSpace, Obstacle, ObstacleId};
+/// use glam::DVec3;
+///
+/// let dt = 1.0 / 60.0;
+/// let ground = HalfSpace::new(DVec3::Y, 0.0)?;
+/// let fixed: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(0), &ground)];
+/// let at = |x| Climber::new(ClimberConfig::walker(), DVec3::new(x, 0.4, 0.0));
+/// let mut climbers = [(ObstacleId(1), at(0.0)?), (ObstacleId(2), at(0.5)?)];
+/// let mut group = ClimberGroup::default();
+///
+/// group.update(climbers.iter().map(|(id, climber)| (*id, climber)), &fixed, dt);
+/// for (id, climber) in &mut climbers {
+///     let obstacles: Vec<_> = fixed.into_iter().chain(group.others(*id)).collect();
+///     let rules = StepRules { id: Some(*id), ..StepRules::default() };
+///     climber.step_with(&ClimberInput::default(), &obstacles, &rules, dt)?;
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct ClimberGroup {
+    /// In the caller's order.
+    bodies: Vec<(ObstacleId, ClimberObstacle)>,
+    /// True for those in `bodies` that are where their support carries them.
+    carried: Vec<bool>,
+}
+
+impl ClimberGroup {
+    /// Makes the obstacles of all climbers for the next tick of `dt` seconds. Call it before any of them is stepped,
+    /// when the other `obstacles` are where they are at the tick's end. Their order does not matter, nor does that of
+    /// the climbers. Of two climbers with one id, the first counts.
+    ///
+    /// Climbers that stand on each other in a circle, which only restored states can, go on at their velocities.
+    pub fn update<'a>(
+        &mut self,
+        climbers: impl Iterator<Item = (ObstacleId, &'a Climber)> + Clone,
+        obstacles: &[(ObstacleId, &dyn Obstacle)],
+        dt: f64,
+    ) {
+        self.bodies.clear();
+        self.carried.clear();
+        let made = climbers
+            .clone()
+            .map(|(id, climber)| (id, ClimberObstacle::new(climber, obstacles, dt)));
+        self.bodies.extend(made);
+        let on = |climber: &Climber| climber.state().support.map(|on| on.attachment.obstacle);
+        let bodies = &self.bodies;
+        let is_on_another = climbers.clone().map(|(_, climber)| {
+            let carrier = on(climber);
+            bodies.iter().any(|(id, _)| Some(*id) == carrier)
+        });
+        self.carried
+            .extend(is_on_another.map(|is_on_another| !is_on_another));
+        // From the ground up, one storey in each round at least.
+        while self.carried.contains(&false) {
+            let mut any = false;
+            for (index, (_, climber)) in climbers.clone().enumerate() {
+                if self.carried[index] {
+                    continue;
+                }
+                let carrier = on(climber);
+                let carrier = self.bodies.iter().position(|(id, _)| Some(*id) == carrier);
+                let Some(carrier) = carrier.filter(|carrier| self.carried[*carrier]) else {
+                    continue;
+                };
+                let below = self.bodies[carrier].1;
+                self.bodies[index].1 = ClimberObstacle::on(climber, Some(&below), dt);
+                self.carried[index] = true;
+                any = true;
+            }
+            if !any {
+                break;
+            }
+        }
+    }
+
+    /// The obstacles of all climbers but one, in the order of the last update.
+    pub fn others(&self, id: ObstacleId) -> impl Iterator<Item = (ObstacleId, &dyn Obstacle)> {
+        let others = self.bodies.iter().filter(move |(other, _)| *other != id);
+        others.map(|(other, body)| (*other, body as &dyn Obstacle))
+    }
+
+    /// The obstacles of all climbers, in the order of the last update.
+    pub fn bodies(&self) -> &[(ObstacleId, ClimberObstacle)] {
+        &self.bodies
+    }
+}

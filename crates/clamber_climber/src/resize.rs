@@ -1,0 +1,91 @@
+//! Bodies that grow and shrink among obstacles.
+
+use clamber_mover::{Mover, Path};
+use clamber_world::{Obstacle, ObstacleId};
+use glam::DVec3;
+
+use crate::{Climber, ClimberConfig, ClimberError, ClimberMode};
+
+/// Length of the tick that stands for the present: nothing moves in it.
+const NOW: f64 = 1.0;
+
+impl Climber {
+    /// [`Climber::set_config`] for a body that may be of another size, among obstacles as they are now. The body keeps
+    /// its feet on the ground, or its ball on its hold, and grows only where it has room.
+    ///
+    /// # Errors
+    /// As [`Climber::set_config`], and [`ClimberError::NoRoom`] if the new body would be pushed aside farther than it
+    /// grows, or would be crushed. Nothing is changed then.
+    pub fn try_resize(
+        &mut self,
+        config: ClimberConfig,
+        obstacles: &[(ObstacleId, &dyn Obstacle)],
+    ) -> Result<(), ClimberError> {
+        let (before, state) = (*self.config(), *self.state());
+        let old = self.body();
+        self.set_config(config)?;
+        let settled = self.room_for(&before, old.radius, obstacles);
+        match settled {
+            Ok(position) => {
+                let way = position - state.position;
+                let moved = crate::ClimberState {
+                    position,
+                    own_way: state.own_way + way,
+                    support: state.support.map(|support| crate::Support {
+                        attachment: support.attachment.moved_to(position),
+                        ..support
+                    }),
+                    ..*self.state()
+                };
+                self.replace_state(moved);
+                Ok(())
+            }
+            Err(error) => {
+                // What was set before is never refused.
+                let _ = self.set_config(before);
+                self.replace_state(state);
+                Err(error)
+            }
+        }
+    }
+
+    /// Where the body of the current configuration has room, near to where that of another one was.
+    fn room_for(
+        &mut self,
+        before: &ClimberConfig,
+        old_radius: f64,
+        obstacles: &[(ObstacleId, &dyn Obstacle)],
+    ) -> Result<DVec3, ClimberError> {
+        let (config, state) = (*self.config(), *self.state());
+        let body = crate::step::body(&config, &state);
+        let wider = body.radius - old_radius;
+        // A ball that hangs below a ledge touches its wall beside it, not what it holds.
+        let rests = state
+            .support
+            .filter(|_| state.mode != ClimberMode::LedgeHanging);
+        let out = rests.map_or(DVec3::ZERO, |support| support.normal_in_world());
+        let wanted = state.position + out * wider;
+        let mut mover = Mover::new(obstacles, NOW, self.mover_memory())?;
+        let grown = wider.max(0.0) + (config.body.height - before.body.height).max(0.0);
+        if grown == 0.0 {
+            return Ok(mover.slide(&Path::placed(body, wanted)).position);
+        }
+        let moved = mover.slide(&Path::placed(body, wanted));
+        let aside = moved.position.distance(wanted);
+        let lacks = moved.missing_room.max(aside);
+        let most = wider.max(0.0) + body.margin;
+        if moved.missing_room > body.margin || aside > most {
+            return Err(ClimberError::NoRoom { lacks });
+        }
+        // Not to the other side of a thin wall.
+        let core = clamber_mover::MoverBody {
+            radius: old_radius.min(body.radius),
+            ..body.crouched()
+        };
+        let from = core.core_at(state.position);
+        if !mover.is_free(&from, moved.position - state.position) {
+            return Err(ClimberError::NoRoom { lacks });
+        }
+        Ok(moved.position)
+    }
+}

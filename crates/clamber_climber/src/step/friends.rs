@@ -1,0 +1,115 @@
+//! Other climbers that overlap this one: both give way, and nobody else is moved by it.
+
+use clamber_mover::IntoOthers;
+use clamber_world::{CharacterBody, Obstacle, ObstacleId};
+use glam::DVec3;
+
+use super::Tick;
+use crate::config::Others;
+use crate::obstacle::{SAME_PLACE, between};
+
+/// The fastest that climbers part, radii a second: 2 m/s for a radius of 0.4 m.
+const PARTS: f64 = 5.0;
+
+/// The fastest that climbers part which push each other, as a multiple of the walking speed.
+const PUSHES: f64 = 2.0;
+
+/// How deep climbers that push each other overlap at most, as a share of the radius.
+const DEEPEST: f64 = 0.75;
+
+/// The fastest that climbers part which pass each other, radii a second.
+const PASSES: f64 = 1.25;
+
+impl Tick<'_> {
+    /// The displacement in this tick by which it parts from the climbers that it overlaps: from each by the other's
+    /// share of their mass. Walls stop it like any other movement.
+    pub(super) fn parting(&self) -> DVec3 {
+        let way = self
+            .others()
+            .map(|(id, other)| self.parting_from(id, &other));
+        way.sum::<DVec3>().clamp_length_max(self.parting_at_most())
+    }
+
+    fn parting_at_most(&self) -> f64 {
+        let body = &self.config.body;
+        let slow = PARTS * body.radius;
+        let speed = match body.others {
+            Others::Block => slow,
+            // As fast as any two walk against each other.
+            Others::Push => slow.max(PUSHES * self.config.ground.walk_speed),
+            Others::Pass => PASSES * body.radius,
+        };
+        speed * self.dt()
+    }
+
+    /// How far it may come into the sides of others.
+    pub(super) fn into_others(&self) -> Option<IntoOthers> {
+        let body = &self.config.body;
+        let depth = match body.others {
+            Others::Block => return None,
+            Others::Push => DEEPEST * body.radius,
+            Others::Pass => f64::INFINITY,
+        };
+        Some(IntoOthers {
+            up: self.config.up(),
+            depth,
+        })
+    }
+
+    fn others(&self) -> impl Iterator<Item = (ObstacleId, CharacterBody)> {
+        let all = self.obstacles.iter();
+        let all = all.filter_map(|(id, obstacle)| Some((*id, *obstacle, obstacle.character()?)));
+        let solid = all.filter(|(id, obstacle, _)| self.is_stopped_by(*id, *obstacle));
+        solid.map(|(id, _, other)| (id, other))
+    }
+
+    /// False for another climber that the rule for contacts lets pass.
+    fn is_stopped_by(&self, id: ObstacleId, other: &dyn Obstacle) -> bool {
+        if self.judge.rules.contact.is_none() {
+            return true;
+        }
+        let contact = other.closest_point(self.began, f64::INFINITY);
+        contact.is_none_or(|contact| self.judge.rule(id, other, &contact).solid)
+    }
+
+    fn parting_from(&self, id: ObstacleId, other: &CharacterBody) -> DVec3 {
+        let body = self.body();
+        let capsule = body.at(self.began);
+        let apart = between(&other.capsule, &capsule);
+        // Who stands on another one is pressed onto it by less than the margin.
+        let depth = other.capsule.radius + capsule.radius - apart.distance - body.margin;
+        let all = other.mass + self.config.body.mass;
+        if depth.is_nan() || depth <= 0.0 || all <= 0.0 {
+            return DVec3::ZERO;
+        }
+        let up = self.config.up();
+        let is_deep = apart.distance < other.capsule.radius.min(capsule.radius);
+        let away = if is_deep {
+            let level = apart.away - up * apart.away.dot(up);
+            let is_beside = apart.distance > SAME_PLACE * capsule.radius && level.length() > ASIDE;
+            if is_beside {
+                level.normalize_or_zero()
+            } else {
+                self.side_of(id)
+            }
+        } else {
+            apart.away
+        };
+        // The lighter one gives way more, and no faster than that.
+        let [own, others] = [other.mass, self.config.body.mass].map(|mass| mass / all);
+        away * (own * depth.min(self.parting_at_most() / own.max(others)))
+    }
+
+    /// The side to which it parts from another climber at the same place: opposite for the two.
+    fn side_of(&self, id: ObstacleId) -> DVec3 {
+        let side = self.config.up().any_orthonormal_vector();
+        if self.rules.id.is_none_or(|own| own < id) {
+            -side
+        } else {
+            side
+        }
+    }
+}
+
+/// Least level part of the direction between two bodies in which they part levelly.
+const ASIDE: f64 = 0.1;

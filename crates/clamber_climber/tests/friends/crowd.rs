@@ -1,0 +1,171 @@
+//! Climbers on a box that moves, in any order and size.
+
+use clamber_climber::{
+    Climber, ClimberConfig, ClimberGroup, ClimberInput, ClimberState, StepReport, StepRules,
+};
+use clamber_surface::geometry::{Affine, Similarity};
+use clamber_surface::rig::Palette;
+use clamber_surface::surface::SkinnedSurface;
+use clamber_world::{Obstacle, ObstacleId};
+use glam::{DQuat, DVec3};
+
+use crate::scene::{STONE, cuboid};
+
+/// The rates at which everything here is played.
+pub(crate) const RATES: [f64; 4] = [30.0, 60.0, 120.0, 240.0];
+
+/// Sizes of the bodies, relative to a radius of 0.4 m.
+pub(crate) const SIZES: [f64; 4] = [1.0, 0.02, 0.3, 100.0];
+
+pub(crate) const IDLE: ClimberInput = ClimberInput::IDLE;
+
+/// A walker of another size. Everything takes as long as at the usual one.
+pub(crate) fn walker(size: f64) -> ClimberConfig {
+    let mut config = ClimberConfig::walker();
+    config.gravity *= size;
+    let body = &mut config.body;
+    for length in [&mut body.radius, &mut body.height, &mut body.margin] {
+        *length *= size;
+    }
+    let ground = &mut config.ground;
+    for length in [
+        &mut ground.walk_speed,
+        &mut ground.jump_speed,
+        &mut ground.snap_distance,
+        &mut ground.step_height,
+        &mut ground.acceleration,
+        &mut ground.friction,
+        &mut ground.air_acceleration,
+        &mut ground.terminal_speed,
+        &mut ground.slide_friction,
+        &mut ground.throw_acceleration,
+    ] {
+        *length *= size;
+    }
+    config
+}
+
+/// Boxes, of which the first may move, and climbers among them.
+pub(crate) struct Crowd {
+    pub(crate) boxes: Vec<SkinnedSurface>,
+    pub(crate) climbers: Vec<Climber>,
+    group: ClimberGroup,
+    pub(crate) dt: f64,
+    /// The order in which they are stepped and listed.
+    pub(crate) order: Vec<usize>,
+    /// Where the first box is.
+    deck: DVec3,
+    /// Size of the bodies, relative to a radius of 0.4 m.
+    size: f64,
+}
+
+fn rest() -> Palette {
+    Palette::from_matrices([Affine::IDENTITY])
+}
+
+fn id(index: usize) -> ObstacleId {
+    ObstacleId(100 + index as u64)
+}
+
+impl Crowd {
+    /// Climbers with the centres of their balls at places, on a deck whose top is at height 0.
+    pub(crate) fn new(config: ClimberConfig, places: &[DVec3], rate: f64) -> Self {
+        let size = config.body.radius / 0.4;
+        let climbers = places.iter();
+        let mut crowd = Self {
+            boxes: Vec::new(),
+            climbers: climbers
+                .map(|place| Climber::new(config, *place).unwrap())
+                .collect(),
+            group: ClimberGroup::default(),
+            dt: 1.0 / rate,
+            order: (0..places.len()).collect(),
+            deck: DVec3::ZERO,
+            size,
+        };
+        crowd.add_box(DVec3::NEG_Y * size, DVec3::new(8.0, 1.0, 8.0) * size);
+        crowd
+    }
+
+    fn at(&self, translation: DVec3) -> Similarity {
+        Similarity {
+            translation,
+            rotation: DQuat::IDENTITY,
+            scale: self.size,
+        }
+    }
+
+    /// A box at a place; `half` are its half lengths.
+    pub(crate) fn add_box(&mut self, center: DVec3, half: DVec3) {
+        let mut surface = cuboid((half / self.size).as_vec3(), STONE);
+        surface.place(&rest(), self.at(center)).unwrap();
+        if self.boxes.is_empty() {
+            self.deck = center;
+        }
+        self.boxes.push(surface);
+    }
+
+    /// Steps all climbers, after the deck has moved to `deck` from where it was put.
+    pub(crate) fn step(
+        &mut self,
+        deck: DVec3,
+        input: impl Fn(usize) -> ClimberInput,
+    ) -> Vec<StepReport> {
+        let place = self.at(self.deck + deck);
+        if let Some(first) = self.boxes.first_mut() {
+            first.advance(&rest(), place).unwrap();
+        }
+        let fixed: Vec<(ObstacleId, &dyn Obstacle)> = (0..)
+            .map(ObstacleId)
+            .zip(self.boxes.iter().map(|surface| surface as &dyn Obstacle))
+            .collect();
+        let climbers = &self.climbers;
+        let listed = self
+            .order
+            .iter()
+            .map(|index| (id(*index), &climbers[*index]));
+        self.group.update(listed, &fixed, self.dt);
+        let mut reports = vec![StepReport::default(); self.climbers.len()];
+        for &index in &self.order {
+            let mut obstacles = fixed.clone();
+            obstacles.extend(self.group.others(id(index)));
+            if self.order[0] != 0 {
+                obstacles.reverse();
+            }
+            let rules = StepRules {
+                id: Some(id(index)),
+                ..StepRules::default()
+            };
+            let climber = &mut self.climbers[index];
+            reports[index] = climber
+                .step_with(&input(index), &obstacles, &rules, self.dt)
+                .unwrap();
+        }
+        reports
+    }
+
+    /// Steps with the deck at rest and without input.
+    pub(crate) fn rest(&mut self, seconds: f64) {
+        for _ in 0..(seconds / self.dt).round() as u32 {
+            self.step(DVec3::ZERO, |_| IDLE);
+        }
+    }
+
+    pub(crate) fn position(&self, index: usize) -> DVec3 {
+        self.climbers[index].state().position
+    }
+
+    pub(crate) fn state(&self, index: usize) -> &ClimberState {
+        self.climbers[index].state()
+    }
+
+    /// Sets the velocity of a climber, and that of its frame.
+    pub(crate) fn throw(&mut self, index: usize, velocity: DVec3, base_velocity: DVec3) {
+        let state = ClimberState {
+            velocity,
+            base_velocity,
+            ..*self.state(index)
+        };
+        self.climbers[index].restore(state).unwrap();
+    }
+}

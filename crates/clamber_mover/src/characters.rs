@@ -1,0 +1,159 @@
+//! Other characters among the obstacles: they stop a body, and never push it.
+//!
+//! The half-space of a contact with a character always contains the displacement of the body's own frame. So a
+//! character takes the body's own motion towards it, and no more: it neither carries the body off nor presses it into
+//! anything, whatever it does itself. Where walls and characters together leave no room, the walls alone count.
+
+use clamber_world::{Obstacle, ObstacleId};
+use glam::DVec3;
+
+use crate::half_spaces::HalfSpace;
+use crate::mover::{find, path_among};
+use crate::slide::TOUCH;
+use crate::{Hit, Mover, Path, Touch};
+
+/// The characters among the obstacles of a tick, as a movement sees them.
+#[derive(Clone, Copy)]
+pub(crate) struct Characters<'a> {
+    obstacles: &'a [(ObstacleId, &'a dyn Obstacle)],
+    dt: f64,
+    /// True if there are any.
+    any: bool,
+    /// True if walls and characters have left no room, so that the walls alone count.
+    yielding: bool,
+}
+
+impl Characters<'_> {
+    fn has(&self, touch: &Touch) -> bool {
+        let is_character = |obstacle: &dyn Obstacle| obstacle.character().is_some();
+        self.any && find(self.obstacles, touch.obstacle).is_some_and(is_character)
+    }
+
+    /// The offset of a half-space of a contact with a character.
+    fn offset(&self, path: &Path, half_space: &HalfSpace, touch: &Touch) -> f64 {
+        if self.yielding {
+            return f64::NEG_INFINITY;
+        }
+        let offset = half_space.offset - allowed(path, touch);
+        offset.min(half_space.normal.dot(path.frame))
+    }
+
+    /// How deep a body may be in what it touches.
+    pub(crate) fn allowed(&self, path: &Path, touch: &Touch) -> f64 {
+        if path.into_others.is_some() && self.has(touch) {
+            allowed(path, touch)
+        } else {
+            0.0
+        }
+    }
+
+    /// True if a hit along `way` stops the body. A character that comes to meet a body does not.
+    pub(crate) fn stop(&self, path: &Path, hit: &Hit, way: DVec3) -> bool {
+        if !self.has(&hit.touch) {
+            return true;
+        }
+        let half_space = self.half_space_of_hit(path, hit, way);
+        let offset = self.offset(path, &half_space, &hit.touch);
+        half_space.normal.dot(way) < offset - TOUCH * path.body.radius
+    }
+
+    /// The half-space of a contact that a sweep along `way` found: its plane is where the touched material is at the
+    /// tick's end.
+    pub(crate) fn half_space_of_hit(&self, path: &Path, hit: &Hit, way: DVec3) -> HalfSpace {
+        let Hit { touch, time, .. } = hit;
+        let (obstacle, contact) = (touch.obstacle, &touch.contact);
+        let motion = path_among(self.obstacles, obstacle, &contact.material, self.dt);
+        let end = motion.map_or(contact.point, |motion| motion.position);
+        let on_axis = path.end_of(way, *time, contact.point);
+        HalfSpace {
+            normal: touch.normal,
+            offset: touch.normal.dot(end - path.start - on_axis) + path.body.radius,
+        }
+    }
+
+    /// How deep a body is in what it touches, as far as the contact may move it. `way` is its displacement.
+    pub(crate) fn depth(&self, path: &Path, touch: &Touch, way: DVec3, depth: f64) -> f64 {
+        if depth <= 0.0 || !self.has(touch) {
+            depth
+        } else if self.yielding {
+            0.0
+        } else {
+            let depth = depth - allowed(path, touch);
+            depth.min(touch.normal.dot(path.frame - way))
+        }
+    }
+}
+
+/// How deep a body may be in another character. What is deep already has come in by a side.
+fn allowed(path: &Path, touch: &Touch) -> f64 {
+    let Some(into) = path.into_others else {
+        return 0.0;
+    };
+    let radius = path.body.radius;
+    let is_side = touch.normal.dot(into.up).abs() < SIDE;
+    let is_deep = radius - touch.contact.distance > DEEP * radius;
+    if is_side || is_deep { into.depth } else { 0.0 }
+}
+
+/// Who stands on another character is no deeper in it than this share of its radius.
+const DEEP: f64 = 0.5;
+
+/// Contacts whose normal is farther from the vertical than this cosine are on a character's side: 60 degrees.
+const SIDE: f64 = 0.5;
+
+impl<'a> Mover<'a> {
+    pub(crate) fn characters(&self) -> Characters<'a> {
+        Characters {
+            obstacles: self.obstacles,
+            dt: self.dt(),
+            any: self.has_characters,
+            yielding: self.memory.characters_yield,
+        }
+    }
+
+    /// True if a contact is with another character
+    /// ([`Obstacle::character`](clamber_world::Obstacle::character)).
+    pub fn is_character(&self, touch: &Touch) -> bool {
+        self.characters().has(touch)
+    }
+
+    /// Adds a contact with its half-space, and the wall that stands for its slope.
+    pub(crate) fn add_contact(
+        &mut self,
+        path: &Path,
+        touch: Touch,
+        half_space: HalfSpace,
+        wall: Option<HalfSpace>,
+    ) {
+        let characters = self.characters();
+        let memory = &mut *self.memory;
+        memory.touched.push(touch);
+        if !characters.has(&touch) {
+            memory.half_spaces.push(half_space);
+            memory.walls.extend(wall);
+            return;
+        }
+        let yielding = |half_space: HalfSpace| HalfSpace {
+            offset: characters.offset(path, &half_space, &touch),
+            ..half_space
+        };
+        memory.half_spaces.push(yielding(half_space));
+        memory.yielding_walls.extend(wall.map(yielding));
+    }
+
+    /// Leaves characters out of the rest of a movement. False if none is among its contacts, or they are left out.
+    pub(crate) fn leave_characters_out(&mut self) -> bool {
+        let characters = self.characters();
+        if !characters.any || characters.yielding {
+            return false;
+        }
+        let memory = &mut *self.memory;
+        let contacts = memory.touched.iter().zip(&mut memory.half_spaces);
+        for (_, half_space) in contacts.filter(|(touch, _)| characters.has(touch)) {
+            half_space.offset = f64::NEG_INFINITY;
+            memory.characters_yield = true;
+        }
+        memory.yielding_walls.clear();
+        memory.characters_yield
+    }
+}
