@@ -462,6 +462,9 @@ failures! {
     rules::wet_fur_slips_through_hands,
     rules::a_friend_is_neither_hung_from_nor_gripped_unless_the_rule_says_so,
     rules::a_door_lets_one_pass_and_not_another,
+    rules::a_door_that_closes_on_a_climber_pushes_it_out,
+    rules::a_ledge_that_is_refused_is_let_go_and_one_without_footing_is_only_hung_from,
+    rules::hands_stop_where_a_ledge_may_not_be_held,
     rules::ground_that_may_not_be_stood_on_is_slid_off,
     rules::a_curb_that_may_not_be_stepped_onto_blocks,
 }
