@@ -41,6 +41,7 @@ fn input(rng: &mut Rng) -> ClimberInput {
         jump: rng.u8(0..8) == 0,
         jump_held: rng.bool(),
         grip: rng.u8(0..4) > 0,
+        crouch: rng.u8(0..8) == 0,
         actions: if rng.bool() {
             1 << rng.u32(0..6)
         } else {

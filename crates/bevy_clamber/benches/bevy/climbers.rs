@@ -72,6 +72,7 @@ pub(crate) fn measure(
     common::wait(&mut giants.app, giant);
     let mut surface = SkinnedSurface::new(giants.mesh());
     let mut palette = Palette::default();
+    let mut group = ClimberGroup::default();
     creature.skeleton.palette_into(&poses[0], &mut palette)?;
     surface.place(&palette, Similarity::IDENTITY)?;
     let mut climbers = spawn(&mut giants, &surface, count)?;

@@ -43,7 +43,7 @@ impl Tick<'_> {
     }
 
     /// How far it may come into the sides of others.
-    pub(super) fn into_others(&self) -> Option<IntoOthers> {
+    pub(super) fn depth_in_others(&self) -> Option<IntoOthers> {
         let body = &self.config.body;
         let depth = match body.others {
             Others::Block => return None,

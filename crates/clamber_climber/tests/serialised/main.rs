@@ -102,6 +102,7 @@ fn inputs_keep_every_bit() {
             jump: round % 2 == 0,
             jump_held: round % 7 == 0,
             grip: round % 3 == 0,
+            crouch: round % 4 == 0,
             blow: (round % 5 == 0).then_some(blow),
             actions: (round as u32).wrapping_mul(0x9e37_79b9),
             aim: point(1e3),

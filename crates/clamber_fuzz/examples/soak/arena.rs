@@ -126,6 +126,7 @@ fn input(rng: &mut Rng) -> ClimberInput {
         aim,
         jump: rng.u8(0..6) == 0,
         jump_held: rng.bool(),
+        crouch: rng.u8(0..8) == 0,
         grip: rng.u8(0..5) > 0,
         actions: if rng.bool() { 1 << rng.u32(0..4) } else { 0 },
         blow: None,
