@@ -249,3 +249,22 @@ impl<'a> ContactQuery<'a> {
             })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_friction_out_of_its_range_counts_as_its_nearest_or_as_usual() {
+        for (given, used) in [
+            (0.3, 0.3),
+            (7.0, 7.0),
+            (-2.0, 0.0),
+            (f64::NAN, 1.0),
+            (f64::INFINITY, 1.0),
+        ] {
+            let rule = ContactRule::SOLID.with_friction(given);
+            assert_eq!(rule.usable_friction(), used, "{given}");
+        }
+    }
+}
