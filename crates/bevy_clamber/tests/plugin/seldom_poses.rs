@@ -108,7 +108,7 @@ fn feel(climbers: Query<&ClimberState>, mut felt: ResMut<Felt>) {
     for state in &climbers {
         let on = state.support.is_some() && state.mode == ClimberMode::Standing;
         felt.0.push(on.then(|| {
-            let speed = state.support_velocity.map_or(f64::NAN, |v| v.x);
+            let speed = state.support_velocity.map_or(f64::INFINITY, |v| v.x);
             (speed, state.shake.length())
         }));
     }
@@ -152,7 +152,7 @@ fn ride(every: u32, between: Between, frames: f64) -> (usize, usize, f64, f64) {
     (
         stood().count(),
         felt.len(),
-        off.fold(0.0, |a, b| if b <= a { a } else { b }),
+        off.fold(0.0, f64::max),
         stood().map(|(_, shake)| *shake).fold(0.0, f64::max),
     )
 }

@@ -215,3 +215,6 @@ impl<P: PartialEq> PartialEq for PoseHistory<P> {
         self.samples == other.samples
     }
 }
+
+#[cfg(test)]
+mod tests;
