@@ -31,8 +31,8 @@ enum Rhythm {
 }
 
 impl Rhythm {
-    /// The time of the pose that comes in this tick, ticks; `None` if none comes. `next` is the tick of the next pose at
-    /// random.
+    /// The time of the pose that comes in this tick, in ticks; `None` if none comes. `next` is the tick of the next
+    /// random pose.
     fn time(self, tick: u32, rate: f64, next: &mut (u32, fastrand::Rng)) -> Option<f64> {
         let time = match self {
             Self::EachTick => tick,

@@ -114,8 +114,8 @@ fn feel(climbers: Query<&ClimberState>, mut felt: ResMut<Felt>) {
     }
 }
 
-/// A rider on a creature that is posed in every n-th tick. Gives the number of ticks in which it stood, of how many, the
-/// worst error of its support's speed, as a share, and the hardest shake.
+/// A rider on a creature that is posed in every n-th tick. Gives the number of ticks in which it stood, of how many,
+/// the worst error of its support's speed, as a share, and the hardest shake.
 fn ride(every: u32, between: Between, frames: f64) -> (usize, usize, f64, f64) {
     let mut app: App = app_with(
         frames,

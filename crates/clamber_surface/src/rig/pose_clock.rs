@@ -12,11 +12,11 @@ const JUMP: f64 = 1.0 / 100.0;
 
 /// The time whose pose a tick sees, where poses come less often than ticks, or at other times.
 ///
-/// Poses between two that are known move evenly, so a tick looks back: by a lag of one interval between poses. The lag
-/// is a little longer than the last 32 intervals but the longest, which may be a single pose that came late. It changes
-/// by at most 1/200 of a tick in each tick, unless it is more than twice as long as it should be. Where the time that
-/// should be seen is later than the newest pose, that pose stays, and the tick is [`PoseMotion::Placed`]: so is the
-/// next tick that is on time again.
+/// A tick sees a pose between two that are known, so it looks back by a lag: one interval, where poses come regularly.
+/// Where they do not, the lag is a little longer than all of the last 32 intervals but the longest, which may be a
+/// single pose that came late. It changes by at most 1/200 of a tick in each tick, unless it is more than twice as long
+/// as it should be. Where a tick should see a later time than that of the newest pose, that pose stays, and the tick is
+/// [`PoseMotion::Placed`]. So is the first tick that is on time again.
 ///
 /// For poses of joints, [`PoseTrack`](super::PoseTrack) does all of it. A clock alone is for engines with poses of
 /// their own, beside a [`PoseHistory`](super::PoseHistory). Times are in seconds, from any zero.

@@ -11,7 +11,7 @@ pub enum PoseMotion {
 }
 
 impl PoseMotion {
-    /// That of two motions, one after the other.
+    /// Two motions, one after the other: placed if either is.
     pub(super) fn and(self, other: Self) -> Self {
         if other == Self::Placed { other } else { self }
     }

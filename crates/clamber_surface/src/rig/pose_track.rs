@@ -10,10 +10,11 @@ use crate::geometry::{Similarity, slerp};
 /// be missed; a skin without a new pose stands still, is then placed where it should be, and shakes nobody.
 ///
 /// Local transforms are blended as by [`Pose::blend`]: a limb keeps its length, and no joint may turn by half a turn or
-/// more between two poses. A point with acceleration `a` is off its true path by at most `a h²/8` at intervals of `h`.
+/// more between two poses. A local translation, scale or angle that accelerates by `a` is off by at most `a h²/8` at
+/// intervals of `h`.
 ///
-/// The track is a plain value. To roll back, clone it, or serialise it (feature `serde`). It is as large as a few poses.
-/// A steady tick allocates nothing.
+/// The track is a plain value, as large as a few poses. To roll back, clone it, or serialise it (feature `serde`). A
+/// steady tick allocates nothing.
 ///
 /// ```
 /// use clamber_surface::geometry::{Affine, Similarity};
