@@ -8,12 +8,13 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::sync::mpsc::channel;
 
+use clamber::climber::ContactQuery;
 use clamber::gltf::{LoadOptions, Rig, load_with};
 use clamber::navigation::{
     Bot, BotConfig, ClimbGraph, Danger, Forecast, FutureSkin, GraphConfig, GraphSource, View,
 };
 use clamber::prelude::*;
-use clamber::world::{Contact, HalfSpace};
+use clamber::world::HalfSpace;
 use glam::DVec3;
 
 type Failure = Box<dyn Error + Send + Sync>;
@@ -43,8 +44,8 @@ fn main() -> Result<(), Failure> {
     let mut bot = Bot::new(Arc::clone(&graph), BotConfig::default());
     let mut skin = FutureSkin::new(Arc::clone(&rig.collider));
     // The climber grips what the graph takes for holds.
-    let can_grip = |_: ObstacleId, contact: &Contact| config.can_grip(&contact.tag);
-    let rules = StepRules::gripping(&can_grip);
+    let rule = |query: &ContactQuery<'_>| query.usual().with_grip(config.can_grip(&query.tag()));
+    let rules = StepRules::by(&rule);
     let idle = rig.clip("idle").ok_or("no clip idle")?.duration();
     let mut palette = Palette::default();
     let mut arrived = None;

@@ -4,10 +4,10 @@
 
 use std::sync::Arc;
 
-use clamber::climber::{Climber, ClimberConfig, ClimberInput, StepRules};
+use clamber::climber::{Climber, ClimberConfig, ClimberInput, ContactQuery, StepRules};
 use clamber::rig::{Palette, Playback};
 use clamber::surface::SkinnedSurface;
-use clamber::world::{Contact, HalfSpace, Obstacle, ObstacleId};
+use clamber::world::{HalfSpace, Obstacle, ObstacleId};
 use clamber_navigation::{Flight, FutureSkin};
 use clamber_scenes::giant;
 use fastrand::Rng;
@@ -24,8 +24,8 @@ fn landings_are_foreseen_on_moving_skin() {
     let floor = HalfSpace::below(ground);
     let mut rng = Rng::with_seed(28);
     let mut skin = FutureSkin::new(Arc::clone(&creature.collider));
-    let can_grip = |obstacle: ObstacleId, _: &Contact| obstacle == GIANT;
-    let rules = StepRules::gripping(&can_grip);
+    let rule = |query: &ContactQuery<'_>| query.usual().with_grip(query.id == GIANT);
+    let rules = StepRules::by(&rule);
     let (mut on_skin, mut elsewhere) = (0, 0);
     for _ in 0..200 {
         let clip = &creature.clips[rng.usize(0..creature.clips.len())];

@@ -9,7 +9,7 @@
 use std::sync::Arc;
 
 use allocation_counter::measure;
-use clamber::climber::GripConfig;
+use clamber::climber::{ClimberGroup, GripConfig};
 use clamber::prelude::*;
 use clamber::world::rapier3d::prelude::{ColliderBuilder, PhysicsWorld, RigidBodyBuilder, Vector};
 use clamber_scenes::giant;
@@ -22,6 +22,14 @@ const GRIP: ClimberInput = ClimberInput {
     grip: true,
     ..ClimberInput::IDLE
 };
+
+/// A rule that asks all that it can, and allows all: a one-way platform of everything would let some through.
+fn rule(query: &ContactQuery<'_>) -> ContactRule {
+    let asked = (query.one_way(), query.body(), query.path(), query.tag());
+    std::hint::black_box(asked);
+    let is_passed = query.is_character() && query.id.0 % 2 == 0;
+    query.usual().with_grip(true).with_solid(!is_passed)
+}
 
 /// Counts of a mode's ticks with and without events, and the ticks without events that allocated.
 #[derive(Debug, Default)]
@@ -47,7 +55,7 @@ impl Ticks {
         let found = measure(|| {
             report = Some(
                 climber
-                    .step_with(input, obstacles, &StepRules::gripping(&|_, _| true), DT)
+                    .step_with(input, obstacles, &StepRules::by(&rule), DT)
                     .unwrap(),
             );
         });
@@ -246,6 +254,43 @@ fn walking_on_rapiers_ground_allocates_nothing() {
     }
     ticks.assert_steady("walking on rapier's ground", 300);
     assert!(climber.state().position.x > 2.5, "{:?}", climber.state());
+}
+
+/// A walk through friends that the rule lets pass, past friends that it does not.
+#[test]
+fn walking_among_friends_allocates_nothing() {
+    let ground = block(Vec3::splat(30.0));
+    let at = |x: f64, z: f64| {
+        let place = DVec3::new(x, 30.4, z);
+        Climber::new(ClimberConfig::walker(), place).unwrap()
+    };
+    let friends: Vec<(ObstacleId, Climber)> = (0..6)
+        .map(|index| {
+            (
+                ObstacleId(10 + index),
+                at(index as f64, f64::from(index as u32 % 2) * 0.5),
+            )
+        })
+        .collect();
+    let fixed: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(1), &ground)];
+    let mut group = ClimberGroup::default();
+    let mut climber = at(-2.0, 0.2);
+    let mut ticks = Ticks::default();
+    for tick in 0..400 {
+        let others = friends.iter().map(|(id, friend)| (*id, friend));
+        group.update(others, &fixed, DT);
+        let obstacles: Vec<_> = fixed
+            .into_iter()
+            .chain(group.others(ObstacleId(2)))
+            .collect();
+        let side = if tick / 120 % 2 == 0 { 1.0 } else { -1.0 };
+        let input = ClimberInput {
+            walk: DVec3::X * side,
+            ..ClimberInput::default()
+        };
+        ticks.step(&mut climber, &input, &obstacles, ClimberMode::Standing);
+    }
+    ticks.assert_steady("walking among friends", 200);
 }
 
 #[test]

@@ -5,12 +5,12 @@
 use std::sync::Arc;
 
 use clamber::climber::{
-    Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, StepRules,
+    Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, ContactQuery, StepRules,
 };
 use clamber::geometry::Similarity;
 use clamber::rig::{Palette, Playback};
 use clamber::surface::SkinnedSurface;
-use clamber::world::{Contact, Obstacle, ObstacleId};
+use clamber::world::{Obstacle, ObstacleId};
 use clamber_navigation::FutureSkin;
 use clamber_scenes::{Creature, giant};
 use fastrand::Rng;
@@ -48,14 +48,14 @@ fn ride(climber: &mut Climber, surface: &mut SkinnedSurface, play: Play<'_>) -> 
         grip: holds,
         ..ClimberInput::IDLE
     };
-    let can_grip = |_: ObstacleId, _: &Contact| true;
+    let rule = |query: &ContactQuery<'_>| query.usual().with_grip(true);
     let mut palette = Palette::default();
     for tick in 1..=(SECONDS / TICK) as u64 {
         let seconds = tick as f64 * TICK;
         play.pose(seconds, &mut palette).unwrap();
         surface.advance(&palette, play.place).unwrap();
         let around: [(ObstacleId, &dyn Obstacle); 1] = [(CREATURE, surface)];
-        let rules = StepRules::gripping(&can_grip);
+        let rules = StepRules::by(&rule);
         let report = climber.step_with(&input, &around, &rules, TICK).unwrap();
         let ends = |event: &ClimberEvent| {
             matches!(
@@ -95,11 +95,11 @@ fn mount(rng: &mut Rng, surface: &SkinnedSurface) -> Option<Climber> {
         grip: !stands,
         ..ClimberInput::IDLE
     };
-    let can_grip = |_: ObstacleId, _: &Contact| true;
+    let rule = |query: &ContactQuery<'_>| query.usual().with_grip(true);
     let around: [(ObstacleId, &dyn Obstacle); 1] = [(CREATURE, surface)];
     for _ in 0..30 {
         climber
-            .step_with(&input, &around, &StepRules::gripping(&can_grip), TICK)
+            .step_with(&input, &around, &StepRules::by(&rule), TICK)
             .unwrap();
     }
     let mode = climber.state().mode;

@@ -168,7 +168,7 @@ fn app() -> App {
     ))
     .init_asset::<Mesh>()
     .init_asset::<SkinnedMeshInverseBindposes>()
-    .insert_resource(GripRule::new(|_| true))
+    .insert_resource(ClimberRule::new(|at| at.usual().with_grip(true)))
     .init_resource::<Happened>()
     .add_observer(|what: On<ClimberLanded>, mut happened: ResMut<Happened>| {
         let landed = format!("landed at {:.1} m/s", what.speed);

@@ -38,7 +38,7 @@ pub use arena::{
 pub use camera::{ClimberCamera, ClimberCameraInput, ClimberCameraPlugin};
 pub use climber::{
     Climber, ClimberBlow, ClimberBody, ClimberFilter, ClimberInput, ClimberModes, ClimberPlugin,
-    ClimberState, CustomObstacle, Grip, GripRule, events,
+    ClimberRule, ClimberState, ClimberTouch, CustomObstacle, events,
 };
 pub use collider::{
     ColliderError, ColliderFailure, ColliderNeeds, ColliderStatus, ColliderTag, SkinnedCollider,

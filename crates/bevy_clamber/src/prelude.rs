@@ -5,9 +5,9 @@ pub use crate::SurfaceDiagnosticsPlugin;
 pub use crate::{
     AnchorLost, ClamberPlugins, ClamberSystems, Climber, ClimberBlow, ClimberBody, ClimberCamera,
     ClimberCameraInput, ClimberCameraPlugin, ClimberFilter, ClimberInput, ClimberModes,
-    ClimberPlugin, ClimberState, ColliderStatus, ColliderTag, CustomObstacle, DrawnSurfaceQuery,
-    EntityHit, GripRule, PoseTiming, PosedSurface, SkinnedCollider, SurfaceAnchor, SurfaceFilter,
-    SurfaceQuery, WorldOrigin,
+    ClimberPlugin, ClimberRule, ClimberState, ColliderStatus, ColliderTag, CustomObstacle,
+    DrawnSurfaceQuery, EntityHit, PoseTiming, PosedSurface, SkinnedCollider, SurfaceAnchor,
+    SurfaceFilter, SurfaceQuery, WorldOrigin,
 };
 #[cfg(feature = "fight")]
 pub use crate::{
@@ -29,5 +29,6 @@ pub use crate::{
 pub use crate::{SurfaceGizmos, SurfaceGizmosPlugin};
 #[cfg(feature = "picking")]
 pub use crate::{SurfacePick, SurfacePickingPlugin};
+pub use clamber_climber::ContactRule;
 pub use clamber_surface::mesh::{SurfaceKind, SurfaceTag};
 pub use clamber_surface::surface::TargetMotion;

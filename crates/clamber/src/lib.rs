@@ -49,8 +49,8 @@ pub use glam;
 pub mod prelude {
     pub use clamber_climber::{
         Climber, ClimberConfig, ClimberContact, ClimberEvent, ClimberInput, ClimberMode,
-        ClimberState, ContactPhase, CustomMode, GripConfig, ModeContext, NextMode, StepReport,
-        StepRules, Support,
+        ClimberState, ContactPhase, ContactQuery, ContactRule, CustomMode, GripConfig, ModeContext,
+        NextMode, StepReport, StepRules, Support,
     };
     pub use clamber_surface::geometry::{Affine, Similarity};
     pub use clamber_surface::mesh::{

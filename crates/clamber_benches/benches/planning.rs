@@ -16,11 +16,11 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::Instant;
 
-use clamber::climber::{Climber, ClimberConfig, ClimberInput, StepRules};
+use clamber::climber::{Climber, ClimberConfig, ClimberInput, ContactQuery, StepRules};
 use clamber::geometry::Similarity;
 use clamber::rig::{Palette, Playback};
 use clamber::surface::SkinnedSurface;
-use clamber::world::{Contact, HalfSpace, Obstacle, ObstacleId};
+use clamber::world::{HalfSpace, Obstacle, ObstacleId};
 use clamber_navigation::{
     Bot, BotConfig, ClimbGraph, Danger, Flight, Footing, Forecast, FutureSkin, GraphConfig,
     GraphOrigin, GraphSource, Start, View,
@@ -171,7 +171,7 @@ fn climb(
     let mut config = ClimberConfig::colossus_climber();
     config.stamina = None;
     let before = DVec3::new(10.0, ground + config.body.radius + 0.05, 10.0);
-    let can_grip = |obstacle: ObstacleId, _: &Contact| obstacle == GIANT;
+    let rule = |query: &ContactQuery<'_>| query.usual().with_grip(query.id == GIANT);
     let mut climber = Climber::new(config, before)?;
     let mut bot = Bot::new(Arc::clone(graph), BotConfig::default());
     let (mut thinks, mut steps) = (Vec::new(), Vec::new());
@@ -201,7 +201,7 @@ fn climb(
         let think = begin.elapsed().as_secs_f64() * 1e6;
         let around: [(ObstacleId, &dyn Obstacle); 2] = [(GROUND, &floor), (GIANT, &surface)];
         let begin = Instant::now();
-        climber.step_with(&input, &around, &StepRules::gripping(&can_grip), TICK)?;
+        climber.step_with(&input, &around, &StepRules::by(&rule), TICK)?;
         let step = begin.elapsed().as_secs_f64() * 1e6;
         if is_on_it {
             thinks.push(think);
@@ -243,8 +243,8 @@ fn predictions(creature: &Creature, count: usize, cells: &mut Cells) -> Result<(
         ClimberConfig::colossus_climber(),
         DVec3::new(0.0, 41.0, -1.0),
     )?;
-    let can_grip = |_: ObstacleId, _: &Contact| true;
-    let rules = StepRules::gripping(&can_grip);
+    let rule = |query: &ContactQuery<'_>| query.usual().with_grip(true);
+    let rules = StepRules::by(&rule);
     let grip = ClimberInput {
         grip: true,
         ..ClimberInput::IDLE

@@ -1,22 +1,19 @@
-use clamber_world::{Contact, Obstacle, ObstacleId, SurfaceTag, WorldCapsule};
+use clamber_mover::ContactFilters;
+use clamber_world::{Contact, Obstacle, ObstacleId, WorldCapsule};
 use glam::DVec3;
 
-use crate::step::{Asked, Scratch, Tick};
+use crate::step::{Asked, Judge, Scratch, Tick};
 use crate::{
     ClimberConfig, ClimberContact, ClimberError, ClimberEvent, ClimberInput, ClimberMode,
-    ClimberState, CustomMode, StepReport,
+    ClimberState, ContactRuleFn, CustomMode, StepReport,
 };
 
-/// Decides whether a climber may grip a contact of an obstacle.
-///
-/// Called while the climber looks for a grip or climbs, not while it keeps still on its hold.
-pub type CanGrip<'a> = dyn Fn(ObstacleId, &Contact) -> bool + 'a;
-
 /// A game's own rules for a step, passed to [`Climber::step_with`].
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 pub struct StepRules<'a> {
-    /// Which contacts can be gripped. By default those whose tag is [fur](clamber_world::SurfaceKind::Fur).
-    pub can_grip: &'a CanGrip<'a>,
+    /// What may be stood on, stepped onto, hung from, gripped, and passed through, and with which friction. By default
+    /// [`ContactQuery::usual`](crate::ContactQuery::usual).
+    pub contact: Option<&'a ContactRuleFn<'a>>,
     /// Handlers of the game's custom modes. In each tick, all but the current mode's are asked in this order whether
     /// they begin, until one does. A climber in a custom mode whose handler is missing falls. By default none.
     pub modes: &'a [&'a dyn CustomMode],
@@ -25,37 +22,27 @@ pub struct StepRules<'a> {
     /// By default zero.
     pub air_velocity: DVec3,
     /// Id of this climber among the obstacles of others ([`ClimberGroup`](crate::ClimberGroup)). Of two climbers at one
-    /// place, the ids decide who parts to which side. By default `None`.
+    /// place, the ids decide who parts to which side. `contact` gets it with each query, so that one rule can tell climbers
+    /// apart. By default `None`.
     pub id: Option<ObstacleId>,
 }
 
 impl<'a> StepRules<'a> {
-    /// Rules with a function that decides what can be gripped, without custom modes.
-    pub const fn gripping(can_grip: &'a CanGrip<'a>) -> Self {
+    /// Rules with a function that decides about contacts, without custom modes.
+    pub const fn by(contact: &'a ContactRuleFn<'a>) -> Self {
         Self {
-            can_grip,
+            contact: Some(contact),
             modes: &[],
             air_velocity: DVec3::ZERO,
             id: None,
         }
     }
 
-    /// Rules with custom modes, by which fur can be gripped.
+    /// Rules with custom modes, and the usual rule for contacts.
     pub fn with_modes(modes: &'a [&'a dyn CustomMode]) -> Self {
         Self {
             modes,
             ..Self::default()
-        }
-    }
-}
-
-impl Default for StepRules<'_> {
-    fn default() -> Self {
-        Self {
-            can_grip: &|_, contact| is_fur(&contact.tag),
-            modes: &[],
-            air_velocity: DVec3::ZERO,
-            id: None,
         }
     }
 }
@@ -175,7 +162,7 @@ impl Climber {
         self.step_with(input, obstacles, &StepRules::default(), dt)
     }
 
-    /// [`Climber::step`] by a game's own rules: what can be gripped, and custom modes.
+    /// [`Climber::step`] by a game's own rules: for contacts, and custom modes.
     ///
     /// # Errors
     /// As [`Climber::step`]. [`ClimberError::SameMode`] if two of the modes have the same id, and
@@ -198,9 +185,34 @@ impl Climber {
         if !rules.air_velocity.is_finite() {
             return Err(ClimberError::NotFinite("air_velocity"));
         }
+        let judge = Judge {
+            rules,
+            config: &self.config,
+            state: &self.state,
+            obstacles,
+            dt,
+        };
+        let rule =
+            |id: ObstacleId, of: &dyn Obstacle, contact: &Contact| judge.rule(id, of, contact);
+        let is_solid = |id: ObstacleId, of: &dyn Obstacle, at: &Contact| rule(id, of, at).solid;
+        let is_ground = |id: ObstacleId, of: &dyn Obstacle, at: &Contact| rule(id, of, at).stand;
+        let has_rule = rules.contact.is_some();
+        let keeps_off = has_rule && judge.keeps_off_curbs();
+        let is_step =
+            |id: ObstacleId, of: &dyn Obstacle, at: &Contact| !keeps_off || rule(id, of, at).step;
+        let filters = if has_rule {
+            ContactFilters {
+                solid: Some(&is_solid),
+                ground: Some(&is_ground),
+                step: Some(&is_step),
+            }
+        } else {
+            ContactFilters::default()
+        };
         let asked = Asked {
             input,
-            rules,
+            judge,
+            filters,
             obstacles,
             dt,
         };
@@ -218,8 +230,4 @@ impl Climber {
         self.state = state;
         Ok(report)
     }
-}
-
-fn is_fur(tag: &SurfaceTag) -> bool {
-    tag.kind == clamber_world::SurfaceKind::Fur
 }

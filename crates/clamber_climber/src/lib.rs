@@ -14,11 +14,12 @@ mod input;
 mod obstacle;
 mod pendulum;
 mod resize;
+mod rule;
 mod shake;
 mod state;
 mod step;
 
-pub use climber::{CanGrip, Climber, StepRules};
+pub use climber::{Climber, StepRules};
 pub use config::{
     BodyConfig, ClimberConfig, GripConfig, GroundConfig, HangConfig, HealthConfig, LedgeConfig,
     Others, OthersError, StaminaConfig, TumbleConfig,
@@ -31,6 +32,7 @@ pub use glam;
 pub use group::ClimberGroup;
 pub use input::{Blow, ClimberInput};
 pub use obstacle::ClimberObstacle;
+pub use rule::{ContactQuery, ContactRule, ContactRuleFn};
 pub use shake::Shake;
 pub use state::{ClimberMode, ClimberState, MEMORY, Support, TRANSITIONS};
 pub use step::{

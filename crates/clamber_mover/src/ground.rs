@@ -92,9 +92,10 @@ impl Mover<'_> {
     fn find_ground_beside(&mut self, probe: &GroundProbe, position: DVec3) -> Option<Ground> {
         let body = &probe.body;
         let mut best: Option<Touch> = None;
-        for touch in self.overlap(&body.crouched(), position, probe.reach) {
+        self.overlap(&body.crouched(), position, probe.reach);
+        for touch in self.overlaps() {
             let nearer = best.is_none_or(|best| touch.contact.distance < best.contact.distance);
-            if nearer && probe.is_ground(touch.normal) {
+            if nearer && probe.is_ground(touch.normal) && self.is_ground(touch) {
                 best = Some(*touch);
             }
         }
@@ -112,14 +113,15 @@ impl Mover<'_> {
     /// The first contact of the body's core along `way`, if it is ground.
     fn meet_ground(&mut self, probe: &GroundProbe, position: DVec3, way: DVec3) -> Option<Hit> {
         let hit = self.cast(&probe.body.core_at(position), way)?;
-        let is_ground = !hit.started_inside && probe.is_ground(hit.touch.normal);
-        is_ground.then_some(hit)
+        let is_level = !hit.started_inside && probe.is_ground(hit.touch.normal);
+        (is_level && self.is_ground(&hit.touch)).then_some(hit)
     }
 
-    /// The contact of the last movement that holds the body up: the most level one, if its slope is at most
+    /// The contact of the last movement that holds the body up: of those that can, the most level one, if its slope is at most
     /// `max_slope`, radians, or if the contacts together leave the body no way down. `None` if the body is not held up.
     pub fn holding_up(&self, up: DVec3, max_slope: f64) -> Option<Touch> {
-        let best = self.touched().iter().copied().reduce(|best, touch| {
+        let ground = self.touched().iter().filter(|touch| self.is_ground(touch));
+        let best = ground.copied().reduce(|best, touch| {
             if touch.normal.dot(up) > best.normal.dot(up) {
                 touch
             } else {
@@ -155,12 +157,13 @@ impl Mover<'_> {
         met: &Touch,
     ) -> Option<Touch> {
         let as_near = AS_NEAR * body.margin;
-        let overlaps = self.overlap(&body.crouched(), position, body.margin);
+        self.overlap(&body.crouched(), position, body.margin);
         let underfoot = || {
             let is_met = |touch: &&Touch| {
-                touch.obstacle == met.obstacle && touch.normal.dot(met.normal) > SAME_SIDE
+                let same_side = touch.normal.dot(met.normal) > SAME_SIDE;
+                touch.obstacle == met.obstacle && same_side && self.is_ground(touch)
             };
-            overlaps.iter().filter(is_met)
+            self.overlaps().iter().filter(is_met)
         };
         let distances = underfoot().map(|touch| touch.contact.distance);
         let nearest = distances.fold(f64::INFINITY, f64::min);
@@ -243,7 +246,7 @@ impl Mover<'_> {
             return None;
         }
         let rise = (ground.position - position).dot(probe.up);
-        if rise <= probe.body.margin {
+        if rise <= probe.body.margin || !self.is_step(&ground.touch) {
             return None;
         }
         // The body stands a margin off what its core has met, so perhaps higher than the core started.

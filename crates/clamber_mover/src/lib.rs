@@ -3,6 +3,7 @@
 mod body;
 mod characters;
 mod error;
+mod filters;
 mod grip;
 mod ground;
 mod half_spaces;
@@ -15,6 +16,7 @@ mod velocity;
 
 pub use body::MoverBody;
 pub use error::MoverError;
+pub use filters::{ContactFilter, ContactFilters};
 /// The version of glam that this crate's API uses.
 pub use glam;
 pub use ground::{Ground, GroundProbe, StepUp, slope};

@@ -6,6 +6,7 @@ use clamber_world::{
 };
 use glam::DVec3;
 
+use crate::filters::{ContactFilter, ContactFilters, accepts};
 use crate::half_spaces::HalfSpace;
 use crate::surroundings::Surroundings;
 use crate::{Hit, MoverBody, MoverError, Touch};
@@ -67,6 +68,7 @@ const LONGEST: f64 = 1e150;
 pub struct Mover<'a> {
     pub(crate) obstacles: &'a [(ObstacleId, &'a dyn Obstacle)],
     dt: f64,
+    pub(crate) filters: ContactFilters<'a>,
     /// True if there is another character among the obstacles.
     pub(crate) has_characters: bool,
     pub(crate) memory: &'a mut MoverMemory,
@@ -107,9 +109,16 @@ impl<'a> Mover<'a> {
         Ok(Self {
             obstacles,
             dt,
+            filters: ContactFilters::default(),
             has_characters,
             memory,
         })
+    }
+
+    /// The same mover with filters: which contacts block, hold up, and are stepped onto.
+    #[must_use]
+    pub fn with_filters(self, filters: ContactFilters<'a>) -> Self {
+        Self { filters, ..self }
     }
 
     /// Length of the tick, seconds.
@@ -180,6 +189,9 @@ impl<'a> Mover<'a> {
             memory.contacts.clear();
             obstacle.overlap_capsule(&capsule, &mut memory.contacts);
             for contact in &memory.contacts {
+                if !accepts(self.filters.solid, id, obstacle, contact) {
+                    continue;
+                }
                 let normal = if contact.distance.abs() < ON_FACE * body.radius {
                     contact.normal
                 } else {
@@ -208,9 +220,7 @@ impl<'a> Mover<'a> {
     /// The first contact over the tick of a capsule whose ends move by `ways`, against obstacles that move as well.
     /// `capsule` is the capsule at the start of the tick.
     pub fn sweep(&mut self, capsule: &WorldCapsule, ways: [DVec3; 2]) -> Option<Hit> {
-        self.first(capsule, ways, |_, obstacle| {
-            obstacle.cast_capsule(capsule, ways, TargetMotion::Moving)
-        })
+        self.first_solid(capsule, ways, TargetMotion::Moving)
     }
 
     /// [`Mover::sweep`] restricted to the contacts that `counts` accepts. `counts` is called, in any order, with the
@@ -221,8 +231,11 @@ impl<'a> Mover<'a> {
         ways: [DVec3; 2],
         mut counts: impl FnMut(&Hit) -> bool,
     ) -> Option<Hit> {
+        let solid = self.filters.solid;
         self.first(capsule, ways, |id, obstacle| {
-            let mut counts = |sweep: &SweepContact| counts(&Hit::new(id, sweep));
+            let mut counts = |sweep: &SweepContact| {
+                accepts(solid, id, obstacle, &sweep.contact) && counts(&Hit::new(id, sweep))
+            };
             obstacle.cast_capsule_where(capsule, ways, TargetMotion::Moving, &mut counts)
         })
     }
@@ -234,8 +247,11 @@ impl<'a> Mover<'a> {
         ways: [DVec3; 2],
         mut counts: impl FnMut(&Hit) -> bool,
     ) -> Option<Hit> {
+        let solid = self.filters.solid;
         self.first(capsule, ways, |id, obstacle| {
-            let mut counts = |sweep: &SweepContact| counts(&Hit::new(id, sweep));
+            let mut counts = |sweep: &SweepContact| {
+                accepts(solid, id, obstacle, &sweep.contact) && counts(&Hit::new(id, sweep))
+            };
             let moving = TargetMotion::Moving;
             obstacle.cast_capsule_past_overlaps(capsule, ways, moving, &mut counts)
         })
@@ -258,9 +274,7 @@ impl<'a> Mover<'a> {
     /// The first contact of a capsule that moves by `way`, metres in world space. The obstacles stand still meanwhile,
     /// in their state at the end of the tick. `None` if it meets nothing, and for input that is not finite.
     pub fn cast(&mut self, capsule: &WorldCapsule, way: DVec3) -> Option<Hit> {
-        self.first(capsule, [way; 2], |_, obstacle| {
-            obstacle.cast_capsule(capsule, [way; 2], TargetMotion::Still)
-        })
+        self.first_solid(capsule, [way; 2], TargetMotion::Still)
     }
 
     /// The first contact along a ray, against obstacles in their current state. `length` is in metres and may be
@@ -277,11 +291,19 @@ impl<'a> Mover<'a> {
         } else {
             (origin, f64::INFINITY)
         };
+        let solid = self.filters.solid;
         let surroundings = &mut self.memory.surroundings;
         let near = surroundings.near(self.obstacles, middle, reach);
         let mut first: Option<Touch> = None;
         for (id, obstacle) in near {
-            let Some(contact) = obstacle.cast_ray(origin, direction, length) else {
+            let contact = match solid {
+                None => obstacle.cast_ray(origin, direction, length),
+                Some(is_solid) => {
+                    let mut counts = |contact: &Contact| is_solid(id, obstacle, contact);
+                    obstacle.cast_ray_where(origin, direction, length, &mut counts)
+                }
+            };
+            let Some(contact) = contact else {
                 continue;
             };
             let nearer = |best: Touch| contact.distance < best.contact.distance;
@@ -305,6 +327,22 @@ impl<'a> Mover<'a> {
     /// input that is not finite.
     pub fn is_free(&mut self, capsule: &WorldCapsule, way: DVec3) -> bool {
         self.cast(capsule, way).is_none()
+    }
+
+    fn first_solid(
+        &mut self,
+        capsule: &WorldCapsule,
+        ways: [DVec3; 2],
+        target: TargetMotion,
+    ) -> Option<Hit> {
+        let solid = self.filters.solid;
+        self.first(capsule, ways, |id, obstacle| {
+            let Some(is_solid) = solid else {
+                return obstacle.cast_capsule(capsule, ways, target);
+            };
+            let mut counts = |sweep: &SweepContact| is_solid(id, obstacle, &sweep.contact);
+            obstacle.cast_capsule_where(capsule, ways, target, &mut counts)
+        })
     }
 
     fn first(
@@ -333,6 +371,21 @@ impl<'a> Mover<'a> {
             }
         }
         first
+    }
+
+    /// True if a contact can hold a body up, by [`ContactFilters::ground`].
+    pub(crate) fn is_ground(&self, touch: &Touch) -> bool {
+        self.is_accepted(self.filters.ground, touch)
+    }
+
+    /// True if walking may climb onto a contact, by [`ContactFilters::step`].
+    pub(crate) fn is_step(&self, touch: &Touch) -> bool {
+        self.is_accepted(self.filters.step, touch)
+    }
+
+    fn is_accepted(&self, filter: Option<&ContactFilter<'_>>, touch: &Touch) -> bool {
+        let obstacle = filter.and_then(|_| self.obstacle(touch.obstacle));
+        obstacle.is_none_or(|obstacle| accepts(filter, touch.obstacle, obstacle, &touch.contact))
     }
 
     /// True if the body is pressed into a contact's face, and not deep: pushing out moves it back to where it went in.

@@ -498,15 +498,18 @@ impl Mover<'_> {
             let rise = touch.normal.dot(up);
             let level = (touch.normal - up * rise).normalize_or_zero();
             let lean = touch.normal.dot(level);
+            let is_wall = || {
+                rise < libm::cos(max_slope) && lean > 0.0 || lean > FLUSH && !self.is_step(&touch)
+            };
             // Too steep to stand on, and no ceiling: treated as vertical.
-            let is_steep = rise > LEVEL && rise < libm::cos(max_slope) && lean > 0.0;
-            is_steep.then(|| {
-                let displacement = position - path.start;
-                let into = offset - touch.normal.dot(displacement);
-                HalfSpace {
-                    normal: level,
-                    offset: level.dot(displacement) + into / lean,
-                }
+            if !(rise > LEVEL && is_wall()) {
+                return None;
+            }
+            let displacement = position - path.start;
+            let into = offset - touch.normal.dot(displacement);
+            Some(HalfSpace {
+                normal: level,
+                offset: level.dot(displacement) + into / lean,
             })
         });
         self.add_contact(path, touch, half_space, wall);
@@ -608,3 +611,7 @@ const OUT: f64 = 30.0;
 
 /// Slopes this close to vertical are walls already: sine of the angle from the vertical.
 const LEVEL: f64 = 1e-3;
+
+/// What may not be stepped onto is no wall where it is this close to level: sine of the slope. As a wall, nearly level
+/// ground would push a body far aside. A ball rolls over edges up to a 400th of its radius unhindered.
+const FLUSH: f64 = 0.07;

@@ -13,7 +13,8 @@ pub struct GraphConfig {
     /// patches follow narrow ways better, and cost more.
     pub spacing: f64,
     /// Materials that can be gripped. Default: fur. The climber's own steps do not know of it: give them the same rule, as
-    /// `StepRules::gripping(&|_, contact| config.can_grip(&contact.tag))`, or it does not find the holds that the graph promises.
+    /// `StepRules::by(&|query| query.usual().with_grip(config.can_grip(&query.tag())))`, or it does not find the holds that the
+    /// graph promises.
     pub grips: Vec<SurfaceKind>,
 }
 

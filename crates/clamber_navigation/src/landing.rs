@@ -23,7 +23,7 @@ pub struct Flight<'a> {
     pub climber: &'a Climber,
     /// Its input in every tick: one that steers or grips counts.
     pub input: &'a ClimberInput,
-    /// What it can grip and how it pushes, as in its own steps.
+    /// Its rules for contacts, and its modes, as in its own steps.
     pub rules: &'a StepRules<'a>,
     /// The creature's obstacle id.
     pub creature: ObstacleId,

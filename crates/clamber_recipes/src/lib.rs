@@ -22,6 +22,8 @@ pub mod own_engine {}
 pub mod person {}
 #[doc = include_str!("../../../docs/recipes/recording.md")]
 pub mod recording {}
+#[doc = include_str!("../../../docs/recipes/rules.md")]
+pub mod rules {}
 #[doc = include_str!("../../../docs/recipes/saving.md")]
 pub mod saving {}
 #[doc = include_str!("../../../docs/recipes/scaling.md")]

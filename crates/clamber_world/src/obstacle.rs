@@ -249,6 +249,35 @@ pub trait Obstacle {
         })
     }
 
+    /// [`Obstacle::cast_ray`] restricted to the contacts that `counts` accepts. `counts` is called, in any order, with
+    /// contacts that could be the first.
+    ///
+    /// The default asks `cast_ray` and, if `counts` refuses its contact, casts a ball of radius 0, as the default
+    /// `cast_ray` does.
+    fn cast_ray_where(
+        &self,
+        origin: DVec3,
+        direction: DVec3,
+        max_distance: f64,
+        counts: &mut dyn FnMut(&Contact) -> bool,
+    ) -> Option<Contact> {
+        let first = self.cast_ray(origin, direction, max_distance)?;
+        if counts(&first) {
+            return Some(first);
+        }
+        let length = max_distance.min(farthest(self.bounds(), origin));
+        let way = direction.try_normalize()? * length;
+        let at = |sweep: &SweepContact| Contact {
+            distance: sweep.time * length,
+            ..sweep.contact
+        };
+        let ball = WorldCapsule::ball(origin, 0.0);
+        let mut counts = |sweep: &SweepContact| counts(&at(sweep));
+        let still = TargetMotion::Still;
+        let hit = self.cast_capsule_where(&ball, [way; 2], still, &mut counts)?;
+        Some(at(&hit))
+    }
+
     /// The obstacle's point nearest to `point`, up to `max_distance` metres.
     ///
     /// The default collects all overlaps of a ball of that radius, and so allocates. Without [`Obstacle::bounds`] the

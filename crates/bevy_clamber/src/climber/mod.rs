@@ -19,4 +19,4 @@ pub(crate) use obstacles::DrawnTouchable;
 #[cfg(feature = "colossus")]
 pub(crate) use obstacles::Touchable;
 pub use plugin::ClimberPlugin;
-pub use rules::{ClimberModes, Grip, GripRule};
+pub use rules::{ClimberModes, ClimberRule, ClimberTouch};

@@ -1,43 +1,63 @@
+use std::ops::Deref;
 use std::sync::Arc;
 
 use bevy_ecs::prelude::*;
-use clamber_climber::CustomMode;
-use clamber_world::Contact;
+use clamber_climber::{ContactQuery, ContactRule, CustomMode};
 
-/// Decides what climbers can grip: as a resource for all of them, as a component for one. Without either, it is what has
-/// the tag [`SurfaceKind::Fur`](clamber_surface::mesh::SurfaceKind::Fur).
+/// Decides what climbers may stand on, step onto, hang from, grip and pass through, and with which friction: as a resource
+/// for all of them, as a component for one. Without either, everything is solid, fur is gripped and other climbers are not
+/// held ([`ContactQuery::usual`]).
 ///
 /// ```
 /// # use bevy_app::App;
 /// # use bevy_clamber::prelude::*;
+/// # use bevy_ecs::prelude::*;
 /// # let mut app = App::new();
-/// // Everything but stone.
-/// app.insert_resource(GripRule::new(|grip| grip.contact.tag.kind != SurfaceKind::Stone));
+/// # let (door, owner) = (Entity::PLACEHOLDER, Entity::PLACEHOLDER);
+/// // Everything but stone is gripped, and a door lets its owner pass.
+/// app.insert_resource(ClimberRule::new(move |at| {
+///     if at.entity == Some(door) && at.climber == owner {
+///         return ContactRule::PASS;
+///     }
+///     at.usual().with_grip(at.tag().kind != SurfaceKind::Stone)
+/// }));
 /// ```
+///
+/// It must be a pure function: during a tick it is called any number of times and in any order.
 #[derive(Resource, Clone)]
-pub struct GripRule(Arc<dyn Fn(&Grip<'_>) -> bool + Send + Sync>);
+pub struct ClimberRule(Arc<RuleFn>);
 
-/// A hold that a climber may grip.
-#[derive(Clone, Copy, Debug)]
+type RuleFn = dyn Fn(&ClimberTouch<'_>) -> ContactRule + Send + Sync;
+
+/// A contact of a climber that a [`ClimberRule`] decides about: a [`ContactQuery`], with the entities.
+#[derive(Clone, Copy)]
 #[non_exhaustive]
-pub struct Grip<'a> {
+pub struct ClimberTouch<'a> {
     /// The climber.
     pub climber: Entity,
-    /// What it would hold: a surface, a climber, a [`CustomObstacle`](crate::CustomObstacle), or a collider of the
+    /// What it touches: a surface, a climber, a [`CustomObstacle`](crate::CustomObstacle), or a collider of the
     /// physics engine. `None` for a collider that has no entity.
     pub entity: Option<Entity>,
-    /// The contact, in world space.
-    pub contact: &'a Contact,
+    /// The contact, in world space, and the climber as it was at the tick's beginning.
+    pub query: &'a ContactQuery<'a>,
 }
 
-impl GripRule {
+impl<'a> Deref for ClimberTouch<'a> {
+    type Target = ContactQuery<'a>;
+
+    fn deref(&self) -> &ContactQuery<'a> {
+        self.query
+    }
+}
+
+impl ClimberRule {
     /// A rule by a function.
-    pub fn new(can_grip: impl Fn(&Grip<'_>) -> bool + Send + Sync + 'static) -> Self {
-        Self(Arc::new(can_grip))
+    pub fn new(rule: impl Fn(&ClimberTouch<'_>) -> ContactRule + Send + Sync + 'static) -> Self {
+        Self(Arc::new(rule))
     }
 
-    pub(super) fn allows(&self, grip: &Grip<'_>) -> bool {
-        (self.0)(grip)
+    pub(super) fn decide(&self, touch: &ClimberTouch<'_>) -> ContactRule {
+        (self.0)(touch)
     }
 }
 

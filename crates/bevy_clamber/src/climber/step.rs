@@ -5,16 +5,18 @@ use bevy_ecs::query::QueryData;
 use bevy_math::{Quat, Vec3};
 use bevy_time::Time;
 use bevy_transform::components::Transform;
-use clamber_climber::{ClimberConfig, ClimberGroup, CustomMode, StepReport, StepRules};
+use clamber_climber::{
+    ClimberConfig, ClimberGroup, ContactQuery, CustomMode, StepReport, StepRules,
+};
 use clamber_surface::mesh::MeshId;
-use clamber_world::{Attachment, Contact, MaterialPoint, ObstacleId, SurfaceKind};
+use clamber_world::{Attachment, MaterialPoint, ObstacleId};
 use glam::{DMat3, DQuat, DVec3};
 
 use super::component::{Climber, ClimberBody, ClimberFilter, ClimberState};
 use super::events::{Told, tell_event};
 use super::input::{ClimberInput, LatchedInput};
 use super::obstacles::{Touchable, touched};
-use super::rules::{ClimberModes, Grip, GripRule};
+use super::rules::{ClimberModes, ClimberRule, ClimberTouch};
 use super::shown::Shown;
 use crate::{PosedSurface, WorldOrigin};
 
@@ -144,14 +146,14 @@ pub(super) struct Stepped {
     input: &'static mut ClimberInput,
     latched: &'static mut LatchedInput,
     filter: Option<&'static ClimberFilter>,
-    grip_rule: Option<&'static GripRule>,
+    rule: Option<&'static ClimberRule>,
 }
 
 /// Steps all climbers.
 pub(super) fn step_climbers(
     time: Res<Time>,
     touchable: Touchable<'_, '_>,
-    grip_rule: Option<Res<GripRule>>,
+    rule: Option<Res<ClimberRule>>,
     modes: Option<Res<ClimberModes>>,
     mut climbers: Query<Stepped, With<Climber>>,
     mut group: Local<ClimberGroup>,
@@ -177,18 +179,18 @@ pub(super) fn step_climbers(
         let input = stepped
             .latched
             .take(stepped.input.bypass_change_detection());
-        let rule = stepped.grip_rule.or(grip_rule.as_deref());
-        let can_grip = |id: ObstacleId, contact: &Contact| match rule {
-            None => contact.tag.kind == SurfaceKind::Fur,
-            Some(rule) => rule.allows(&Grip {
+        let rule = stepped.rule.or(rule.as_deref());
+        let decide = |query: &ContactQuery<'_>| match rule {
+            None => query.usual(),
+            Some(rule) => rule.decide(&ClimberTouch {
                 climber: entity,
-                entity: touchable.entity(id, Some(&contact.material)),
-                contact,
+                entity: touchable.entity(query.id, Some(&query.contact.material)),
+                query,
             }),
         };
         let modes: Vec<&dyn CustomMode> = modes.iter().map(|mode| &**mode as _).collect();
         let rules = StepRules {
-            can_grip: &can_grip,
+            contact: rule.is_some().then_some(&decide),
             modes: &modes,
             id: Some(ObstacleId(entity.to_bits())),
             ..StepRules::default()

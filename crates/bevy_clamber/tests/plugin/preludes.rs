@@ -27,7 +27,7 @@ macro_rules! use_each {
 
 use_each! { ALWAYS, cfg(all()),
     AnchorLost ClamberPlugins ClamberSystems Climber ClimberBlow ClimberBody ClimberCamera ClimberCameraInput
-    ClimberCameraPlugin ClimberFilter ClimberInput ClimberModes ClimberPlugin ClimberState ColliderStatus ColliderTag CustomObstacle DrawnSurfaceQuery EntityHit GripRule PoseTiming
+    ClimberCameraPlugin ClimberFilter ClimberInput ClimberModes ClimberPlugin ClimberRule ClimberState ColliderStatus ColliderTag CustomObstacle DrawnSurfaceQuery ContactRule EntityHit PoseTiming
     PosedSurface SkinnedCollider SurfaceAnchor SurfaceFilter SurfaceKind SurfaceQuery SurfaceTag TargetMotion WorldOrigin
 }
 use_each! { COLOSSUS, cfg(feature = "colossus"),

@@ -313,8 +313,12 @@ fn step(riders: &mut [Rider], giants: &[Giant], terrain: &RapierTerrain<'_>) -> 
                 },
             };
             let climber = &mut rider.climber;
-            let stepped =
-                climber.step_with(&input, obstacles, &StepRules::gripping(&|_, _| true), DT);
+            let stepped = climber.step_with(
+                &input,
+                obstacles,
+                &StepRules::by(&|query| query.usual().with_grip(true)),
+                DT,
+            );
             stepped.map(drop).map_err(|error| error.to_string())
         },
     )

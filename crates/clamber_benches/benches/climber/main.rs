@@ -132,7 +132,12 @@ fn timed(
     stage.advance(f64::from(tick) * DT)?;
     let obstacles: [(ObstacleId, &dyn Obstacle); 1] = [(GIANT, stage.surface())];
     let start = Instant::now();
-    climber.step_with(input, &obstacles, &StepRules::gripping(&|_, _| true), DT)?;
+    climber.step_with(
+        input,
+        &obstacles,
+        &StepRules::by(&|query| query.usual().with_grip(true)),
+        DT,
+    )?;
     Ok(start.elapsed().as_secs_f64() * 1e6)
 }
 

@@ -102,7 +102,7 @@ impl Cling {
             grip: true,
             ..ClimberInput::IDLE
         };
-        let rules = StepRules::gripping(&|_, _| true);
+        let rules = StepRules::by(&|query| query.usual().with_grip(true));
         self.climber
             .step_with(&input, &obstacles, &rules, DT)
             .unwrap();

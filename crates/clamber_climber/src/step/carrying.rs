@@ -65,6 +65,7 @@ impl Tick<'_> {
         }
         let velocity_before = self.state.support_velocity.filter(|_| !was_placed);
         self.feel(&motion, was_placed);
+        self.on = self.judge.rule_of_support(&support, motion.position);
         self.state.support = Some(support);
         self.state.velocity = motion.velocity;
         self.state.base_velocity = motion.velocity;

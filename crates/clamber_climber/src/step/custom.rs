@@ -6,7 +6,7 @@ use glam::DVec3;
 use super::Tick;
 use super::moving::Intent;
 use crate::state::MEMORY;
-use crate::{ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, ClimberState};
+use crate::{ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, ClimberState, ContactRule};
 
 /// The mode after a handler has run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -207,6 +207,12 @@ impl<'a> ModeContext<'_, 'a> {
         let slope = self.tick.config.ground.max_slope;
         let position = self.tick.state.position;
         self.tick.held_up(position, slope)
+    }
+
+    /// The rule for a contact: whether it may be stood on, gripped and so on ([`StepRules::contact`](crate::StepRules)).
+    /// Contacts that are not solid are not found by [`ModeContext::mover`]; the rest of the rule is for the mode to keep.
+    pub fn rule(&self, touch: &Touch) -> ContactRule {
+        self.tick.judge.rule_of(touch)
     }
 
     /// Attaches the climber to a contact, which carries it from now on, such as a wall that it runs along. Call it

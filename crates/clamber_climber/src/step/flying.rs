@@ -1,6 +1,6 @@
 //! Falling, sliding and tumbling: motion under gravity, with contacts.
 
-use clamber_mover::Ground;
+use clamber_mover::{Ground, Touch};
 use glam::DVec3;
 
 use super::ground::GRAZING;
@@ -17,6 +17,9 @@ const STAYS_DOWN: f64 = 6.0;
 
 /// Friction on a steep slope takes at most this share of what gravity gives along it.
 const BRAKES: f64 = 0.9;
+
+/// Cosine of the slope below which ground is too level to keep off in the air: 4 degrees.
+const UPRIGHT: f64 = 0.9975;
 
 /// A share of the speed at which a body falls from the height of its radius: slower contacts do not bounce.
 const SLOW: f64 = 0.25;
@@ -93,13 +96,18 @@ impl Tick<'_> {
         let limit = self.standing_slope();
         let here = self.state.position + self.state.base_velocity * self.dt();
         self.mover.overlap(&body, here, body.margin);
-        let is_slope =
+        let is_steep =
             |normal: DVec3| self.config.slope(normal) > limit && normal.dot(up) > GRAZING;
+        // What may not be stood on is a slope as well, where it is not level.
+        let leans = |normal: DVec3| (GRAZING..UPRIGHT).contains(&normal.dot(up));
         let slopes = || {
             // By both normals: the edge of a step is no slope.
             let touches = self.mover.overlaps().iter();
             touches
-                .filter(|touch| is_slope(touch.normal) && is_slope(touch.contact.normal))
+                .filter(|touch| {
+                    let is_slope = is_steep(touch.normal) && is_steep(touch.contact.normal);
+                    is_slope || leans(touch.normal) && self.is_refused(touch)
+                })
                 .map(|touch| (touch.normal - up * touch.normal.dot(up)).normalize_or_zero())
         };
         let kept = slopes().fold(change, |kept, level| {
@@ -164,8 +172,8 @@ impl Tick<'_> {
     /// the coefficient of friction. What gravity gives it along the slope is braked by less than all, so that it never
     /// comes to rest where it cannot stand.
     fn be_braked_by_slope(&mut self, falling: DVec3) {
-        let friction = self.config.ground.slide_friction;
-        if friction == 0.0 {
+        let usual = self.config.ground.slide_friction;
+        if usual == 0.0 {
             return;
         }
         let (up, dt) = (self.config.up(), self.dt());
@@ -180,6 +188,7 @@ impl Tick<'_> {
         let Some(touch) = slope.filter(|touch| touch.normal.dot(up) > GRAZING) else {
             return;
         };
+        let friction = usual * self.friction_of(&touch);
         let own = self.state.velocity - self.mover.velocity_of(&touch);
         let along = own - touch.normal * own.dot(touch.normal);
         let pressed = (self.state.velocity - falling).dot(touch.normal).max(0.0);
@@ -207,6 +216,13 @@ impl Tick<'_> {
         if speed > RESTS * self.config.gravity.length() * self.dt() {
             self.hurt_by_fall(speed);
         }
+    }
+
+    fn friction_of(&self, touch: &Touch) -> f64 {
+        if self.rules.contact.is_none() {
+            return 1.0;
+        }
+        self.judge.rule_of(touch).usable_friction()
     }
 
     /// A speed that is slow for a body of its size under its gravity, metres a second: 0.5 for a radius of 0.4 m.
@@ -290,7 +306,8 @@ impl Tick<'_> {
         }
         let along = self.state.velocity - base;
         let sliding = along - touch.normal * along.dot(touch.normal);
-        let braked = tumble.friction * self.config.gravity.length() * self.dt();
+        let friction = tumble.friction * self.friction_of(touch);
+        let braked = friction * self.config.gravity.length() * self.dt();
         let left = (sliding.length() - braked).max(0.0);
         self.state.velocity += sliding.normalize_or_zero() * left - sliding;
         let rest = (self.state.velocity - base).length();

@@ -1,7 +1,7 @@
 //! Other climbers that overlap this one: both give way, and nobody else is moved by it.
 
 use clamber_mover::IntoOthers;
-use clamber_world::{CharacterBody, ObstacleId};
+use clamber_world::{CharacterBody, Obstacle, ObstacleId};
 use glam::DVec3;
 
 use super::Tick;
@@ -58,7 +58,18 @@ impl Tick<'_> {
 
     fn others(&self) -> impl Iterator<Item = (ObstacleId, CharacterBody)> {
         let all = self.obstacles.iter();
-        all.filter_map(|(id, obstacle)| Some((*id, obstacle.character()?)))
+        let all = all.filter_map(|(id, obstacle)| Some((*id, *obstacle, obstacle.character()?)));
+        let solid = all.filter(|(id, obstacle, _)| self.is_stopped_by(*id, *obstacle));
+        solid.map(|(id, _, other)| (id, other))
+    }
+
+    /// False for another climber that the rule for contacts lets pass.
+    fn is_stopped_by(&self, id: ObstacleId, other: &dyn Obstacle) -> bool {
+        if self.judge.rules.contact.is_none() {
+            return true;
+        }
+        let contact = other.closest_point(self.began, f64::INFINITY);
+        contact.is_none_or(|contact| self.judge.rule(id, other, &contact).solid)
     }
 
     fn parting_from(&self, id: ObstacleId, other: &CharacterBody) -> DVec3 {

@@ -55,7 +55,9 @@ impl Tick<'_> {
         let body = self.body();
         let margin = body.margin;
         self.mover.overlap(&body, position, margin);
-        let is_steep = |touch: &Touch| self.config.slope(touch.contact.normal) > max_slope;
+        let is_steep = |touch: &Touch| {
+            self.config.slope(touch.contact.normal) > max_slope || self.is_refused(touch)
+        };
         let ends = |slope: &Touch| {
             let mut level = self
                 .mover

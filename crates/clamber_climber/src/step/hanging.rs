@@ -46,6 +46,9 @@ impl Tick<'_> {
         let (Some(grip), Some(carried)) = (self.config.grip, self.carried) else {
             return self.leave(ClimberMode::Falling);
         };
+        if let Some(next) = self.be_refused_by_hold(self.on.grip) {
+            return next;
+        }
         if !self.input.grip {
             self.event(ClimberEvent::Released);
             self.state.open_handed = OPEN_HANDED;

@@ -92,6 +92,9 @@ impl Tick<'_> {
             return self.leave(ClimberMode::Falling);
         };
         let normal = carried.normal();
+        if let Some(next) = self.be_refused_by_hold(self.on.grip) {
+            return next;
+        }
         if !self.input.grip {
             return self.let_go(&carried);
         }
@@ -167,10 +170,10 @@ impl Tick<'_> {
         let too_far = (offset.dot(normal) - self.config.body.radius).max(0.0);
         let drawn = normal * too_far.min(self.draw_speed() * dt);
         self.drawn_up -= drawn.dot(self.config.up()).min(0.0);
-        let velocity = wish * grip.climb_speed;
+        let velocity = wish * (grip.climb_speed / self.slowness()) + self.slip(normal, grip);
         let step = velocity * dt;
         let target = carried.position + step - drawn;
-        let intent = if wish == DVec3::ZERO {
+        let intent = if velocity == DVec3::ZERO {
             Intent::Stay
         } else {
             Intent::Go
@@ -181,7 +184,7 @@ impl Tick<'_> {
             self.state.position = position;
             return self.be_torn_off(carried);
         }
-        if wish == DVec3::ZERO && position.distance(target) <= self.config.body.margin {
+        if velocity == DVec3::ZERO && position.distance(target) <= self.config.body.margin {
             self.settle(carried, position, carried.velocity());
             return NextMode::Stay;
         }
@@ -212,6 +215,16 @@ impl Tick<'_> {
         let moved = self.slide(&self.path(carried.position), Intent::Stay);
         self.settle(carried, moved.position, carried.velocity());
         NextMode::Stay
+    }
+
+    /// The velocity at which hands slip down a hold that is slippery, metres a second.
+    fn slip(&self, normal: DVec3, grip: &GripConfig) -> DVec3 {
+        let missing = 1.0 - self.on.usable_friction();
+        let up = self.config.up();
+        if missing <= 0.0 {
+            return DVec3::ZERO;
+        }
+        (normal * normal.dot(up) - up) * (missing * grip.climb_speed)
     }
 
     /// Speed at which arms draw the body, metres a second.
@@ -251,7 +264,8 @@ impl Tick<'_> {
         grip: &GripConfig,
         holds: Option<DVec3>,
     ) -> Option<Touch> {
-        let (input, rules) = (self.input, self.rules);
+        let input = self.input;
+        let judge = self.judge;
         let body = self.body();
         let along = self.state.holding.along;
         let holds = holds.map(|held| {
@@ -268,7 +282,7 @@ impl Tick<'_> {
             &body,
             position,
             grip.reach,
-            |touch| (rules.can_grip)(touch.obstacle, &touch.contact),
+            |touch| judge.grips(touch),
             |touch| holds.map_or(0.0, |holds| leads_on(input, holds, touch.normal)),
         )?;
         self.carries(&touch).then_some(touch)

@@ -97,13 +97,16 @@ impl Tick<'_> {
     fn find_ledge(&mut self, from: DVec3, facing: DVec3, config: &LedgeConfig) -> Option<Ledge> {
         let probe = self.ledge_probe(facing, config);
         let ledge = self.mover.find_ledge(&probe, from)?;
-        self.carries(&ledge.touch).then_some(ledge)
+        self.can_hang_from(&ledge.touch).then_some(ledge)
     }
 
     pub(super) fn hang_from_ledge(&mut self) -> NextMode {
         let (Some(config), Some(carried)) = (self.config.ledge, self.carried) else {
             return self.leave(ClimberMode::Falling);
         };
+        if let Some(next) = self.be_refused_by_hold(self.on.hang) {
+            return next;
+        }
         if self.config.slope(carried.normal()) > self.standing_slope() {
             self.event(ClimberEvent::Slipped);
             return self.leave(ClimberMode::Falling);
@@ -118,7 +121,11 @@ impl Tick<'_> {
             let speed = grip.map_or(self.config.ground.jump_speed, |grip| grip.jump_speed);
             return self.jump_off(-self.state.heading, speed);
         }
-        let wish = self.ledge_wish();
+        let mut wish = self.ledge_wish();
+        if !self.on.stand {
+            // There is nothing to pull itself up onto.
+            wish.up = wish.up.min(0.0);
+        }
         let pulls_up = self.is_pulling_up(wish.up);
         if wish.up < -UPWARD
             && !pulls_up

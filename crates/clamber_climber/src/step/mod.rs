@@ -13,6 +13,7 @@ mod friends;
 mod ground;
 mod hanging;
 mod holding;
+mod judge;
 mod ledge;
 mod moving;
 mod pushing;
@@ -22,17 +23,18 @@ pub use custom::{CustomMode, ModeContext, NextMode};
 pub use flying::{FlyingMemory, TumblingMemory};
 pub use hanging::HangingMemory;
 pub use holding::HoldingMemory;
+pub(crate) use judge::Judge;
 pub use ledge::LedgeHangingMemory;
 pub use standing::StandingMemory;
 
-use clamber_mover::{Mover, MoverBody, MoverMemory};
+use clamber_mover::{ContactFilters, Mover, MoverBody, MoverMemory};
 use clamber_world::{Obstacle, ObstacleId};
 use glam::DVec3;
 
 use crate::climber::StepRules;
 use crate::{
     ClimberConfig, ClimberContact, ClimberError, ClimberEvent, ClimberInput, ClimberMode,
-    ClimberState, StepReport,
+    ClimberState, ContactRule, StepReport,
 };
 pub(crate) use carrying::CONTINUOUS;
 use carrying::Carried;
@@ -63,7 +65,8 @@ const CONTACTS: usize = 64;
 #[derive(Clone, Copy)]
 pub(crate) struct Asked<'a> {
     pub(crate) input: &'a ClimberInput,
-    pub(crate) rules: &'a StepRules<'a>,
+    pub(crate) judge: Judge<'a>,
+    pub(crate) filters: ContactFilters<'a>,
     pub(crate) obstacles: &'a [(ObstacleId, &'a dyn Obstacle)],
     /// Length of the tick, seconds.
     pub(crate) dt: f64,
@@ -74,6 +77,7 @@ pub(crate) struct Tick<'a> {
     config: &'a ClimberConfig,
     input: &'a ClimberInput,
     rules: &'a StepRules<'a>,
+    judge: Judge<'a>,
     obstacles: &'a [(ObstacleId, &'a dyn Obstacle)],
     state: &'a mut ClimberState,
     mover: Mover<'a>,
@@ -98,6 +102,8 @@ pub(crate) struct Tick<'a> {
     struck: DVec3,
     /// How its support has carried it in this tick.
     carried: Option<Carried>,
+    /// The rule for the support that has carried it. Everything is allowed without one.
+    on: ContactRule,
     /// How far arms have drawn the body upwards in this tick, metres.
     drawn_up: f64,
     /// True if the target of a movement was not finite.
@@ -126,18 +132,20 @@ impl<'a> Tick<'a> {
     ) -> Result<Self, ClimberError> {
         let Asked {
             input,
-            rules,
+            judge,
+            filters,
             obstacles,
             dt,
         } = asked;
         input.validate()?;
-        let mover = Mover::new(obstacles, dt, &mut scratch.mover)?;
+        let mover = Mover::new(obstacles, dt, &mut scratch.mover)?.with_filters(filters);
         scratch.contacts.clear();
         scratch.contacts.reserve(CONTACTS);
         Ok(Self {
             config,
             input,
-            rules,
+            rules: judge.rules,
+            judge,
             obstacles,
             mover,
             report: StepReport {
@@ -155,6 +163,7 @@ impl<'a> Tick<'a> {
             state,
             struck: DVec3::ZERO,
             carried: None,
+            on: ContactRule::GRIP,
             drawn_up: 0.0,
             is_lost: false,
             has_moved: false,

@@ -38,7 +38,8 @@ impl Tick<'_> {
         let normal = carried.normal();
         let own = self.own_velocity();
         if let Some(next) = self
-            .be_thrown(normal)
+            .be_refused_by_ground(own)
+            .or_else(|| self.be_thrown(normal))
             .or_else(|| self.be_knocked_down())
             .or_else(|| self.be_lifted_off(normal, own))
             .or_else(|| self.grip_or_catch())
@@ -56,10 +57,17 @@ impl Tick<'_> {
         if self.state.jump_buffer > 0.0 {
             return self.jump(walk);
         }
-        if walk == DVec3::ZERO {
+        // A slide is not over within a tick, unlike a start of the feet.
+        let mean = if self.is_slippery() {
+            let own = own - normal * own.dot(normal);
+            (own + walk) * 0.5
+        } else {
+            walk
+        };
+        if walk == DVec3::ZERO && mean == DVec3::ZERO {
             self.stay(&carried)
         } else {
-            self.walk(&carried, walk)
+            self.walk(&carried, walk, mean)
         }
     }
 
@@ -112,10 +120,11 @@ impl Tick<'_> {
         NextMode::Stay
     }
 
-    /// Walks relative to its ground, and finds the ground at its new position.
-    fn walk(&mut self, carried: &Carried, walk: DVec3) -> NextMode {
+    /// Walks relative to its ground, and finds the ground at its new position. `mean` is its velocity over the tick.
+    fn walk(&mut self, carried: &Carried, walk: DVec3, mean: DVec3) -> NextMode {
         if self.input.walk != DVec3::ZERO {
-            self.face(walk);
+            let slides = self.is_slippery();
+            self.face(if slides { self.input.walk } else { walk });
         }
         let limit = self.standing_slope();
         let (up, normal) = (self.config.up(), carried.normal());
@@ -127,7 +136,7 @@ impl Tick<'_> {
             normal
         };
         let press = onto * (PRESS * self.config.body.margin);
-        let target = carried.position + walk * self.dt();
+        let target = carried.position + mean * self.dt();
         let path = Path {
             walking: Some(Walking {
                 up,
@@ -248,16 +257,33 @@ impl Tick<'_> {
         // Along the ground, in the input's direction as seen from above.
         let rise = up * (-level.dot(normal) / normal.dot(up).max(f64::MIN_POSITIVE));
         let along = (level + rise).try_normalize().unwrap_or(DVec3::ZERO);
-        let wanted = along * (share * ground.walk_speed);
-        let own = own - normal * own.dot(normal);
-        let is_fast = own.length() > ground.walk_speed * EXCESS;
-        let change = if is_fast || self.state.standing.shoved {
-            ground.friction
+        let fastest = ground.walk_speed / self.slowness();
+        let wanted = along * (share * fastest);
+        let mut own = own - normal * own.dot(normal);
+        let is_fast = own.length() > fastest * EXCESS;
+        let friction = self.on.usable_friction();
+        let mut change = if is_fast || self.state.standing.shoved {
+            ground.friction * friction.max(1.0)
         } else {
             ground.acceleration
         };
+        if friction < 1.0 {
+            change = change.min(ground.friction * friction);
+            let gravity = self.config.gravity;
+            own += (gravity - normal * gravity.dot(normal)) * self.dt();
+        }
         let walk = own.move_towards(wanted, change * self.dt());
         self.state.standing.shoved &= walk != wanted;
         walk
+    }
+
+    /// True if its feet slip on its ground.
+    fn is_slippery(&self) -> bool {
+        self.on.usable_friction() < 1.0
+    }
+
+    /// How many times slower than usual it walks and climbs on its support.
+    pub(super) fn slowness(&self) -> f64 {
+        self.on.usable_friction().max(1.0)
     }
 }

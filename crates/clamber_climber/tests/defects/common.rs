@@ -1,6 +1,8 @@
 //! Helpers that several of the tests share.
 
-use clamber_climber::{Climber, ClimberEvent, ClimberInput, ClimberState, StepReport, StepRules};
+use clamber_climber::{
+    Climber, ClimberEvent, ClimberInput, ClimberState, ContactQuery, StepReport, StepRules,
+};
 use clamber_surface::surface::SkinnedSurface;
 use clamber_world::rapier3d::prelude::{ColliderBuilder, Vector};
 use clamber_world::{
@@ -44,8 +46,8 @@ pub(crate) fn tick_gripping(
     input: &ClimberInput,
     can_grip: bool,
 ) -> StepReport {
-    let can_grip = move |_: ObstacleId, _: &Contact| can_grip;
-    let rules = StepRules::gripping(&can_grip);
+    let rule = move |query: &ContactQuery<'_>| query.usual().with_grip(can_grip);
+    let rules = StepRules::by(&rule);
     climber
         .step_with(input, &list(obstacles), &rules, DT)
         .unwrap()

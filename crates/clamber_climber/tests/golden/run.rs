@@ -70,7 +70,12 @@ fn play_on_these_threads(run: &mut GoldenRun, level: SimdLevel) {
                 [(ObstacleId(0), &floor), (TUBE, &surface)];
             let input = input(index, tick);
             climber
-                .step_with(&input, &obstacles, &StepRules::gripping(&|_, _| true), TICK)
+                .step_with(
+                    &input,
+                    &obstacles,
+                    &StepRules::by(&|query| query.usual().with_grip(true)),
+                    TICK,
+                )
                 .unwrap();
             *climber.state()
         });

@@ -179,7 +179,7 @@ fn step(
         .step_with(
             &input,
             &obstacles,
-            &StepRules::gripping(&|id, _| id.0 < BODIES),
+            &StepRules::by(&|query| query.usual().with_grip(query.id.0 < BODIES)),
             TICK,
         )
         .unwrap();

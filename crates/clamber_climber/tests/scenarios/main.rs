@@ -27,6 +27,7 @@ mod platforms;
 mod plays;
 mod pull_ups;
 mod queries;
+mod rules;
 mod skins;
 mod stage;
 mod stairs;

@@ -44,7 +44,8 @@ impl Arena {
         self.step_with(inputs, terrain, &StepRules::default())
     }
 
-    /// [`Arena::step`] by a game's own rules for climbers: what can be gripped, and custom modes.
+    /// [`Arena::step`] by a game's own rules for climbers: for contacts, and custom modes. Each fighter's climber has
+    /// [`fighter_obstacle`] as [`StepRules::id`], whatever the rules say.
     ///
     /// # Errors
     /// As [`Arena::step`].

@@ -1,7 +1,7 @@
 use std::cell::Cell;
 
 use super::*;
-use crate::{Arm, Path, Walking};
+use crate::{Arm, GroundProbe, Path, Walking};
 
 /// A ball with a radius of 1 m and with bounds, so that distant queries skip it. It counts its overlap queries.
 struct Ball(DVec3, Cell<usize>);
@@ -122,5 +122,76 @@ fn a_path_that_is_not_finite_leaves_the_body_at_its_start() {
             let moved = mover.slide(&path);
             assert_eq!((moved.position, moved.is_clear), (DVec3::ZERO, false));
         }
+    }
+}
+
+/// Two floors above each other, of which the upper one is passed: queries of every kind find the lower one, in either
+/// order of the two.
+#[test]
+fn what_is_not_solid_is_not_there_for_any_query() {
+    let [upper, lower] = [0.0, -2.0].map(|height| clamber_world::HalfSpace::below(height));
+    let [upper, lower]: [(ObstacleId, &dyn Obstacle); 2] =
+        [(ObstacleId(1), &upper), (ObstacleId(2), &lower)];
+    let is_solid = |id: ObstacleId, _: &dyn Obstacle, _: &Contact| id == ObstacleId(2);
+    let filters = ContactFilters {
+        solid: Some(&is_solid),
+        ..ContactFilters::default()
+    };
+    let body = MoverBody::ball(0.4, 0.01);
+    let [above, within] = [DVec3::Y, DVec3::NEG_Y];
+    for obstacles in [[upper, lower], [lower, upper]] {
+        let mut memory = MoverMemory::default();
+        let mover = Mover::new(&obstacles, 0.1, &mut memory).unwrap();
+        let mut mover = mover.with_filters(filters);
+        let down = DVec3::NEG_Y * 4.0;
+        let met = mover.cast(&body.at(above), down).unwrap();
+        assert!((met.time - 0.65).abs() < 1e-4, "{met:?}");
+        let met = mover.sweep(&body.at(above), [down; 2]).unwrap();
+        assert!((met.time - 0.65).abs() < 1e-4, "{met:?}");
+        let met = mover.sweep_where(&body.at(above), [down; 2], |_| true);
+        assert_eq!(met.unwrap().touch.obstacle, ObstacleId(2));
+        let met = mover.cast_ray(above, DVec3::NEG_Y, 9.0).unwrap();
+        assert!((met.contact.distance - 3.0).abs() < 1e-5, "{met:?}");
+        assert!(mover.is_free(&body.at(above), DVec3::NEG_Y * 2.0));
+        assert!(mover.overlap(&body, within, 0.5).is_empty());
+        assert_eq!(mover.overlap(&body, within, 0.7).len(), 1);
+        let moved = mover.slide(&Path::new(body, above, above + down));
+        assert!((moved.position.y + 1.6).abs() < 1e-3, "{moved:?}");
+        let probe = GroundProbe {
+            body,
+            up: DVec3::Y,
+            max_slope: 0.8,
+            reach: 0.7,
+        };
+        let ground = mover.find_ground(&probe, within).unwrap();
+        assert_eq!(ground.touch.obstacle, ObstacleId(2));
+    }
+}
+
+/// What holds nobody up is no ground, but still solid.
+#[test]
+fn what_is_no_ground_is_not_found_as_such_but_blocks() {
+    let floor = clamber_world::HalfSpace::below(0.0);
+    let obstacles: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(1), &floor)];
+    let is_ground = |_: ObstacleId, _: &dyn Obstacle, _: &Contact| false;
+    let body = MoverBody::ball(0.4, 0.01);
+    let start = DVec3::Y * 0.5;
+    let probe = GroundProbe {
+        body,
+        up: DVec3::Y,
+        max_slope: 0.8,
+        reach: 0.7,
+    };
+    for ground in [None, Some(&is_ground as &ContactFilter<'_>)] {
+        let mut memory = MoverMemory::default();
+        let mover = Mover::new(&obstacles, 0.1, &mut memory).unwrap();
+        let mut mover = mover.with_filters(ContactFilters {
+            ground,
+            ..ContactFilters::default()
+        });
+        assert_eq!(mover.find_ground(&probe, start).is_some(), ground.is_none());
+        let moved = mover.slide(&Path::new(body, start, DVec3::NEG_Y));
+        assert!((moved.position.y - 0.4).abs() < 1e-3, "{moved:?}");
+        assert_eq!(mover.holding_up(DVec3::Y, 0.8).is_some(), ground.is_none());
     }
 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use clamber_climber::{
-    CanGrip, Climber, ClimberConfig, ClimberInput, ClimberState, StepReport, StepRules,
+    Climber, ClimberConfig, ClimberInput, ClimberState, ContactRuleFn, StepReport, StepRules,
 };
 use clamber_colossus::brain::Act;
 use clamber_colossus::{AttackPhase, Brain, CreatureConfig};
@@ -175,10 +175,10 @@ impl<'a> Performer<'a> {
         &mut self,
         input: &ClimberInput,
         terrain: &dyn Obstacle,
-        can_grip: &CanGrip<'_>,
+        rule: &ContactRuleFn<'_>,
     ) -> Result<(), BattleError> {
         let before = self.surface().world_from_model().translation;
-        let rules = StepRules::gripping(can_grip);
+        let rules = StepRules::by(rule);
         match &mut self.part {
             Part::Fights(arena) => {
                 arena.step_with(&[*input], &[(TERRAIN, terrain)], &rules)?;

@@ -1,7 +1,8 @@
 use std::time::Instant;
 
 use clamber_climber::{
-    Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberState, GripConfig, StepReport,
+    Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberState, ContactQuery, GripConfig,
+    StepReport,
 };
 use clamber_fight::{Arena, ArenaEvent, CreatureId, creature_obstacle};
 use clamber_navigation::{Bot, Goal};
@@ -175,13 +176,15 @@ impl<'a> Battle<'a> {
         let fixed = |_: ColliderHandle, collider: &Collider| is_fixed(bodies, collider);
         let terrain = RapierTerrain::of_world(&self.world, &self.before).with_filter(&fixed);
         let grips = self.grips;
-        let can_grip =
-            |obstacle, contact: &Contact| obstacle == CREATURE && grips.can(&contact.tag);
+        let rule = |query: &ContactQuery<'_>| {
+            let grip = query.id == CREATURE && grips.can(&query.tag());
+            query.usual().with_grip(grip)
+        };
         let climber = self.performer.climber();
         let state = climber.state();
         let own = state.velocity - state.base_velocity;
         self.slides = own.length() > climber.config().ground.walk_speed;
-        self.performer.step(&input, &terrain, &can_grip)?;
+        self.performer.step(&input, &terrain, &rule)?;
         let microseconds = start.elapsed().as_secs_f64() * 1e6;
         let touched = self.performer.surface().diagnostics();
 

@@ -185,7 +185,7 @@ impl<'s> Stage<'s> {
             .map(|(index, surface)| (ObstacleId(index as u64), surface as &dyn Obstacle))
             .collect();
         let rules = if self.scene.grips_all {
-            StepRules::gripping(&|_, _| true)
+            StepRules::by(&|query| query.usual().with_grip(true))
         } else {
             StepRules::default()
         };

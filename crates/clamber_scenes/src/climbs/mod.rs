@@ -5,7 +5,7 @@ mod table;
 
 use std::path::Path;
 
-use clamber_climber::{Climber, ClimberConfig, ClimberEvent, StepRules};
+use clamber_climber::{Climber, ClimberConfig, ClimberEvent, ContactQuery, StepRules};
 use clamber_navigation::{Bot, BotConfig, ClimbGraph, Danger, Forecast, NavigationError, View};
 use clamber_surface::geometry::Similarity;
 use clamber_surface::rig::Playback;
@@ -269,8 +269,8 @@ impl Scene {
     ) -> Result<u32, ClimbError> {
         let obstacles: [(ObstacleId, &dyn Obstacle); 2] =
             [(GROUND, &self.floor), (CREATURE, &self.surface)];
-        let can_grip = |obstacle: ObstacleId, _: &clamber_world::Contact| obstacle == CREATURE;
-        let rules = StepRules::gripping(&can_grip);
+        let rule = |query: &ContactQuery<'_>| query.usual().with_grip(query.id == CREATURE);
+        let rules = StepRules::by(&rule);
         let report = climber.step_with(input, &obstacles, &rules, tick)?;
         let lost = |event: &&ClimberEvent| {
             matches!(

@@ -106,7 +106,7 @@ pub fn climb(
         let report = climber.step_with(
             &input,
             &obstacles,
-            &StepRules::gripping(&|_, _| true),
+            &StepRules::by(&|query| query.usual().with_grip(true)),
             1.0 / RATE,
         )?;
         outcome.count(&report.events);

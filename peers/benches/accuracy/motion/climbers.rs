@@ -72,7 +72,7 @@ impl Walker {
         let both = [limb, (ObstacleId(1), ground.unwrap_or(limb.1))];
         let there = &both[..1 + usize::from(ground.is_some())];
         self.climber
-            .step_with(&self.input, there, &StepRules::gripping(&|_, _| true), dt)?;
+            .step_with(&self.input, there, &StepRules::by(&|query| query.usual().with_grip(true)), dt)?;
         Ok(())
     }
 

@@ -160,16 +160,54 @@ fn what_can_be_gripped_is_fur_or_what_a_rule_says() {
         grabbed
     };
     assert_eq!(grip(&mut app), None);
-    app.insert_resource(GripRule::new(move |grip| grip.entity == Some(floor.mesh)));
+    app.insert_resource(ClimberRule::new(move |at| {
+        at.usual().with_grip(at.entity == Some(floor.mesh))
+    }));
     assert_eq!(grip(&mut app), Some(Some(floor.mesh)));
-    app.insert_resource(GripRule::new(|_| false));
+    app.insert_resource(ClimberRule::new(|at| at.usual().with_grip(false)));
     let tag = ColliderTag(SurfaceTag::new(SurfaceKind::Fur));
     app.world_mut().entity_mut(floor.mesh).insert(tag);
     app.update();
     wait(&mut app, floor.mesh);
     assert_eq!(grip(&mut app), None);
-    app.world_mut().remove_resource::<GripRule>();
+    app.world_mut().remove_resource::<ClimberRule>();
     assert_eq!(grip(&mut app), Some(Some(floor.mesh)));
+}
+
+/// By entities, as a resource for all, and as a component for one.
+#[test]
+fn a_door_lets_its_owner_pass_and_nobody_else() {
+    let walks_to = |app: &mut App, climber: Entity| {
+        input(app, climber).walk = Vec3::X;
+        updates(app, 64);
+        state(app, climber).position.x
+    };
+    for as_component in [false, true] {
+        let (mut app, _, owner) = standing(64.0);
+        let guest = self::climber(&mut app, Vec3::new(10.0, 2.5, 1.0));
+        updates(&mut app, 32);
+        let wall = bevy_clamber::clamber_world::HalfSpace::behind(DVec3::X * 12.0, DVec3::NEG_X).unwrap();
+        let door = app.world_mut().spawn(CustomObstacle::new(wall)).id();
+        let rule = ClimberRule::new(move |at| {
+            if at.entity == Some(door) && at.climber == owner {
+                ContactRule::PASS
+            } else {
+                at.usual()
+            }
+        });
+        if as_component {
+            app.world_mut().entity_mut(owner).insert(rule);
+        } else {
+            app.insert_resource(rule);
+        }
+        let passed = walks_to(&mut app, owner);
+        assert!(passed > 12.5, "{as_component}: {passed}");
+        let stopped = walks_to(&mut app, guest);
+        assert!(
+            (stopped - 12.0 + RADIUS).abs() < 0.02,
+            "{as_component}: {stopped}"
+        );
+    }
 }
 
 #[test]

@@ -84,7 +84,7 @@ impl Tick<'_> {
         let from = position + out * body.radius - up * deep;
         let ledge = self.mover.find_ledge(&probe, from)?;
         let below = (position - ledge.touch.contact.point).dot(up);
-        let is_edge = below > BELOW * body.radius && self.carries(&ledge.touch);
+        let is_edge = below > BELOW * body.radius && self.can_hang_from(&ledge.touch);
         is_edge.then_some(ledge)
     }
 

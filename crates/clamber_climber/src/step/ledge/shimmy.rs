@@ -200,15 +200,18 @@ impl Tick<'_> {
         let radius = hold.body.radius;
         let reach = config.reach.max(HAND_OVER * radius);
         let within = libm::hypot(NEARLY * radius, step.length());
+        let judge = self.judge;
+        let hangs = |ledge: &Ledge| judge.rule_of(&ledge.touch).hang;
         let ledge = self
             .mover
             .ledge_ahead(hold, position)
+            .filter(hangs)
             .or_else(|| {
                 self.mover
-                    .ledge_beside(hold, position, aside * reach, |_| true)
+                    .ledge_beside(hold, position, aside * reach, hangs)
             })
             .or_else(|| self.mover.ledge_around(hold, position, within))?;
-        self.carries(&ledge.touch).then_some(ledge)
+        self.can_hang_from(&ledge.touch).then_some(ledge)
     }
 
     /// The ledge of the wall that blocks its way along the ledge: one that stands forward, or that of the other wall in
@@ -224,8 +227,11 @@ impl Tick<'_> {
         let aside = step.try_normalize()?;
         let hold = self.ledge_hold(held, heading);
         let least = (held - position).dot(heading) - FORWARD * radius;
-        let stands_forward =
-            |ledge: &Ledge| (ledge.touch.contact.point - position).dot(heading) < least;
+        let judge = self.judge;
+        let stands_forward = |ledge: &Ledge| {
+            let ahead = (ledge.touch.contact.point - position).dot(heading);
+            ahead < least && judge.rule_of(&ledge.touch).hang
+        };
         let way = aside * (PAST * radius);
         let ledge = self
             .mover
@@ -233,7 +239,7 @@ impl Tick<'_> {
             .or_else(|| {
                 is_blocked.then(|| self.mover.ledge_in_corner(&hold, position, aside))?
             })?;
-        self.carries(&ledge.touch).then_some(ledge)
+        self.can_hang_from(&ledge.touch).then_some(ledge)
     }
 
     /// The place where it hangs from a ledge. Its distance is that from the wall: hands on a corner are not always as far

@@ -2,9 +2,10 @@
 
 use clamber_surface::geometry::Similarity;
 use clamber_world::rapier3d::prelude::{
-    ColliderBuilder, PhysicsWorld, Pose, RigidBodyBuilder, RigidBodyHandle, SharedShape, Vector,
+    Collider, ColliderBuilder, ColliderHandle, PhysicsWorld, Pose, RigidBodyBuilder,
+    RigidBodyHandle, SharedShape, Vector,
 };
-use clamber_world::{BodyPoses, RapierTerrain};
+use clamber_world::{BodyPoses, RapierTerrain, SurfaceTag};
 use glam::{DVec3, Quat};
 
 use super::{Motion, Setting, Shape};
@@ -21,6 +22,13 @@ pub(crate) struct Bodies {
     /// Displacement of the frame in a tick, metres.
     step: DVec3,
     scale: f64,
+    /// The number in the tag of the next colliders.
+    pub(super) number: u32,
+}
+
+/// The tag of a collider, with the number that it was given.
+pub(super) fn tag(_: ColliderHandle, collider: &Collider) -> SurfaceTag {
+    SurfaceTag::default().with_user(collider.user_data as u32)
 }
 
 impl Bodies {
@@ -34,6 +42,7 @@ impl Bodies {
             origin,
             step: setting.frame * dt,
             scale: setting.scale,
+            number: 0,
         }
     }
 
@@ -64,6 +73,7 @@ impl Bodies {
 
     /// Adds a collider at rest in the frame. If the frame moves, the collider moves with it.
     fn insert_still(&mut self, collider: ColliderBuilder) {
+        let collider = collider.user_data(u128::from(self.number));
         if self.step == DVec3::ZERO {
             self.world.insert_collider(collider, None);
             self.found();
@@ -75,6 +85,7 @@ impl Bodies {
     fn insert(&mut self, collider: ColliderBuilder, motion: Motion) {
         let pose = self.pose(&motion(0.0), 0.0);
         let body = RigidBodyBuilder::kinematic_position_based().pose(pose);
+        let collider = collider.user_data(u128::from(self.number));
         let (handle, _) = self.world.insert(body, collider);
         self.moving.push((handle, motion));
         self.found();

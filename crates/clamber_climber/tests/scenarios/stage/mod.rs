@@ -61,6 +61,8 @@ pub(crate) struct Stage {
     skins: Vec<Skin>,
     owns: Vec<Own>,
     bodies: Bodies,
+    /// The number in the tag of the shapes that are added next.
+    number: u32,
     /// Largest lengths so far.
     reach: Reach,
 }
@@ -98,8 +100,17 @@ impl Stage {
             skins: Vec::new(),
             owns: Vec::new(),
             bodies: Bodies::new(dt, origin, &setting),
+            number: 0,
             reach: Reach::default(),
         }
+    }
+
+    /// Tags the shapes that are added next with a number.
+    #[must_use]
+    pub(crate) fn numbered(mut self, number: u32) -> Self {
+        self.number = number;
+        self.bodies.number = number;
+        self
     }
 
     #[must_use]
@@ -182,7 +193,11 @@ impl Stage {
     }
 
     /// Adds a skin whose root scales by `scale`. In a moving frame it starts with the frame's motion.
-    fn put(mut self, mut skin: Skin, scale: f64) -> Self {
+    fn put(mut self, skin: Skin, scale: f64) -> Self {
+        let mut skin = match self.number {
+            0 => skin,
+            number => skin.numbered(number),
+        };
         let place = self.place();
         skin.place(0.0, scale, place.before);
         if self.setting.frame != DVec3::ZERO {
@@ -194,6 +209,7 @@ impl Stage {
     }
 
     fn put_own(mut self, mut own: Own) -> Self {
+        own.tag = own.tag.with_user(self.number);
         let place = self.place();
         own.advance(0.0, |p| place.before + p * place.scale);
         own.advance(0.0, |p| place.point(p));
@@ -272,7 +288,7 @@ impl Stage {
 
     /// All obstacles in the world: the rapier world has id 0, surfaces have ids from 1 on.
     pub(crate) fn in_world<T>(&self, ask: impl FnOnce(&[(ObstacleId, &dyn Obstacle)]) -> T) -> T {
-        let terrain = self.bodies.terrain();
+        let terrain = self.bodies.terrain().with_tags(&bodies::tag);
         let mut obstacles: Vec<(ObstacleId, &dyn Obstacle)> = Vec::new();
         if !self.bodies.is_empty() {
             obstacles.push((ObstacleId(0), &terrain));

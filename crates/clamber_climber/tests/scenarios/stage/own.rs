@@ -17,7 +17,8 @@ pub(crate) type Corners = Box<dyn Fn(f64) -> Vec<DVec3>>;
 pub(crate) struct Own {
     corners: Corners,
     triangles: Vec<[u32; 3]>,
-    kind: SurfaceKind,
+    /// The tag of all triangles.
+    pub(crate) tag: SurfaceTag,
     /// How far before contact a sweep may stop, metres: a hundredth of the allowed difference between frames.
     tolerance: f64,
     before: Vec<DVec3>,
@@ -38,7 +39,7 @@ impl Own {
         Self {
             corners,
             triangles,
-            kind,
+            tag: SurfaceTag::new(kind),
             tolerance: 1e-8 * scale,
             before: Vec::new(),
             now: Vec::new(),
@@ -73,10 +74,6 @@ impl Own {
         self.triangles[triangle].map(|corner| places[corner as usize])
     }
 
-    fn tag(&self) -> SurfaceTag {
-        SurfaceTag::new(self.kind)
-    }
-
     /// Triangles that may be within `reach` of the points' bounding box, relative to their final positions.
     fn near(&self, points: &[DVec3], reach: f64) -> impl Iterator<Item = usize> {
         let low = points.iter().copied().reduce(DVec3::min);
@@ -98,13 +95,22 @@ impl Own {
                 key: triangle as u64,
                 coordinates: touch.barycentric.to_array(),
             },
-            tag: self.tag(),
+            tag: self.tag,
         }
     }
 
     /// The first contact with triangles that move from `before` to their current positions. Of contacts at the same
-    /// time, the nearest, then the one with the smallest index.
-    fn first(&self, path: &MovingCapsule, before: &[DVec3], went: DVec3) -> Option<SweepContact> {
+    /// time, the nearest, then the one with the smallest index. Only contacts that `counts` accepts are considered.
+    fn first(
+        &self,
+        path: &MovingCapsule,
+        target: TargetMotion,
+        counts: &mut dyn FnMut(&SweepContact) -> bool,
+    ) -> Option<SweepContact> {
+        let (before, went) = match target {
+            TargetMotion::Still => (&self.now, DVec3::ZERO),
+            TargetMotion::Moving => (&self.before, self.went),
+        };
         let [a, b] = path.start.map(|end| end + went);
         let ends = [a, b, path.end[0], path.end[1]];
         let mut first: Option<SweepContact> = None;
@@ -119,13 +125,14 @@ impl Own {
             let sooner = first.is_none_or(|first| {
                 (touch.time, touch.distance) < (first.time, first.contact.distance)
             });
-            if sooner {
-                first = Some(SweepContact {
-                    time: touch.time,
-                    contact: self.contact(triangle, &touch),
-                    separation_normal: touch.separation_normal,
-                    started_inside: touch.started_inside,
-                });
+            let sweep = SweepContact {
+                time: touch.time,
+                contact: self.contact(triangle, &touch),
+                separation_normal: touch.separation_normal,
+                started_inside: touch.started_inside,
+            };
+            if sooner && counts(&sweep) {
+                first = Some(sweep);
             }
         }
         first
@@ -201,7 +208,7 @@ impl Obstacle for Own {
                         key: triangle as u64,
                         coordinates: [1.0 - second - third, second, third],
                     },
-                    tag: self.tag(),
+                    tag: self.tag,
                 });
             }
         }
@@ -237,11 +244,17 @@ impl Obstacle for Own {
         displacements: [DVec3; 2],
         target: TargetMotion,
     ) -> Option<SweepContact> {
-        let path = path(capsule, displacements);
-        match target {
-            TargetMotion::Still => self.first(&path, &self.now, DVec3::ZERO),
-            TargetMotion::Moving => self.first(&path, &self.before, self.went),
-        }
+        self.first(&path(capsule, displacements), target, &mut |_| true)
+    }
+
+    fn cast_capsule_where(
+        &self,
+        capsule: &WorldCapsule,
+        displacements: [DVec3; 2],
+        target: TargetMotion,
+        counts: &mut dyn FnMut(&SweepContact) -> bool,
+    ) -> Option<SweepContact> {
+        self.first(&path(capsule, displacements), target, counts)
     }
 
     fn motion(&self, point: &MaterialPoint, dt: f64) -> Option<PointMotion> {

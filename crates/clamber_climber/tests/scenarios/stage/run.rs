@@ -1,8 +1,8 @@
 //! A climber on a stage, and the trace of its run.
 
 use clamber_climber::{
-    Climber, ClimberConfig, ClimberError, ClimberEvent, ClimberInput, ClimberMode, ClimberState,
-    StepReport, StepRules,
+    Climber, ClimberConfig, ClimberError, ClimberEvent, ClimberInput, ClimberMode, ClimberObstacle,
+    ClimberState, ContactQuery, ContactRule, StepReport, StepRules,
 };
 use clamber_world::{Obstacle, ObstacleId, WorldCapsule};
 use glam::DVec3;
@@ -38,9 +38,21 @@ pub(crate) struct Run {
     pub(crate) climber: Climber,
     pub(crate) trace: Trace,
     config: ClimberConfig,
+    /// The rule for contacts; none for the usual one.
+    rule: Option<Rule>,
+    /// The climber's own id.
+    pub(crate) id: Option<ObstacleId>,
+    /// Another climber, which does nothing, in the world's units and frame.
+    friend: Option<Climber>,
     /// The climber's state in the scenario's units and frame.
     state: ClimberState,
 }
+
+/// A rule for contacts, which outlives a tick.
+pub(crate) type Rule = Box<dyn Fn(&ContactQuery<'_>) -> ContactRule>;
+
+/// Id of the other climber on the stage.
+const FRIEND: ObstacleId = ObstacleId(99);
 
 /// No input.
 pub(crate) const IDLE: ClimberInput = ClimberInput::IDLE;
@@ -66,6 +78,9 @@ impl Run {
             stage,
             trace: Trace::default(),
             config,
+            rule: None,
+            id: None,
+            friend: None,
         };
         run.put(ClimberState {
             position,
@@ -73,6 +88,25 @@ impl Run {
             ..run.state
         });
         run
+    }
+
+    /// Sets the rule for contacts.
+    pub(crate) fn set_rule(&mut self, rule: impl Fn(&ContactQuery<'_>) -> ContactRule + 'static) {
+        self.rule = Some(Box::new(rule));
+    }
+
+    /// Puts another climber of the same configuration on the stage, with its feet at a position.
+    pub(crate) fn meet_friend(&mut self, feet: DVec3) {
+        let place = self.stage.place();
+        let at = place.point(feet + self.config.up() * self.config.body.radius);
+        let mut friend = Climber::new(place.config(&self.config), at).unwrap();
+        let state = ClimberState {
+            velocity: place.velocity,
+            base_velocity: place.velocity,
+            ..*friend.state()
+        };
+        friend.restore(state).unwrap();
+        self.friend = Some(friend);
     }
 
     pub(crate) fn step(&mut self, input: &ClimberInput) -> StepReport {
@@ -119,11 +153,22 @@ impl Run {
         let input = in_world(input, self.stage.place().scale);
         // The air moves with the frame.
         let rules = StepRules {
+            contact: self.rule.as_deref().map(|rule| rule as _),
+            id: self.id,
             air_velocity: self.stage.place().velocity,
             ..StepRules::default()
         };
+        let friend = &mut self.friend;
         let report = self.stage.in_world(|obstacles| {
-            let stepped = climber.step_with(&input, obstacles, &rules, dt);
+            let mut obstacles = obstacles.to_vec();
+            let body = friend
+                .as_ref()
+                .map(|friend| ClimberObstacle::new(friend, &obstacles, dt));
+            if let Some(friend) = friend {
+                friend.step(&IDLE, &obstacles, dt).unwrap();
+            }
+            obstacles.extend(body.as_ref().map(|body| (FRIEND, body as &dyn Obstacle)));
+            let stepped = climber.step_with(&input, &obstacles, &rules, dt);
             stepped.unwrap()
         });
         self.note(report)

@@ -25,7 +25,7 @@ pub(crate) struct Skin {
     shape: Shape,
     /// Weights of the joints for each corner.
     weights: Vec<Vec<f64>>,
-    kind: SurfaceKind,
+    tag: SurfaceTag,
 }
 
 /// Weights of the joints at a rest position.
@@ -39,14 +39,22 @@ impl Skin {
 
     pub(crate) fn of(shape: &Shape, kind: SurfaceKind, weights: Weights<'_>, pose: Pose) -> Self {
         let weights: Vec<_> = shape.positions.iter().map(|p| weights(*p)).collect();
+        let tag = SurfaceTag::new(kind);
         Self {
-            surface: SkinnedSurface::new(build(shape, kind, &weights)),
+            surface: SkinnedSurface::new(build(shape, tag, &weights)),
             scale: 1.0,
             pose,
             shape: shape.clone(),
             weights,
-            kind,
+            tag,
         }
+    }
+
+    /// The same skin with a number in its tag.
+    pub(super) fn numbered(mut self, user: u32) -> Self {
+        self.tag = self.tag.with_user(user);
+        self.surface = SkinnedSurface::new(build(&self.shape, self.tag, &self.weights));
+        self
     }
 
     fn at(&self, time: f64, scale: f64, origin: DVec3) -> (Palette, Similarity) {
@@ -80,7 +88,7 @@ impl Skin {
             pose,
             shape,
             weights,
-            kind,
+            tag,
             ..
         } = self;
         let corners = move |time: f64| {
@@ -93,11 +101,14 @@ impl Skin {
             });
             skinned.map(|p| root.transform_point(p)).collect()
         };
-        Own::new(Box::new(corners), shape.triangles.clone(), kind, scale)
+        let triangles = shape.triangles.clone();
+        let mut own = Own::new(Box::new(corners), triangles, tag.kind, scale);
+        own.tag = tag;
+        own
     }
 }
 
-fn build(shape: &Shape, kind: SurfaceKind, weights: &[Vec<f64>]) -> Arc<ColliderMesh> {
+fn build(shape: &Shape, tag: SurfaceTag, weights: &[Vec<f64>]) -> Arc<ColliderMesh> {
     let positions: Vec<_> = shape.positions.iter().map(|p| p.as_vec3()).collect();
     let mut influences = Vec::new();
     let mut influence_ends = Vec::new();
@@ -117,7 +128,7 @@ fn build(shape: &Shape, kind: SurfaceKind, weights: &[Vec<f64>]) -> Arc<Collider
         triangles: &shape.triangles,
         influences: &influences,
         influence_ends: &influence_ends,
-        tags: &vec![SurfaceTag::new(kind); shape.triangles.len()],
+        tags: &vec![tag; shape.triangles.len()],
         joint_count,
         ..MeshSource::default()
     };

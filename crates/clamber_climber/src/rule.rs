@@ -1,0 +1,251 @@
+use clamber_world::{
+    Contact, MaterialPoint, Obstacle, ObstacleId, SurfaceKind, SurfaceTag, WorldPath,
+};
+use glam::DVec3;
+
+use crate::{ClimberConfig, ClimberMode, ClimberState};
+
+/// What a climber may do with a contact: the answer of a [`ContactRuleFn`].
+///
+/// ```
+/// use clamber_climber::ContactRule;
+///
+/// let wet_fur = ContactRule::GRIP.with_friction(0.7);
+/// let armour = ContactRule { grip: false, hang: false, ..ContactRule::GRIP };
+/// assert!(wet_fur.grip && !armour.hang);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactRule {
+    /// Whether the contact blocks the body. If not, the contact is not there at all for the climber: it falls, walks and
+    /// reaches through, and the other fields do not matter.
+    pub solid: bool,
+    /// Whether the climber may stand on it. If not, it slides off, as off a slope that is too steep. Level ground of this
+    /// kind leaves it lying in [`ClimberMode::Sliding`].
+    pub stand: bool,
+    /// Whether walking may lead up onto it; other characters are never steps. If not, its steps, slopes and edges block like a vertical wall to a climber
+    /// that stands on something with `step`. Ground that is flush with the feet, or lower, is walked onto all the same;
+    /// `stand` decides there.
+    pub step: bool,
+    /// Whether the climber may hang from it, where it has the shape of a ledge.
+    pub hang: bool,
+    /// Whether hands may grip it.
+    pub grip: bool,
+    /// How well feet and hands hold, as a share of the usual: 1 as usual, 0 not at all. Negative values count as 0, and
+    /// values that are not finite as 1.
+    ///
+    /// - Below 1, as on ice: feet accelerate and brake by no more than this times
+    ///   [`GroundConfig::friction`](crate::GroundConfig::friction), and gravity pulls the climber down slopes that it
+    ///   stands on. Hands that climb slip down along the hold at (1 - friction) times the
+    ///   [climbing speed](crate::GripConfig::climb_speed), times the sine of the hold's slope, but not off its end.
+    /// - Above 1, as in mud: walking and climbing are this many times slower, and feet brake this many times harder down
+    ///   from more than the walking speed.
+    /// - Always: a factor on [`GroundConfig::slide_friction`](crate::GroundConfig::slide_friction) and
+    ///   [`TumbleConfig::friction`](crate::TumbleConfig::friction).
+    ///
+    /// The friction of the support at the tick's beginning counts.
+    pub friction: f64,
+}
+
+impl ContactRule {
+    /// Stood on, stepped onto and hung from, but not gripped: ground and walls. The default.
+    pub const SOLID: Self = Self {
+        solid: true,
+        stand: true,
+        step: true,
+        hang: true,
+        grip: false,
+        friction: 1.0,
+    };
+
+    /// As [`ContactRule::SOLID`], and gripped: fur, vines.
+    pub const GRIP: Self = Self {
+        grip: true,
+        ..Self::SOLID
+    };
+
+    /// Blocks the body, and is of no other use: slick walls, force fields.
+    pub const BLOCK: Self = Self {
+        stand: false,
+        step: false,
+        hang: false,
+        ..Self::SOLID
+    };
+
+    /// Not there for this climber: open doors, ghosts, one-way platforms from below.
+    pub const PASS: Self = Self {
+        solid: false,
+        ..Self::BLOCK
+    };
+
+    /// The same rule with another [`solid`](Self::solid).
+    #[must_use]
+    pub const fn with_solid(self, solid: bool) -> Self {
+        Self { solid, ..self }
+    }
+
+    /// The same rule with another [`stand`](Self::stand).
+    #[must_use]
+    pub const fn with_stand(self, stand: bool) -> Self {
+        Self { stand, ..self }
+    }
+
+    /// The same rule with another [`step`](Self::step).
+    #[must_use]
+    pub const fn with_step(self, step: bool) -> Self {
+        Self { step, ..self }
+    }
+
+    /// The same rule with another [`hang`](Self::hang).
+    #[must_use]
+    pub const fn with_hang(self, hang: bool) -> Self {
+        Self { hang, ..self }
+    }
+
+    /// The same rule with another [`grip`](Self::grip).
+    #[must_use]
+    pub const fn with_grip(self, grip: bool) -> Self {
+        Self { grip, ..self }
+    }
+
+    /// The same rule with another [`friction`](Self::friction).
+    #[must_use]
+    pub const fn with_friction(self, friction: f64) -> Self {
+        Self { friction, ..self }
+    }
+
+    /// The friction in its range.
+    pub(crate) fn usable_friction(&self) -> f64 {
+        if self.friction.is_finite() {
+            self.friction.max(0.0)
+        } else {
+            1.0
+        }
+    }
+}
+
+impl Default for ContactRule {
+    fn default() -> Self {
+        Self::SOLID
+    }
+}
+
+/// A game's rule for contacts, passed to [`Climber::step_with`](crate::Climber::step_with) by
+/// [`StepRules::contact`](crate::StepRules::contact).
+///
+/// It must be a pure function during a tick: it is called any number of times and in any order, for contacts at any time
+/// of the tick, and once for the climber's support.
+pub type ContactRuleFn<'a> = dyn Fn(&ContactQuery<'_>) -> ContactRule + 'a;
+
+/// A contact that a [`ContactRuleFn`] decides about, and the climber as it was at the tick's beginning.
+#[derive(Clone, Copy)]
+#[non_exhaustive]
+pub struct ContactQuery<'a> {
+    /// The climber, by [`StepRules::id`](crate::StepRules::id).
+    pub climber: Option<ObstacleId>,
+    /// The climber's state at the tick's beginning. With its [`memory`](ClimberState::memory), a rule can depend on what
+    /// the game's modes remember.
+    pub state: &'a ClimberState,
+    /// The climber's configuration.
+    pub config: &'a ClimberConfig,
+    /// Length of the tick, seconds.
+    pub dt: f64,
+    /// The obstacle.
+    pub id: ObstacleId,
+    /// The contact. In sweeps it is the contact at the time of the sweep. For the climber's support, its normal is that
+    /// of the last face that the climber lay flat on, and its distance the body's radius.
+    pub contact: &'a Contact,
+    pub(crate) obstacle: &'a dyn Obstacle,
+}
+
+/// A body below a plane by up to this share of its margin is on it: far more than the rounding of a creature's skin.
+const ON: f64 = 0.1;
+
+/// A climber that stands on an obstacle is above its plane, although deformation pushes its feet into it by up to this
+/// share of its radius.
+const SUNK: f64 = 0.5;
+
+/// Faces whose normal has no more than this cosine from up are walls or ceilings, also to a climber that stands.
+const GRAZING: f64 = 0.05;
+
+impl<'a> ContactQuery<'a> {
+    /// The rule without a game's own: everything is solid and is stood on and stepped onto. [Fur](SurfaceKind::Fur) is
+    /// gripped, and every ledge is hung from, except on other characters ([`ContactQuery::is_character`]).
+    pub fn usual(&self) -> ContactRule {
+        let holds = !self.is_character();
+        ContactRule {
+            hang: holds,
+            grip: holds && self.contact.tag.kind == SurfaceKind::Fur,
+            ..ContactRule::SOLID
+        }
+    }
+
+    /// The rule of a one-way platform: [`ContactQuery::usual`] from above, and [`ContactRule::PASS`] otherwise.
+    pub fn one_way(&self) -> ContactRule {
+        if self.is_from_above() {
+            self.usual()
+        } else {
+            ContactRule::PASS
+        }
+    }
+
+    /// The contact's tag.
+    pub fn tag(&self) -> SurfaceTag {
+        self.contact.tag
+    }
+
+    /// The body within the obstacle ([`Obstacle::body_of`]): in a rapier world, the collider.
+    pub fn body(&self) -> u64 {
+        self.body_of(&self.contact.material)
+    }
+
+    fn body_of(&self, point: &MaterialPoint) -> u64 {
+        self.obstacle.body_of(point)
+    }
+
+    /// True if the contact is with another character ([`Obstacle::character`]), such as a
+    /// [`ClimberObstacle`](crate::ClimberObstacle).
+    pub fn is_character(&self) -> bool {
+        self.obstacle.character().is_some()
+    }
+
+    /// Where the contact's material was at the tick's beginning, where it is at its end, and its velocity. `None` if
+    /// the obstacle reports no motion.
+    pub fn path(&self) -> Option<WorldPath> {
+        let path = self.obstacle.path(&self.contact.material, self.dt)?;
+        path.is_finite().then_some(path)
+    }
+
+    /// True if the climber comes from above, as a one-way platform asks: the contact's face is level enough to be stood
+    /// on, and at the tick's beginning the climber's lowest point was not below the face's plane. Down to a
+    /// [margin](crate::BodyConfig::margin) below, it counts as above unless it rises relative to the material. A climber
+    /// that stands on the same body is above it.
+    ///
+    /// To drop through a platform, let the rule return [`ContactRule::PASS`] until the climber has fallen by a margin:
+    /// for as long as a key is held, 0.05 s at least.
+    pub fn is_from_above(&self) -> bool {
+        let (state, contact) = (self.state, self.contact);
+        let body = &self.config.body;
+        let normal = contact.normal;
+        let rises = normal.dot(self.config.up()) > GRAZING;
+        let (place, velocity) = match self.path() {
+            Some(path) => (path.previous_position, path.velocity),
+            None => (contact.point, DVec3::ZERO),
+        };
+        let height = (state.position - place).dot(normal) - body.radius;
+        if self.stands_on_it() {
+            return rises && height >= -SUNK * body.radius;
+        }
+        let is_level = self.config.slope(normal) <= self.config.ground.stays_on_slope();
+        let on = ON * body.margin;
+        let rising = (state.velocity - velocity).dot(normal) * self.dt;
+        is_level && (height >= -on || height >= -body.margin && rising <= on)
+    }
+
+    fn stands_on_it(&self) -> bool {
+        let on = self.state.support.map(|support| support.attachment);
+        self.state.mode == ClimberMode::Standing
+            && on.is_some_and(|on| {
+                on.obstacle == self.id && self.body_of(&on.material) == self.body()
+            })
+    }
+}
