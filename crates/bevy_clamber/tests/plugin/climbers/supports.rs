@@ -186,7 +186,8 @@ fn a_door_lets_its_owner_pass_and_nobody_else() {
         let (mut app, _, owner) = standing(64.0);
         let guest = self::climber(&mut app, Vec3::new(10.0, 2.5, 1.0));
         updates(&mut app, 32);
-        let wall = bevy_clamber::clamber_world::HalfSpace::behind(DVec3::X * 12.0, DVec3::NEG_X).unwrap();
+        let wall =
+            bevy_clamber::clamber_world::HalfSpace::behind(DVec3::X * 12.0, DVec3::NEG_X).unwrap();
         let door = app.world_mut().spawn(CustomObstacle::new(wall)).id();
         let rule = ClimberRule::new(move |at| {
             if at.entity == Some(door) && at.climber == owner {
