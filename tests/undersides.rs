@@ -9,7 +9,7 @@ use clamber::climber::ClimberMode;
 use clamber::gltf::{Rig, load};
 use clamber::prelude::*;
 use clamber_scenes::giant;
-use glam::{DQuat, DVec3};
+use glam::DVec3;
 
 const DT: f64 = 1.0 / 60.0;
 
@@ -79,7 +79,7 @@ fn ride(rig: &Rig, clip: &str, rng: &mut fastrand::Rng, seen: &mut Seen) {
     let at = contact.point + contact.normal * (RADIUS * 1.02);
     let mut climber = Climber::new(config, at).unwrap();
     let turn = std::f64::consts::TAU * rng.f64();
-    let stick = DQuat::from_xyzw(0.0, (0.5 * turn).sin(), 0.0, (0.5 * turn).cos()) * DVec3::X;
+    let stick = DVec3::new(libm::cos(turn), 0.0, libm::sin(turn));
     let mut last: Option<DVec3> = None;
     let (mut since, mut pushed) = (0.0, f64::INFINITY);
     for tick in 1..=((DRAWN + HELD) / DT) as u32 {
