@@ -17,9 +17,10 @@ pub enum ClimberEvent {
     /// Jumped off the ground, a hold or a ledge.
     Jumped,
     /// The ground that it stood on or the ledge that it hung from is too steep now: it tipped, or the climber came onto
-    /// a steeper part.
+    /// a steeper part. Or the [rule](crate::ContactRule::stand) lets nobody stand on that ground.
     Slipped,
-    /// Lost its support, because that ended, was removed, went out of reach, or left it no room.
+    /// Lost its support, because that ended, was removed, went out of reach, left it no room, or is refused by the
+    /// [rule](crate::ContactRule).
     LostFooting {
         /// The support that was lost.
         from: Attachment,

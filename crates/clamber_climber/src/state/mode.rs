@@ -30,7 +30,11 @@ use ClimberMode::{Custom, Falling, Hanging, Holding, LedgeHanging, Sliding, Stan
 /// Several changes may happen in one tick: a climber that lets go on a slope stands, then slips. Custom modes may begin
 /// in any mode and end in any mode.
 pub const TRANSITIONS: &[(ClimberMode, ClimberMode, &str)] = &[
-    (Standing, Sliding, "the ground is or becomes too steep"),
+    (
+        Standing,
+        Sliding,
+        "the ground is or becomes too steep, or the rule refuses it",
+    ),
     (Standing, Holding, "grips"),
     (
         Standing,
@@ -40,7 +44,7 @@ pub const TRANSITIONS: &[(ClimberMode, ClimberMode, &str)] = &[
     (
         Standing,
         Falling,
-        "jumps, is thrown, is struck by a blow, or the ground ends",
+        "jumps, is thrown, is struck by a blow, or the ground ends or lets it through",
     ),
     (
         Standing,
@@ -66,14 +70,14 @@ pub const TRANSITIONS: &[(ClimberMode, ClimberMode, &str)] = &[
     (
         Holding,
         Falling,
-        "jumps, lets go, tires, is struck by a blow, or the hold ends",
+        "jumps, lets go, tires, is struck by a blow, or the hold ends or is refused",
     ),
     (Holding, Tumbling, "is struck by a blow"),
     (Hanging, Holding, "the hold is calm again"),
     (
         Hanging,
         Falling,
-        "lets go, tires, is torn off, is struck by a blow, or the hold ends",
+        "lets go, tires, is torn off, is struck by a blow, or the hold ends or is refused",
     ),
     (Hanging, Tumbling, "is struck by a blow"),
     (
@@ -85,11 +89,15 @@ pub const TRANSITIONS: &[(ClimberMode, ClimberMode, &str)] = &[
     (
         LedgeHanging,
         Falling,
-        "jumps, lets go, tires, is struck by a blow, or the ledge ends, tips or crushes it",
+        "jumps, lets go, tires, is struck by a blow, or the ledge ends, tips, is refused or crushes it",
     ),
     (LedgeHanging, Tumbling, "is struck by a blow"),
     (Falling, Standing, "lands"),
-    (Falling, Sliding, "lands on ground that is too steep"),
+    (
+        Falling,
+        Sliding,
+        "lands on ground that is too steep, or that the rule refuses",
+    ),
     (Falling, Holding, "grips"),
     (Falling, LedgeHanging, "catches a ledge"),
     (Falling, Tumbling, "is struck by a blow"),

@@ -1,5 +1,5 @@
 use clamber_climber::{
-    Climber, ClimberConfig, ClimberInput, ClimberObstacle, StepReport, StepRules,
+    Climber, ClimberConfig, ClimberInput, ClimberObstacle, ContactQuery, StepReport, StepRules,
 };
 use clamber_surface::geometry::{Affine, Similarity, rotation_from_axis_angle};
 use clamber_surface::rig::{Clip, Palette, Playback, Skeleton};
@@ -175,14 +175,24 @@ fn step(
         }
     }
     let input = input(index as u32, tick, climber.state().position);
-    let report = climber
-        .step_with(
-            &input,
-            &obstacles,
-            &StepRules::by(&|query| query.usual().with_grip(query.id.0 < BODIES)),
-            TICK,
-        )
-        .unwrap();
+    // Every other climber has a rule with something of all that rules can say.
+    let is_ruled = index % 2 == 1;
+    let rule = |query: &ContactQuery<'_>| {
+        let id = query.id.0;
+        let usual = query.usual().with_grip(id < BODIES);
+        if !is_ruled {
+            usual
+        } else if query.is_character() {
+            usual.with_solid(id % 2 == 0)
+        } else {
+            let level = query.contact.normal.y > 0.9;
+            let is_solid = index != 5 || id != 2 || query.is_from_above();
+            let usual = usual.with_solid(is_solid).with_step(id % 2 == 0);
+            usual.with_friction(if level { 0.7 } else { 1.0 })
+        }
+    };
+    let rules = StepRules::by(&rule);
+    let report = climber.step_with(&input, &obstacles, &rules, TICK).unwrap();
     (climber.state().fingerprint(), report)
 }
 

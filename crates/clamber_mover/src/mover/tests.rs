@@ -129,7 +129,7 @@ fn a_path_that_is_not_finite_leaves_the_body_at_its_start() {
 /// order of the two.
 #[test]
 fn what_is_not_solid_is_not_there_for_any_query() {
-    let [upper, lower] = [0.0, -2.0].map(|height| clamber_world::HalfSpace::below(height));
+    let [upper, lower] = [0.0, -2.0].map(clamber_world::HalfSpace::below);
     let [upper, lower]: [(ObstacleId, &dyn Obstacle); 2] =
         [(ObstacleId(1), &upper), (ObstacleId(2), &lower)];
     let is_solid = |id: ObstacleId, _: &dyn Obstacle, _: &Contact| id == ObstacleId(2);
