@@ -6,8 +6,8 @@
 //! behind a flat sheet of any size, at most half of them leave through it. Nearly all of them leave from inside a
 //! creature, also where a neck is open below the head.
 //!
-//! An edit may add skin above a creature's own: a scab, a plate. Nothing gets out of the hollow between them, from whose
-//! floor half of all rays leave and the others meet the creature's skin.
+//! An edit may add skin above a creature's own: a scab, a plate. Nothing gets out of the hollow between them. From its
+//! floor, half of all rays leave, and the others meet the creature's skin.
 
 use clamber_surface::geometry::Ray;
 use clamber_surface::surface::{ModelSpace, SurfaceHit};
@@ -36,8 +36,8 @@ const ENCLOSED: usize = 14;
 const OPEN: usize = RAYS / 2;
 
 /// A point is in a hollow if [`ENCLOSED`] rays meet skin, and at least this many leave: skin that was added above other
-/// skin closes it. From the floor of such a hollow, half of all rays leave through the added skin. With fewer, a rock in
-/// a mouth could count, where parts that pass through each other let single rays leave.
+/// skin closes it. From the floor of such a hollow, half of all rays leave through the added skin. With fewer, a rock
+/// in a mouth could count, where parts that pass through each other let single rays leave.
 const HOLLOW: usize = 6;
 
 /// True if skin encloses a point, in model space, nearly all around. False for a point that is not finite. `hits` is
