@@ -183,11 +183,11 @@ fn step(
         if !is_ruled {
             usual
         } else if query.is_character() {
-            usual.with_solid(id % 2 == 0)
+            usual.with_solid(id.is_multiple_of(2))
         } else {
             let level = query.contact.normal.y > 0.9;
             let is_solid = index != 5 || id != 2 || query.is_from_above();
-            let usual = usual.with_solid(is_solid).with_step(id % 2 == 0);
+            let usual = usual.with_solid(is_solid).with_step(id.is_multiple_of(2));
             usual.with_friction(if level { 0.7 } else { 1.0 })
         }
     };
