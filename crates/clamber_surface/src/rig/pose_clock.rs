@@ -134,6 +134,7 @@ impl PoseClock {
     }
 
     /// True if no number is infinite or NaN.
+    #[cfg(feature = "serde")]
     pub(super) fn is_finite(&self) -> bool {
         let numbers = [self.newest.unwrap_or(0.0), self.waited, self.lag, self.time];
         numbers.iter().chain(&self.intervals).all(|n| n.is_finite())
