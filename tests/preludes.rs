@@ -20,10 +20,10 @@ macro_rules! use_each {
 
 use_each! {
     Affine Anchor Attachment BodyPoses BuildOptions CastOptions Climber ClimberConfig ClimberContact ClimberEvent
-    ClimberInput ClimberMode ClimberState Clip ColliderMesh ContactPhase CustomMode Debris DebrisConfig GripConfig
-    Influence JointId MaterialPoint MeshSource ModeContext Motion NextMode Obstacle ObstacleId Palette Playback
-    PointMotion RapierTerrain Similarity Skeleton SkinnedSurface StepReport StepRules Support SurfaceHit SurfaceKind
-    SurfacePoint SurfaceTag SweepHit TargetMotion Transform TriangleId
+    ClimberInput ClimberMode ClimberState Clip ColliderMesh ContactPhase ContactQuery ContactRule CustomMode Debris
+    DebrisConfig GripConfig Influence JointId MaterialPoint MeshSource ModeContext Motion NextMode Obstacle ObstacleId
+    Palette Playback PointMotion RapierTerrain Similarity Skeleton SkinnedSurface StepReport StepRules Support
+    SurfaceHit SurfaceKind SurfacePoint SurfaceTag SweepHit TargetMotion Transform TriangleId
 }
 
 /// Otherwise a name that is added to the prelude would not be checked above.

@@ -15,7 +15,7 @@ use crate::{Climber, ClimberObstacle};
 /// use glam::DVec3;
 ///
 /// let dt = 1.0 / 60.0;
-/// let ground = HalfSpace::new(DVec3::Y, 0.0)?;
+/// let ground = HalfSpace::below(0.0);
 /// let fixed: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(0), &ground)];
 /// let at = |x| Climber::new(ClimberConfig::walker(), DVec3::new(x, 0.4, 0.0));
 /// let mut climbers = [(ObstacleId(1), at(0.0)?), (ObstacleId(2), at(0.5)?)];

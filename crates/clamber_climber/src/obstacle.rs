@@ -7,6 +7,7 @@ use clamber_world::{
 use glam::DVec3;
 
 use crate::Climber;
+use crate::step::CONTINUOUS;
 
 /// Most steps of a sweep. Capsules that pass each other take a few, capsules that just graze a few dozen.
 const STEPS: u32 = 64;
@@ -17,10 +18,6 @@ pub(crate) const SAME_PLACE: f64 = 1e-7;
 
 /// Contacts whose normal is farther from up than this cosine are on a climber's side: 60 degrees, where nobody stands.
 const SIDE: f64 = 0.5;
-
-/// Largest gap, as a share of the radius, between where a support was after the last tick and where its obstacle says
-/// that it was: as for the climber itself.
-const CONTINUOUS: f64 = crate::step::CONTINUOUS;
 
 /// A climber as an obstacle to other climbers, for one tick: a solid capsule that is where its support carries it.
 ///

@@ -8,6 +8,8 @@
 
 #[doc = include_str!("../../../docs/recipes/arrows.md")]
 pub mod arrows {}
+#[doc = include_str!("../../../docs/recipes/camera.md")]
+pub mod camera {}
 #[doc = include_str!("../../../docs/recipes/creature_from_blender.md")]
 pub mod creature_from_blender {}
 #[doc = include_str!("../../../docs/recipes/debugging.md")]

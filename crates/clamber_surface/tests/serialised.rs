@@ -12,7 +12,9 @@ use clamber_surface::mesh::{
     BuildOptions, ColliderMesh, Influence, IslandId, MeshSource, PartId, SurfaceKind, SurfaceTag,
     TriangleId, VertexId,
 };
-use clamber_surface::rig::{Joint, JointId, Palette, Playback, Pose, Skeleton, Transform};
+use clamber_surface::rig::{
+    Joint, JointId, Palette, Playback, Pose, PoseMotion, PoseTrack, Skeleton, Transform,
+};
 use clamber_surface::surface::{Anchor, SkinnedSurface};
 use glam::{DQuat, DVec3, Quat, Vec3};
 use serde_json::{from_str, json, to_string};
@@ -164,4 +166,68 @@ fn a_palette_whose_lists_differ_in_length_is_refused() {
     assert!(told.contains("expected 2 joints, found 1"), "{told}");
     stored["model_from_joint"] = json!([]);
     assert!(serde_json::from_value::<Palette>(stored).is_ok());
+}
+
+/// A pose in every third of so many ticks at 60 Hz, of a joint that wanders.
+fn wander(
+    track: &mut PoseTrack,
+    ticks: std::ops::Range<u32>,
+) -> Vec<(PoseMotion, Pose, Similarity)> {
+    let tick = |tick: u32| {
+        let now = f64::from(tick) / 60.0;
+        if tick.is_multiple_of(3) && tick != 9 {
+            let far = Vec3::new(now as f32, (now * now) as f32, 0.1);
+            let pose = Pose {
+                transforms: vec![Transform::from_translation(far)],
+            };
+            let place = Similarity::from_translation(DVec3::Z * (now / 3.0));
+            track.record(now, &pose, place).unwrap();
+        }
+        let motion = track.tick(now, 1.0 / 60.0).unwrap();
+        (motion, track.pose().clone(), *track.world_from_model())
+    };
+    ticks.map(tick).collect()
+}
+
+#[test]
+fn a_restored_track_of_poses_goes_on_equally() {
+    for saved in 1..40 {
+        let mut track = PoseTrack::default();
+        wander(&mut track, 0..saved);
+        assert_stays(track.clock());
+        let mut restored: PoseTrack = from_str(&to_string(&track).unwrap()).unwrap();
+        assert_eq!(restored, track, "after {saved} ticks");
+        let mut copied = track.clone();
+        let goes_on = wander(&mut track, saved..60);
+        assert_eq!(wander(&mut restored, saved..60), goes_on, "{saved}");
+        assert_eq!(wander(&mut copied, saved..60), goes_on, "{saved}");
+        assert_eq!(restored, track, "after {saved} ticks");
+    }
+}
+
+#[test]
+fn a_track_of_poses_that_do_not_fit_is_refused() {
+    let mut track = PoseTrack::default();
+    wander(&mut track, 0..20);
+    let stored = serde_json::to_value(&track).unwrap();
+    assert!(serde_json::from_value::<PoseTrack>(stored.clone()).is_ok());
+    let refused = |path: &str, value: serde_json::Value| {
+        let mut stored = stored.clone();
+        *stored.pointer_mut(path).unwrap() = value;
+        let refused = serde_json::from_value::<PoseTrack>(stored);
+        refused.unwrap_err().to_string()
+    };
+    let sample = "/history/samples/0";
+    let told = refused(&format!("{sample}/pose/pose/transforms"), json!([]));
+    assert!(told.contains("expected 1 joints, found 0"), "{told}");
+    let told = refused(&format!("{sample}/from"), json!(7.0));
+    assert!(told.contains("time"), "{told}");
+    let told = refused(&format!("{sample}/pose/world_from_model/scale"), json!(0.0));
+    assert!(told.contains("world_from_model"), "{told}");
+    let nothing = json!([0.0, 0.0, 0.0, 0.0]);
+    let told = refused(
+        &format!("{sample}/pose/pose/transforms/0/rotation"),
+        nothing,
+    );
+    assert!(told.contains("rotation"), "{told}");
 }

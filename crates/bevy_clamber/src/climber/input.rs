@@ -28,7 +28,8 @@ pub struct ClimberInput {
     pub jump_held: bool,
     /// True as long as the grip button is down: grips what is in reach and holds on. False lets go.
     pub grip: bool,
-    /// True as long as the crouch button is down: who stands is its lower ball alone, and stands up where there is room.
+    /// True as long as the crouch button is down: a standing climber is then only its lower ball. Released, it stands up
+    /// where there is room.
     pub crouch: bool,
     /// The game's own buttons, one bit each, for its [`ClimberModes`](crate::ClimberModes).
     pub actions: u32,

@@ -15,7 +15,7 @@ use super::{
     ColliderError, ColliderFailure, ColliderMeshes, ColliderNeeds, ColliderStatus, ColliderTag,
     SkinnedCollider,
 };
-use crate::surface::{Hierarchy, PoseClock, Rig, Scene};
+use crate::surface::{FrameClock, Hierarchy, Rig, Scene};
 use crate::{DrawnSurface, PosedSurface, WorldOrigin};
 
 /// Restarts the build of colliders whose assets changed, and removes surfaces whose assets are gone.
@@ -89,7 +89,7 @@ pub(crate) fn build_colliders(
     bindposes: Res<Assets<SkinnedMeshInverseBindposes>>,
     mut colliders: ResMut<ColliderMeshes>,
     hierarchy: Hierarchy<'_, '_>,
-    (clock, origin): (Res<PoseClock>, Res<WorldOrigin>),
+    (clock, origin): (Res<FrameClock>, Res<WorldOrigin>),
     mut commands: Commands,
 ) {
     let scene = Scene {

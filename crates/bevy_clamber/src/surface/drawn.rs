@@ -1,8 +1,7 @@
 use std::sync::{Mutex, OnceLock, PoisonError};
-use std::time::Duration;
 
 use bevy_ecs::prelude::*;
-use clamber_surface::rig::Palette;
+use clamber_surface::rig::{Palette, PoseMotion};
 use clamber_surface::surface::SkinnedSurface;
 use glam::DAffine3;
 
@@ -88,7 +87,7 @@ impl DrawnSurface {
         surface: &PosedSurface,
         timing: &SkinnedCollider,
         scene: &Scene<'_, '_, '_>,
-        time: Duration,
+        time: f64,
     ) {
         self.error = None;
         self.frames = FIRST_FRAMES.min(self.frames + 1);
@@ -118,7 +117,12 @@ impl DrawnSurface {
         if is_same && !is_cut {
             self.history.stay(time, drawn);
         } else {
-            self.history.record(time, drawn, is_cut);
+            let motion = if is_cut {
+                PoseMotion::Placed
+            } else {
+                PoseMotion::Moved
+            };
+            self.history.record(time, drawn, motion);
         }
     }
 
@@ -131,7 +135,7 @@ impl DrawnSurface {
     pub(super) fn follow(
         &mut self,
         scene: &Scene<'_, '_, '_>,
-        time: Duration,
+        time: f64,
         drawn: &mut Locals,
     ) -> Result<(), ColliderError> {
         self.rig.follow(scene.hierarchy)?;
@@ -162,7 +166,7 @@ impl DrawnSurface {
         surface: &PosedSurface,
         timing: &SkinnedCollider,
         drawn: &Locals,
-        time: Duration,
+        time: f64,
     ) -> bool {
         let Some((last, before)) = self.history.last_timed() else {
             return false;
@@ -170,7 +174,7 @@ impl DrawnSurface {
         let (Some(from), Some(to)) = (last.place(), drawn.place()) else {
             return false;
         };
-        let time = time.saturating_sub(before).as_secs_f64();
+        let time = time - before;
         let speed = from.distance(to) / time;
         let is_teleport = time > 0.0 && speed > f64::from(timing.max_speed);
         if is_teleport {

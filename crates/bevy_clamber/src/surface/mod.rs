@@ -11,7 +11,7 @@ mod rig;
 
 use bevy_reflect::prelude::*;
 
-pub(crate) use clock::PoseClock;
+pub(crate) use clock::FrameClock;
 pub use drawn::DrawnSurface;
 pub use origin::WorldOrigin;
 pub use plugin::SurfacePlugin;

@@ -10,7 +10,7 @@ use bevy_transform::{TransformPlugin, TransformSystems};
 
 use super::clock::{tell_frame, tell_tick};
 use super::pose::{pose_surfaces, sample_poses};
-use super::{DrawnSurface, PoseClock, PoseTiming, PosedSurface};
+use super::{DrawnSurface, FrameClock, PoseTiming, PosedSurface};
 use crate::collider::{
     ColliderMeshes, build_colliders, forget_changed_assets, tag_colliders, tell_waiting,
 };
@@ -43,7 +43,7 @@ impl Default for SurfacePlugin {
 impl Plugin for SurfacePlugin {
     fn build(&self, app: &mut App) {
         app.init_resource::<ColliderMeshes>()
-            .init_resource::<PoseClock>()
+            .init_resource::<FrameClock>()
             .init_resource::<WorldOrigin>()
             .register_type::<WorldOrigin>()
             .register_type::<SkinnedCollider>()

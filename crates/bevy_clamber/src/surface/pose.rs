@@ -3,7 +3,7 @@ use bevy_ecs::query::{ArchetypeQueryData, IterQueryData};
 use bevy_time::Time;
 
 use super::rig::{Hierarchy, Scene};
-use super::{DrawnSurface, PoseClock, PosedSurface};
+use super::{DrawnSurface, FrameClock, PosedSurface};
 use crate::{SkinnedCollider, WorldOrigin};
 
 /// Up to this number, one thread poses all surfaces sooner than other threads wake up.
@@ -11,7 +11,7 @@ const FEW: usize = 4;
 
 /// Runs once a tick.
 pub(crate) fn pose_surfaces(
-    clock: Res<PoseClock>,
+    clock: Res<FrameClock>,
     tick: Res<Time>,
     origin: Res<WorldOrigin>,
     surfaces: Query<(&mut PosedSurface, &mut DrawnSurface, &SkinnedCollider)>,
@@ -32,7 +32,7 @@ pub(crate) fn pose_surfaces(
 
 /// Runs once a frame.
 pub(crate) fn sample_poses(
-    clock: Res<PoseClock>,
+    clock: Res<FrameClock>,
     origin: Res<WorldOrigin>,
     surfaces: Query<(&PosedSurface, &mut DrawnSurface, &SkinnedCollider)>,
     hierarchy: Hierarchy<'_, '_>,

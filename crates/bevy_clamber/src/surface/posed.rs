@@ -4,15 +4,14 @@ use std::sync::Arc;
 use bevy_ecs::prelude::*;
 use clamber_surface::geometry::Similarity;
 use clamber_surface::mesh::TriangleId;
-use clamber_surface::rig::{Palette, RigError};
+use clamber_surface::rig::{Between, Palette, PoseMotion, RigError};
 use clamber_surface::surface::{SkinnedSurface, SurfaceError};
 use glam::{DAffine3, DMat3, DVec3};
 use thiserror::Error;
 
 use super::PoseTiming;
-use super::clock::PoseClock;
+use super::clock::FrameClock;
 use super::drawn::DrawnSurface;
-use super::history::Between;
 use super::rig::{Changed, Locals, Scene};
 use crate::collider::BuiltCollider;
 use crate::{ColliderError, SkinnedCollider};
@@ -94,7 +93,7 @@ impl PosedSurface {
         timing: &SkinnedCollider,
         drawn: &mut DrawnSurface,
         scene: &Scene<'_, '_, '_>,
-        clock: &PoseClock,
+        clock: &FrameClock,
     ) -> Self {
         let mut posed = Self {
             entity,
@@ -203,7 +202,7 @@ impl PosedSurface {
         drawn: &mut DrawnSurface,
         timing: &SkinnedCollider,
         scene: &Scene<'_, '_, '_>,
-        clock: &PoseClock,
+        clock: &FrameClock,
         dt: f64,
     ) -> bool {
         self.has_jumped = [false, self.has_jumped[0]];
@@ -228,7 +227,7 @@ impl PosedSurface {
         drawn: &mut DrawnSurface,
         timing: &SkinnedCollider,
         scene: &Scene<'_, '_, '_>,
-        clock: &PoseClock,
+        clock: &FrameClock,
         dt: f64,
         next: &mut Locals,
     ) -> Result<bool, PoseError> {
@@ -266,7 +265,7 @@ impl PosedSurface {
             .rig
             .compose(next, &mut scratch.model_from_node, &mut scratch.palette);
         let world_from_model = placed.ok_or(PoseError::Placement)?;
-        let jumps = timing.follows_frames() && (clock.jumped() || at.is_cut);
+        let jumps = timing.follows_frames() && (clock.jumped() || at.motion == PoseMotion::Placed);
         let limit = f64::from(timing.max_speed) * dt;
         let farthest = self.farthest(&world_from_model, limit);
         let is_teleport = farthest > limit && dt > 0.0;

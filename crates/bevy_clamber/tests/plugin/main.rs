@@ -50,6 +50,7 @@ mod queries;
 mod relations;
 mod saved_worlds;
 mod scenes;
+mod seldom_poses;
 mod sticking;
 mod surfaces;
 mod tags;

@@ -23,7 +23,7 @@ pub struct BodyConfig {
     /// Largest force with which it pushes obstacles that it runs into, newtons, not negative. Default 600. Neither its
     /// weight nor the impulse of an airborne climber is limited by it.
     pub push_force: f64,
-    /// What it does where it walks into another climber ([`ClimberObstacle`](crate::ClimberObstacle)). Default
+    /// What happens when it walks into another climber ([`ClimberObstacle`](crate::ClimberObstacle)). Default
     /// [`Others::Block`].
     pub others: Others,
 }

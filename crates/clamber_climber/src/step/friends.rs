@@ -20,6 +20,9 @@ const DEEPEST: f64 = 0.75;
 /// The fastest that climbers part which pass each other, radii a second.
 const PASSES: f64 = 1.25;
 
+/// Least level part of the direction between two bodies in which they part levelly.
+const ASIDE: f64 = 0.1;
+
 impl Tick<'_> {
     /// The displacement in this tick by which it parts from the climbers that it overlaps: from each by the other's
     /// share of their mass. Walls stop it like any other movement.
@@ -86,11 +89,12 @@ impl Tick<'_> {
         let is_deep = apart.distance < other.capsule.radius.min(capsule.radius);
         let away = if is_deep {
             let level = apart.away - up * apart.away.dot(up);
-            let is_beside = apart.distance > SAME_PLACE * capsule.radius && level.length() > ASIDE;
-            if is_beside {
+            let is_apart = apart.distance > SAME_PLACE * capsule.radius;
+            if is_apart && level.length() > ASIDE {
                 level.normalize_or_zero()
             } else {
-                self.side_of(id)
+                let otherwise = if is_apart { apart.away } else { DVec3::ZERO };
+                self.side_of(id).unwrap_or(otherwise)
             }
         } else {
             apart.away
@@ -100,16 +104,11 @@ impl Tick<'_> {
         away * (own * depth.min(self.parting_at_most() / own.max(others)))
     }
 
-    /// The side to which it parts from another climber at the same place: opposite for the two.
-    fn side_of(&self, id: ObstacleId) -> DVec3 {
+    /// The side to which it parts from another climber at the same place: opposite for the two. `None` without an id of
+    /// its own, by which both would go to the same side for ever.
+    fn side_of(&self, id: ObstacleId) -> Option<DVec3> {
+        let own = self.rules.id.filter(|own| *own != id)?;
         let side = self.config.up().any_orthonormal_vector();
-        if self.rules.id.is_none_or(|own| own < id) {
-            -side
-        } else {
-            side
-        }
+        Some(if own < id { -side } else { side })
     }
 }
-
-/// Least level part of the direction between two bodies in which they part levelly.
-const ASIDE: f64 = 0.1;

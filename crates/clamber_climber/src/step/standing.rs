@@ -199,6 +199,7 @@ impl Tick<'_> {
     fn find_new_ground(&mut self, carried: &Carried, walk: DVec3) -> NextMode {
         let reach = self.config.ground.snap_distance;
         if let Some(ground) = self.ground_below(self.state.position, reach)
+            && !self.is_far_onto_another(carried, &ground)
             && self.is_corrected_clear(carried, ground.position)
         {
             let moved = self.slide(&Path::placed(self.body(), ground.position), Intent::Go);
@@ -222,6 +223,20 @@ impl Tick<'_> {
         } else {
             self.lose_footing()
         }
+    }
+
+    /// True if ground is farther than the margin, and either it or what carries the climber is another climber: nobody is
+    /// a step down, and whoever leaves another one falls.
+    fn is_far_onto_another(&self, carried: &Carried, ground: &Ground) -> bool {
+        let from = carried.support.attachment.obstacle;
+        let far = self.state.position.distance(ground.position) > self.config.body.margin;
+        let is_from_another = || {
+            let from = self.mover.obstacle(from);
+            from.is_some_and(|from| from.character().is_some())
+        };
+        from != ground.touch.obstacle
+            && far
+            && (self.mover.is_character(&ground.touch) || is_from_another())
     }
 
     /// True if steep slopes on all sides hold it up.

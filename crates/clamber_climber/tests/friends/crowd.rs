@@ -51,6 +51,8 @@ pub(crate) struct Crowd {
     pub(crate) climbers: Vec<Climber>,
     group: ClimberGroup,
     pub(crate) dt: f64,
+    /// False if they do not know their own ids.
+    pub(crate) know_ids: bool,
     /// The order in which they are stepped and listed.
     pub(crate) order: Vec<usize>,
     /// Where the first box is.
@@ -79,6 +81,7 @@ impl Crowd {
                 .collect(),
             group: ClimberGroup::default(),
             dt: 1.0 / rate,
+            know_ids: true,
             order: (0..places.len()).collect(),
             deck: DVec3::ZERO,
             size,
@@ -133,7 +136,7 @@ impl Crowd {
                 obstacles.reverse();
             }
             let rules = StepRules {
-                id: Some(id(index)),
+                id: self.know_ids.then_some(id(index)),
                 ..StepRules::default()
             };
             let climber = &mut self.climbers[index];

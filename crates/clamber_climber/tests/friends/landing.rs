@@ -1,6 +1,6 @@
 //! Climbers that come down on each other, in frames that move and in the air.
 
-use clamber_climber::{ClimberConfig, ClimberEvent, ClimberInput, ClimberMode};
+use clamber_climber::{Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode};
 use glam::DVec3;
 
 use crate::crowd::{Crowd, IDLE, RATES};
@@ -155,5 +155,35 @@ fn a_jump_off_a_friend_who_jumps_is_a_jump() {
                 "{rate} Hz, {lag} ticks later: {top}"
             );
         }
+    }
+}
+
+#[test]
+fn who_stands_on_a_friend_that_is_gone_or_put_elsewhere_falls_or_goes_along() {
+    for rate in RATES {
+        let places = [DVec3::new(0.0, 0.4, 0.0), DVec3::new(0.0, 1.2, 0.0)];
+        let mut crowd = Crowd::new(ClimberConfig::walker(), &places, rate);
+        crowd.rest(0.3);
+        assert_eq!(crowd.state(1).mode, ClimberMode::Standing, "{rate} Hz");
+        // Put elsewhere, as by a game's teleport.
+        let there = DVec3::new(3.0, 0.4, 0.0);
+        let moved = Climber::new(ClimberConfig::walker(), there).unwrap();
+        crowd.climbers[0] = moved;
+        crowd.rest(0.5);
+        for index in 0..2 {
+            let state = crowd.state(index);
+            assert_eq!(state.mode, ClimberMode::Standing, "{rate} Hz: {state:?}");
+        }
+        // Gone: nobody lists it any more.
+        let upper = crowd.climbers.remove(1);
+        let mut alone = Crowd::new(ClimberConfig::walker(), &[DVec3::ZERO], rate);
+        alone.climbers[0] = upper;
+        alone.rest(1.0);
+        let state = alone.state(0);
+        assert_eq!(state.mode, ClimberMode::Standing, "{rate} Hz: {state:?}");
+        assert!(
+            (state.position.y - 0.4).abs() < 0.02,
+            "{rate} Hz: {state:?}"
+        );
     }
 }

@@ -155,3 +155,29 @@ fn who_follows_keeps_pace() {
         }
     }
 }
+
+#[test]
+fn two_at_one_place_that_know_no_ids_do_not_drift() {
+    for rate in RATES {
+        for height in [0.0, 1.0] {
+            let mut crowd = twins(height, DVec3::ZERO, 1.0, rate);
+            crowd.know_ids = false;
+            let place = crowd.position(0);
+            crowd.rest(2.0);
+            for index in 0..2 {
+                let off = crowd.position(index).distance(place);
+                assert!(off < 0.02, "{rate} Hz, height {height}, {index}: {off}");
+            }
+            // As soon as one of them moves, they part.
+            for _ in 0..(rate * 0.05) as u32 {
+                crowd.step(DVec3::ZERO, |index| clamber_climber::ClimberInput {
+                    walk: if index == 0 { DVec3::X } else { DVec3::ZERO },
+                    ..IDLE
+                });
+            }
+            crowd.rest(1.5);
+            let gap = crowd.position(0).distance(crowd.position(1));
+            assert!(gap > 0.78, "{rate} Hz, height {height}: {gap} apart");
+        }
+    }
+}

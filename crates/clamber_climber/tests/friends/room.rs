@@ -62,7 +62,7 @@ fn play(others: Others, height: f64, minutes: f64, seed: u64) {
                 .min(crowd.state(index).own_way.length());
             let own = speeds[index].max(crowd.state(index).velocity.length()) / rate;
             assert!(
-                way < farthest(others).max(own + 0.05),
+                way < farthest(others).max(own + 0.06),
                 "{told}: {way}, own {own}"
             );
         }

@@ -60,6 +60,23 @@ pub enum RigError {
         /// Index of the key frame that has the earlier time.
         index: usize,
     },
+    /// A time is before the one that came before it.
+    #[error("{what} is {time} s, which is before {last} s")]
+    TimeGoesBack {
+        /// Which time.
+        what: &'static str,
+        /// The time, seconds.
+        time: f64,
+        /// The time before it, seconds.
+        last: f64,
+    },
+    /// A tick asks for a pose before there is one.
+    #[error("no pose has been recorded yet")]
+    NoPose,
+    /// The map from model space to the world has a part that is not finite, a scale that is not positive, or a rotation
+    /// whose length is not 1.
+    #[error("world_from_model is not a valid similarity")]
+    WorldFromModel,
     /// A marker's time is not within its clip.
     #[error("marker {name:?} is at {time} s, but the clip lasts {duration} s")]
     MarkerOutOfRange {

@@ -75,6 +75,9 @@ impl SkinnedSurface {
 
     /// Starts the next tick: the current pose becomes the previous one, and the given pose becomes current.
     ///
+    /// Needs a new pose in every tick: with the same pose the skin has stood still. Where poses are made less often, a
+    /// [`PoseTrack`](crate::rig::PoseTrack) blends them.
+    ///
     /// Costs O(joints), and O(nodes and clusters that the last two ticks touched). Nothing is skinned, unless the last
     /// tick touched at least three quarters of all clusters; then all are. That depends on which clusters queries
     /// reached, not on how many threads they ran on.

@@ -91,7 +91,6 @@ impl Tick<'_> {
             return Some(());
         };
         let (start, end) = (*piece.start(), *body.position());
-        let moved = (end.translation - start.translation).as_dvec3();
         let known = piece.index_of(obstacle).ok();
         if let Some(at) = known {
             let patch = &mut piece.patches[at].1;
@@ -112,14 +111,13 @@ impl Tick<'_> {
             }
             // Rapier lets a kinematic body press a dynamic body into a fixed one.
             if !patch.is_empty()
-                && self.immovable.touches(bodies, body)
-                && let Some(share) = self.immovable.blocks(bodies, &piece.core, &start, moved)
+                && let Some(place) =
+                    (self.immovable).pressed(bodies, body, &piece.core, &start, self.dt)
             {
                 patch.passage = Passage::LetThrough;
                 report.caught += 1;
                 if let Some(body) = bodies.get_mut(piece.body) {
-                    let back = start.translation + (moved * share).as_vec3();
-                    body.set_translation(back, true);
+                    body.set_translation(place, true);
                 }
                 return Some(());
             }

@@ -5,6 +5,9 @@
 //! open pieces that pass through each other, so no single ray can be trusted. Sixteen rays are cast, in opposite pairs:
 //! behind a flat sheet of any size, at most half of them leave through it. Nearly all of them leave from inside a
 //! creature, also where a neck is open below the head.
+//!
+//! An edit may add skin above a creature's own: a scab, a plate. Nothing gets out of the hollow between them. From its
+//! floor, half of all rays leave, and the others meet the creature's skin.
 
 use clamber_surface::geometry::Ray;
 use clamber_surface::surface::{ModelSpace, SurfaceHit};
@@ -32,6 +35,11 @@ const ENCLOSED: usize = 14;
 /// A point is in the open if at most this many rays leave: behind a flat sheet they are half of all.
 const OPEN: usize = RAYS / 2;
 
+/// A point is in a hollow if [`ENCLOSED`] rays meet skin, and at least this many leave: skin that was added above other
+/// skin closes it. From the floor of such a hollow, half of all rays leave through the added skin. With fewer, a rock
+/// in a mouth could count, where parts that pass through each other let single rays leave.
+const HOLLOW: usize = 6;
+
 /// True if skin encloses a point, in model space, nearly all around. False for a point that is not finite. `hits` is
 /// reused memory.
 pub(super) fn is_enclosed(space: ModelSpace<'_>, point: Vec3, hits: &mut Vec<SurfaceHit>) -> bool {
@@ -44,30 +52,55 @@ pub(super) fn is_within(space: ModelSpace<'_>, point: Vec3, hits: &mut Vec<Surfa
     at_least(OPEN + 1, space, point, hits)
 }
 
-/// True if at least `enough` rays leave. Stops as soon as that is decided.
+/// True if at least `enough` rays leave, or if the point is in a hollow. Stops as soon as that is decided.
 fn at_least(enough: usize, space: ModelSpace<'_>, point: Vec3, hits: &mut Vec<SurfaceHit>) -> bool {
-    let (mut leaving, mut asked) = (0, 0);
-    for direction in DIRECTIONS.into_iter().flat_map(|one| [one, -one]) {
-        leaving += usize::from(leaves(space, point, direction, hits));
-        asked += 1;
-        if leaving >= enough || leaving + (RAYS - asked) < enough {
-            break;
+    let (mut leaving, mut meeting) = (0, 0);
+    let directions = DIRECTIONS.into_iter().flat_map(|one| [one, -one]);
+    for (asked, direction) in directions.enumerate() {
+        let ray = Met::by(space, point, direction, hits);
+        leaving += usize::from(ray.leaves);
+        meeting += usize::from(ray.meets);
+        let rest = RAYS - 1 - asked;
+        let decided =
+            |leaving, meeting| leaving >= enough || leaving >= HOLLOW && meeting >= ENCLOSED;
+        if decided(leaving, meeting) {
+            return true;
+        }
+        if !decided(leaving + rest, meeting + rest) {
+            return false;
         }
     }
-    leaving >= enough
+    false
 }
 
-/// True if a ray leaves the skin more often than it enters it.
-fn leaves(space: ModelSpace<'_>, point: Vec3, direction: Vec3, hits: &mut Vec<SurfaceHit>) -> bool {
-    let Some(ray) = Ray::new(point, direction) else {
-        return false;
-    };
-    space.cast_ray_all(&ray, f32::INFINITY, hits);
-    let crossings = hits.iter().map(|hit| {
-        let along = hit.normal.dot(direction);
-        i32::from(along > 0.0) - i32::from(along < 0.0)
-    });
-    let crossings: i32 = crossings.sum();
-    hits.clear();
-    crossings > 0
+/// What a ray did on its way to infinity.
+struct Met {
+    /// It met skin.
+    meets: bool,
+    /// It left the skin more often than it entered it.
+    leaves: bool,
+}
+
+impl Met {
+    fn by(space: ModelSpace<'_>, point: Vec3, direction: Vec3, hits: &mut Vec<SurfaceHit>) -> Self {
+        let nothing = Self {
+            meets: false,
+            leaves: false,
+        };
+        let Some(ray) = Ray::new(point, direction) else {
+            return nothing;
+        };
+        space.cast_ray_all(&ray, f32::INFINITY, hits);
+        let crossings = hits.iter().map(|hit| {
+            let along = hit.normal.dot(direction);
+            i32::from(along > 0.0) - i32::from(along < 0.0)
+        });
+        let crossings: i32 = crossings.sum();
+        let meets = !hits.is_empty();
+        hits.clear();
+        Self {
+            meets,
+            leaves: crossings > 0,
+        }
+    }
 }

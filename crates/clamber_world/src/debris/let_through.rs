@@ -9,7 +9,7 @@ use rapier3d::dynamics::{RigidBody, RigidBodyHandle, RigidBodySet};
 use rapier3d::geometry::{
     BroadPhaseBvh, Capsule, Collider, ColliderHandle, ColliderSet, NarrowPhase,
 };
-use rapier3d::math::Pose;
+use rapier3d::math::{Pose, Vector};
 use rapier3d::parry::query::{DefaultQueryDispatcher, ShapeCastOptions};
 use rapier3d::pipeline::QueryFilter;
 
@@ -31,27 +31,60 @@ pub(super) struct Immovable<'a> {
 }
 
 impl Immovable<'_> {
-    /// True if the step found contacts of the body with an immovable collider.
-    pub(super) fn touches(&self, bodies: &RigidBodySet, body: &RigidBody) -> bool {
-        body.colliders().iter().any(|own| {
-            let mut pairs = self.narrow_phase.contact_pairs_with(*own);
-            pairs.any(|pair| {
+    /// The place up to which a step of `dt` seconds could take the body from the pose `start` without pressing it into
+    /// immovable colliders, in rapier's space. `None` if the body touches none, or is not pressed into any.
+    ///
+    /// What moves evenly with such a collider is not pressed into it, however fast both are.
+    pub(super) fn pressed(
+        &self,
+        bodies: &RigidBodySet,
+        body: &RigidBody,
+        core: &InnerCapsule,
+        start: &Pose,
+        dt: f64,
+    ) -> Option<Vector> {
+        let mut least: Option<(f64, Vector)> = None;
+        let mut tried = None;
+        for own in body.colliders() {
+            for pair in self.narrow_phase.contact_pairs_with(*own) {
                 let other = if pair.collider1 == *own {
                     pair.collider2
                 } else {
                     pair.collider1
                 };
-                self.has(bodies, other) && pair.has_any_active_contact()
-            })
-        })
+                let Some(velocity) = self.velocity(bodies, other, body.translation()) else {
+                    continue;
+                };
+                if tried == Some(velocity) || !pair.has_any_active_contact() {
+                    continue;
+                }
+                tried = Some(velocity);
+                let mut from = *start;
+                from.translation += (velocity.as_dvec3() * dt).as_vec3();
+                let moved = (body.translation() - from.translation).as_dvec3();
+                if let Some(share) = self.blocks(bodies, core, &from, moved)
+                    && least.is_none_or(|(known, _)| share < known)
+                {
+                    least = Some((share, from.translation + (moved * share).as_vec3()));
+                }
+            }
+        }
+        least.map(|(_, place)| place)
     }
 
-    fn has(&self, bodies: &RigidBodySet, handle: ColliderHandle) -> bool {
-        let Some(collider) = self.colliders.get(handle) else {
-            return false;
-        };
-        let body = collider.parent().and_then(|parent| bodies.get(parent));
-        !body.is_some_and(RigidBody::is_dynamic) && owner_in(self.skin, handle).is_none()
+    /// Velocity of an immovable collider at a place in rapier's space, metres a second; `None` for any other collider.
+    fn velocity(
+        &self,
+        bodies: &RigidBodySet,
+        handle: ColliderHandle,
+        place: Vector,
+    ) -> Option<Vector> {
+        let parent = self.colliders.get(handle)?.parent();
+        let body = parent.and_then(|parent| bodies.get(parent));
+        if body.is_some_and(RigidBody::is_dynamic) || owner_in(self.skin, handle).is_some() {
+            return None;
+        }
+        Some(body.map_or(Vector::ZERO, |body| body.velocity_at_point(place)))
     }
 
     /// The fraction of a displacement, by `shift` from a pose in rapier's space, at which the body's inside meets an

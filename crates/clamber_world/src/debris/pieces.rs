@@ -29,13 +29,14 @@ use crate::ObstacleId;
 /// the skin closes, such as between head and shoulder.
 ///
 /// Skin may also appear around a body: a stone breaks off below the skin, or a creature is new, is
-/// [placed](SkinnedSurface::place) or shows a part again where bodies are. A body that is no deeper below the skin than
-/// the radius of the largest ball in it is moved out of the creature within a split second, by the shortest way
-/// ([`Debris::is_put_out`]). Skin passes through a deeper one, and through one whose way out is blocked
-/// ([`Debris::is_let_through`]): it falls through the creature, or lies on the ground until the creature goes on.
-/// [`DebrisReport::enclosed`](crate::DebrisReport::enclosed) counts such bodies when they are found. A game that wants
-/// something else moves the body itself, before the next tick, or removes it. Open skin encloses nothing: a body behind
-/// a sheet, or in a flat bowl, collides with it as ever.
+/// [placed](SkinnedSurface::place), is [edited](SkinnedSurface::edit) or shows a part again where bodies are. A body
+/// that is no deeper below the skin than the radius of the largest ball in it is moved out of the creature within a
+/// split second, by the shortest way ([`Debris::is_put_out`]). Skin passes through a deeper one, and through one whose
+/// way out is blocked ([`Debris::is_let_through`]): it falls through the creature, or lies on the ground until the
+/// creature goes on. [`DebrisReport::enclosed`](crate::DebrisReport::enclosed) counts such bodies when they are found.
+/// A game that wants something else moves the body itself, before the next tick, or removes it. Open skin encloses
+/// nothing: a body behind a sheet, or in a flat bowl, collides with it as ever. Only a body in a closed hollow, between
+/// added skin and the skin below it, counts as inside.
 ///
 /// The state of a body against a creature is stored under the creature's [`ObstacleId`], which must stay the same from
 /// tick to tick. The order of the list does not change any result. The state of a creature that leaves the list is

@@ -3,10 +3,13 @@
 mod breaking_off;
 mod changing;
 mod coming;
+mod growing;
 mod open_skin;
 mod restored;
 
 use clamber_surface::geometry::Similarity;
+use clamber_surface::mesh::Influence;
+use clamber_surface::rig::JointId;
 use clamber_surface::surface::SkinnedSurface;
 use glam::{DQuat, DVec3, Vec3};
 use rapier3d::prelude::*;
@@ -15,6 +18,12 @@ use super::scene::{lifted, slab};
 use crate::ObstacleId;
 use crate::debris::inner_capsule::InnerCapsule;
 use crate::debris::{Debris, DebrisConfig, DebrisReport};
+
+/// What moves every vertex of a creature.
+const BONE: Influence = Influence {
+    joint: JointId(0),
+    weight: 1.0,
+};
 
 /// A box-shaped creature on one joint.
 struct Creature {
@@ -58,6 +67,12 @@ impl Stage {
             dt: f64::from(dt as f32),
             ticks: 0,
         }
+    }
+
+    /// Lifts rapier's limit of 400 m/s, for large rocks in fast frames.
+    fn allow_any_speed(&mut self) {
+        let parameters = &mut self.world.integration_parameters;
+        parameters.normalized_max_linear_velocity = f32::MAX;
     }
 
     /// A creature of a size in the world, `scale` times as large there as in its model space.
@@ -119,8 +134,17 @@ impl Stage {
 
     /// A tick, in which every rock that is inside a creature must be on its way out of it.
     fn tick(&mut self, case: &str, does: &[Does]) -> DebrisReport {
+        self.start_tick(does);
+        self.step(case, does)
+    }
+
+    fn start_tick(&mut self, does: &[Does]) {
         self.ticks += 1;
         self.pose(does);
+    }
+
+    /// The tick that [`Stage::start_tick`] began.
+    fn step(&mut self, case: &str, does: &[Does]) -> DebrisReport {
         let here = self.creatures.iter().zip(does);
         let here = here.filter(|(_, does)| !matches!(does, Does::IsAway));
         let list: Vec<_> = here.map(|(one, _)| (one.id, &one.surface)).collect();
@@ -193,6 +217,21 @@ impl Creature {
     fn middle(&self, shift: DVec3) -> DVec3 {
         self.surface.world_from_model().translation - shift
     }
+}
+
+/// Rates, frames, and scales of creatures, one after the other.
+fn settings() -> impl Iterator<Item = (u32, DVec3, f64)> {
+    let frames = [
+        DVec3::ZERO,
+        DVec3::X * 30.0,
+        DVec3::new(-3.0, 30.0, 8.0),
+        DVec3::Z * 300.0,
+        DVec3::ZERO,
+    ];
+    let rates = [30, 60, 120, 240].into_iter().cycle();
+    let frames = frames.into_iter().cycle();
+    let scales = [1.0, 0.1, 10.0, 1.0, 3.0].into_iter().cycle();
+    rates.zip(frames).zip(scales).map(|((a, b), c)| (a, b, c))
 }
 
 /// Half the size of a creature in its model space.

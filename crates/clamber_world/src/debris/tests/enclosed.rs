@@ -3,7 +3,9 @@
 use std::sync::Arc;
 
 use clamber_surface::measure::winding_number;
-use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource, TriangleId};
+use clamber_surface::mesh::{
+    BuildOptions, ColliderMesh, Influence, MeshSource, SurfaceTag, TriangleId, VertexId,
+};
 use clamber_surface::rig::JointId;
 use clamber_surface::surface::SkinnedSurface;
 use glam::{Vec2, Vec3, Vec3Swizzles};
@@ -131,6 +133,63 @@ fn open_skin_encloses_nothing_that_is_not_deep_in_it() {
             );
         }
     }
+}
+
+/// Adds the sides and the top of a box to a surface, seen from outside, or all of it seen from inside.
+fn add_box(surface: &mut SkinnedSurface, middle: Vec3, half: Vec3, outside: bool) {
+    let one = Influence {
+        joint: JointId(0),
+        weight: 1.0,
+    };
+    surface.edit(|edit| {
+        let corners: [VertexId; 8] = std::array::from_fn(|corner| {
+            let side = |axis: usize| if corner >> axis & 1 == 1 { 1.0 } else { -1.0 };
+            let place = middle + half * Vec3::new(side(0), side(1), side(2));
+            edit.add_vertex(place, &[one]).unwrap()
+        });
+        let quads = [
+            [0, 4, 6, 2],
+            [1, 3, 7, 5],
+            [2, 6, 7, 3],
+            [0, 2, 3, 1],
+            [4, 5, 7, 6],
+            [0, 1, 5, 4],
+        ];
+        for quad in quads.iter().take(if outside { 5 } else { 6 }) {
+            let [a, b, c, d] = quad.map(|corner: usize| corners[corner]);
+            for [p, q, r] in [[a, b, c], [a, c, d]] {
+                let corners = if outside { [p, q, r] } else { [p, r, q] };
+                edit.add_triangle(corners, SurfaceTag::default()).unwrap();
+            }
+        }
+    });
+}
+
+#[test]
+fn a_hollow_below_added_skin_is_enclosed_and_a_mouth_is_not() {
+    let (middle, half) = (Vec3::new(0.3, HALF.y + 0.6, -0.2), Vec3::new(1.5, 0.6, 1.2));
+    let mut scab = slab(HALF, 0.7, 1);
+    add_box(&mut scab, middle, half, true);
+    // A room inside a larger creature.
+    let mut mouth = slab(HALF * 3.0, 2.1, 1);
+    add_box(&mut mouth, middle, half, false);
+    let (mut hits, mut inside) = (Vec::new(), 0);
+    for point in points(4).take(6_000) {
+        let away = (point - middle).abs() - half;
+        let (in_box, near) = (away.max_element() < 0.0, away.abs().min_element() < 0.02);
+        if near || in_box && away.max_element() > -0.05 {
+            continue;
+        }
+        let [found, within] =
+            [is_enclosed, is_within].map(|asks| asks(scab.in_model(), point, &mut hits));
+        let wanted = in_box || point.abs().cmplt(HALF).all();
+        // Also what is just above the skin beside the scab is in the open.
+        assert_eq!((found, within), (wanted, wanted), "scab: {point}");
+        let found = is_enclosed(mouth.in_model(), point, &mut hits);
+        assert_eq!(found, !in_box, "mouth: {point}");
+        inside += u32::from(in_box);
+    }
+    assert!(inside > 60, "{inside}");
 }
 
 #[test]

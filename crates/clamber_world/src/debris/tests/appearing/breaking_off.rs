@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Does, Stage, shapes};
+use super::{Does, Stage, settings, shapes};
 
 /// A creature on which rocks of a size lie.
 fn stage(rate: u32, frame: DVec3, size: f32, scale: f64) -> Stage {
@@ -11,21 +11,6 @@ fn stage(rate: u32, frame: DVec3, size: f32, scale: f64) -> Stage {
     stage.creature(7, DVec3::new(8.0, 4.0, 8.0) * size, scale);
     stage.pose(&[Does::IsPlaced(DVec3::ZERO)]);
     stage
-}
-
-/// Rates, frames, and scales of creatures, one after the other.
-fn settings() -> impl Iterator<Item = (u32, DVec3, f64)> {
-    let frames = [
-        DVec3::ZERO,
-        DVec3::X * 30.0,
-        DVec3::new(-3.0, 30.0, 8.0),
-        DVec3::Z * 300.0,
-        DVec3::ZERO,
-    ];
-    let rates = [30, 60, 120, 240].into_iter().cycle();
-    let frames = frames.into_iter().cycle();
-    let scales = [1.0, 0.1, 10.0, 1.0, 3.0].into_iter().cycle();
-    rates.zip(frames).zip(scales).map(|((a, b), c)| (a, b, c))
 }
 
 #[test]

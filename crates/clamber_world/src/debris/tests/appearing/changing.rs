@@ -1,60 +1,225 @@
 //! Skin that changes around rocks, and rocks that are moved into skin.
 
 use clamber_surface::geometry::Similarity;
-use clamber_surface::mesh::{SurfaceTag, TriangleId, VertexId};
+use clamber_surface::mesh::{PartId, SurfaceTag, TriangleId, VertexId};
+use clamber_surface::surface::SkinnedSurface;
 use glam::{DVec3, Vec3};
 use rapier3d::prelude::*;
 
 use super::super::scene::{Scene, lifted, slab};
-use super::{Does, Stage, shapes};
+use super::{BONE, Does, Stage, extent, settings, shapes};
+
+/// How skin is taken away from a creature and comes back.
+#[derive(Clone, Copy, Debug)]
+enum Change {
+    Triangles,
+    /// All of the creature.
+    Part,
+    /// Other triangles on the same vertices.
+    Removed,
+    /// Other triangles on other vertices.
+    RemovedWithVertices,
+}
+
+const CHANGES: [Change; 4] = [
+    Change::Triangles,
+    Change::Part,
+    Change::Removed,
+    Change::RemovedWithVertices,
+];
+
+/// The skin of a creature's top.
+struct Top(Vec<(TriangleId, [VertexId; 3])>);
+
+impl Top {
+    fn of(surface: &SkinnedSurface) -> Self {
+        let mesh = surface.mesh();
+        let top = extent(surface).y * 0.999;
+        let is_top =
+            |corners: &[VertexId; 3]| corners.iter().all(|v| mesh.positions()[v.index()].y > top);
+        let all = (0..).map(TriangleId).zip(mesh.triangles().iter().copied());
+        Self(all.filter(|(_, corners)| is_top(corners)).collect())
+    }
+
+    fn take(&self, change: Change, surface: &mut SkinnedSurface) {
+        if matches!(change, Change::Part) {
+            surface.disable_part(PartId(0)).unwrap();
+            return;
+        }
+        let triangles = self.0.iter().map(|(triangle, _)| *triangle);
+        if matches!(change, Change::Triangles) {
+            triangles.for_each(|one| surface.disable_triangle(one).unwrap());
+        } else {
+            surface.edit(|edit| triangles.for_each(|one| edit.remove_triangle(one).unwrap()));
+        }
+    }
+
+    fn bring(&self, change: Change, surface: &mut SkinnedSurface) {
+        let mesh = surface.mesh().clone();
+        let tag = SurfaceTag::default();
+        match change {
+            Change::Triangles => {
+                for (triangle, _) in &self.0 {
+                    surface.enable_triangle(*triangle).unwrap();
+                }
+            }
+            Change::Part => surface.enable_part(PartId(0)).unwrap(),
+            Change::Removed => surface.edit(|edit| {
+                for (_, corners) in &self.0 {
+                    edit.add_triangle(*corners, tag).unwrap();
+                }
+            }),
+            Change::RemovedWithVertices => surface.edit(|edit| {
+                for (_, corners) in &self.0 {
+                    let new = corners.map(|corner| {
+                        let place = mesh.positions()[corner.index()];
+                        edit.add_vertex(place, &[BONE]).unwrap()
+                    });
+                    edit.add_triangle(new, tag).unwrap();
+                }
+            }),
+        }
+    }
+}
 
 #[test]
-fn skin_that_shows_again_leaves_no_rock_below_it() {
-    for by_edit in [false, true] {
-        for rate in [30, 240] {
-            let case = format!("by an edit {by_edit}, {rate} Hz");
-            let mut stage = Stage::new(rate, DVec3::ZERO);
-            stage.creature(3, DVec3::new(4.0, 2.0, 4.0), 1.0);
-            stage.ground(-1.9);
-            stage.pose(&[Does::IsPlaced(DVec3::ZERO)]);
-            let calm = [Does::Moves(DVec3::ZERO)];
-            // The top is missing.
-            let surface = &mut stage.creatures[0].surface;
-            let mesh = surface.mesh().clone();
-            let is_top = |corners: &[VertexId; 3]| {
-                corners.iter().all(|v| mesh.positions()[v.index()].y > 1.99)
-            };
-            let all = (0..).map(TriangleId).zip(mesh.triangles());
-            let top: Vec<_> = all.filter(|(_, corners)| is_top(corners)).collect();
-            for (triangle, _) in &top {
-                if by_edit {
-                    surface.edit(|edit| edit.remove_triangle(*triangle).unwrap());
-                } else {
-                    surface.disable_triangle(*triangle).unwrap();
+fn skin_that_comes_back_leaves_no_rock_below_it() {
+    let mut settings = settings();
+    for (change, size) in CHANGES
+        .into_iter()
+        .flat_map(|change| [0.02f32, 0.3, 5.0, 100.0].map(|size| (change, size)))
+    {
+        // Shapes with their heights over the ground.
+        for (shape, low) in [(0, 1.0), (1, 0.8)] {
+            for (deep, late) in [(false, false), (false, true), (true, false), (true, true)] {
+                let (rate, frame, scale) = settings.next().unwrap();
+                let case = format!(
+                    "{change:?}, shape {shape}, {size} m, deep {deep}, after the pose {late}, {rate} Hz, {frame} m/s"
+                );
+                let unit = f64::from(size);
+                let mut stage = Stage::new(rate, frame);
+                stage.allow_any_speed();
+                let half = DVec3::new(13.0, 6.0, 13.0) * unit;
+                stage.creature(3, half, scale);
+                let (shape, radius) = shapes(size).swap_remove(shape);
+                let low = low * unit;
+                let middle = if deep { 0.0 } else { half.y - 0.6 * radius };
+                stage.ground((middle - low) as f32);
+                stage.pose(&[Does::IsPlaced(DVec3::ZERO)]);
+                let calm = [Does::Moves(DVec3::ZERO)];
+                let top = Top::of(&stage.creatures[0].surface);
+                top.take(change, &mut stage.creatures[0].surface);
+                let rock = stage.rock(&shape, DVec3::new(0.3 * unit, middle, 0.2 * unit));
+                // What is not enclosed may be there.
+                let rocks = std::mem::take(&mut stage.rocks);
+                for _ in 0..rate / 4 {
+                    assert_eq!(stage.tick(&case, &calm).enclosed, 0, "{case}");
                 }
-            }
-            let (shape, _) = shapes(0.3).remove(0);
-            let rock = stage.rock(&shape, DVec3::new(0.3, 3.0, 0.2));
-            let rocks = std::mem::take(&mut stage.rocks);
-            for _ in 0..2 * rate {
-                stage.tick(&case, &calm);
-            }
-            // It has fallen into the creature, which encloses it not.
-            assert!(stage.place(rock).y < -1.5, "{case}");
-            assert!(!stage.debris.is_let_through(rock), "{case}");
-            stage.rocks = rocks;
-            let surface = &mut stage.creatures[0].surface;
-            for (triangle, corners) in top {
-                if by_edit {
-                    let tag = SurfaceTag::default();
-                    surface.edit(|edit| edit.add_triangle(*corners, tag).unwrap());
+                assert!(!stage.debris.is_let_through(rock), "{case}");
+                stage.rocks = rocks;
+                let before = stage.place(rock);
+                // Before the creature is posed, or after.
+                if late {
+                    stage.start_tick(&calm);
+                    top.bring(change, &mut stage.creatures[0].surface);
                 } else {
-                    surface.enable_triangle(triangle).unwrap();
+                    top.bring(change, &mut stage.creatures[0].surface);
+                    stage.start_tick(&calm);
                 }
+                let report = stage.step(&case, &calm);
+                let wanted = if deep { (1, 1, 0) } else { (1, 0, 1) };
+                let found = (report.enclosed, report.caught, report.put_out);
+                assert_eq!(found, wanted, "{case}");
+                for _ in 0..rate / 2 {
+                    assert_eq!(stage.tick(&case, &calm).enclosed, 0, "{case}");
+                }
+                let place = stage.place(rock);
+                if !deep {
+                    let over = place.y - half.y;
+                    assert!((over - low).abs() < 0.1 * unit, "{case}: {over} m over it");
+                    assert!(!stage.debris.is_put_out(rock), "{case}");
+                    assert!(!stage.debris.is_let_through(rock), "{case}");
+                    continue;
+                }
+                // The creature walks on without it.
+                for tick in 0..rate / 2 {
+                    let along = DVec3::X * (60.0 * unit * stage.dt * f64::from(tick));
+                    stage.tick(&case, &[Does::Moves(along)]);
+                }
+                let off = stage.place(rock) - before;
+                assert!(off.length() < 0.1 * unit, "{case}: carried by {off}");
+                assert!(!stage.debris.is_let_through(rock), "{case}");
             }
-            let report = stage.tick(&case, &calm);
-            assert_eq!((report.enclosed, report.caught), (1, 1), "{case}");
         }
+    }
+}
+
+#[test]
+fn a_rock_comes_out_of_a_creature_that_is_edited_in_every_tick() {
+    for (rate, frame, scale) in settings().take(20) {
+        for by_edit in [false, true] {
+            let case = format!("by an edit {by_edit}, {rate} Hz, {frame} m/s, scale {scale}");
+            let mut stage = Stage::new(rate, frame);
+            let half = DVec3::new(4.0, 2.0, 4.0);
+            stage.creature(3, half, scale);
+            stage.pose(&[Does::IsPlaced(DVec3::ZERO)]);
+            let (shape, radius) = shapes(0.3).swap_remove(0);
+            let rock = stage.rock(&shape, DVec3::new(0.3, half.y - 0.8 * radius, 0.2));
+            let mut out = None;
+            for tick in 0..rate {
+                let surface = &mut stage.creatures[0].surface;
+                if by_edit {
+                    surface.edit(|edit| edit.add_vertex(Vec3::ZERO, &[BONE]).unwrap());
+                } else if tick % 2 == 0 {
+                    surface.disable_triangle(TriangleId(0)).unwrap();
+                } else {
+                    surface.enable_triangle(TriangleId(0)).unwrap();
+                }
+                stage.tick(&case, &[Does::Moves(DVec3::ZERO)]);
+                assert!(!stage.debris.is_let_through(rock), "{case}, tick {tick}");
+                if !stage.debris.is_put_out(rock) {
+                    out = out.or(Some(f64::from(tick) * stage.dt));
+                }
+            }
+            assert!(out.is_some_and(|out| out < 0.45), "{case}: {out:?} s");
+            let over = stage.place(rock).y - half.y;
+            assert!((over - 0.3).abs() < 0.03, "{case}: {over} m over the skin");
+        }
+    }
+}
+
+#[test]
+fn a_rock_whose_way_out_is_edited_away_is_let_through() {
+    for (rate, frame, scale) in settings().take(20) {
+        let case = format!("{rate} Hz, {frame} m/s, scale {scale}");
+        let mut stage = Stage::new(rate, frame);
+        let half = DVec3::new(4.0, 2.0, 4.0);
+        stage.creature(3, half, scale);
+        stage.pose(&[Does::IsPlaced(DVec3::ZERO)]);
+        let calm = [Does::Moves(DVec3::ZERO)];
+        let (shape, radius) = shapes(0.3).swap_remove(0);
+        let rock = stage.rock(&shape, DVec3::new(0.3, half.y - 0.9 * radius, 0.2));
+        assert_eq!(stage.tick(&case, &calm).put_out, 1, "{case}");
+        let top = Top::of(&stage.creatures[0].surface);
+        top.take(Change::Removed, &mut stage.creatures[0].surface);
+        // The open box does not enclose what is near its rim.
+        let rocks = std::mem::take(&mut stage.rocks);
+        stage.tick(&case, &calm);
+        assert!(!stage.debris.is_put_out(rock), "{case}");
+        for _ in 0..rate * 3 / 5 {
+            stage.tick(&case, &calm);
+        }
+        stage.rocks = rocks;
+        // It has fallen farther in.
+        let depth = half.y - stage.place(rock).y;
+        assert!(depth > 1.2 * radius, "{case}: {depth} m deep");
+        top.bring(Change::Removed, &mut stage.creatures[0].surface);
+        for _ in 0..2 * rate {
+            stage.tick(&case, &calm);
+        }
+        let place = stage.place(rock);
+        assert!(place.y < -half.y - radius, "{case}: {place}");
+        assert!(!stage.debris.is_let_through(rock), "{case}");
     }
 }
 
