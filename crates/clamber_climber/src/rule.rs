@@ -22,16 +22,16 @@ pub struct ContactRule {
     /// Whether the climber may stand on it. If not, it slides off, as off a slope that is too steep. Level ground of this
     /// kind leaves it lying in [`ClimberMode::Sliding`].
     pub stand: bool,
-    /// Whether walking may lead up onto it; other characters are never steps. If not, its steps, slopes and edges block like a vertical wall to a climber
-    /// that stands on something with `step`. Ground that is flush with the feet, or lower, is walked onto all the same;
-    /// `stand` decides there.
+    /// Whether walking may lead up onto it; other characters are never steps. If not, its steps, slopes and edges block
+    /// like a vertical wall to a climber that stands on something with `step`. Ground that is flush with the feet, or
+    /// lower, is walked onto all the same; `stand` decides there.
     pub step: bool,
     /// Whether the climber may hang from it, where it has the shape of a ledge.
     pub hang: bool,
     /// Whether hands may grip it.
     pub grip: bool,
-    /// How well feet and hands hold, as a share of the usual: 1 as usual, 0 not at all. Negative values count as 0, and
-    /// values that are not finite as 1.
+    /// How well feet and hands hold, as a share of the usual: 1 as usual, 0 not at all. Any value is allowed: NaN and both
+    /// infinities count as 1, and other negative values as 0.
     ///
     /// - Below 1, as on ice: feet accelerate and brake by no more than this times
     ///   [`GroundConfig::friction`](crate::GroundConfig::friction), and gravity pulls the climber down slopes that it
@@ -113,7 +113,7 @@ impl ContactRule {
         Self { friction, ..self }
     }
 
-    /// The friction in its range.
+    /// The friction: finite and not negative.
     pub(crate) fn usable_friction(&self) -> f64 {
         if self.friction.is_finite() {
             self.friction.max(0.0)
@@ -262,6 +262,7 @@ mod tests {
             (-2.0, 0.0),
             (f64::NAN, 1.0),
             (f64::INFINITY, 1.0),
+            (f64::NEG_INFINITY, 1.0),
         ] {
             let rule = ContactRule::SOLID.with_friction(given);
             assert_eq!(rule.usable_friction(), used, "{given}");

@@ -457,6 +457,8 @@ failures! {
     rules::ice_accelerates_and_brakes_slowly,
     rules::an_icy_slope_pulls_down,
     rules::mud_slows_a_walk,
+    rules::a_friction_out_of_range_counts_as_0_or_as_usual,
+    rules::the_stickiest_mud_holds_fast,
     rules::armour_stops_hands,
     rules::a_hold_that_is_refused_lets_go,
     rules::wet_fur_slips_through_hands,
