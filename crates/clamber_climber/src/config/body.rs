@@ -1,4 +1,5 @@
 use super::check;
+use super::scale::Scale;
 use crate::ClimberError;
 
 /// Shape, mass and strength of a climber's body.
@@ -77,6 +78,9 @@ impl core::str::FromStr for Others {
     }
 }
 
+/// Share by which a margin may be out of its range: rounding, when radius and margin are scaled.
+const ROUNDING: f64 = 1e-12;
+
 impl BodyConfig {
     pub(super) const BALL: Self = Self {
         radius: 0.4,
@@ -87,12 +91,25 @@ impl BodyConfig {
         others: Others::Block,
     };
 
+    pub(super) fn scaled(self, scale: Scale) -> Self {
+        Self {
+            radius: self.radius * scale.length,
+            height: self.height * scale.length,
+            margin: self.margin * scale.length,
+            mass: self.mass,
+            push_force: self.push_force,
+            others: self.others,
+        }
+    }
+
     pub(super) fn validate(&self) -> Result<(), ClimberError> {
         check::positive("body.radius", self.radius)?;
         check::not_negative("body.height", self.height)?;
         // A thinner layer is less than the rounding by which ground is found.
         let range = "from a thousandth to half of the radius";
-        let holds = (self.radius * 1e-3..=self.radius * 0.5).contains(&self.margin);
+        // Both ends stay in the range at every size, whatever the rounding.
+        let (least, most) = (1e-3 * (1.0 - ROUNDING), 0.5 * (1.0 + ROUNDING));
+        let holds = (self.radius * least..=self.radius * most).contains(&self.margin);
         check::check("body.margin", range, self.margin, holds)?;
         check::positive("body.mass", self.mass)?;
         check::not_negative("body.push_force", self.push_force)

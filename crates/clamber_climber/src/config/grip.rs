@@ -1,5 +1,6 @@
 use super::check;
 use super::ground::DEGREE;
+use super::scale::Scale;
 use crate::ClimberError;
 
 /// Settings for gripping and climbing: [`ClimberConfig::grip`](crate::ClimberConfig::grip).
@@ -42,6 +43,18 @@ impl GripConfig {
         jump_speed: 4.0,
         catch_speed: 15.0,
     };
+
+    pub(super) fn scaled(self, scale: Scale) -> Self {
+        Self {
+            reach: self.reach * scale.length,
+            climb_speed: self.climb_speed * scale.speed,
+            max_overhang: self.max_overhang,
+            hang_acceleration: self.hang_acceleration,
+            calm_time: self.calm_time * scale.time,
+            jump_speed: self.jump_speed * scale.speed,
+            catch_speed: self.catch_speed * scale.speed,
+        }
+    }
 
     pub(super) fn validate(&self) -> Result<(), ClimberError> {
         check::not_negative("grip.reach", self.reach)?;

@@ -1,4 +1,5 @@
 use super::check;
+use super::scale::Scale;
 use crate::ClimberError;
 
 /// Settings for standing, walking and jumping: [`ClimberConfig::ground`](crate::ClimberConfig::ground).
@@ -76,6 +77,25 @@ impl GroundConfig {
         jump_release_gravity: 1.0,
         throw_acceleration: 20.0,
     };
+
+    pub(super) fn scaled(self, scale: Scale) -> Self {
+        Self {
+            max_slope: self.max_slope,
+            walk_speed: self.walk_speed * scale.speed,
+            jump_speed: self.jump_speed * scale.speed,
+            snap_distance: self.snap_distance * scale.length,
+            step_height: self.step_height * scale.length,
+            coyote_time: self.coyote_time * scale.time,
+            jump_buffer: self.jump_buffer * scale.time,
+            acceleration: self.acceleration,
+            friction: self.friction,
+            air_acceleration: self.air_acceleration,
+            terminal_speed: self.terminal_speed * scale.speed,
+            slide_friction: self.slide_friction,
+            jump_release_gravity: self.jump_release_gravity,
+            throw_acceleration: self.throw_acceleration,
+        }
+    }
 
     pub(super) fn validate(&self) -> Result<(), ClimberError> {
         // The normals of level skin are rounded.

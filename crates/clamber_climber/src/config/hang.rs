@@ -1,4 +1,5 @@
 use super::check;
+use super::scale::Scale;
 use crate::ClimberError;
 
 /// Settings for hanging by the hands from a grip, as a pendulum: [`ClimberConfig::hang`](crate::ClimberConfig::hang).
@@ -23,6 +24,14 @@ impl HangConfig {
         leg_length: 0.6,
         damping: 0.4,
     };
+
+    pub(super) fn scaled(self, scale: Scale) -> Self {
+        Self {
+            arm_length: self.arm_length * scale.length,
+            leg_length: self.leg_length * scale.length,
+            damping: self.damping / scale.time,
+        }
+    }
 
     pub(super) fn validate(&self) -> Result<(), ClimberError> {
         check::positive("hang.arm_length", self.arm_length)?;

@@ -1,4 +1,5 @@
 use super::check;
+use super::scale::Scale;
 use crate::ClimberError;
 
 /// When a climber is knocked over, and how it tumbles.
@@ -34,6 +35,17 @@ impl TumbleConfig {
         recover_time: 0.5,
     };
 
+    pub(super) fn scaled(self, scale: Scale) -> Self {
+        Self {
+            knock_acceleration: self.knock_acceleration,
+            knock_speed: self.knock_speed * scale.speed,
+            landing_speed: self.landing_speed * scale.speed,
+            friction: self.friction,
+            restitution: self.restitution,
+            recover_time: self.recover_time * scale.time,
+        }
+    }
+
     pub(super) fn validate(&self) -> Result<(), ClimberError> {
         check::limit("tumble.knock_acceleration", self.knock_acceleration)?;
         check::limit("tumble.knock_speed", self.knock_speed)?;
@@ -65,6 +77,13 @@ impl HealthConfig {
         safe_speed: 10.0,
         fall_damage: 0.05,
     };
+
+    pub(super) fn scaled(self, scale: Scale) -> Self {
+        Self {
+            safe_speed: self.safe_speed * scale.speed,
+            fall_damage: self.fall_damage / scale.speed,
+        }
+    }
 
     pub(super) fn validate(&self) -> Result<(), ClimberError> {
         check::limit("health.safe_speed", self.safe_speed)?;

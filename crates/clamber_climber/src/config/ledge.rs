@@ -1,4 +1,5 @@
 use super::check;
+use super::scale::Scale;
 use crate::ClimberError;
 
 /// Settings for hanging from ledges and climbing over them: [`ClimberConfig::ledge`](crate::ClimberConfig::ledge).
@@ -32,6 +33,17 @@ impl LedgeConfig {
         pull_up_time: 0.6,
         catch_speed: 15.0,
     };
+
+    pub(super) fn scaled(self, scale: Scale) -> Self {
+        Self {
+            reach_up: self.reach_up * scale.length,
+            reach: self.reach * scale.length,
+            drop: self.drop * scale.length,
+            shimmy_speed: self.shimmy_speed * scale.speed,
+            pull_up_time: self.pull_up_time * scale.time,
+            catch_speed: self.catch_speed * scale.speed,
+        }
+    }
 
     pub(super) fn validate(&self) -> Result<(), ClimberError> {
         check::not_negative("ledge.reach_up", self.reach_up)?;

@@ -7,6 +7,7 @@ mod ground;
 mod hang;
 mod harm;
 mod ledge;
+mod scale;
 mod stamina;
 
 pub use body::{BodyConfig, Others, OthersError};
@@ -20,11 +21,13 @@ pub use stamina::StaminaConfig;
 use glam::DVec3;
 
 use crate::ClimberError;
+use scale::Scale;
 
 /// A climber's body and abilities.
 ///
-/// Start from a preset, [`ClimberConfig::walker`] or [`ClimberConfig::colossus_climber`], and change fields. An ability
-/// that is `None` is off, and costs nothing.
+/// Start from a preset, [`ClimberConfig::walker`] or [`ClimberConfig::colossus_climber`], and change fields. For a
+/// character of another size, start from [`ClimberConfig::scaled`]. An ability that is `None` is off, and costs
+/// nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
@@ -80,6 +83,47 @@ impl ClimberConfig {
             tumble: Some(TumbleConfig::DEFAULT),
             health: Some(HealthConfig::DEFAULT),
             ..Self::walker()
+        }
+    }
+
+    /// The same character `size` times as large, under the same gravity: a mouse, an imp, an ogre. It moves alike, in
+    /// √`size` times the time (Froude's law).
+    ///
+    /// | numbers | factor |
+    /// |---|---|
+    /// | lengths | `size` |
+    /// | speeds, times | √`size` |
+    /// | rates per second (also those of stamina and damping), costs and damage for each m/s | 1 / √`size` |
+    /// | gravity, other accelerations, mass, force, angles, coefficients, shares, costs of one effort | 1 |
+    ///
+    /// Mass and force are left to you: a body of the same density has `size`³ times both. What is no number of the
+    /// configuration does not change with the size: for 0.3 s a climber that let go grips nothing, and arms draw it
+    /// into place below a ledge at 7.5 radii a second.
+    ///
+    /// `size` is positive and finite. [`Climber::new`](crate::Climber::new) and
+    /// [`set_config`](crate::Climber::set_config) refuse the result of any other.
+    ///
+    /// ```
+    /// use clamber_climber::ClimberConfig;
+    ///
+    /// let imp = ClimberConfig::colossus_climber().scaled(0.25);
+    /// assert_eq!(imp.body.radius, 0.1); // metres
+    /// assert_eq!(imp.ground.walk_speed, 1.5); // metres a second
+    /// ```
+    #[must_use]
+    pub fn scaled(self, size: f64) -> Self {
+        let scale = Scale::of_size(size);
+        Self {
+            gravity: self.gravity,
+            shake_time: self.shake_time * scale.time,
+            body: self.body.scaled(scale),
+            ground: self.ground.scaled(scale),
+            grip: self.grip.map(|grip| grip.scaled(scale)),
+            hang: self.hang.scaled(scale),
+            ledge: self.ledge.map(|ledge| ledge.scaled(scale)),
+            stamina: self.stamina.map(|stamina| stamina.scaled(scale)),
+            tumble: self.tumble.map(|tumble| tumble.scaled(scale)),
+            health: self.health.map(|health| health.scaled(scale)),
         }
     }
 

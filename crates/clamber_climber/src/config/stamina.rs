@@ -1,4 +1,5 @@
 use super::check;
+use super::scale::Scale;
 use crate::ClimberError;
 
 /// How much stamina holding on costs. Stamina is 1 for a rested climber; at 0 its grip opens.
@@ -37,6 +38,18 @@ impl StaminaConfig {
         catch_cost: 1.0 / 400.0,
         mantle_cost: 0.01,
     };
+
+    pub(super) fn scaled(self, scale: Scale) -> Self {
+        Self {
+            hold_drain: self.hold_drain / scale.time,
+            shake_threshold: self.shake_threshold,
+            shake_drain: self.shake_drain / scale.time,
+            refill: self.refill / scale.time,
+            jump_cost: self.jump_cost,
+            catch_cost: self.catch_cost / scale.speed,
+            mantle_cost: self.mantle_cost,
+        }
+    }
 
     pub(super) fn validate(&self) -> Result<(), ClimberError> {
         check::not_negative("stamina.hold_drain", self.hold_drain)?;

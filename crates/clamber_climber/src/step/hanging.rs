@@ -17,7 +17,8 @@ const PULL: f64 = 4.0 / 3.0;
 /// A hold is calm if its shake is at most this share of the shake that makes the climber hang.
 const CALM: f64 = 0.7;
 
-/// Speed at which stretched arms shorten again, in arm lengths a second: 4.5 m/s for arms of 0.9 m.
+/// Speed at which stretched arms shorten again, in arm lengths a second: 4.5 m/s for arms of 0.9 m. It is no slower
+/// than [`PULL`], or short arms would pull more slowly than they climb.
 const SHORTEN: f64 = 5.0;
 
 /// Arms let go when they are stretched to this multiple of their length.
@@ -93,7 +94,8 @@ impl Tick<'_> {
         let pivot = carried.motion.position;
         let radius = self.config.body.radius;
         let arm = carried.start - carried.motion.previous_position;
-        let pulled = SHORTEN * hang.arm_length * self.dt();
+        let climb_speed = self.config.grip.map_or(0.0, |grip| grip.climb_speed);
+        let pulled = (SHORTEN * hang.arm_length).max(PULL * climb_speed) * self.dt();
         let length = self.state.hanging.arm.max(radius);
         let length = length.max(arm.length() - pulled);
         let mut pendulum = Pendulum {
