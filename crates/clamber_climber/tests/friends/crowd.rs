@@ -9,6 +9,7 @@ use clamber_surface::surface::SkinnedSurface;
 use clamber_world::{Obstacle, ObstacleId};
 use glam::{DQuat, DVec3};
 
+use crate::numbers::in_world_of_size;
 use crate::scene::{STONE, cuboid};
 
 /// The rates at which everything here is played.
@@ -19,30 +20,9 @@ pub(crate) const SIZES: [f64; 4] = [1.0, 0.02, 0.3, 100.0];
 
 pub(crate) const IDLE: ClimberInput = ClimberInput::IDLE;
 
-/// A walker of another size. Everything takes as long as at the usual one.
+/// A walker of another size, in a world of that size.
 pub(crate) fn walker(size: f64) -> ClimberConfig {
-    let mut config = ClimberConfig::walker();
-    config.gravity *= size;
-    let body = &mut config.body;
-    for length in [&mut body.radius, &mut body.height, &mut body.margin] {
-        *length *= size;
-    }
-    let ground = &mut config.ground;
-    for length in [
-        &mut ground.walk_speed,
-        &mut ground.jump_speed,
-        &mut ground.snap_distance,
-        &mut ground.step_height,
-        &mut ground.acceleration,
-        &mut ground.friction,
-        &mut ground.air_acceleration,
-        &mut ground.terminal_speed,
-        &mut ground.slide_friction,
-        &mut ground.throw_acceleration,
-    ] {
-        *length *= size;
-    }
-    config
+    in_world_of_size(ClimberConfig::walker(), size)
 }
 
 /// Boxes, of which the first may move, and climbers among them.

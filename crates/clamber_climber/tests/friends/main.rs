@@ -8,6 +8,9 @@
 
 mod crowd;
 mod landing;
+#[allow(dead_code, reason = "shared with other targets")]
+#[path = "../sizes/numbers.rs"]
+mod numbers;
 mod parting;
 mod pushing;
 mod riding;

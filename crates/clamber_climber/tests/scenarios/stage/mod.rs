@@ -3,6 +3,9 @@
 mod alike;
 mod bodies;
 mod config;
+#[allow(dead_code, reason = "shared with other targets")]
+#[path = "../../sizes/numbers.rs"]
+mod numbers;
 mod own;
 mod place;
 mod reached;

@@ -9,6 +9,8 @@ use clamber_world::{
 };
 use glam::DVec3;
 
+use super::numbers::in_world_of_size;
+
 /// A map from one space to another over a tick: a scale and a steady motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Place {
@@ -133,53 +135,7 @@ impl Place {
 
     /// Scales a configuration's lengths, speeds and accelerations. Times, angles and shares stay.
     pub(crate) fn config(&self, config: &ClimberConfig) -> ClimberConfig {
-        let (s, mut c) = (self.scale, *config);
-        c.gravity *= s;
-        c.body.radius *= s;
-        c.body.height *= s;
-        c.body.margin *= s;
-        // The mass stays, and accelerations are scaled.
-        c.body.push_force *= s;
-        c.ground.walk_speed *= s;
-        c.ground.jump_speed *= s;
-        c.ground.snap_distance *= s;
-        c.ground.step_height *= s;
-        c.ground.acceleration *= s;
-        c.ground.friction *= s;
-        c.ground.air_acceleration *= s;
-        c.ground.throw_acceleration *= s;
-        c.ground.terminal_speed *= s;
-        if let Some(grip) = &mut c.grip {
-            grip.reach *= s;
-            grip.climb_speed *= s;
-            grip.hang_acceleration *= s;
-            grip.jump_speed *= s;
-            grip.catch_speed *= s;
-        }
-        c.hang.arm_length *= s;
-        c.hang.leg_length *= s;
-        if let Some(ledge) = &mut c.ledge {
-            ledge.reach_up *= s;
-            ledge.reach *= s;
-            ledge.drop *= s;
-            ledge.shimmy_speed *= s;
-            ledge.catch_speed *= s;
-        }
-        if let Some(stamina) = &mut c.stamina {
-            stamina.shake_threshold *= s;
-            stamina.shake_drain /= s;
-            stamina.catch_cost /= s;
-        }
-        if let Some(tumble) = &mut c.tumble {
-            tumble.knock_acceleration *= s;
-            tumble.knock_speed *= s;
-            tumble.landing_speed *= s;
-        }
-        if let Some(health) = &mut c.health {
-            health.safe_speed *= s;
-            health.fall_damage /= s;
-        }
-        c
+        in_world_of_size(*config, self.scale)
     }
 }
 
