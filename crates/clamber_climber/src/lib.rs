@@ -12,6 +12,7 @@ pub mod guide;
 mod input;
 mod obstacle;
 mod pendulum;
+mod proxy;
 mod shake;
 mod state;
 mod step;
