@@ -55,18 +55,6 @@ fn a_fast_small_body_does_not_pass_through_a_climber() {
                 let mut felt = DVec3::ZERO;
                 for tick in 0..scene.ticks(0.5) {
                     scene.tick(&ClimberInput::IDLE);
-                    if setting.2 == 30.0
-                        && speed > 300.0 * scene.speed()
-                        && above == 0.0
-                        && (scene.hit.is_some() || apart_of(&scene, stone) < 2.0)
-                    {
-                            "{setting:?} {tick} {:?} apart {} v {} pos {:?}",
-                            scene.hit,
-                            scene.above(stone),
-                            scene.velocity(stone),
-                            scene.climber.state().position
-                        );
-                    }
                     felt += scene.hit.map_or(DVec3::ZERO, |hit| hit.impulse);
                     let apart = scene.above(stone);
                     let told = format!("{setting:?}, {speed} m/s, {above}, tick {tick}: {apart}");
@@ -115,4 +103,3 @@ fn a_cart_shoves_a_standing_climber() {
         assert!((0.05..0.95).contains(&left), "{setting:?}: {left}");
     }
 }
-
