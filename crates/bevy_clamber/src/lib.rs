@@ -67,6 +67,7 @@ pub use obstacles::{AvianObstacles, AvianObstaclesPlugin, AvianTerrain};
 #[cfg(feature = "rapier")]
 pub use obstacles::{
     Debris, DebrisBodies, DebrisHooks, DebrisPlugin, RapierObstacles, RapierObstaclesPlugin,
+    RapierProxy, RapierProxyPlugin,
 };
 #[cfg(feature = "picking")]
 pub use picking::{SurfacePick, SurfacePickingPlugin};

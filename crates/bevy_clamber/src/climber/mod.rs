@@ -16,6 +16,8 @@ pub(crate) use input::LatchedInput;
 pub use input::{ClimberBlow, ClimberInput};
 pub use obstacles::CustomObstacle;
 pub(crate) use obstacles::DrawnTouchable;
+#[cfg(feature = "rapier")]
+pub(crate) use obstacles::RAPIER;
 #[cfg(feature = "colossus")]
 pub(crate) use obstacles::Touchable;
 pub use plugin::ClimberPlugin;

@@ -5,6 +5,8 @@ mod avian;
 #[cfg(feature = "rapier")]
 mod debris;
 #[cfg(feature = "rapier")]
+mod proxy;
+#[cfg(feature = "rapier")]
 mod rapier;
 
 #[cfg(feature = "avian")]
@@ -13,6 +15,10 @@ pub(crate) use avian::AvianPushes;
 pub use avian::{AvianObstacles, AvianObstaclesPlugin, AvianTerrain};
 #[cfg(feature = "rapier")]
 pub use debris::{Debris, DebrisBodies, DebrisHooks, DebrisPlugin};
+#[cfg(feature = "rapier")]
+pub(crate) use proxy::RapierProxies;
+#[cfg(feature = "rapier")]
+pub use proxy::{RapierProxy, RapierProxyPlugin};
 #[cfg(feature = "rapier")]
 pub(crate) use rapier::RapierPushes;
 #[cfg(feature = "rapier")]

@@ -85,7 +85,7 @@ fn place(collider: &Collider, point: &MaterialPoint) -> DVec3 {
 }
 
 /// Change of the point's speed along a unit direction for an impulse of 1 N s along it.
-fn response(body: &RigidBody, place: DVec3, direction: DVec3) -> f64 {
+pub(super) fn response(body: &RigidBody, place: DVec3, direction: DVec3) -> f64 {
     let mass = body.mass_properties();
     let slide = (mass.effective_inv_mass.as_dvec3() * direction).dot(direction);
     let inertia = mass.effective_world_inv_inertia;
