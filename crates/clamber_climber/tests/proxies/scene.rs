@@ -36,6 +36,10 @@ impl Scene {
         world.gravity = Vector::new(0.0, -9.81, 0.0);
         world.integration_parameters.dt = (1.0 / hz) as f32;
         world.integration_parameters.length_unit = size as f32;
+        // Rapier clips speeds at 400 m/s, in which no frame is like another.
+        world
+            .integration_parameters
+            .normalized_max_linear_velocity = 1e4;
         let frame = DVec3::Z * frame;
         let mut climber = Climber::new(scaled(config, size), position * size).unwrap();
         let mut state = *climber.state();
@@ -87,8 +91,8 @@ impl Scene {
         let body = body
             .translation((at * size).as_vec3())
             .linvel(self.frame.as_vec3())
-            // Rapier lets what falls as slowly as a giant's crate does fall asleep.
-            .can_sleep(size <= 1.0);
+            // Rapier puts to sleep what moves as slowly as a giant's falling crate, or a heavy one that was pushed.
+            .can_sleep(false);
         let collider = ColliderBuilder::cuboid(x, y, z)
             .mass(mass as f32)
             .friction(0.0);

@@ -22,13 +22,17 @@ use rapier3d::geometry::{
     Collider, ColliderBuilder, ColliderHandle, ColliderSet, NarrowPhase, SharedShape,
 };
 use rapier3d::math::{Pose, Vector};
-use rapier3d::pipeline::PhysicsWorld;
+use rapier3d::pipeline::{ActiveHooks, PhysicsWorld};
 
 use super::{BodyPoses, RapierTerrain};
 use crate::{MaterialPoint, ProxyBody, ProxyTouch};
 
 /// Coefficient of friction of the proxy: what lies on a climber slides off where it is steep.
 const FRICTION: f32 = 0.5;
+
+/// Rapier takes the contacts of two bodies that hardly moved from the last step, and does not see then that a joint
+/// disables them since. It does so for no collider that has hooks. This hook is for sensors, which a proxy is not.
+const FRESH: ActiveHooks = ActiveHooks::FILTER_INTERSECTION_PAIR;
 
 /// A touched body that approaches the climber faster than this share of the gentle speed still collides with it.
 const APPROACHES: f64 = 0.1;
@@ -137,6 +141,7 @@ impl ClimberProxy {
         let handle = bodies.insert(kinematic);
         let collider = ColliderBuilder::new(shape(body))
             .friction(FRICTION)
+            .active_hooks(FRESH)
             .mass(body.mass as f32);
         let collider = colliders.insert_with_parent(collider, handle, bodies);
         Self {
