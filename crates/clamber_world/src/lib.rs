@@ -34,7 +34,7 @@ pub use obstacle::{
 /// The version of parry that [`shapes`] uses.
 #[cfg(feature = "parry")]
 pub use parry3d;
-pub use proxy::{ProxyBody, ProxyTouch};
+pub use proxy::{ProxyBody, ProxyMeeting, ProxyShare, ProxyTouch};
 #[cfg(feature = "rapier")]
 pub use rapier::{BodyPoses, ClimberProxy, ProxyHit, RapierTerrain, apply_push};
 /// The version of rapier that [`RapierTerrain`] uses.

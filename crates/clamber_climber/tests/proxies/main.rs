@@ -6,6 +6,7 @@
 )]
 
 mod falling;
+mod memory;
 mod pushing;
 mod restoring;
 mod scene;

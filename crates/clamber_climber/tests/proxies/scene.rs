@@ -37,9 +37,7 @@ impl Scene {
         world.integration_parameters.dt = (1.0 / hz) as f32;
         world.integration_parameters.length_unit = size as f32;
         // Rapier clips speeds at 400 m/s, in which no frame is like another.
-        world
-            .integration_parameters
-            .normalized_max_linear_velocity = 1e4;
+        world.integration_parameters.normalized_max_linear_velocity = 1e4;
         let frame = DVec3::Z * frame;
         let mut climber = Climber::new(scaled(config, size), position * size).unwrap();
         let mut state = *climber.state();

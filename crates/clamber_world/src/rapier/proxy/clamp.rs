@@ -6,7 +6,7 @@ use rapier3d::dynamics::{RigidBody, RigidBodySet};
 use rapier3d::geometry::ColliderSet;
 use rapier3d::math::{Pose, Rotation};
 
-use super::{BELOW, ClimberProxy, is_solid};
+use super::{ClimberProxy, is_solid};
 use crate::rapier::BodyPoses;
 use crate::rapier::terrain::pose_of;
 use crate::shapes::{FirstContact, Moved, overlap_shape};
@@ -90,7 +90,7 @@ impl ClimberProxy {
             let local = DVec3::from_array(touch.contact.material.coordinates);
             let was = moved.tick.before.unwrap_or(moved.tick.now);
             let own = moved.tick.now.transform(local) - was.transform(local) - frame;
-            let is_below = touch.separation_normal.dot(self.body.up) > BELOW;
+            let is_below = self.body.is_below(-touch.separation_normal);
             own.dot(touch.separation_normal) > 0.0 && !is_below
         };
         for handle in body.colliders() {

@@ -4,11 +4,11 @@ use glam::DVec3;
 use rapier3d::dynamics::{RigidBody, RigidBodyHandle, RigidBodySet};
 use rapier3d::geometry::{ColliderHandle, ColliderSet, ContactPair, NarrowPhase};
 
-use super::{BELOW, ClimberProxy, ProxyHit};
+use super::{ClimberProxy, ProxyHit};
 use crate::rapier::BodyPoses;
-use crate::rapier::push::{coupling, response};
+use crate::rapier::push::point_response;
 use crate::rapier::terrain::{key_of, pose_of};
-use crate::{MaterialPoint, ProxyBody};
+use crate::{MaterialPoint, ProxyMeeting};
 
 /// The contacts of one body with the climber.
 #[derive(Clone, Copy, Debug)]
@@ -29,18 +29,6 @@ impl Impact {
     fn key(&self) -> ((u32, u32), (u32, u32)) {
         (self.body.into_raw_parts(), self.collider.into_raw_parts())
     }
-}
-
-/// How a body and the climber met, along the normal from the climber to the body.
-struct Meeting {
-    /// The share of the approach that the body has brought; the climber's own motion brought the rest.
-    share: f64,
-    /// How much of the velocity that the body would have without the climber rapier took, metres a second.
-    taken: f64,
-    /// The part of it that forces press into the climber in every step.
-    pressed: f64,
-    /// How much an immovable climber would take of what the body has brought, metres a second.
-    brought: f64,
 }
 
 impl ClimberProxy {
@@ -146,64 +134,45 @@ impl ClimberProxy {
         let body = bodies.get_mut(impact.body)?;
         let arm = point - body.mass_properties().world_com.as_dvec3();
         let was = linvel + angvel.cross(arm);
-        let is = super::velocity_at(body, point);
-        let free = was + acceleration(body) * dt;
-        let meeting = meeting(&self.body, [was, free, is], normal);
-        let response = response(body, point, normal);
-        let whole = meeting.taken / response;
-        if !whole.is_finite() {
-            return None;
-        }
-        let own = 1.0 - meeting.share;
-        if own > 0.0 {
-            // The climber ran into it, which its own pushes account for: it stays where it would be.
+        let meeting = ProxyMeeting {
+            normal,
+            before: was,
+            free: was + acceleration(body) * dt,
+            after: super::velocity_at(body, point),
+            friction: self.friction_with(impact.collider, colliders),
+        };
+        let share = self
+            .body
+            .share(&meeting, |impulse| point_response(body, point, impulse))?;
+        if share.undone > 0.0 {
             let from = pose_of(before.get(impact.body)?);
             let local = pose_of(body.position()).inverse_transform(point);
             let moved = (point - from.transform(local)).dot(normal);
-            let shoved = (moved - free.dot(normal) * dt).max(0.0) * own;
+            let shoved = (moved - meeting.free.dot(normal) * dt).max(0.0) * share.undone;
             body.set_translation(body.translation() - (normal * shoved).as_vec3(), true);
         }
-        let is_felt = meeting.taken > meeting.pressed && meeting.brought > self.body.gentle;
-        let felt = meeting.brought / (response + mobility(&self.body, normal) / self.body.mass);
-        let kept = if is_felt {
-            felt + meeting.pressed * meeting.share / response
-        } else {
-            // Too slow to be felt: it rests on the climber.
-            whole * meeting.share
-        };
-        // What leaves the climber on its own takes that along.
-        let correction = normal
-            * if meeting.taken > 0.0 {
-                kept - whole
-            } else {
-                0.0
-            };
-        if correction != DVec3::ZERO {
-            let slip = (self.body.drift - free).reject_from_normalized(normal);
-            let friction = friction(body, point, is - free, slip, normal * whole);
-            let most = whole * self.friction_with(impact.collider, colliders);
-            let back = friction.clamp_length_max(most) * (1.0 - kept / whole).max(0.0);
-            let impulse = correction - back;
-            body.apply_impulse_at_point(impulse.as_vec3(), point.as_vec3(), true);
+        if share.body != DVec3::ZERO {
+            body.apply_impulse_at_point(share.body.as_vec3(), point.as_vec3(), true);
         }
-        if is_felt {
+        if let Some(impulse) = share.climber {
             let collider = colliders.get(impact.collider)?;
             let local = pose_of(collider.position()).inverse_transform(point);
             let this = ProxyHit {
-                impulse: normal * -felt,
+                impulse,
                 material: MaterialPoint {
                     key: key_of(impact.collider),
                     coordinates: local.to_array(),
                 },
                 point: point + self.origin,
             };
+            let hardness = impulse.length();
             *hit = Some(match hit.take() {
                 Some((most, other)) => {
                     let impulse = this.impulse + other.impulse;
-                    let hardest = if felt > most { this } else { other };
-                    (most.max(felt), ProxyHit { impulse, ..hardest })
+                    let hardest = if hardness > most { this } else { other };
+                    (most.max(hardness), ProxyHit { impulse, ..hardest })
                 }
-                None => (felt, this),
+                None => (hardness, this),
             });
         }
         Some(())
@@ -211,23 +180,12 @@ impl ClimberProxy {
 
     /// An upper bound of the coefficient of friction between the proxy and a collider.
     fn friction_with(&self, other: ColliderHandle, colliders: &ColliderSet) -> f64 {
-        let of = |handle| colliders.get(handle).map_or(0.0, |collider| collider.friction());
+        let of = |handle| {
+            colliders
+                .get(handle)
+                .map_or(0.0, |collider| collider.friction())
+        };
         of(self.collider).max(of(other)).into()
-    }
-}
-
-/// The impulse of rapier's friction on a body's point: of the change of its velocity, what follows the climber's slip
-/// along it and does not come from the normal impulse.
-fn friction(body: &RigidBody, point: DVec3, change: DVec3, slip: DVec3, normal: DVec3) -> DVec3 {
-    let Some(along) = slip.try_normalize() else {
-        return DVec3::ZERO;
-    };
-    let dragged = change.dot(along) - coupling(body, point, along, normal);
-    let impulse = dragged / response(body, point, along);
-    if impulse > 0.0 && impulse.is_finite() {
-        along * impulse
-    } else {
-        DVec3::ZERO
     }
 }
 
@@ -238,38 +196,4 @@ fn acceleration(body: &RigidBody) -> DVec3 {
     let forced = body.predict_position_using_velocity_and_forces(1.0) * center;
     let unforced = body.predict_position_using_velocity(1.0) * center;
     (forced - unforced).as_dvec3()
-}
-
-/// How a body met the climber. Its velocity at the contact was one before the step, would be another without the
-/// climber, and is a third.
-fn meeting(climber: &ProxyBody, [was, free, is]: [DVec3; 3], normal: DVec3) -> Meeting {
-    let (taken, changed) = ((is - free).dot(normal), (is - was).dot(normal));
-    let closing = |velocity: DVec3| (velocity - free).dot(normal);
-    let at_proxy = closing(climber.drift);
-    let by_body = closing(climber.frame_velocity).min(closing(climber.velocity));
-    // It lands on what is below it by its own rules. And what overlaps the layer around it because of its own motion is
-    // not pushed out.
-    let is_below = normal.dot(climber.up) < -BELOW;
-    let share = if is_below || at_proxy <= 0.0 {
-        0.0
-    } else {
-        (by_body / at_proxy).clamp(0.0, 1.0)
-    };
-    // Where a gap is left, rapier takes a part only, and the rest in the next step. An impact is weighed as a whole.
-    let whole = changed.max((climber.drift - was).dot(normal));
-    Meeting {
-        share,
-        taken,
-        pressed: (taken - changed).max(0.0),
-        brought: whole * share,
-    }
-}
-
-/// The share of the climber's mobility that its support leaves it along a normal, away from the body: 0 straight into
-/// the support.
-fn mobility(climber: &ProxyBody, normal: DVec3) -> f64 {
-    let into = climber
-        .support_normal
-        .map_or(0.0, |support| normal.dot(support).max(0.0));
-    (1.0 - into * into).max(0.0)
 }

@@ -1,10 +1,7 @@
 //! A climber as a kinematic body of a rapier world.
 //!
 //! Rapier's solver knows kinematic bodies of infinite mass only. So it stops whatever meets the proxy, and afterwards
-//! [`ClimberProxy::after_step`] gives back what a body of the climber's mass would not have taken: for a body with the
-//! response w to a unit impulse at the contact, a climber of mass M and an approach at the speed v, the impulse of an
-//! inelastic impact is v / (w + k / M), where k is the share of the climber's mobility along the contact's normal that
-//! its support leaves: 1 in the air, 0 straight into the ground, the squared sine of the angle between them.
+//! [`ClimberProxy::after_step`] gives back what a climber of its mass would not have taken, by [`ProxyBody::share`].
 //!
 //! A body that is fast enough to enter the climber between two of rapier's detections is put back to where it first
 //! touched it, along its own path, and collides with the next step. It is the motion clamping of continuous collision
@@ -33,13 +30,6 @@ const FRICTION: f32 = 0.5;
 /// Rapier takes the contacts of two bodies that hardly moved from the last step, and does not see then that a joint
 /// disables them since. It does so for no collider that has hooks. This hook is for sensors, which a proxy is not.
 const FRESH: ActiveHooks = ActiveHooks::FILTER_INTERSECTION_PAIR;
-
-/// A touched body that approaches the climber faster than this share of the gentle speed still collides with it.
-const APPROACHES: f64 = 0.1;
-
-/// A body is ground below the climber, on which it stands and lands by its own rules, where the cosine from down of the
-/// direction to it is above this: 60 degrees.
-const BELOW: f64 = 0.5;
 
 /// A climber's kinematic body in a rapier world: dynamic bodies collide with it, rest on it and strike it.
 ///
@@ -234,9 +224,8 @@ impl ClimberProxy {
             let Some((handle, body)) = body_of(&touch.material) else {
                 continue;
             };
-            // A body that comes by itself strikes the climber, which must not give way to it.
-            let own = velocity_at(body, touch.position - self.origin) - self.body.frame_velocity;
-            if own.dot(touch.normal) <= APPROACHES * self.body.gentle {
+            let velocity = velocity_at(body, touch.position - self.origin);
+            if self.body.pushes_by_itself(&touch, velocity) {
                 self.wanted.push(handle);
             }
         }
