@@ -157,7 +157,7 @@ impl ClimberBody {
     }
 
     /// The climber itself.
-    #[cfg(feature = "rapier")]
+    #[cfg(any(feature = "avian", feature = "rapier"))]
     pub(crate) fn climber(&self) -> &clamber_climber::Climber {
         &self.climber
     }

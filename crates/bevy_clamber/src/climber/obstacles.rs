@@ -70,7 +70,7 @@ impl CustomObstacle {
 }
 
 /// The id of an engine's whole world. No living entity has these bits.
-const AVIAN: ObstacleId = ObstacleId(u64::MAX);
+pub(crate) const AVIAN: ObstacleId = ObstacleId(u64::MAX);
 pub(crate) const RAPIER: ObstacleId = ObstacleId(u64::MAX - 1);
 
 /// The same in an arena, which keeps the ids from 2^62 on for its creatures and fighters. No entity lives long enough to have

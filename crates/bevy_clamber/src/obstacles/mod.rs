@@ -12,7 +12,7 @@ mod rapier;
 #[cfg(feature = "avian")]
 pub(crate) use avian::AvianPushes;
 #[cfg(feature = "avian")]
-pub use avian::{AvianObstacles, AvianObstaclesPlugin, AvianTerrain};
+pub use avian::{AvianObstacles, AvianObstaclesPlugin, AvianProxy, AvianProxyPlugin, AvianTerrain};
 #[cfg(feature = "rapier")]
 pub use debris::{Debris, DebrisBodies, DebrisHooks, DebrisPlugin};
 #[cfg(feature = "rapier")]

@@ -9,6 +9,9 @@ const BELOW: f64 = 0.5;
 /// A touched body that approaches the climber faster than this share of the gentle speed still collides with it.
 const APPROACHES: f64 = 0.1;
 
+/// What of a velocity slips along a contact is rounding below this share of it: engines calculate in f32.
+const SLIPS: f64 = 1e-6;
+
 /// How a dynamic body met a climber in a step of a physics engine that takes the climber for an immovable body. All
 /// vectors are in world space, velocities in metres a second.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,6 +24,8 @@ pub struct ProxyMeeting {
     pub free: DVec3,
     /// What it is after the step.
     pub after: DVec3,
+    /// How far the point went in the step, metres, beyond its way at the velocity `free`.
+    pub shifted: DVec3,
     /// Coefficient of friction of the contact, or an upper bound of it.
     pub friction: f64,
 }
@@ -33,9 +38,9 @@ pub struct ProxyShare {
     pub body: DVec3,
     /// The impulse that the climber gets, newton seconds, for `Climber::blow_of`; `None` if it is too slow to be felt.
     pub climber: Option<DVec3>,
-    /// The share, 0 to 1, of the way by which the engine moved the body out of the climber's way that is to be taken
-    /// back: the climber's own motion has made it, and the climber pushes by its own rules.
-    pub undone: f64,
+    /// How far to move the body, metres: it takes back the way by which the engine moved it where the climber's own
+    /// motion has made that way, since the climber pushes by its own rules.
+    pub shift: DVec3,
 }
 
 /// How a body whose velocity changed at the contact met the climber, metres a second along the normal.
@@ -93,6 +98,7 @@ impl ProxyBody {
     ///     before: DVec3::X * -5.0,
     ///     free: DVec3::X * -5.0,
     ///     after: DVec3::ZERO,
+    ///     shifted: DVec3::ZERO,
     ///     friction: 0.5,
     /// };
     /// let share = floating.share(&meeting, |impulse| impulse / 20.0).unwrap();
@@ -121,22 +127,24 @@ impl ProxyBody {
             // Too slow to be felt: it rests on the climber.
             whole * approach.share
         };
+        let along = slip_direction(self.drift - meeting.free, normal);
         // What leaves the climber on its own takes that along.
         let body = if whole > 0.0 && kept != whole {
-            let slip = (self.drift - meeting.free).reject_from_normalized(normal);
             let dragged = meeting.after - meeting.free - along_normal * whole;
             let most = whole * meeting.friction;
-            let friction = friction(dragged, slip, response).clamp_length_max(most);
+            let friction = friction(dragged, along, response).clamp_length_max(most);
             normal * (kept - whole) - friction * (1.0 - kept / whole).max(0.0)
         } else {
             DVec3::ZERO
         };
+        let pushed = [normal, along].map(|axis| axis * meeting.shifted.dot(axis).max(0.0));
+        let shift = (pushed[0] + pushed[1]) * (approach.share - 1.0);
         let share = ProxyShare {
             body,
             climber: is_felt.then_some(normal * -felt),
-            undone: 1.0 - approach.share,
+            shift,
         };
-        (body.is_finite() && felt.is_finite()).then_some(share)
+        (body.is_finite() && felt.is_finite() && shift.is_finite()).then_some(share)
     }
 
     fn approach(&self, meeting: &ProxyMeeting) -> Approach {
@@ -174,11 +182,19 @@ impl ProxyBody {
     }
 }
 
-/// The impulse of the engine's friction: of the change of the body's velocity, what follows the climber's slip.
-fn friction(change: DVec3, slip: DVec3, response: impl Fn(DVec3) -> DVec3) -> DVec3 {
-    let Some(along) = slip.try_normalize() else {
-        return DVec3::ZERO;
-    };
+/// The direction in which a velocity slips along a contact; zero if it does not, beyond rounding.
+fn slip_direction(velocity: DVec3, normal: DVec3) -> DVec3 {
+    let slip = velocity.reject_from_normalized(normal);
+    if slip.length() > SLIPS * velocity.length() {
+        slip.normalize_or_zero()
+    } else {
+        DVec3::ZERO
+    }
+}
+
+/// The impulse of the engine's friction: of the change of the body's velocity, what follows the climber's slip, whose
+/// direction is given; zero if there is none.
+fn friction(change: DVec3, along: DVec3, response: impl Fn(DVec3) -> DVec3) -> DVec3 {
     let impulse = change.dot(along) / response(along).dot(along);
     if impulse > 0.0 && impulse.is_finite() {
         along * impulse

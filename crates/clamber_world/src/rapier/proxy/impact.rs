@@ -134,22 +134,22 @@ impl ClimberProxy {
         let body = bodies.get_mut(impact.body)?;
         let arm = point - body.mass_properties().world_com.as_dvec3();
         let was = linvel + angvel.cross(arm);
+        let free = was + acceleration(body) * dt;
+        let local = pose_of(body.position()).inverse_transform(point);
+        let from = pose_of(before.get(impact.body)?).transform(local);
         let meeting = ProxyMeeting {
             normal,
             before: was,
-            free: was + acceleration(body) * dt,
+            free,
             after: super::velocity_at(body, point),
+            shifted: point - from - free * dt,
             friction: self.friction_with(impact.collider, colliders),
         };
         let share = self
             .body
             .share(&meeting, |impulse| point_response(body, point, impulse))?;
-        if share.undone > 0.0 {
-            let from = pose_of(before.get(impact.body)?);
-            let local = pose_of(body.position()).inverse_transform(point);
-            let moved = (point - from.transform(local)).dot(normal);
-            let shoved = (moved - meeting.free.dot(normal) * dt).max(0.0) * share.undone;
-            body.set_translation(body.translation() - (normal * shoved).as_vec3(), true);
+        if share.shift != DVec3::ZERO {
+            body.set_translation(body.translation() + share.shift.as_vec3(), true);
         }
         if share.body != DVec3::ZERO {
             body.apply_impulse_at_point(share.body.as_vec3(), point.as_vec3(), true);
