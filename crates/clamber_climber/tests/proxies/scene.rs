@@ -32,8 +32,10 @@ impl Scene {
     /// A climber of the walker's proportions, its centre at a position, in sizes.
     pub(crate) fn new(setting: Setting, config: ClimberConfig, position: DVec3) -> Self {
         let (size, hz, frame) = setting;
-        let mut world = PhysicsWorld::default();
-        world.gravity = Vector::new(0.0, -9.81, 0.0);
+        let mut world = PhysicsWorld {
+            gravity: Vector::new(0.0, -9.81, 0.0),
+            ..PhysicsWorld::default()
+        };
         world.integration_parameters.dt = (1.0 / hz) as f32;
         world.integration_parameters.length_unit = size as f32;
         // Rapier clips speeds at 400 m/s, in which no frame is like another.

@@ -18,8 +18,14 @@ fn climber() -> ProxyBody {
     }
 }
 
+/// A random number of a random magnitude from `least` on.
+fn spread(least: f64, magnitudes: u32) -> f64 {
+    let ten = (0..fastrand::u32(0..magnitudes)).fold(1.0, |ten, _| ten * 10.0);
+    least * ten * (1.0 + 9.0 * fastrand::f64())
+}
+
 fn vector() -> DVec3 {
-    let mut entry = || fastrand::f64() * 2.0 - 1.0;
+    let entry = || fastrand::f64() * 2.0 - 1.0;
     DVec3::new(entry(), entry(), entry())
 }
 
@@ -41,16 +47,16 @@ fn floating_climbers_and_bodies_keep_their_momentum_and_go_on_together() {
     fastrand::seed(1);
     let mut felt = 0;
     for _ in 0..20_000 {
-        let frame = vector() * 10_f64.powf(fastrand::f64() * 4.0 - 1.0);
+        let frame = vector() * spread(0.1, 4);
         let mut climber = climber();
-        climber.mass = 10_f64.powf(fastrand::f64() * 6.0 - 1.0);
+        climber.mass = spread(0.1, 6);
         (climber.velocity, climber.drift, climber.frame_velocity) = (frame, frame, frame);
-        let mass = 10_f64.powf(fastrand::f64() * 8.0 - 3.0);
+        let mass = spread(1e-3, 8);
         let normal = vector().normalize();
         if climber.is_below(normal) {
             continue;
         }
-        let speed = 10_f64.powf(fastrand::f64() * 4.0 - 1.0);
+        let speed = spread(0.1, 4);
         let meeting = stopped(&climber, normal, speed);
         let share = climber.share(&meeting, |impulse| impulse / mass).unwrap();
         let after = meeting.after + share.body / mass;
