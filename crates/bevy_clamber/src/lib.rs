@@ -63,10 +63,13 @@ pub use figure::{ClimberFigure, ClimberFigurePlugin, ClimberPlant, WrongJoints};
 #[cfg(feature = "gizmos")]
 pub use gizmos::{SurfaceGizmos, SurfaceGizmosPlugin};
 #[cfg(feature = "avian")]
-pub use obstacles::{AvianObstacles, AvianObstaclesPlugin, AvianTerrain};
+pub use obstacles::{
+    AvianObstacles, AvianObstaclesPlugin, AvianProxy, AvianProxyPlugin, AvianTerrain,
+};
 #[cfg(feature = "rapier")]
 pub use obstacles::{
     Debris, DebrisBodies, DebrisHooks, DebrisPlugin, RapierObstacles, RapierObstaclesPlugin,
+    RapierProxy, RapierProxyPlugin,
 };
 #[cfg(feature = "picking")]
 pub use picking::{SurfacePick, SurfacePickingPlugin};

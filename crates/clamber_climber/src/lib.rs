@@ -13,6 +13,7 @@ pub mod guide;
 mod input;
 mod obstacle;
 mod pendulum;
+mod proxy;
 mod resize;
 mod rule;
 mod shake;

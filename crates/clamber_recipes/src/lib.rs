@@ -14,6 +14,8 @@ pub mod camera {}
 pub mod creature_from_blender {}
 #[doc = include_str!("../../../docs/recipes/debugging.md")]
 pub mod debugging {}
+#[doc = include_str!("../../../docs/recipes/falling_crates.md")]
+pub mod falling_crates {}
 #[doc = include_str!("../../../docs/recipes/own_model.md")]
 pub mod own_model {}
 #[doc = include_str!("../../../docs/recipes/own_engine.md")]

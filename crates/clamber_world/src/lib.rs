@@ -5,6 +5,7 @@ mod attachment;
 mod debris;
 mod half_space;
 mod obstacle;
+mod proxy;
 #[cfg(feature = "rapier")]
 mod rapier;
 mod rigid_pose;
@@ -33,8 +34,9 @@ pub use obstacle::{
 /// The version of parry that [`shapes`] uses.
 #[cfg(feature = "parry")]
 pub use parry3d;
+pub use proxy::{ProxyBody, ProxyMeeting, ProxyShare, ProxyTouch};
 #[cfg(feature = "rapier")]
-pub use rapier::{BodyPoses, RapierTerrain, apply_push};
+pub use rapier::{BodyPoses, ClimberProxy, ProxyHit, RapierTerrain, apply_push};
 /// The version of rapier that [`RapierTerrain`] uses.
 #[cfg(feature = "rapier")]
 pub use rapier3d;

@@ -156,6 +156,12 @@ impl ClimberBody {
         found.as_dvec3().distance(expected) > slack
     }
 
+    /// The climber itself.
+    #[cfg(any(feature = "avian", feature = "rapier"))]
+    pub(crate) fn climber(&self) -> &clamber_climber::Climber {
+        &self.climber
+    }
+
     /// The contacts of the last tick, in the order in which they were found.
     pub fn contacts(&self) -> &[ClimberContact] {
         self.climber.contacts()

@@ -14,8 +14,12 @@ pub use component::{Climber, ClimberBody, ClimberFilter, ClimberState};
 #[cfg(feature = "fight")]
 pub(crate) use input::LatchedInput;
 pub use input::{ClimberBlow, ClimberInput};
+#[cfg(feature = "avian")]
+pub(crate) use obstacles::AVIAN;
 pub use obstacles::CustomObstacle;
 pub(crate) use obstacles::DrawnTouchable;
+#[cfg(feature = "rapier")]
+pub(crate) use obstacles::RAPIER;
 #[cfg(feature = "colossus")]
 pub(crate) use obstacles::Touchable;
 pub use plugin::ClimberPlugin;

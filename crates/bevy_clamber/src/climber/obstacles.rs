@@ -23,7 +23,7 @@ use crate::WorldOrigin;
 #[cfg(feature = "avian")]
 use crate::obstacles::{AvianObstacles, AvianPushes, AvianTerrain};
 #[cfg(feature = "rapier")]
-use crate::obstacles::{DebrisBodies, RapierObstacles, RapierPushes};
+use crate::obstacles::{DebrisBodies, RapierObstacles, RapierProxies, RapierPushes};
 use crate::{DrawnSurface, PosedSurface};
 
 /// An obstacle of the app's own: terrain without a physics engine, a moving platform, anything that implements
@@ -70,8 +70,8 @@ impl CustomObstacle {
 }
 
 /// The id of an engine's whole world. No living entity has these bits.
-const AVIAN: ObstacleId = ObstacleId(u64::MAX);
-const RAPIER: ObstacleId = ObstacleId(u64::MAX - 1);
+pub(crate) const AVIAN: ObstacleId = ObstacleId(u64::MAX);
+pub(crate) const RAPIER: ObstacleId = ObstacleId(u64::MAX - 1);
 
 /// The same in an arena, which keeps the ids from 2^62 on for its creatures and fighters. No entity lives long enough to have
 /// these bits.
@@ -106,6 +106,8 @@ pub(crate) struct Touchable<'w, 's> {
     rapier: Result<RapierObstacles<'w, 's>, SystemParamValidationError>,
     #[cfg(feature = "rapier")]
     debris: Option<Res<'w, DebrisBodies>>,
+    #[cfg(feature = "rapier")]
+    proxies: Option<Res<'w, RapierProxies>>,
 }
 
 /// Pushes bodies of physics engines.
@@ -166,7 +168,8 @@ impl Touchable<'_, '_> {
         let rapier = self.rapier.as_ref().ok().and_then(RapierObstacles::terrain);
         #[cfg(feature = "rapier")]
         let wanted = |handle, collider: &RapierCollider| {
-            is_wanted(filter, climber, collider) && !is_skin(self.debris.as_deref(), handle)
+            is_wanted(filter, climber, collider)
+                && !is_stand_in(self.debris.as_deref(), self.proxies.as_deref(), handle)
         };
         #[cfg(feature = "rapier")]
         let rapier = rapier.map(|rapier| rapier.with_filter(&wanted).with_origin(self.origin.0));
@@ -228,7 +231,9 @@ impl Touchable<'_, '_> {
         #[cfg(feature = "rapier")]
         let rapier = self.rapier.as_ref().ok().and_then(RapierObstacles::terrain);
         #[cfg(feature = "rapier")]
-        let wanted = |handle, _: &RapierCollider| !is_skin(self.debris.as_deref(), handle);
+        let wanted = |handle, _: &RapierCollider| {
+            !is_stand_in(self.debris.as_deref(), self.proxies.as_deref(), handle)
+        };
         #[cfg(feature = "rapier")]
         let rapier = rapier.map(|rapier| rapier.with_filter(&wanted).with_origin(self.origin.0));
         for (entity, custom) in &self.custom {
@@ -278,6 +283,8 @@ pub(crate) struct DrawnTouchable<'w, 's> {
     rapier: Result<RapierObstacles<'w, 's>, SystemParamValidationError>,
     #[cfg(feature = "rapier")]
     debris: Option<Res<'w, DebrisBodies>>,
+    #[cfg(feature = "rapier")]
+    proxies: Option<Res<'w, RapierProxies>>,
 }
 
 impl DrawnTouchable<'_, '_> {
@@ -306,7 +313,8 @@ impl DrawnTouchable<'_, '_> {
         let rapier = self.rapier.as_ref().ok().and_then(RapierObstacles::terrain);
         #[cfg(feature = "rapier")]
         let wanted = |handle, collider: &RapierCollider| {
-            is_wanted(filter, climber, collider) && !is_skin(self.debris.as_deref(), handle)
+            is_wanted(filter, climber, collider)
+                && !is_stand_in(self.debris.as_deref(), self.proxies.as_deref(), handle)
         };
         #[cfg(feature = "rapier")]
         let rapier = rapier.map(|rapier| rapier.with_filter(&wanted).with_origin(self.origin.0));
@@ -369,7 +377,7 @@ impl DrawnTouchable<'_, '_> {
         if let Some(rapier) = self.rapier.as_ref().ok().and_then(RapierObstacles::terrain) {
             let wanted = |handle, collider: &RapierCollider| {
                 is_wanted(filter, Entity::PLACEHOLDER, collider)
-                    && !is_skin(self.debris.as_deref(), handle)
+                    && !is_stand_in(self.debris.as_deref(), self.proxies.as_deref(), handle)
             };
             let terrain = rapier.with_filter(&wanted);
             meet(&terrain.with_origin(self.origin.0));
@@ -401,10 +409,15 @@ fn in_avian<'a>(
     avian.terrain().with_filter(wanted)
 }
 
-/// True for a collider of rapier that stands for skin: climbers touch the skin itself.
+/// True for a collider of rapier that stands for skin or for a climber, which climbers touch themselves.
 #[cfg(feature = "rapier")]
-fn is_skin(debris: Option<&DebrisBodies>, collider: RapierHandle) -> bool {
+fn is_stand_in(
+    debris: Option<&DebrisBodies>,
+    proxies: Option<&RapierProxies>,
+    collider: RapierHandle,
+) -> bool {
     debris.is_some_and(|debris| debris.is_skin(collider))
+        || proxies.is_some_and(|proxies| proxies.has(collider))
 }
 
 /// True for a collider of rapier that a climber touches: of its layers, and neither its own nor ignored.

@@ -185,7 +185,7 @@ fn skin<'a>(
 }
 
 /// The length of rapier's step; an error if nobody knows it.
-fn step_of(mode: TimestepMode, time: &Time) -> Result<f64, DebrisTrouble> {
+pub(super) fn step_of(mode: TimestepMode, time: &Time) -> Result<f64, DebrisTrouble> {
     match mode {
         TimestepMode::Fixed { dt, substeps: 1 } => Ok(dt.into()),
         TimestepMode::Variable {
@@ -199,7 +199,7 @@ fn step_of(mode: TimestepMode, time: &Time) -> Result<f64, DebrisTrouble> {
 
 /// Why no body collides with skin in a tick.
 #[derive(Clone, Debug, PartialEq, Error)]
-enum DebrisTrouble {
+pub(super) enum DebrisTrouble {
     #[error("rapier's TimestepMode must be Fixed or Variable, with one substep")]
     Substeps,
     #[error(transparent)]
@@ -272,7 +272,7 @@ fn parts(body: RigidBodyHandle) -> (u32, u32) {
 
 type Wanted = (Entity, &'static RapierRigidBodyHandle, Ref<'static, Debris>);
 
-fn before_step(
+pub(super) fn before_step(
     mode: Res<TimestepMode>,
     time: Res<Time>,
     origin: Res<WorldOrigin>,
@@ -304,7 +304,7 @@ fn before_step(
     bodies.dt = bodies.tell(shown.map_err(DebrisTrouble::from)).map(|()| dt);
 }
 
-fn after_step(
+pub(super) fn after_step(
     surfaces: Query<(Entity, &'static PosedSurface)>,
     mut contexts: Query<Context, With<DefaultRapierContext>>,
     mut bodies: ResMut<DebrisBodies>,

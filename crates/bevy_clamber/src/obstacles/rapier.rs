@@ -3,7 +3,7 @@ use bevy_ecs::prelude::*;
 use bevy_ecs::schedule::{InternedScheduleLabel, ScheduleLabel};
 use bevy_ecs::system::SystemParam;
 use bevy_rapier3d::prelude::{DefaultRapierContext, PhysicsSet, RapierRigidBodySet};
-use bevy_rapier3d::prelude::{RapierContext, RapierContextColliders, ReadRapierContext};
+use bevy_rapier3d::prelude::{RapierContext, RapierContextColliders, ReadRapierContext, Velocity};
 use clamber_world::{BodyPoses, MaterialPoint, RapierTerrain, apply_push};
 use glam::DVec3;
 
@@ -107,13 +107,30 @@ pub(crate) struct RapierPushes<'w, 's> {
         ),
         With<DefaultRapierContext>,
     >,
+    velocities: Query<'w, 's, &'static mut Velocity>,
 }
 
 impl RapierPushes<'_, '_> {
     /// Applies an impulse, newton seconds, to a point of a collider.
     pub(crate) fn push(&mut self, point: &MaterialPoint, impulse: DVec3) {
-        if let Ok((mut bodies, colliders)) = self.worlds.single_mut() {
-            apply_push(&mut bodies.bodies, &colliders.colliders, point, impulse);
+        let Ok((mut bodies, colliders)) = self.worlds.single_mut() else {
+            return;
+        };
+        let (bodies, colliders) = (&mut bodies.bodies, &colliders.colliders);
+        apply_push(bodies, colliders, point, impulse);
+        let collider = colliders.get(RapierTerrain::collider_of(point));
+        let body = collider.and_then(|collider| bodies.get(collider.parent()?));
+        let Some(body) = body else {
+            return;
+        };
+        let entity = u64::try_from(body.user_data).ok();
+        let entity = entity.and_then(Entity::try_from_bits);
+        // The component changes with each step, and so replaces the body's velocity before the next one.
+        if let Some(mut velocity) = entity.and_then(|entity| self.velocities.get_mut(entity).ok()) {
+            velocity.set_if_neq(Velocity {
+                linear: body.linvel(),
+                angular: body.angvel(),
+            });
         }
     }
 }

@@ -8,6 +8,7 @@ use bevy_asset::AssetPlugin;
 use bevy_clamber::clamber_climber::ClimberMode;
 use bevy_clamber::events::ClimberLanded;
 use bevy_clamber::prelude::*;
+use bevy_clamber::{AvianProxyPlugin, RapierProxyPlugin};
 use bevy_ecs::prelude::*;
 use bevy_ecs::schedule::{LogLevel, ScheduleBuildSettings, Schedules};
 use bevy_math::Vec3;
@@ -69,6 +70,12 @@ fn scene_with(engine: Engine, climbers: bool) -> Scene {
             .add_plugins(RapierPhysicsPlugin::<NoUserData>::default().in_fixed_schedule())
             .add_systems(FixedUpdate, move_platform.before(PhysicsSet::SyncBackend)),
     };
+    if climbers {
+        match engine {
+            Engine::Avian => app.add_plugins(AvianProxyPlugin::default()),
+            Engine::Rapier => app.add_plugins(RapierProxyPlugin::default()),
+        };
+    }
     app.finish();
     app.cleanup();
     let mut body = |size: [f32; 3], at: Vec3, kind: &str| {

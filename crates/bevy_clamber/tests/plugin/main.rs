@@ -46,6 +46,8 @@ mod obstacles;
 #[cfg(feature = "picking")]
 mod picking;
 mod preludes;
+#[cfg(feature = "rapier")]
+mod proxies;
 mod queries;
 mod relations;
 mod saved_worlds;

@@ -6,7 +6,7 @@ use glam::DVec3;
 use super::ground::GRAZING;
 use super::moving::Intent;
 use super::{LEVEL, NextMode, Tick};
-use crate::{ClimberEvent, ClimberMode};
+use crate::{ClimberConfig, ClimberEvent, ClimberMode};
 
 /// A contact at no more than this multiple of the speed that gravity adds in a tick is no impact.
 const RESTS: f64 = 1.5;
@@ -43,6 +43,11 @@ pub struct TumblingMemory {
     pub still: f64,
     /// How long ago it first touched ground that can be stood on, seconds.
     pub down: f64,
+}
+
+/// A speed that is slow for a body of its size under its gravity, metres a second: 0.5 for a radius of 0.4 m.
+pub(crate) fn slow_speed(config: &ClimberConfig) -> f64 {
+    SLOW * libm::sqrt(config.gravity.length() * config.body.radius)
 }
 
 impl Tick<'_> {
@@ -225,9 +230,9 @@ impl Tick<'_> {
         self.judge.rule_of(touch).usable_friction()
     }
 
-    /// A speed that is slow for a body of its size under its gravity, metres a second: 0.5 for a radius of 0.4 m.
+    /// [`slow_speed`] of the climber.
     pub(super) fn slow(&self) -> f64 {
-        SLOW * libm::sqrt(self.config.gravity.length() * self.config.body.radius)
+        slow_speed(self.config)
     }
 
     /// Stands on the ground that it came down on, or slides down it. A crushed climber does neither.

@@ -20,6 +20,7 @@ mod pushing;
 mod standing;
 
 pub use custom::{CustomMode, ModeContext, NextMode};
+pub(crate) use flying::slow_speed;
 pub use flying::{FlyingMemory, TumblingMemory};
 pub use hanging::HangingMemory;
 pub use holding::HoldingMemory;

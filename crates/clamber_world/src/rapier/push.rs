@@ -86,17 +86,29 @@ fn place(collider: &Collider, point: &MaterialPoint) -> DVec3 {
 
 /// Change of the point's speed along a unit direction for an impulse of 1 N s along it.
 fn response(body: &RigidBody, place: DVec3, direction: DVec3) -> f64 {
+    let (slide, torque, spin) = answer(body, place, direction);
+    slide.dot(direction) + torque.dot(spin)
+}
+
+/// Change of the point's velocity for an impulse there.
+pub(super) fn point_response(body: &RigidBody, place: DVec3, impulse: DVec3) -> DVec3 {
+    let (slide, _, spin) = answer(body, place, impulse);
+    slide + spin.cross(place - body.mass_properties().world_com.as_dvec3())
+}
+
+/// What an impulse at a point changes of a body's linear velocity, the torque impulse, and what this changes of the
+/// angular velocity.
+fn answer(body: &RigidBody, place: DVec3, impulse: DVec3) -> (DVec3, DVec3, DVec3) {
     let mass = body.mass_properties();
-    let slide = (mass.effective_inv_mass.as_dvec3() * direction).dot(direction);
     let inertia = mass.effective_world_inv_inertia;
     let entry = f64::from;
-    let torque = (place - mass.world_com.as_dvec3()).cross(direction);
+    let torque = (place - mass.world_com.as_dvec3()).cross(impulse);
     let spin = DVec3::new(
         DVec3::new(entry(inertia.m11), entry(inertia.m12), entry(inertia.m13)).dot(torque),
         DVec3::new(entry(inertia.m12), entry(inertia.m22), entry(inertia.m23)).dot(torque),
         DVec3::new(entry(inertia.m13), entry(inertia.m23), entry(inertia.m33)).dot(torque),
     );
-    slide + torque.dot(spin)
+    (mass.effective_inv_mass.as_dvec3() * impulse, torque, spin)
 }
 
 #[cfg(test)]

@@ -37,7 +37,7 @@ pub(super) fn pose_of(pose: &Pose) -> RigidPose {
     RigidPose::new(pose.rotation, pose.translation)
 }
 
-fn key_of(handle: ColliderHandle) -> u64 {
+pub(super) fn key_of(handle: ColliderHandle) -> u64 {
     let (index, generation) = handle.into_raw_parts();
     u64::from(generation) << 32 | u64::from(index)
 }

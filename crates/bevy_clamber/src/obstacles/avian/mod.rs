@@ -1,6 +1,7 @@
 //! Avian's world as an obstacle.
 
 mod moving;
+mod proxy;
 mod push;
 mod terrain;
 
@@ -16,6 +17,8 @@ use bevy_ecs::system::SystemParam;
 
 use crate::{ClamberSystems, WorldOrigin};
 use moving::{MovingColliders, note};
+use proxy::StandIn;
+pub use proxy::{AvianProxy, AvianProxyPlugin};
 pub(crate) use push::AvianPushes;
 use push::Masses;
 pub use terrain::AvianTerrain;
@@ -59,7 +62,7 @@ impl Plugin for AvianObstaclesPlugin {
     }
 }
 
-/// Colliders that can be touched.
+/// Colliders that can be touched. Climbers touch each other as obstacles of their own.
 type Solids<'w, 's> = Query<
     'w,
     's,
@@ -69,7 +72,7 @@ type Solids<'w, 's> = Query<
         &'static Collider,
         Option<&'static CollisionLayers>,
     ),
-    (Without<Sensor>, Without<ColliderDisabled>),
+    (Without<Sensor>, Without<ColliderDisabled>, Without<StandIn>),
 >;
 
 /// Avian's world as an obstacle.

@@ -1,0 +1,199 @@
+//! What collided with the climber in a step, and what a climber of its mass takes of it.
+
+use glam::DVec3;
+use rapier3d::dynamics::{RigidBody, RigidBodyHandle, RigidBodySet};
+use rapier3d::geometry::{ColliderHandle, ColliderSet, ContactPair, NarrowPhase};
+
+use super::{ClimberProxy, ProxyHit};
+use crate::rapier::BodyPoses;
+use crate::rapier::push::point_response;
+use crate::rapier::terrain::{key_of, pose_of};
+use crate::{MaterialPoint, ProxyMeeting};
+
+/// The contacts of one body with the climber.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Impact {
+    body: RigidBodyHandle,
+    /// The collider with the strongest of them.
+    collider: ColliderHandle,
+    /// Rapier's impulse there.
+    strongest: f64,
+    /// Sums over the contacts, weighed by their impulses: the impulses, the points in rapier's space, and the normals
+    /// from the climber to the body.
+    weight: f64,
+    point: DVec3,
+    normal: DVec3,
+}
+
+impl Impact {
+    fn key(&self) -> ((u32, u32), (u32, u32)) {
+        (self.body.into_raw_parts(), self.collider.into_raw_parts())
+    }
+}
+
+impl ClimberProxy {
+    pub(super) fn take_impacts(
+        &mut self,
+        before: &BodyPoses,
+        bodies: &mut RigidBodySet,
+        colliders: &mut ColliderSet,
+        narrow_phase: &NarrowPhase,
+        dt: f64,
+    ) -> Option<ProxyHit> {
+        let mut found = std::mem::take(&mut self.found);
+        found.clear();
+        for pair in narrow_phase.contact_pairs_with(self.collider) {
+            found.extend(self.contacts_of(pair, bodies, colliders));
+        }
+        found.sort_unstable_by_key(Impact::key);
+        found.dedup_by(|next, first| {
+            let is_same = next.body == first.body;
+            if is_same {
+                first.weight += next.weight;
+                first.point += next.point;
+                first.normal += next.normal;
+                if next.strongest > first.strongest {
+                    (first.collider, first.strongest) = (next.collider, next.strongest);
+                }
+            }
+            is_same
+        });
+        let mut hit = None;
+        for impact in &found {
+            self.weigh(impact, (before, dt), bodies, colliders, &mut hit);
+        }
+        if !found.is_empty() {
+            bodies.propagate_modified_body_positions_to_colliders(colliders);
+        }
+        self.found = found;
+        hit.map(|(_, hit)| hit)
+    }
+
+    /// The contacts of one collider with the climber; `None` if they do not touch, or it is not of a dynamic body.
+    fn contacts_of(
+        &self,
+        pair: &ContactPair,
+        bodies: &RigidBodySet,
+        colliders: &ColliderSet,
+    ) -> Option<Impact> {
+        let is_first = pair.collider1 == self.collider;
+        let collider = if is_first {
+            pair.collider2
+        } else {
+            pair.collider1
+        };
+        let body = colliders.get(collider)?.parent()?;
+        bodies.get(body).filter(|body| body.is_dynamic())?;
+        let place = pose_of(bodies.get(self.handle)?.position());
+        let mut impact = Impact {
+            body,
+            collider,
+            strongest: 0.0,
+            weight: 0.0,
+            point: DVec3::ZERO,
+            normal: DVec3::ZERO,
+        };
+        let mut add = |weighed: &dyn Fn(f64, f64) -> f64| {
+            for manifold in pair.manifolds() {
+                let normal = manifold.data.normal.as_dvec3();
+                let normal = if is_first { normal } else { -normal };
+                for contact in &manifold.points {
+                    let weight = weighed(contact.data.impulse.into(), contact.dist.into());
+                    let local = if is_first {
+                        contact.local_p1
+                    } else {
+                        contact.local_p2
+                    };
+                    impact.weight += weight;
+                    impact.point += place.transform(local.as_dvec3()) * weight;
+                    impact.normal += normal * weight;
+                }
+            }
+            impact.weight
+        };
+        // A body that rapier has pushed out is on its way in the last of rapier's substeps, which has no impulse.
+        if add(&|impulse, _| impulse.max(0.0)) <= 0.0 {
+            add(&|_, distance| (-distance).max(0.0));
+        }
+        impact.strongest = impact.weight;
+        (impact.weight > 0.0).then_some(impact)
+    }
+
+    /// Gives back to a body what the climber does not take, and adds what it takes to the hit.
+    fn weigh(
+        &self,
+        impact: &Impact,
+        (before, dt): (&BodyPoses, f64),
+        bodies: &mut RigidBodySet,
+        colliders: &ColliderSet,
+        hit: &mut Option<(f64, ProxyHit)>,
+    ) -> Option<()> {
+        let normal = impact.normal.try_normalize()?;
+        let point = impact.point / impact.weight;
+        let [linvel, angvel] = before.velocities(impact.body)?.map(|v| v.as_dvec3());
+        let body = bodies.get_mut(impact.body)?;
+        let arm = point - body.mass_properties().world_com.as_dvec3();
+        let was = linvel + angvel.cross(arm);
+        let free = was + acceleration(body) * dt;
+        let local = pose_of(body.position()).inverse_transform(point);
+        let from = pose_of(before.get(impact.body)?).transform(local);
+        let meeting = ProxyMeeting {
+            normal,
+            before: was,
+            free,
+            after: super::velocity_at(body, point),
+            shifted: point - from - free * dt,
+            friction: self.friction_with(impact.collider, colliders),
+        };
+        let share = self
+            .body
+            .share(&meeting, |impulse| point_response(body, point, impulse))?;
+        if share.shift != DVec3::ZERO {
+            body.set_translation(body.translation() + share.shift.as_vec3(), true);
+        }
+        if share.body != DVec3::ZERO {
+            body.apply_impulse_at_point(share.body.as_vec3(), point.as_vec3(), true);
+        }
+        if let Some(impulse) = share.climber {
+            let collider = colliders.get(impact.collider)?;
+            let local = pose_of(collider.position()).inverse_transform(point);
+            let this = ProxyHit {
+                impulse,
+                material: MaterialPoint {
+                    key: key_of(impact.collider),
+                    coordinates: local.to_array(),
+                },
+                point: point + self.origin,
+            };
+            let hardness = impulse.length();
+            *hit = Some(match hit.take() {
+                Some((most, other)) => {
+                    let impulse = this.impulse + other.impulse;
+                    let hardest = if hardness > most { this } else { other };
+                    (most.max(hardness), ProxyHit { impulse, ..hardest })
+                }
+                None => (hardness, this),
+            });
+        }
+        Some(())
+    }
+
+    /// An upper bound of the coefficient of friction between the proxy and a collider.
+    fn friction_with(&self, other: ColliderHandle, colliders: &ColliderSet) -> f64 {
+        let of = |handle| {
+            colliders
+                .get(handle)
+                .map_or(0.0, |collider| collider.friction())
+        };
+        of(self.collider).max(of(other)).into()
+    }
+}
+
+/// Acceleration of a body by gravity and the forces of its game in rapier's last step, metres per square second. Rapier
+/// tells where it would be in a second with them and without.
+fn acceleration(body: &RigidBody) -> DVec3 {
+    let center = body.mass_properties().local_mprops.local_com;
+    let forced = body.predict_position_using_velocity_and_forces(1.0) * center;
+    let unforced = body.predict_position_using_velocity(1.0) * center;
+    (forced - unforced).as_dvec3()
+}
