@@ -41,7 +41,7 @@ impl Scene {
         // Rapier clips speeds at 400 m/s, in which no frame is like another.
         world.integration_parameters.normalized_max_linear_velocity = 1e4;
         let frame = DVec3::Z * frame;
-        let mut climber = Climber::new(scaled(config, size), position * size).unwrap();
+        let mut climber = Climber::new(config.scaled(size), position * size).unwrap();
         let mut state = *climber.state();
         (state.velocity, state.base_velocity) = (frame, frame);
         climber.restore(state).unwrap();
@@ -206,31 +206,3 @@ pub(crate) const SETTINGS: [Setting; 9] = [
     (10.0, 30.0, 30.0),
     (100.0, 30.0, 0.0),
 ];
-
-/// A configuration for a body of another size under the same gravity: lengths by the size, speeds by its root.
-pub(crate) fn scaled(mut config: ClimberConfig, size: f64) -> ClimberConfig {
-    let speed = size.sqrt();
-    config.body.radius *= size;
-    config.body.height *= size;
-    config.body.margin *= size;
-    config.ground.step_height *= size;
-    config.ground.snap_distance *= size;
-    config.ground.walk_speed *= speed;
-    config.ground.jump_speed *= speed;
-    config.shake_time *= speed;
-    if let Some(tumble) = &mut config.tumble {
-        tumble.knock_speed *= speed;
-        tumble.landing_speed *= speed;
-        tumble.recover_time *= speed;
-    }
-    if let Some(health) = &mut config.health {
-        health.safe_speed *= speed;
-        health.fall_damage /= speed;
-    }
-    if let Some(grip) = &mut config.grip {
-        grip.reach *= size;
-        grip.climb_speed *= speed;
-        grip.jump_speed *= speed;
-    }
-    config
-}
