@@ -372,13 +372,22 @@ scenarios! {
 }
 
 #[test]
-fn every_open_entry_names_a_test() {
+fn every_open_entry_names_a_test_and_has_a_reason() {
     for (test, setting) in crate::open::all() {
         let known = ROWS.iter().any(|row| row.tests.contains(&test)) || FAILURES.contains(&test);
         assert!(
             known,
             "open.txt names {test} ({setting}), which is not a scenario"
         );
+        let why = crate::open::reason(test);
+        assert!(
+            why.is_some(),
+            "open.rs does not say why {test} ({setting}) is open"
+        );
+    }
+    for test in crate::open::explained() {
+        let is_open = crate::open::all().any(|(open, _)| open == test);
+        assert!(is_open, "open.rs explains {test}, which is not open");
     }
 }
 
