@@ -83,6 +83,8 @@ pub(crate) fn measure(
         .clip_like(&["walk"])
         .ok_or("the giant has no walk clip")?;
     let mut giants = herd(&creature, giants, walk.duration());
+    // Twice, since the first pose takes them from the origin to their places, at thousands of metres a second.
+    pose(&mut giants, &creature, walk, 0)?;
     pose(&mut giants, &creature, walk, 0)?;
     let mut riders = seated(&giants, riders)?;
     let world = valley::world();

@@ -31,11 +31,11 @@ impl Tick<'_> {
         let velocity = |index: usize| self.mover.velocity_of(&touched[index]);
         // Others in the air are no frame, and those on the ground have it from there.
         let counts = |index: &usize| !self.mover.is_character(&touched[*index]);
-        let pairs = (0..touched.len()).filter(counts).flat_map(|a| {
+        let nearest = (0..touched.len()).filter(counts).flat_map(|a| {
+            let from = velocity(a);
             let others = (0..=a).filter(counts);
-            others.map(move |b| (a, b))
+            others.map(move |b| nearest_between(from, velocity(b), frame))
         });
-        let nearest = pairs.map(|(a, b)| nearest_between(velocity(a), velocity(b), frame));
         nearest.reduce(|best, other| {
             if other.distance_squared(frame) < best.distance_squared(frame) {
                 other

@@ -212,6 +212,9 @@ impl Tick<'_> {
     /// Costs hit points for the hardest of the last movement's impacts, by its speed along the contact's normal: on
     /// ground, slopes, walls and ceilings alike.
     fn be_hurt_by_impact(&mut self, falling: DVec3) {
+        if self.config.health.is_none() {
+            return;
+        }
         let speeds = self.mover.touched().iter().map(|touch| {
             let own = falling - self.mover.velocity_of(touch);
             -own.dot(touch.normal)
