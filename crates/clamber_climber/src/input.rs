@@ -26,9 +26,9 @@ pub struct ClimberInput {
     pub jump_held: bool,
     /// True as long as the grip button is down: grips what is in reach and holds on. False lets go.
     pub grip: bool,
-    /// True as long as the crouch button is down: a standing climber with a height
-    /// ([`BodyConfig::height`](crate::BodyConfig::height)) is its lower ball alone. It stands up again where there is
-    /// room.
+    /// True as long as the crouch button is down: in every mode, a body with a height
+    /// ([`BodyConfig::height`](crate::BodyConfig::height)) is its lower ball alone. Released, it is the whole capsule
+    /// again where there is room. A body without a height does not change.
     pub crouch: bool,
     /// A blow that struck the climber since the last tick.
     pub blow: Option<Blow>,

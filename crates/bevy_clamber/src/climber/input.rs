@@ -16,8 +16,10 @@ use clamber_world::ObstacleId;
 #[reflect(Component, Default, Clone, Debug, PartialEq)]
 pub struct ClimberInput {
     /// Direction to walk or climb in, in world space. Its length is the share of full speed; more than 1 counts as 1.
-    /// On a hold, the direction is rotated with the hold from level ground: pushing against a wall climbs up, pulling
-    /// away climbs down.
+    /// The component along up is ignored. On a hold, it says where to climb when it is pressed, or turned by more than
+    /// 20 degrees: towards a wall is up, away from it down, and under a ceiling it is the direction itself. While it is
+    /// held, the climber goes on in one direction, over bumps, round edges, and from a wall onto its ceiling
+    /// ([`HoldingMemory`](clamber_climber::HoldingMemory)).
     pub walk: Vec3,
     /// Direction to climb in, in world space, on holds and ledges. Zero: `walk` is used instead.
     pub climb: Vec3,
@@ -28,8 +30,9 @@ pub struct ClimberInput {
     pub jump_held: bool,
     /// True as long as the grip button is down: grips what is in reach and holds on. False lets go.
     pub grip: bool,
-    /// True as long as the crouch button is down: a standing climber is then only its lower ball. Released, it stands up
-    /// where there is room.
+    /// True as long as the crouch button is down: in every mode, a body with a height
+    /// ([`BodyConfig::height`](clamber_climber::BodyConfig::height)) is its lower ball alone. Released, it is the whole
+    /// capsule again where there is room. A body without a height does not change.
     pub crouch: bool,
     /// The game's own buttons, one bit each, for its [`ClimberModes`](crate::ClimberModes).
     pub actions: u32,

@@ -30,11 +30,11 @@ impl SwingTwist {
         let axis = axis.try_normalize();
         let axis = axis.ok_or(IkError::BadSetUp("a bone's axis has no length"))?;
         if !(0.0..=PI).contains(&swing) {
-            return Err(IkError::BadSetUp("a swing is not from 0 to pi"));
+            return Err(IkError::BadSetUp("a swing is not from 0 to pi, in radians"));
         }
         if !((-PI..=0.0).contains(&twist[0]) && (0.0..=PI).contains(&twist[1])) {
             return Err(IkError::BadSetUp(
-                "a range of twist is not within -pi to pi around 0",
+                "a range of twist is not within -pi to pi around 0, in radians",
             ));
         }
         Ok(Self {

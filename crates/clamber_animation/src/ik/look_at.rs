@@ -173,7 +173,9 @@ impl LookAt {
         if in_range && limits.acceleration > 0.0 {
             Ok(Self { limits, ..self })
         } else {
-            Err(IkError::BadSetUp("a look-at limit is out of range"))
+            Err(IkError::BadSetUp(
+                "a look-at limit is out of range: yaw is from 0 to 3.1416 (180 degrees) and pitch from 0 to 1.5708 (90 degrees), in radians, and the acceleration is positive",
+            ))
         }
     }
 

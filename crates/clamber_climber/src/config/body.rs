@@ -12,7 +12,8 @@ pub struct BodyConfig {
     pub radius: f64,
     /// Height of a second ball of the same radius above the first, centre to centre, metres, not negative. The body is
     /// the capsule around both balls while it stands, slides, falls, tumbles or is in a custom mode. It is the first
-    /// ball alone while the climber grips or hangs, and where there is no room to stand up. Default 0: always a ball.
+    /// ball alone while the climber grips, hangs or is asked to crouch
+    /// ([`ClimberInput::crouch`](crate::ClimberInput::crouch)), and where there is no room to stand up. Default 0: always a ball.
     pub height: f64,
     /// Thickness of the body's outer layer, which may overlap obstacles, metres, from a thousandth to half of the radius.
     /// Default 0.01. The core inside it enters nothing, unless the climber is crushed or the solver's rounds do not

@@ -59,7 +59,10 @@ impl GripConfig {
     pub(super) fn validate(&self) -> Result<(), ClimberError> {
         check::not_negative("grip.reach", self.reach)?;
         check::not_negative("grip.climb_speed", self.climb_speed)?;
-        check::not_negative("grip.max_overhang", self.max_overhang)?;
+        let overhang = self.max_overhang;
+        let holds = overhang >= 0.0 && overhang.is_finite();
+        let range = "in radians, not negative and finite";
+        check::check("grip.max_overhang", range, overhang, holds)?;
         check::limit("grip.hang_acceleration", self.hang_acceleration)?;
         check::not_negative("grip.calm_time", self.calm_time)?;
         check::not_negative("grip.jump_speed", self.jump_speed)?;

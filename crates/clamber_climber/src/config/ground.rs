@@ -7,7 +7,7 @@ use crate::ClimberError;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
 pub struct GroundConfig {
-    /// Steepest slope to stand on, radians from level, from one degree to below a right angle. Default 50 degrees. A climber
+    /// Steepest slope to stand on, radians from level, from one degree to below a right angle. Default 50 degrees, 0.873. A climber
     /// that stands already stays on slopes up to 2 degrees steeper.
     pub max_slope: f64,
     /// Speed along the ground under full input, metres a second, not negative. Default 3.
@@ -99,7 +99,7 @@ impl GroundConfig {
 
     pub(super) fn validate(&self) -> Result<(), ClimberError> {
         // The normals of level skin are rounded.
-        let range = "from one degree to below a right angle";
+        let range = "in radians, from 0.0175 (one degree) to below 1.5708 (a right angle)";
         let right_angle = core::f64::consts::FRAC_PI_2;
         let holds = (DEGREE..right_angle).contains(&self.max_slope);
         check::check("ground.max_slope", range, self.max_slope, holds)?;

@@ -7,7 +7,10 @@ use crate::ClimberError;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
 pub struct LedgeConfig {
-    /// Greatest height of a ledge above the ball's centre, metres, not negative. Default 0.9.
+    /// Greatest height of a ledge above the ball's centre, metres, not negative. Default 0.9. A climber that stands on
+    /// level ground reaches ledges up to radius + `reach_up` above the ground, and with a jump up to its height more,
+    /// `jump_speed`² / (2 · gravity). [`BodyConfig::height`](crate::BodyConfig::height) does not count: for a taller body,
+    /// raise `reach_up`, `drop` and [`HangConfig::arm_length`](crate::HangConfig::arm_length) as well.
     pub reach_up: f64,
     /// Greatest distance of the wall in front from the ball, and width of a gap in a ledge that hands reach across,
     /// metres, not negative. Default 0.35.

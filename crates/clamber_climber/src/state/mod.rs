@@ -61,8 +61,9 @@ pub struct ClimberState {
     pub open_handed: f64,
     /// How long it has touched nothing, seconds, counted up to 2. 0 while it has a support.
     pub untouched: f64,
-    /// True if its body is the ball alone although [`BodyConfig::height`](crate::BodyConfig::height) is not 0: it holds
-    /// on, was crushed, or has no room to stand up.
+    /// True if its body is the ball alone although [`BodyConfig::height`](crate::BodyConfig::height) is not 0: it was
+    /// asked to crouch ([`ClimberInput::crouch`](crate::ClimberInput::crouch)), holds on, was crushed, or has no room to
+    /// stand up.
     pub crouched: bool,
     /// True if obstacles left it too little room in the last tick.
     pub crushed: bool,

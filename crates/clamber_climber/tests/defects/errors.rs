@@ -32,7 +32,8 @@ fn holds(range: &str, x: f64) -> bool {
         "not negative" => x >= 0.0,
         "not negative and finite" => x >= 0.0 && x.is_finite(),
         "from 0 to 1" => (0.0..=1.0).contains(&x),
-        "from one degree to below a right angle" => {
+        "in radians, not negative and finite" => x >= 0.0 && x.is_finite(),
+        "in radians, from 0.0175 (one degree) to below 1.5708 (a right angle)" => {
             (1f64.to_radians()..core::f64::consts::FRAC_PI_2).contains(&x)
         }
         "at least 1" => x >= 1.0,
@@ -162,6 +163,23 @@ fn messages_about_configurations_are_true() {
         }
     }
     assert!(refused > 100, "{refused}");
+}
+
+/// Somebody who sets degrees reads what to set instead.
+#[test]
+fn messages_about_angles_name_radians() {
+    let sets: [Set<ClimberConfig>; 2] = [
+        |c, x| c.ground.max_slope = x,
+        |c, x| c.grip.as_mut().unwrap().max_overhang = x,
+    ];
+    for set in sets {
+        for number in [-50.0, f64::INFINITY] {
+            let mut config = ClimberConfig::colossus_climber();
+            set(&mut config, number);
+            let text = Climber::new(config, DVec3::ZERO).unwrap_err().to_string();
+            assert!(text.contains("radians"), "{number}: {text}");
+        }
+    }
 }
 
 #[test]

@@ -49,13 +49,13 @@ impl CreatureConfig {
         for found in self.position.to_array() {
             within("position", "finite", found, f64::MIN, f64::MAX)?;
         }
-        within("yaw", "finite", self.yaw, f64::MIN, f64::MAX)?;
+        within("yaw", "finite, in radians", self.yaw, f64::MIN, f64::MAX)?;
         within("scale", "from 0.000001 to 1,000,000", self.scale, 1e-6, 1e6)?;
         within("arena", "at least 0", self.arena, 0.0, f64::INFINITY)?;
         let most = core::f64::consts::FRAC_PI_2;
         within(
             "most_slope",
-            "from 0 to a quarter turn",
+            "from 0 to 1.5708 (a quarter turn), in radians",
             self.most_slope,
             0.0,
             most,

@@ -41,7 +41,7 @@ impl Gait {
         };
         for (what, found) in [("turn_deg", file.turn_deg), ("steer_deg", file.steer_deg)] {
             if !(found > 0.0 && found <= 360.0) {
-                let range = "more than 0 and at most 360";
+                let range = "more than 0 and at most 360 degrees a second";
                 return Err(whole(BrainProblem::OutOfRange { what, range, found }).into());
             }
         }

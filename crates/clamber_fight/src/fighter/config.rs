@@ -185,7 +185,8 @@ impl SwordConfig {
         positive("sword.cut", self.cut)?;
         not_negative("sword.recover", self.recover)?;
         let turn = core::f64::consts::TAU;
-        within("sword.angle", "from 0 to a turn", self.angle, [0.0, turn])?;
+        let range = "in radians, from 0 to 6.2832 (a turn)";
+        within("sword.angle", range, self.angle, [0.0, turn])?;
         not_negative("sword.cut_damage", self.cut_damage)?;
         not_negative("sword.raise", self.raise)?;
         positive("sword.charge", self.charge)?;
@@ -228,7 +229,8 @@ impl BowConfig {
         positive("bow.radius", self.radius)?;
         not_negative("bow.depth", self.depth)?;
         not_negative("bow.damage", self.damage)?;
-        not_negative("bow.stray", self.stray)
+        let range = "in radians for each m/s, not negative and finite";
+        within("bow.stray", range, self.stray, [0.0, f64::MAX])
     }
 }
 
