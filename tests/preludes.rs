@@ -19,12 +19,16 @@ macro_rules! use_each {
 }
 
 use_each! {
-    Affine Anchor Attachment BodyPoses BuildOptions CastOptions Climber ClimberConfig ClimberContact ClimberEvent
-    ClimberInput ClimberMode ClimberState Clip ColliderMesh ContactPhase ContactQuery ContactRule CustomMode Debris
-    DebrisConfig GripConfig Influence JointId MaterialPoint MeshSource ModeContext Motion NextMode Obstacle ObstacleId
-    Palette Playback PointMotion RapierTerrain Similarity Skeleton SkinnedSurface StepReport StepRules Support
-    SurfaceHit SurfaceKind SurfacePoint SurfaceTag SweepHit TargetMotion Transform TriangleId
+    Affine Anchor Attachment BodyConfig BodyPoses BuildOptions CastOptions Climber ClimberConfig ClimberContact
+    ClimberError ClimberEvent ClimberGroup ClimberInput ClimberMode ClimberProxy ClimberState Clip ColliderMesh
+    ContactPhase ContactQuery ContactRule CustomMode Debris DebrisConfig GripConfig Influence JointId MaterialPoint
+    MeshSource ModeContext Motion NextMode Obstacle ObstacleId Others Palette Playback PointMotion PoseClock PoseTrack
+    RapierTerrain Similarity Skeleton SkinnedSurface StepReport StepRules Support SurfaceHit SurfaceKind SurfacePoint
+    SurfaceTag SweepHit TargetMotion Transform TriangleId
 }
+
+#[expect(unused_imports, reason = "the names in the list are those of types")]
+use crate::apply_push as _;
 
 /// Otherwise a name that is added to the prelude would not be checked above.
 #[test]

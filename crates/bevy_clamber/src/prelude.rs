@@ -13,6 +13,8 @@ pub use crate::{
 pub use crate::{
     ArenaCreature, ArenaFighter, ArenaPlugin, ArenaProjectile, ArenaTerrain, FightArena, FightEvent,
 };
+#[cfg(feature = "avian")]
+pub use crate::{AvianProxy, AvianProxyPlugin};
 #[cfg(feature = "input")]
 pub use crate::{ClimberControls, ClimberControlsPlugin};
 #[cfg(feature = "clamber_gltf")]
@@ -25,6 +27,8 @@ pub use crate::{
     Colossus, ColossusBody, ColossusBrain, ColossusEntered, ColossusHurt, ColossusMarker,
     ColossusNoise, ColossusPlanted, ColossusPlugin, ColossusStaggered, ColossusStruck,
 };
+#[cfg(feature = "rapier")]
+pub use crate::{Debris, DebrisPlugin, RapierProxy, RapierProxyPlugin};
 #[cfg(feature = "gizmos")]
 pub use crate::{SurfaceGizmos, SurfaceGizmosPlugin};
 #[cfg(feature = "picking")]

@@ -44,24 +44,29 @@ pub use glam;
 /// The items that most programs need: `use clamber::prelude::*;`.
 ///
 /// No name in it is also in rapier's prelude, so both can be glob-imported. For that reason it lacks
-/// [`Ray`](crate::geometry::Ray), [`Capsule`](crate::geometry::Capsule), [`Pose`](crate::rig::Pose) and
-/// [`Contact`](crate::world::Contact).
+/// [`Ray`](crate::geometry::Ray), [`Capsule`](crate::geometry::Capsule), [`Pose`](crate::rig::Pose),
+/// [`Contact`](crate::world::Contact) and [`HalfSpace`](crate::world::HalfSpace).
 pub mod prelude {
     pub use clamber_climber::{
-        Climber, ClimberConfig, ClimberContact, ClimberEvent, ClimberInput, ClimberMode,
-        ClimberState, ContactPhase, ContactQuery, ContactRule, CustomMode, GripConfig, ModeContext,
-        NextMode, StepReport, StepRules, Support,
+        BodyConfig, Climber, ClimberConfig, ClimberContact, ClimberError, ClimberEvent,
+        ClimberGroup, ClimberInput, ClimberMode, ClimberState, ContactPhase, ContactQuery,
+        ContactRule, CustomMode, GripConfig, ModeContext, NextMode, Others, StepReport, StepRules,
+        Support,
     };
     pub use clamber_surface::geometry::{Affine, Similarity};
     pub use clamber_surface::mesh::{
         BuildOptions, ColliderMesh, Influence, MeshSource, SurfaceKind, SurfaceTag, TriangleId,
     };
-    pub use clamber_surface::rig::{Clip, JointId, Palette, Playback, Skeleton, Transform};
+    pub use clamber_surface::rig::{
+        Clip, JointId, Palette, Playback, PoseClock, PoseTrack, Skeleton, Transform,
+    };
     pub use clamber_surface::surface::{
         Anchor, CastOptions, Motion, SkinnedSurface, SurfaceHit, SurfacePoint, SweepHit,
         TargetMotion,
     };
     pub use clamber_world::{Attachment, MaterialPoint, Obstacle, ObstacleId, PointMotion};
     #[cfg(feature = "rapier")]
-    pub use clamber_world::{BodyPoses, Debris, DebrisConfig, RapierTerrain};
+    pub use clamber_world::{
+        BodyPoses, ClimberProxy, Debris, DebrisConfig, RapierTerrain, apply_push,
+    };
 }

@@ -12,6 +12,8 @@ pub mod arrows {}
 pub mod camera {}
 #[doc = include_str!("../../../docs/recipes/creature_from_blender.md")]
 pub mod creature_from_blender {}
+#[doc = include_str!("../../../docs/recipes/crouching.md")]
+pub mod crouching {}
 #[doc = include_str!("../../../docs/recipes/debugging.md")]
 pub mod debugging {}
 #[doc = include_str!("../../../docs/recipes/falling_crates.md")]
@@ -22,6 +24,8 @@ pub mod own_model {}
 pub mod own_engine {}
 #[doc = include_str!("../../../docs/recipes/person.md")]
 pub mod person {}
+#[doc = include_str!("../../../docs/recipes/players.md")]
+pub mod players {}
 #[doc = include_str!("../../../docs/recipes/recording.md")]
 pub mod recording {}
 #[doc = include_str!("../../../docs/recipes/rules.md")]

@@ -8,7 +8,6 @@ use bevy_asset::AssetPlugin;
 use bevy_clamber::clamber_climber::ClimberMode;
 use bevy_clamber::events::ClimberLanded;
 use bevy_clamber::prelude::*;
-use bevy_clamber::{AvianProxyPlugin, RapierProxyPlugin};
 use bevy_ecs::prelude::*;
 use bevy_ecs::schedule::{LogLevel, ScheduleBuildSettings, Schedules};
 use bevy_math::Vec3;

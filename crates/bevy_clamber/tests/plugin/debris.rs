@@ -4,7 +4,7 @@ use bevy_app::{App, FixedPostUpdate, FixedUpdate, TaskPoolPlugin};
 use bevy_asset::AssetPlugin;
 use bevy_clamber::clamber_climber::ClimberMode;
 use bevy_clamber::prelude::*;
-use bevy_clamber::{Debris, DebrisBodies, DebrisHooks, DebrisPlugin, RapierObstaclesPlugin};
+use bevy_clamber::{DebrisBodies, DebrisHooks, RapierObstaclesPlugin};
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_mesh::MeshPlugin;

@@ -30,6 +30,7 @@ use_each! { ALWAYS, cfg(all()),
     ClimberCameraPlugin ClimberFilter ClimberInput ClimberModes ClimberPlugin ClimberRule ClimberState ColliderStatus ColliderTag CustomObstacle DrawnSurfaceQuery ContactRule EntityHit PoseTiming
     PosedSurface SkinnedCollider SurfaceAnchor SurfaceFilter SurfaceKind SurfaceQuery SurfaceTag TargetMotion WorldOrigin
 }
+use_each! { AVIAN, cfg(feature = "avian"), AvianProxy AvianProxyPlugin }
 use_each! { COLOSSUS, cfg(feature = "colossus"),
     Colossus ColossusBody ColossusBrain ColossusEntered ColossusHurt ColossusMarker ColossusNoise
     ColossusPlanted ColossusPlugin ColossusStaggered ColossusStruck
@@ -41,6 +42,7 @@ use_each! { FIGHT, cfg(feature = "fight"),
 use_each! { GIZMOS, cfg(feature = "gizmos"), SurfaceGizmos SurfaceGizmosPlugin }
 use_each! { INPUT, cfg(feature = "input"), ClimberControls ClimberControlsPlugin }
 use_each! { PICKING, cfg(feature = "picking"), SurfacePick SurfacePickingPlugin }
+use_each! { RAPIER, cfg(feature = "rapier"), Debris DebrisPlugin RapierProxy RapierProxyPlugin }
 use_each! { RIGS, cfg(feature = "clamber_gltf"),
     ClimberFigure ClimberFigurePlugin ClimberPlant RigAssets RigJoints RigMarkerPassed RigMaterial RigPlayer
     RigPlayerPlugin SpawnedRig
@@ -58,12 +60,14 @@ fn every_name_of_the_prelude_is_used() {
     names.sort_unstable();
     let mut used = [
         ALWAYS,
+        AVIAN,
         COLOSSUS,
         DIAGNOSTICS,
         FIGHT,
         GIZMOS,
         INPUT,
         PICKING,
+        RAPIER,
         RIGS,
     ]
     .concat();

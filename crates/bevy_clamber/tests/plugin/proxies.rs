@@ -5,7 +5,6 @@ use bevy_asset::AssetPlugin;
 use bevy_clamber::clamber_climber::ClimberMode;
 use bevy_clamber::events::ClimberTumbled;
 use bevy_clamber::prelude::*;
-use bevy_clamber::{AvianProxy, AvianProxyPlugin, RapierProxy, RapierProxyPlugin};
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_mesh::MeshPlugin;

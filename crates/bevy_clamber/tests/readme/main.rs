@@ -9,7 +9,11 @@ mod bevy {
     pub(crate) mod prelude {
         pub(crate) use bevy_app::prelude::*;
         pub(crate) use bevy_asset::prelude::*;
+        #[cfg(any(feature = "avian", feature = "rapier"))]
+        pub(crate) use bevy_camera::prelude::*;
         pub(crate) use bevy_ecs::prelude::*;
+        #[cfg(any(feature = "avian", feature = "rapier"))]
+        pub(crate) use bevy_math::prelude::*;
         pub(crate) use bevy_transform::prelude::*;
 
         /// The plugins that surfaces need.
@@ -55,6 +59,57 @@ mod root {
     }
 }
 
+/// Those of the recipe about falling crates.
+#[cfg(any(feature = "avian", feature = "rapier"))]
+mod crates {
+    use super::bevy;
+    use bevy::prelude::*;
+    use bevy_clamber::clamber_climber::ClimberMode;
+    use bevy_clamber::prelude::ClimberState;
+    use bevy_time::TimeUpdateStrategy;
+
+    /// Whether the climber of a program is knocked down within 1.5 s.
+    fn is_knocked_down(falling_crate: fn(&mut App)) -> bool {
+        let mut app = App::new();
+        app.add_plugins((DefaultPlugins, falling_crate))
+            .insert_resource(TimeUpdateStrategy::FixedTimesteps(1));
+        app.finish();
+        app.cleanup();
+        let mut climbers = app.world_mut().query::<&ClimberState>();
+        (0..96).any(|_| {
+            app.update();
+            let state = climbers.single(app.world());
+            state.is_ok_and(|state| state.mode == ClimberMode::Tumbling)
+        })
+    }
+
+    #[cfg(feature = "avian")]
+    #[allow(dead_code, reason = "`main` opens a window")]
+    mod on_avian {
+        use super::bevy;
+
+        include!("crate_on_avian.rs");
+
+        #[test]
+        fn the_crate_of_the_recipe_knocks_the_climber_down_with_avian() {
+            assert!(super::is_knocked_down(falling_crate));
+        }
+    }
+
+    #[cfg(feature = "rapier")]
+    #[allow(dead_code, reason = "`main` opens a window")]
+    mod on_rapier {
+        use super::bevy;
+
+        include!("crate_on_rapier.rs");
+
+        #[test]
+        fn the_crate_of_the_recipe_knocks_the_climber_down_with_rapier() {
+            assert!(super::is_knocked_down(falling_crate));
+        }
+    }
+}
+
 #[cfg(feature = "clamber_gltf")]
 mod headless {
     include!("headless.rs");
@@ -78,6 +133,12 @@ fn the_readme_has_the_programs_word_for_word() {
     for program in [first, fox, include_str!("headless.rs")] {
         let block = format!("```rust,ignore\n{}```\n", text(program));
         assert!(readme.contains(&block), "not in the README:\n{block}");
+    }
+    let recipe = text(include_str!("../../../../docs/recipes/falling_crates.md"));
+    let on_avian = include_str!("crate_on_avian.rs");
+    for program in [on_avian, include_str!("crate_on_rapier.rs")] {
+        let block = format!("```rust,ignore\n{}```\n", text(program));
+        assert!(recipe.contains(&block), "not in the recipe:\n{block}");
     }
     let readme = text(include_str!("../../../../README.md"));
     let block = format!("```rs\n{}```\n", text(include_str!("root.rs")));
