@@ -68,3 +68,25 @@ impl CreatureConfig {
         1.0 / self.scale.sqrt()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Somebody who sets degrees reads what to set instead.
+    #[test]
+    fn errors_about_angles_name_radians() {
+        let steep = CreatureConfig {
+            most_slope: 25.0,
+            ..CreatureConfig::default()
+        };
+        let turned = CreatureConfig {
+            yaw: f64::NAN,
+            ..CreatureConfig::default()
+        };
+        for config in [steep, turned] {
+            let text = config.check().unwrap_err().to_string();
+            assert!(text.contains("radians"), "{text}");
+        }
+    }
+}

@@ -283,3 +283,25 @@ fn place(name: &'static str, found: DVec3) -> Result<(), ArenaError> {
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Somebody who sets degrees reads what to set instead.
+    #[test]
+    fn errors_about_angles_name_radians() {
+        let sword = SwordConfig {
+            angle: 200.0,
+            ..SwordConfig::DEFAULT
+        };
+        let bow = BowConfig {
+            stray: -1.0,
+            ..BowConfig::DEFAULT
+        };
+        for refused in [sword.check(), bow.check()] {
+            let text = refused.unwrap_err().to_string();
+            assert!(text.contains("radians"), "{text}");
+        }
+    }
+}
