@@ -1,7 +1,7 @@
 //! A climber as an obstacle to other climbers.
 
 use clamber_world::{
-    CharacterBody, Contact, Continuity, MaterialPoint, Obstacle, ObstacleId, PointMotion,
+    CharacterBody, Contact, Continuity, MaterialPoint, Obstacle, ObstacleId, Others, PointMotion,
     SurfaceTag, SweepContact, TargetMotion, WorldCapsule,
 };
 use glam::DVec3;
@@ -48,6 +48,10 @@ pub struct ClimberObstacle {
     own: DVec3,
     /// Mass, kg.
     mass: f64,
+    /// Its own velocity in its last tick, relative to its support.
+    walk: DVec3,
+    /// What it does with others.
+    others: Others,
 }
 
 /// The nearest points of two capsules' axes.
@@ -101,6 +105,8 @@ impl ClimberObstacle {
                     base: followed.motion.velocity,
                     own: followed.motion.turn * own,
                     mass: config.body.mass,
+                    walk: own,
+                    others: config.body.others,
                 }
             }
             None => {
@@ -114,6 +120,8 @@ impl ClimberObstacle {
                     base: state.base_velocity,
                     own: own + state.fall(config) * dt,
                     mass: config.body.mass,
+                    walk: own,
+                    others: config.body.others,
                 }
             }
         }
@@ -275,7 +283,10 @@ impl Obstacle for ClimberObstacle {
     fn character(&self) -> Option<CharacterBody> {
         Some(CharacterBody {
             capsule: self.before,
+            way: self.now.ends[0] - self.before.ends[0],
             mass: self.mass,
+            own_velocity: self.walk,
+            others: self.others,
         })
     }
 }
