@@ -23,7 +23,7 @@ pub enum ClimberError {
     ModeInUse(ClimberMode),
     /// The body of a new configuration has no room where the climber is.
     #[error(
-        "the new body lacks {lacks} m of room where the climber is; try again elsewhere, or with a smaller one"
+        "the new body would be {lacks} m deep in what is around the climber; try again elsewhere, or with a smaller one"
     )]
     NoRoom {
         /// How deep the body would be in what is around it, metres.

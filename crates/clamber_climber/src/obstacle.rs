@@ -1,7 +1,7 @@
 //! A climber as an obstacle to other climbers.
 
 use clamber_world::{
-    CharacterBody, Contact, Continuity, MaterialPoint, Obstacle, ObstacleId, PointMotion,
+    CharacterBody, Contact, Continuity, MaterialPoint, Obstacle, ObstacleId, Others, PointMotion,
     SurfaceTag, SweepContact, TargetMotion, WorldCapsule,
 };
 use glam::DVec3;
@@ -49,6 +49,10 @@ pub struct ClimberObstacle {
     own: DVec3,
     /// Mass, kg.
     mass: f64,
+    /// Its own velocity in its last tick, relative to its support.
+    walk: DVec3,
+    /// What it does with others.
+    others: Others,
 }
 
 /// The nearest points of two capsules' axes.
@@ -102,6 +106,8 @@ impl ClimberObstacle {
                     base: followed.motion.velocity,
                     own: followed.motion.turn * own,
                     mass: config.body.mass,
+                    walk: own,
+                    others: config.body.others,
                 }
             }
             None => {
@@ -115,6 +121,8 @@ impl ClimberObstacle {
                     base: state.base_velocity,
                     own: own + state.fall(config) * dt,
                     mass: config.body.mass,
+                    walk: own,
+                    others: config.body.others,
                 }
             }
         }
@@ -276,7 +284,10 @@ impl Obstacle for ClimberObstacle {
     fn character(&self) -> Option<CharacterBody> {
         Some(CharacterBody {
             capsule: self.before,
+            way: self.now.ends[0] - self.before.ends[0],
             mass: self.mass,
+            own_velocity: self.walk,
+            others: self.others,
         })
     }
 }

@@ -49,13 +49,14 @@ impl Climber {
         }
     }
 
-    /// The normal of its support, or of the ground that it touches without one, as when it tumbles.
+    /// The normal of what backs it: of its support, or of the ground that it touches without one, as when it tumbles.
+    /// What it hangs from does not back it.
     fn support_normal(&self) -> Option<DVec3> {
-        let up = self.config().up();
-        let support = self
-            .state()
-            .support
-            .map(|support| support.normal_in_world());
+        let (state, up) = (self.state(), self.config().up());
+        if matches!(state.mode, ClimberMode::Hanging | ClimberMode::LedgeHanging) {
+            return None;
+        }
+        let support = state.support.map(|support| support.normal_in_world());
         let ground = || {
             let touched = self.contacts().iter().map(|contact| contact.normal);
             let below = touched.filter(|normal| normal.dot(up) > ABOVE);

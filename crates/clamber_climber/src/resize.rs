@@ -1,10 +1,11 @@
 //! Bodies that grow and shrink among obstacles.
 
-use clamber_mover::{Mover, Path};
-use clamber_world::{Obstacle, ObstacleId};
+use clamber_mover::{ContactFilters, Mover, Path};
+use clamber_world::{Contact, Obstacle, ObstacleId};
 use glam::DVec3;
 
-use crate::{Climber, ClimberConfig, ClimberError, ClimberMode};
+use crate::step::Judge;
+use crate::{Climber, ClimberConfig, ClimberError, ClimberMode, StepRules};
 
 /// Length of the tick that stands for the present: nothing moves in it.
 const NOW: f64 = 1.0;
@@ -21,10 +22,22 @@ impl Climber {
         config: ClimberConfig,
         obstacles: &[(ObstacleId, &dyn Obstacle)],
     ) -> Result<(), ClimberError> {
+        self.try_resize_with(config, obstacles, &StepRules::default())
+    }
+
+    /// [`Climber::try_resize`] by the rules of its steps: what the rule for contacts lets pass takes no room.
+    ///
+    /// # Errors
+    /// As [`Climber::try_resize`].
+    pub fn try_resize_with(
+        &mut self,
+        config: ClimberConfig,
+        obstacles: &[(ObstacleId, &dyn Obstacle)],
+        rules: &StepRules<'_>,
+    ) -> Result<(), ClimberError> {
         let (before, state) = (*self.config(), *self.state());
-        let old = self.body();
         self.set_config(config)?;
-        let settled = self.room_for(&before, old.radius, obstacles);
+        let settled = self.room_for(&before, obstacles, rules);
         match settled {
             Ok(position) => {
                 let way = position - state.position;
@@ -53,21 +66,40 @@ impl Climber {
     fn room_for(
         &mut self,
         before: &ClimberConfig,
-        old_radius: f64,
         obstacles: &[(ObstacleId, &dyn Obstacle)],
+        rules: &StepRules<'_>,
     ) -> Result<DVec3, ClimberError> {
         let (config, state) = (*self.config(), *self.state());
-        let body = crate::step::body(&config, &state);
-        let wider = body.radius - old_radius;
+        let [old, body] = [before, &config].map(|config| crate::step::body(config, &state));
+        if body == old {
+            return Ok(state.position);
+        }
+        let wider = body.radius - old.radius;
         // A ball that hangs below a ledge touches its wall beside it, not what it holds.
         let rests = state
             .support
             .filter(|_| state.mode != ClimberMode::LedgeHanging);
         let out = rests.map_or(DVec3::ZERO, |support| support.normal_in_world());
         let wanted = state.position + out * wider;
-        let mut mover = Mover::new(obstacles, NOW, self.mover_memory())?;
-        let grown = wider.max(0.0) + (config.body.height - before.body.height).max(0.0);
-        if grown == 0.0 {
+        let judge = Judge {
+            rules,
+            config: &config,
+            state: &state,
+            obstacles,
+            dt: NOW,
+        };
+        let is_solid = |id, obstacle: &dyn Obstacle, contact: &Contact| {
+            judge.rule(id, obstacle, contact).solid
+        };
+        let filters = ContactFilters {
+            solid: rules.contact.is_some().then_some(&is_solid),
+            ..ContactFilters::default()
+        };
+        let mut mover = Mover::new(obstacles, NOW, self.mover_memory())?.with_filters(filters);
+        let grows = wider > 0.0 || config.body.height > before.body.height;
+        // A body that turns needs room as well.
+        let turns = config.body.height > 0.0 && config.up() != before.up();
+        if !grows && !turns {
             return Ok(mover.slide(&Path::placed(body, wanted)).position);
         }
         let moved = mover.slide(&Path::placed(body, wanted));
@@ -79,7 +111,7 @@ impl Climber {
         }
         // Not to the other side of a thin wall.
         let core = clamber_mover::MoverBody {
-            radius: old_radius.min(body.radius),
+            radius: old.radius.min(body.radius),
             ..body.crouched()
         };
         let from = core.core_at(state.position);

@@ -4,7 +4,7 @@
 //! character takes the body's own motion towards it, and no more: it neither carries the body off nor presses it into
 //! anything, whatever it does itself. Where walls and characters together leave no room, the walls alone count.
 
-use clamber_world::{Obstacle, ObstacleId};
+use clamber_world::{CharacterBody, Obstacle, ObstacleId, Others, WorldCapsule};
 use glam::DVec3;
 
 use crate::half_spaces::HalfSpace;
@@ -24,9 +24,15 @@ pub(crate) struct Characters<'a> {
 }
 
 impl Characters<'_> {
-    fn has(&self, touch: &Touch) -> bool {
-        let is_character = |obstacle: &dyn Obstacle| obstacle.character().is_some();
-        self.any && find(self.obstacles, touch.obstacle).is_some_and(is_character)
+    /// True for a contact with one of them.
+    pub(crate) fn has(&self, touch: &Touch) -> bool {
+        self.of(touch).is_some()
+    }
+
+    /// The character that a contact is with.
+    fn of(&self, touch: &Touch) -> Option<CharacterBody> {
+        let obstacle = self.any.then(|| find(self.obstacles, touch.obstacle))?;
+        obstacle?.character()
     }
 
     /// The offset of a half-space of a contact with a character.
@@ -34,17 +40,35 @@ impl Characters<'_> {
         if self.yielding {
             return f64::NEG_INFINITY;
         }
-        let offset = half_space.offset - allowed(path, touch);
+        let offset = half_space.offset - self.allowed(path, touch);
         offset.min(half_space.normal.dot(path.frame))
     }
 
     /// How deep a body may be in what it touches.
     pub(crate) fn allowed(&self, path: &Path, touch: &Touch) -> f64 {
-        if path.into_others.is_some() && self.has(touch) {
-            allowed(path, touch)
+        let (Some(into), Some(other)) = (path.into_others, self.of(touch)) else {
+            return 0.0;
+        };
+        let least = path.body.radius.min(other.capsule.radius);
+        let most = match into.others.between(other.others) {
+            Others::Block => return 0.0,
+            Others::Push => DEEPEST * least,
+            Others::Pass => f64::INFINITY,
+        };
+        // What is deep already has come in by a side.
+        let is_deep = path.body.radius - touch.contact.distance > DEEP * least;
+        if is_deep || self.has_beside(path, touch, into.up) {
+            most
         } else {
             0.0
         }
+    }
+
+    /// True for a contact with one of them that is beside the body at the start of a movement.
+    pub(crate) fn has_beside(&self, path: &Path, touch: &Touch, up: DVec3) -> bool {
+        let body = path.body.at(path.start);
+        self.of(touch)
+            .is_some_and(|other| is_beside(&body, &other.capsule, up))
     }
 
     /// True if a hit along `way` stops the body. A character that comes to meet a body does not.
@@ -78,28 +102,28 @@ impl Characters<'_> {
         } else if self.yielding {
             0.0
         } else {
-            let depth = depth - allowed(path, touch);
+            let depth = depth - self.allowed(path, touch);
             depth.min(touch.normal.dot(path.frame - way))
         }
     }
 }
 
-/// How deep a body may be in another character. What is deep already has come in by a side.
-fn allowed(path: &Path, touch: &Touch) -> f64 {
-    let Some(into) = path.into_others else {
-        return 0.0;
-    };
-    let radius = path.body.radius;
-    let is_side = touch.normal.dot(into.up).abs() < SIDE;
-    let is_deep = radius - touch.contact.distance > DEEP * radius;
-    if is_side || is_deep { into.depth } else { 0.0 }
-}
+/// How deep characters that push each other overlap at most, as a share of the smaller radius.
+const DEEPEST: f64 = 0.75;
 
-/// Who stands on another character is no deeper in it than this share of its radius.
+/// Who stands on another character is no deeper in it than this share of the smaller radius.
 const DEEP: f64 = 0.5;
 
-/// Contacts whose normal is farther from the vertical than this cosine are on a character's side: 60 degrees.
-const SIDE: f64 = 0.5;
+/// True if two upright bodies are beside each other, and neither is on top of the other: the lowest point of each is
+/// below the highest point of the other's axis.
+pub fn is_beside(a: &WorldCapsule, b: &WorldCapsule, up: DVec3) -> bool {
+    let [a, b] = [a, b].map(|body| {
+        let heights = body.ends.map(|end| end.dot(up));
+        let [low, high] = [heights[0].min(heights[1]), heights[0].max(heights[1])];
+        (low - body.radius, high)
+    });
+    a.0 < b.1 && b.0 < a.1
+}
 
 impl<'a> Mover<'a> {
     pub(crate) fn characters(&self) -> Characters<'a> {

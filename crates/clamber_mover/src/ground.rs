@@ -112,7 +112,8 @@ impl Mover<'_> {
 
     /// The first contact of the body's core along `way`, if it is ground.
     fn meet_ground(&mut self, probe: &GroundProbe, position: DVec3, way: DVec3) -> Option<Hit> {
-        let hit = self.cast(&probe.body.core_at(position), way)?;
+        let core = probe.body.core_at(position);
+        let hit = self.cast_past_characters(&core, way, probe.up)?;
         let is_level = !hit.started_inside && probe.is_ground(hit.touch.normal);
         (is_level && self.is_ground(&hit.touch)).then_some(hit)
     }

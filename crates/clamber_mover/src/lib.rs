@@ -15,6 +15,7 @@ mod touch;
 mod velocity;
 
 pub use body::MoverBody;
+pub use characters::is_beside;
 pub use error::MoverError;
 pub use filters::{ContactFilter, ContactFilters};
 /// The version of glam that this crate's API uses.

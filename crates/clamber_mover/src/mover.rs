@@ -6,6 +6,7 @@ use clamber_world::{
 };
 use glam::DVec3;
 
+use crate::characters::is_beside;
 use crate::filters::{ContactFilter, ContactFilters, accepts};
 use crate::half_spaces::HalfSpace;
 use crate::surroundings::Surroundings;
@@ -259,7 +260,7 @@ impl<'a> Mover<'a> {
 
     /// Checks a step up or a snap to the ground, which consider only the end of the tick, against moving obstacles.
     /// Sweeps the body's core from `start` to `end`, shifted by `correction`. True if it meets nothing, and for input
-    /// that is not finite. Overlaps at the start are ignored.
+    /// that is not finite. Overlaps at the start are ignored, and so are other characters, which part from the body.
     pub fn is_clear_with(
         &mut self,
         body: &MoverBody,
@@ -267,7 +268,8 @@ impl<'a> Mover<'a> {
         correction: DVec3,
     ) -> bool {
         let core = body.core_at(start + correction);
-        self.sweep_past_overlaps(&core, [end - start; 2], |_| true)
+        let characters = self.characters();
+        self.sweep_past_overlaps(&core, [end - start; 2], |hit| !characters.has(&hit.touch))
             .is_none()
     }
 
@@ -327,6 +329,31 @@ impl<'a> Mover<'a> {
     /// input that is not finite.
     pub fn is_free(&mut self, capsule: &WorldCapsule, way: DVec3) -> bool {
         self.cast(capsule, way).is_none()
+    }
+
+    /// [`Mover::cast`] past the characters that the capsule is inside of or beside.
+    pub(crate) fn cast_past_characters(
+        &mut self,
+        capsule: &WorldCapsule,
+        way: DVec3,
+        up: DVec3,
+    ) -> Option<Hit> {
+        if !self.has_characters {
+            return self.cast(capsule, way);
+        }
+        let solid = self.filters.solid;
+        self.first(capsule, [way; 2], |id, obstacle| {
+            let other = obstacle.character();
+            let is_beside = other.is_some_and(|other| {
+                let there = other.capsule.moved(other.way);
+                is_beside(capsule, &there, up)
+            });
+            let mut counts = |sweep: &SweepContact| {
+                let is_passed = is_beside || other.is_some() && sweep.started_inside;
+                !is_passed && accepts(solid, id, obstacle, &sweep.contact)
+            };
+            obstacle.cast_capsule_where(capsule, [way; 2], TargetMotion::Still, &mut counts)
+        })
     }
 
     fn first_solid(

@@ -13,7 +13,7 @@
 //! planes solved together: Jolt's CharacterVirtual, box3d's mover, avian's velocity projection. Those collect planes
 //! near the start, with a margin, from obstacles at rest.)
 
-use clamber_world::WorldCapsule;
+use clamber_world::{Others, WorldCapsule};
 use glam::DVec3;
 
 use crate::half_spaces::{HalfSpace, Projection, project_where_it_pays};
@@ -58,7 +58,7 @@ pub struct Path {
     pub walking: Option<Walking>,
     /// The arm that the body hangs by, if it hangs.
     pub arm: Option<Arm>,
-    /// How far the body may come into other characters, instead of being stopped by them.
+    /// The body as a character among others. Without it, others stop it.
     pub into_others: Option<IntoOthers>,
     /// Whether the body moves from start to target, or was placed at the target.
     pub begin: Begin,
@@ -86,14 +86,14 @@ pub struct Walking {
     pub max_slope: f64,
 }
 
-/// How far a body may come into the sides of other characters
-/// ([`Obstacle::character`](clamber_world::Obstacle::character)). What is above or below stops it all the same.
+/// A body as a character among others ([`Obstacle::character`](clamber_world::Obstacle::character)): how far it may come
+/// into their sides. What is above or below stops it all the same.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct IntoOthers {
     /// Unit vector that points up.
     pub up: DVec3,
-    /// Largest depth, metres; may be infinite.
-    pub depth: f64,
+    /// What it does with others; [`Others::between`] counts.
+    pub others: Others,
 }
 
 /// An arm that the body hangs by: it keeps the body's position within `length` of `pivot`.
@@ -498,9 +498,11 @@ impl Mover<'_> {
             let rise = touch.normal.dot(up);
             let level = (touch.normal - up * rise).normalize_or_zero();
             let lean = touch.normal.dot(level);
-            let is_wall = || {
-                rise < libm::cos(max_slope) && lean > 0.0 || lean > FLUSH && !self.is_step(&touch)
-            };
+            let is_steep = rise < libm::cos(max_slope) && lean > 0.0;
+            // Nobody walks up another character, however large it is.
+            let is_no_step =
+                || !self.is_step(&touch) || self.characters().has_beside(path, &touch, up);
+            let is_wall = || is_steep || lean > FLUSH && is_no_step();
             // Too steep to stand on, and no ceiling: treated as vertical.
             if !(rise > LEVEL && is_wall()) {
                 return None;

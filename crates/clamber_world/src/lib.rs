@@ -5,6 +5,7 @@ mod attachment;
 mod debris;
 mod half_space;
 mod obstacle;
+mod others;
 mod proxy;
 #[cfg(feature = "rapier")]
 mod rapier;
@@ -31,6 +32,7 @@ pub use half_space::HalfSpace;
 pub use obstacle::{
     CharacterBody, Contact, MaterialPoint, Obstacle, ObstacleId, PointMotion, SweepContact,
 };
+pub use others::{Others, OthersError};
 /// The version of parry that [`shapes`] uses.
 #[cfg(feature = "parry")]
 pub use parry3d;

@@ -1,3 +1,4 @@
+use crate::Others;
 use clamber_surface::geometry::WorldCapsule;
 use clamber_surface::mesh::SurfaceTag;
 use clamber_surface::surface::{TargetMotion, WorldPath};
@@ -137,8 +138,14 @@ impl PointMotion {
 pub struct CharacterBody {
     /// Its capsule at the start of the tick, in world space.
     pub capsule: WorldCapsule,
+    /// How far its support carries it in the tick, metres.
+    pub way: DVec3,
     /// Mass, kg.
     pub mass: f64,
+    /// Its own velocity, relative to what carries it, metres a second.
+    pub own_velocity: DVec3,
+    /// What it does where it comes into the side of another one.
+    pub others: Others,
 }
 
 /// Something that a character can stand on, hit, or be carried by.

@@ -317,3 +317,28 @@ fn what_carries_a_climber_does_not_collide_with_it() {
         }
     }
 }
+
+/// Wherever in a tick an impact falls, the climber gets it as a whole.
+#[test]
+fn every_drop_that_is_fast_and_heavy_enough_knocks_the_climber_down() {
+    for (engine, hz) in settings() {
+        for mass in [60.0, 120.0] {
+            for step in 0..12 {
+                let height = 1.7 + 0.16 * step as f32;
+                let mut scene = Scene::new(engine, hz, true);
+                scene.add_above(height, mass);
+                scene.run(1.2);
+                // It falls to 0.7 m above the climber's centre.
+                let speed = (2.0 * 9.81 * (height - 0.71)).sqrt();
+                let blow = speed * (mass / 80.0).min(1.0);
+                let falls = scene.app.world().resource::<Falls>().0.len();
+                let told = format!("{engine:?}, {hz} Hz, {mass} kg, {height} m: {blow} m/s");
+                if blow > 3.4 {
+                    assert!(falls > 0, "{told}");
+                } else if blow < 2.7 {
+                    assert_eq!(falls, 0, "{told}");
+                }
+            }
+        }
+    }
+}

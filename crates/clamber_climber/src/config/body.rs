@@ -1,3 +1,5 @@
+use clamber_world::Others;
+
 use super::check;
 use super::scale::Scale;
 use crate::ClimberError;
@@ -28,55 +30,6 @@ pub struct BodyConfig {
     /// What happens when it walks into another climber ([`ClimberObstacle`](crate::ClimberObstacle)). Default
     /// [`Others::Block`].
     pub others: Others,
-}
-
-/// What a climber does where it comes into the side of another one. Whatever it is, climbers stand on each other, nobody
-/// is pressed through a wall, and those that overlap part by their masses.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
-pub enum Others {
-    /// It stops.
-    #[default]
-    Block,
-    /// It pushes, and is pushed: two that meet go on at the common velocity that their masses give. They overlap by what
-    /// they would have made against each other in a tick, at most by three quarters of the
-    /// radius.
-    Push,
-    /// It goes through, and slides aside softly while it does.
-    Pass,
-}
-
-impl core::fmt::Display for Others {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str(match self {
-            Self::Block => "block",
-            Self::Push => "push",
-            Self::Pass => "pass",
-        })
-    }
-}
-
-/// A text that names none of [`Others`].
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct OthersError;
-
-impl core::fmt::Display for OthersError {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str("expected block, push or pass")
-    }
-}
-
-impl core::error::Error for OthersError {}
-
-impl core::str::FromStr for Others {
-    type Err = OthersError;
-
-    fn from_str(text: &str) -> Result<Self, OthersError> {
-        let all = [Self::Block, Self::Push, Self::Pass];
-        let known = all.into_iter().find(|one| one.to_string() == text);
-        known.ok_or(OthersError)
-    }
 }
 
 /// Share by which a margin may be out of its range: rounding, when radius and margin are scaled.

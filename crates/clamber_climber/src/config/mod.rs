@@ -10,7 +10,8 @@ mod ledge;
 mod scale;
 mod stamina;
 
-pub use body::{BodyConfig, Others, OthersError};
+pub use body::BodyConfig;
+pub use clamber_world::{Others, OthersError};
 pub use grip::GripConfig;
 pub use ground::GroundConfig;
 pub use hang::HangConfig;

@@ -25,6 +25,8 @@ fn solid(now: WorldCapsule, way: DVec3) -> ClimberObstacle {
         base: DVec3::ZERO,
         own: DVec3::ZERO,
         mass: 80.0,
+        walk: DVec3::ZERO,
+        others: Others::Block,
     }
 }
 

@@ -23,7 +23,7 @@ pub struct ClimberState {
     /// Centre of its ball, in world space, metres. For a capsule, centre of the lower ball.
     pub position: DVec3,
     /// Velocity after the last tick, in world space, metres a second. Corrections of position, such as steps up, are
-    /// not part of it.
+    /// not part of it, and neither is how other climbers push it aside: `own_way` over the tick's length includes both.
     pub velocity: DVec3,
     /// Velocity of its support, in world space, metres a second; in the air, that of what it touched last. A climber that
     /// has touched nothing for a second takes on the velocity of the air

@@ -1,6 +1,6 @@
 //! Other climbers that overlap this one: both give way, and nobody else is moved by it.
 
-use clamber_mover::IntoOthers;
+use clamber_mover::{IntoOthers, is_beside};
 use clamber_world::{CharacterBody, Obstacle, ObstacleId};
 use glam::DVec3;
 
@@ -14,11 +14,11 @@ const PARTS: f64 = 5.0;
 /// The fastest that climbers part which push each other, as a multiple of the walking speed.
 const PUSHES: f64 = 2.0;
 
-/// How deep climbers that push each other overlap at most, as a share of the radius.
-const DEEPEST: f64 = 0.75;
-
 /// The fastest that climbers part which pass each other, radii a second.
 const PASSES: f64 = 1.25;
+
+/// Who is slower than this share of that speed stands still.
+const STILL: f64 = 0.1;
 
 /// Least level part of the direction between two bodies in which they part levelly.
 const ASIDE: f64 = 0.1;
@@ -27,36 +27,43 @@ impl Tick<'_> {
     /// The displacement in this tick by which it parts from the climbers that it overlaps: from each by the other's
     /// share of their mass. Walls stop it like any other movement.
     pub(super) fn parting(&self) -> DVec3 {
-        let way = self
-            .others()
-            .map(|(id, other)| self.parting_from(id, &other));
-        way.sum::<DVec3>().clamp_length_max(self.parting_at_most())
+        let (mut way, mut most) = (DVec3::ZERO, 0.0_f64);
+        for (id, other) in self.others() {
+            let others = self.config.body.others.between(other.others);
+            let from = self.parting_from(id, &other, others);
+            if from != DVec3::ZERO {
+                way += from;
+                most = most.max(self.parting_at_most(others));
+            }
+        }
+        way.clamp_length_max(most)
     }
 
-    fn parting_at_most(&self) -> f64 {
-        let body = &self.config.body;
-        let slow = PARTS * body.radius;
-        let speed = match body.others {
+    /// The farthest that it parts from others in a tick.
+    fn parting_at_most(&self, others: Others) -> f64 {
+        let slow = PARTS * self.config.body.radius;
+        let speed = match others {
             Others::Block => slow,
             // As fast as any two walk against each other.
             Others::Push => slow.max(PUSHES * self.config.ground.walk_speed),
-            Others::Pass => PASSES * body.radius,
+            Others::Pass => PASSES * self.config.body.radius,
         };
         speed * self.dt()
     }
 
-    /// How far it may come into the sides of others.
-    pub(super) fn depth_in_others(&self) -> Option<IntoOthers> {
-        let body = &self.config.body;
-        let depth = match body.others {
-            Others::Block => return None,
-            Others::Push => DEEPEST * body.radius,
-            Others::Pass => f64::INFINITY,
-        };
-        Some(IntoOthers {
+    /// It as a character among others.
+    pub(super) fn among_others(&self) -> IntoOthers {
+        IntoOthers {
             up: self.config.up(),
-            depth,
-        })
+            others: self.config.body.others,
+        }
+    }
+
+    /// True if it or the other one moves by itself.
+    fn is_passing(&self, other: &CharacterBody) -> bool {
+        let slow = PASSES * STILL * self.config.body.radius;
+        let own = self.was - self.base_was;
+        self.input.walk != DVec3::ZERO || own.length().max(other.own_velocity.length()) > slow
     }
 
     fn others(&self) -> impl Iterator<Item = (ObstacleId, CharacterBody)> {
@@ -71,23 +78,34 @@ impl Tick<'_> {
         if self.judge.rules.contact.is_none() {
             return true;
         }
-        let contact = other.closest_point(self.began, f64::INFINITY);
+        // It is where it will be at the end of the tick, like this one.
+        let contact = other.closest_point(self.expected, f64::INFINITY);
         contact.is_none_or(|contact| self.judge.rule(id, other, &contact).solid)
     }
 
-    fn parting_from(&self, id: ObstacleId, other: &CharacterBody) -> DVec3 {
+    fn parting_from(&self, id: ObstacleId, other: &CharacterBody, softness: Others) -> DVec3 {
+        if softness == Others::Pass && self.is_passing(other) {
+            return DVec3::ZERO;
+        }
         let body = self.body();
         let capsule = body.at(self.began);
         let apart = between(&other.capsule, &capsule);
-        // Who stands on another one is pressed onto it by less than the margin.
-        let depth = other.capsule.radius + capsule.radius - apart.distance - body.margin;
+        let up = self.config.up();
+        let least = other.capsule.radius.min(capsule.radius);
+        let is_beside = is_beside(&capsule, &other.capsule, up);
+        // Who stands on another one is pressed onto it by less than the margin. Beside each other, both give way at the
+        // same depth.
+        let slack = if is_beside {
+            body.margin * (least / capsule.radius)
+        } else {
+            body.margin
+        };
+        let depth = other.capsule.radius + capsule.radius - apart.distance - slack;
         let all = other.mass + self.config.body.mass;
         if depth.is_nan() || depth <= 0.0 || all <= 0.0 {
             return DVec3::ZERO;
         }
-        let up = self.config.up();
-        let is_deep = apart.distance < other.capsule.radius.min(capsule.radius);
-        let away = if is_deep {
+        let away = if is_beside || apart.distance < least {
             let level = apart.away - up * apart.away.dot(up);
             let is_apart = apart.distance > SAME_PLACE * capsule.radius;
             if is_apart && level.length() > ASIDE {
@@ -101,7 +119,7 @@ impl Tick<'_> {
         };
         // The lighter one gives way more, and no faster than that.
         let [own, others] = [other.mass, self.config.body.mass].map(|mass| mass / all);
-        away * (own * depth.min(self.parting_at_most() / own.max(others)))
+        away * (own * depth.min(self.parting_at_most(softness) / own.max(others)))
     }
 
     /// The side to which it parts from another climber at the same place: opposite for the two. `None` without an id of

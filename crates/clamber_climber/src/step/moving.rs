@@ -30,7 +30,7 @@ impl Tick<'_> {
         let body = self.body();
         let target = target + self.parting;
         let crushed = self.was_crushed;
-        let into_others = self.depth_in_others();
+        let into_others = Some(self.among_others());
         match &self.carried {
             Some(carried) => Path {
                 crushed,

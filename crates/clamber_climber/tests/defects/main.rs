@@ -19,6 +19,7 @@ mod landings;
 mod ledges;
 mod modes;
 mod reach;
+mod room;
 #[allow(dead_code, reason = "shared with other targets")]
 #[path = "../climbing/scene.rs"]
 mod scene;

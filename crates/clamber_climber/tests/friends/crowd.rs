@@ -1,7 +1,8 @@
 //! Climbers on a box that moves, in any order and size.
 
 use clamber_climber::{
-    Climber, ClimberConfig, ClimberGroup, ClimberInput, ClimberState, StepReport, StepRules,
+    Climber, ClimberConfig, ClimberGroup, ClimberInput, ClimberMode, ClimberState, ContactQuery,
+    ContactRule, StepReport, StepRules,
 };
 use clamber_surface::geometry::{Affine, Similarity};
 use clamber_surface::rig::Palette;
@@ -31,6 +32,8 @@ pub(crate) struct Crowd {
     pub(crate) climbers: Vec<Climber>,
     group: ClimberGroup,
     pub(crate) dt: f64,
+    /// The rule for their contacts.
+    pub(crate) rule: Option<fn(&ContactQuery<'_>) -> ContactRule>,
     /// False if they do not know their own ids.
     pub(crate) know_ids: bool,
     /// The order in which they are stepped and listed.
@@ -61,6 +64,7 @@ impl Crowd {
                 .collect(),
             group: ClimberGroup::default(),
             dt: 1.0 / rate,
+            rule: None,
             know_ids: true,
             order: (0..places.len()).collect(),
             deck: DVec3::ZERO,
@@ -108,6 +112,7 @@ impl Crowd {
             .iter()
             .map(|index| (id(*index), &climbers[*index]));
         self.group.update(listed, &fixed, self.dt);
+        let rule = self.rule;
         let mut reports = vec![StepReport::default(); self.climbers.len()];
         for &index in &self.order {
             let mut obstacles = fixed.clone();
@@ -117,6 +122,9 @@ impl Crowd {
             }
             let rules = StepRules {
                 id: self.know_ids.then_some(id(index)),
+                contact: rule
+                    .as_ref()
+                    .map(|rule| rule as &dyn Fn(&ContactQuery<'_>) -> ContactRule),
                 ..StepRules::default()
             };
             let climber = &mut self.climbers[index];
@@ -132,6 +140,20 @@ impl Crowd {
         for _ in 0..(seconds / self.dt).round() as u32 {
             self.step(DVec3::ZERO, |_| IDLE);
         }
+    }
+
+    /// Puts a climber elsewhere, in the air.
+    pub(crate) fn put(&mut self, index: usize, position: DVec3) {
+        let climber = &mut self.climbers[index];
+        let state = *climber.state();
+        climber
+            .restore(ClimberState {
+                position,
+                support: None,
+                mode: ClimberMode::Falling,
+                ..state
+            })
+            .unwrap();
     }
 
     pub(crate) fn position(&self, index: usize) -> DVec3 {

@@ -1,5 +1,6 @@
 //! Climbers that overlap part to both sides, slowly, and walls win.
 
+use clamber_climber::ContactRule;
 use glam::DVec3;
 
 use crate::crowd::{Crowd, IDLE, RATES, SIZES, walker};
@@ -178,6 +179,40 @@ fn two_at_one_place_that_know_no_ids_do_not_drift() {
             crowd.rest(1.5);
             let gap = crowd.position(0).distance(crowd.position(1));
             assert!(gap > 0.78, "{rate} Hz, height {height}: {gap} apart");
+        }
+    }
+}
+
+/// A rule sees where others touch a climber, not where they would if the ground had not moved.
+#[test]
+fn a_rule_for_friends_sees_the_same_contact_in_every_frame() {
+    for rate in RATES {
+        let apart = |speed: f64| {
+            let places = [-0.2, 0.2].map(|x| DVec3::new(x, 0.4, 0.0));
+            let mut crowd = Crowd::new(walker(1.0), &places, rate);
+            crowd.rule = Some(|query| {
+                if query.is_character() && query.contact.normal.z.abs() > 0.5 {
+                    ContactRule::PASS
+                } else {
+                    query.usual()
+                }
+            });
+            for index in 0..2 {
+                crowd.throw(index, DVec3::Z * speed, DVec3::Z * speed);
+            }
+            for tick in 1..=rate as u32 {
+                crowd.step(DVec3::Z * speed * (f64::from(tick) / rate), |_| IDLE);
+            }
+            crowd.position(0).distance(crowd.position(1))
+        };
+        let rest = apart(0.0);
+        assert!((0.78..0.81).contains(&rest), "{rate} Hz: {rest}");
+        for speed in [30.0, 300.0] {
+            let moving = apart(speed);
+            assert!(
+                (moving - rest).abs() < 1e-3,
+                "{rate} Hz, {speed} m/s: {moving} {rest}"
+            );
         }
     }
 }

@@ -6,6 +6,7 @@
 )]
 
 mod falling;
+mod heavy;
 mod memory;
 mod pushing;
 mod restoring;

@@ -74,7 +74,8 @@ impl ProxyBody {
     ///
     /// A body with the response w to a unit impulse along the normal and the approach v, and a climber of mass M, share
     /// the impulse of an inelastic impact, v / (w + k / M). k is the share of the climber's mobility along the normal
-    /// that its support leaves: 1 in the air, 0 straight into the ground, the squared sine of the angle between them.
+    /// that its support leaves: 1 in the air, 0 straight into the ground, the squared sine of the angle between them. The
+    /// support takes what would change the climber's velocity by more than v.
     ///
     /// ```
     /// use clamber_world::{ProxyBody, ProxyMeeting, WorldCapsule};
@@ -128,23 +129,29 @@ impl ProxyBody {
             whole * approach.share
         };
         let along = slip_direction(self.drift - meeting.free, normal);
+        let dragged = meeting.after - meeting.free - along_normal * whole;
+        let most = whole.max(0.0) * meeting.friction;
+        let friction = friction(dragged, along, response).clamp_length_max(most);
         // What leaves the climber on its own takes that along.
-        let body = if whole > 0.0 && kept != whole {
-            let dragged = meeting.after - meeting.free - along_normal * whole;
-            let most = whole * meeting.friction;
-            let friction = friction(dragged, along, response).clamp_length_max(most);
-            normal * (kept - whole) - friction * (1.0 - kept / whole).max(0.0)
+        let (body, dragging) = if whole > 0.0 {
+            let share = |part: f64| (part / whole).min(1.0);
+            let back = normal * (kept - whole) - friction * (1.0 - share(kept));
+            (back, friction * share(felt))
         } else {
-            DVec3::ZERO
+            (DVec3::ZERO, DVec3::ZERO)
         };
+        // The support takes the rest.
+        let borne = (self.mass * approach.brought / felt).min(1.0);
+        let climber = (normal * felt + dragging) * borne;
         let pushed = [normal, along].map(|axis| axis * meeting.shifted.dot(axis).max(0.0));
         let shift = (pushed[0] + pushed[1]) * (approach.share - 1.0);
         let share = ProxyShare {
             body,
-            climber: is_felt.then_some(normal * -felt),
+            climber: is_felt.then_some(-climber),
             shift,
         };
-        (body.is_finite() && felt.is_finite() && shift.is_finite()).then_some(share)
+        let is_finite = body.is_finite() && shift.is_finite() && (climber.is_finite() || !is_felt);
+        is_finite.then_some(share)
     }
 
     fn approach(&self, meeting: &ProxyMeeting) -> Approach {
@@ -162,8 +169,9 @@ impl ProxyBody {
             (by_body / at_proxy).clamp(0.0, 1.0)
         };
         // Where a gap is left, the engine takes a part only, and the rest in the next step. An impact is weighed as a
-        // whole.
-        let whole = changed.max((self.drift - meeting.before).dot(normal));
+        // whole. What bounces changes by up to twice its approach; the rest pushes overlapping bodies apart.
+        let met = (self.drift - meeting.before).dot(normal);
+        let whole = changed.min(2.0 * met).max(met);
         Approach {
             share,
             taken,

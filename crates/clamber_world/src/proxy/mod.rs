@@ -1,6 +1,8 @@
 //! Climbers as physics engines see them.
 
 mod body;
+#[cfg(feature = "parry")]
+mod clamp;
 mod meeting;
 
 pub use body::{ProxyBody, ProxyTouch};

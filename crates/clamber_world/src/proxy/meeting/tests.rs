@@ -87,6 +87,39 @@ fn the_ground_takes_what_presses_a_climber_into_it() {
         let share = climber.share(&meeting, |impulse| impulse / 20.0).unwrap();
         let impulse = 4.0 / (1.0 / 20.0 + mobility / 80.0);
         assert!((share.climber.unwrap() + normal * impulse).length() < 1e-9);
+        // What is struck by a mountain is struck as by its own fall onto one.
+        let share = climber.share(&meeting, |impulse| impulse / 1e5).unwrap();
+        assert!(share.climber.unwrap().length() <= 80.0 * 4.0 + 1e-9);
+        let after = meeting.after + share.body / 1e5;
+        let left = 4.0 - 4.0 / (1.0 + mobility * 1e5 / 80.0);
+        assert!((after.dot(-normal) - left).abs() < 1e-9, "{after} {left}");
+    }
+}
+
+/// Friction is shared as the impact is, so that it makes no momentum.
+#[test]
+fn friction_keeps_the_momentum_of_both() {
+    fastrand::seed(2);
+    for _ in 0..10_000 {
+        let climber = ProxyBody {
+            mass: spread(0.1, 6),
+            ..climber()
+        };
+        let normal = vector().normalize();
+        if climber.is_below(normal) {
+            continue;
+        }
+        let (mass, speed) = (spread(1e-3, 8), spread(0.1, 4));
+        let mut meeting = stopped(&climber, normal, speed);
+        let sliding = meeting.after;
+        meeting.after -= sliding.clamp_length_max(speed * meeting.friction);
+        let share = climber.share(&meeting, |impulse| impulse / mass).unwrap();
+        let change = meeting.after + share.body / mass - meeting.before;
+        let momentum = change * mass + share.climber.unwrap();
+        assert!(
+            momentum.length() < 1e-9 * speed * mass.max(climber.mass),
+            "{momentum}"
+        );
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod follow;
 mod impact;
+mod stop;
 mod strike;
 
 use std::collections::BTreeMap;
@@ -64,7 +65,8 @@ impl Plugin for AvianProxyPlugin {
                 self.schedule,
                 (
                     follow::follow.before(PhysicsSystems::First),
-                    strike::strike
+                    (strike::strike, stop::stop)
+                        .chain()
                         .after(PhysicsSystems::StepSimulation)
                         .before(PhysicsSystems::Writeback)
                         .before(ClamberSystems::Climb),
@@ -107,7 +109,7 @@ struct Proxy {
 #[derive(Resource, Default)]
 pub(super) struct AvianProxies {
     proxies: BTreeMap<Entity, Proxy>,
-    /// The bodies near them before the step, in ascending order.
+    /// The bodies that can strike them before the step, in ascending order.
     recorded: Vec<Recorded>,
     /// Reused.
     impacts: Vec<Impact>,

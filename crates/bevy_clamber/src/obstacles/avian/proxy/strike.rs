@@ -46,40 +46,33 @@ type Unsolved = (
     &'static ComputedCenterOfMass,
 );
 
-/// Records the bodies near climbers.
+/// Records the bodies that can strike climbers.
 pub(super) fn record(
     mut all: ResMut<AvianProxies>,
-    graph: Res<ContactGraph>,
     substeps: Res<SubstepCount>,
-    bodies: Query<Unsolved, Without<Sleeping>>,
+    bodies: Query<(Entity, Unsolved), Without<Sleeping>>,
 ) {
     let AvianProxies {
         proxies, recorded, ..
     } = &mut *all;
     recorded.clear();
-    for proxy in proxies.values() {
-        for pair in graph.contact_pairs_with(proxy.body) {
-            let near = other(pair, proxy.body);
-            let near = near.and_then(|(body, _)| Some((body, bodies.get(body).ok()?)));
-            let Some((body, (kind, position, rotation, linear, angular, data, center))) = near
-            else {
-                continue;
-            };
-            if kind.is_dynamic() {
-                let pose = RigidPose::new(rotation.0, position.0);
-                recorded.push(Recorded {
-                    body,
-                    pose,
-                    center: pose.transform(center.0.as_dvec3()),
-                    linear: linear.0,
-                    angular: angular.0,
-                    gained: data.linear_increment * substeps.0 as f32,
-                });
-            }
+    if proxies.is_empty() {
+        return;
+    }
+    for (body, (kind, position, rotation, linear, angular, data, center)) in &bodies {
+        if kind.is_dynamic() {
+            let pose = RigidPose::new(rotation.0, position.0);
+            recorded.push(Recorded {
+                body,
+                pose,
+                center: pose.transform(center.0.as_dvec3()),
+                linear: linear.0,
+                angular: angular.0,
+                gained: data.linear_increment * substeps.0 as f32,
+            });
         }
     }
     recorded.sort_unstable_by_key(|recorded| recorded.body);
-    recorded.dedup_by_key(|recorded| recorded.body);
 }
 
 /// Weighs what collided with climbers, and strikes these.

@@ -1,0 +1,123 @@
+use clamber_surface::geometry::slerp;
+use glam::DVec3;
+use parry3d::shape::Shape;
+
+use super::ProxyBody;
+use crate::shapes::{FirstContact, Moved, overlap_shape};
+use crate::{RigidPose, SweepContact, WorldCapsule};
+
+/// A body is stopped in this share of the layer around the climber. It then overlaps the engine's body of the climber,
+/// so that the engine's next step finds the contact; and it is above the depth to which engines let resting bodies
+/// overlap.
+const STOPS: f64 = 0.4;
+
+impl ProxyBody {
+    /// Where to put a body that entered the climber by its own motion in a step of a physics engine: where it touched the
+    /// climber first, and for the rest of the tick with it. `None` if it did not enter, or is below the climber.
+    ///
+    /// Engines find contacts once a step. Without this, a fast body is in the climber for a tick before they stop it, and
+    /// presses it away. It is the motion clamping of continuous collision detection, in the climber's frame.
+    ///
+    /// `from` and `to` are the body's poses before the step and after it, in a space with its origin at `origin`.
+    /// `solids` are its shapes, with their poses on the body. `dt` is the length of the tick, seconds.
+    pub fn stop<'a>(
+        &self,
+        origin: DVec3,
+        [from, to]: [&RigidPose; 2],
+        solids: impl Iterator<Item = (&'a dyn Shape, RigidPose)> + Clone,
+        dt: f64,
+    ) -> Option<RigidPose> {
+        let capsule = WorldCapsule {
+            radius: self.capsule.radius + self.margin * STOPS,
+            ..self.capsule.moved(-origin)
+        };
+        let way = self.drift * dt;
+        let touch = self.entered(&capsule, [from, to], solids.clone(), dt)?;
+        let (mut pose, mut was) = (*to, 0.0);
+        if touch.started_inside {
+            // The engine has the contact already. It gets no deeper than it was.
+            was = deepest(from, solids.clone(), &capsule).map_or(0.0, |(depth, _)| depth);
+        } else {
+            // For the rest of the tick it stays where it is relative to the climber.
+            pose = between(from, to, touch.time);
+            pose.translation += way * (1.0 - touch.time);
+        }
+        // The search takes the points of a body that turns to move in straight lines.
+        if let Some((depth, out)) = deepest(&pose, solids, &capsule.moved(way)) {
+            pose.translation += out * (depth - was).max(0.0);
+        }
+        (pose != *to).then_some(pose)
+    }
+
+    /// Where a body first touched the climber, if it came by itself.
+    fn entered<'a>(
+        &self,
+        capsule: &WorldCapsule,
+        [from, to]: [&RigidPose; 2],
+        solids: impl Iterator<Item = (&'a dyn Shape, RigidPose)>,
+        dt: f64,
+    ) -> Option<SweepContact> {
+        let mut search = FirstContact::new(capsule, [self.drift * dt; 2])?;
+        let frame = self.frame_velocity * dt;
+        let comes = |moved: &Moved, touch: &SweepContact| {
+            let local = DVec3::from_array(touch.contact.material.coordinates);
+            let was = moved.tick.before.unwrap_or(moved.tick.now);
+            let own = moved.tick.now.transform(local) - was.transform(local) - frame;
+            own.dot(touch.separation_normal) > 0.0 && !self.is_below(-touch.separation_normal)
+        };
+        for (shape, on_body) in solids {
+            let moved = Moved::new(shape, from.compose(&on_body), to.compose(&on_body));
+            if search.may_meet(&moved.bounds) {
+                let mut counts = |touch: &SweepContact| comes(&moved, touch);
+                search.meet_where(shape, &moved.tick, 0, &mut counts);
+            }
+        }
+        search.contact(DVec3::ZERO)
+    }
+}
+
+/// How deep a body in a pose is in a capsule, and the unit vector along which it gets out; `None` if it is outside.
+fn deepest<'a>(
+    body: &RigidPose,
+    solids: impl Iterator<Item = (&'a dyn Shape, RigidPose)>,
+    capsule: &WorldCapsule,
+) -> Option<(f64, DVec3)> {
+    let mut deepest: Option<(f64, DVec3)> = None;
+    for (shape, on_body) in solids {
+        let pose = body.compose(&on_body);
+        let ends = capsule.ends.map(|end| pose.inverse_transform(end));
+        overlap_shape(shape, ends, capsule.radius, &mut |found| {
+            let depth = capsule.radius - found.distance;
+            if deepest.is_none_or(|(most, _)| depth > most) {
+                let away = nearest_on(ends, found.point) - found.point;
+                let away = if found.distance > 0.0 {
+                    away.normalize_or(found.normal)
+                } else {
+                    found.normal
+                };
+                deepest = Some((depth, pose.rotation * -away));
+            }
+        });
+    }
+    deepest
+}
+
+/// The point of a segment that is nearest to another point.
+fn nearest_on([a, b]: [DVec3; 2], point: DVec3) -> DVec3 {
+    let along = b - a;
+    let share = (point - a).dot(along) / along.length_squared();
+    // A ball's segment has no length.
+    if share.is_finite() {
+        a + along * share.clamp(0.0, 1.0)
+    } else {
+        a
+    }
+}
+
+/// The pose of a body after a share of its way.
+fn between(from: &RigidPose, to: &RigidPose, share: f64) -> RigidPose {
+    RigidPose {
+        rotation: slerp(from.rotation, to.rotation, share),
+        translation: from.translation.lerp(to.translation, share),
+    }
+}
