@@ -124,7 +124,9 @@ impl Tick<'_> {
         if self.state.mode.is_supported() {
             return true;
         }
-        let speed = (self.state.velocity - self.mover.velocity_of(touch)).length();
+        // By its speed before contacts: whether the tick ends in one is chance.
+        let velocity = self.flew_at.unwrap_or(self.state.velocity);
+        let speed = (velocity - self.mover.velocity_of(touch)).length();
         let hard = (speed - self.config.ground.walk_speed).max(0.0);
         if speed <= fastest && self.spend(|stamina| stamina.catch_cost * hard) {
             return true;

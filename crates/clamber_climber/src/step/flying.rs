@@ -143,6 +143,7 @@ impl Tick<'_> {
         let change = self.limited_by_air(self.config.gravity * (weight * dt));
         let target = self.state.position + (self.state.velocity + change * 0.5) * dt;
         let falling = self.state.velocity + change;
+        self.flew_at = Some(falling);
         let moved = self.slide_at(&self.path(target), Intent::Go, falling);
         self.state.position = moved.position;
         self.state.velocity = self.clipped(falling);

@@ -113,6 +113,8 @@ pub(crate) struct Tick<'a> {
     has_moved: bool,
     /// True if that movement was through the air.
     has_flown: bool,
+    /// Velocity of its movement through the air before contacts clipped it.
+    flew_at: Option<DVec3>,
     /// True if its mode began in this tick.
     has_entered: bool,
 }
@@ -169,6 +171,7 @@ impl<'a> Tick<'a> {
             is_lost: false,
             has_moved: false,
             has_flown: false,
+            flew_at: None,
             has_entered: false,
         })
     }
