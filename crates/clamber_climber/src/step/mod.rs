@@ -113,6 +113,13 @@ pub(crate) struct Tick<'a> {
     has_moved: bool,
     /// True if that movement was through the air.
     has_flown: bool,
+    /// What the last movement's hits changed its velocity by. Zero if it hit nothing that gives way.
+    recoil: DVec3,
+    /// Its velocity after those hits.
+    after_hits: DVec3,
+    /// If nothing carried it and it touched something in the last tick, the displacement by which contacts changed its
+    /// way; otherwise zero.
+    was_pressed: DVec3,
     /// Velocity of its movement through the air before contacts clipped it.
     flew_at: Option<DVec3>,
     /// True if its mode began in this tick.
@@ -142,6 +149,11 @@ impl<'a> Tick<'a> {
         } = asked;
         input.validate()?;
         let mover = Mover::new(obstacles, dt, &mut scratch.mover)?.with_filters(filters);
+        let was_pressed = if state.support.is_none() && state.untouched == 0.0 {
+            state.own_way
+        } else {
+            DVec3::ZERO
+        };
         scratch.contacts.clear();
         scratch.contacts.reserve(CONTACTS);
         Ok(Self {
@@ -171,6 +183,9 @@ impl<'a> Tick<'a> {
             is_lost: false,
             has_moved: false,
             has_flown: false,
+            recoil: DVec3::ZERO,
+            after_hits: DVec3::ZERO,
+            was_pressed,
             flew_at: None,
             has_entered: false,
         })

@@ -13,6 +13,9 @@ use super::Tick;
 use crate::ClimberMode;
 use crate::event::Push;
 
+/// Cosine of the largest angle between the normals of contacts on the same side of the body: 60 degrees.
+const SAME_SIDE: f64 = 0.5;
+
 impl Tick<'_> {
     /// Pushes the obstacles that kept the body from moving at the velocity `wanted`, except those that it stands on or
     /// holds.
@@ -20,6 +23,8 @@ impl Tick<'_> {
         let body = &self.config.body;
         let dt = self.dt();
         let strikes = !self.state.mode.is_supported();
+        self.recoil = DVec3::ZERO;
+        self.after_hits = wanted;
         let most = if strikes {
             f64::INFINITY
         } else {
@@ -50,7 +55,48 @@ impl Tick<'_> {
         let share = 1.0 / pushes.len() as f64;
         pushes.iter_mut().for_each(|push| push.impulse *= share);
         let given = pushes.iter().map(|push| push.impulse).sum();
-        self.brace_against(given);
+        if strikes && self.carried.is_none() {
+            let presses = |push: &&Push| !self.presses_on(-push.impulse);
+            let hits = self.report.pushes[first..].iter().filter(presses);
+            let taken: DVec3 = hits.map(|push| push.impulse).sum();
+            self.recoil = -taken / self.config.body.mass;
+            self.after_hits = wanted + self.recoil;
+        } else {
+            self.brace_against(given);
+        }
+    }
+
+    /// True if it was pressed against the same side in the last tick already. What it pushed then has not given way, or
+    /// both go on at one speed since.
+    fn presses_on(&self, normal: DVec3) -> bool {
+        let pressed = self.was_pressed.dot(normal);
+        pressed > SAME_SIDE * self.was_pressed.length() * normal.length()
+    }
+
+    /// True for a contact with something that can be pushed, and was in the last tick.
+    pub(super) fn hit_before(&self, touch: &Touch) -> bool {
+        let material = &touch.contact.material;
+        self.presses_on(touch.normal)
+            && self
+                .mover
+                .push_response(touch.obstacle, material, -touch.normal)
+                > 0.0
+    }
+
+    /// The velocity of a contact that moves at `velocity`, after the last movement has hit it. Along the contact's
+    /// normal it is no slower than the climber, which has shared its momentum with all that it hit.
+    pub(super) fn velocity_after_hit(&self, touch: &Touch, velocity: DVec3) -> DVec3 {
+        let normal = touch.normal;
+        let closing = (velocity - self.after_hits).dot(normal);
+        let is_hit = self.recoil != DVec3::ZERO
+            && closing > 0.0
+            && self.is_pushed(touch.obstacle, &touch.contact.material)
+            && !self.presses_on(normal);
+        if is_hit {
+            velocity - normal * closing
+        } else {
+            velocity
+        }
     }
 
     /// Gives the reaction to an impulse to what the climber stands on or holds, if that can be pushed. Without it a

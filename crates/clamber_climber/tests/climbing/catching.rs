@@ -88,12 +88,7 @@ fn a_catch_that_ends_in_a_contact_costs_stamina_by_its_speed() {
     let speed = 11.0;
     for drop in 0..20 {
         let height = 3.0 + f64::from(drop) * speed / 60.0 / 20.0;
-        let mut flight = Flight::new(
-            config,
-            DVec3::Y * height,
-            -DVec3::Y * speed,
-            DVec3::ZERO,
-        );
+        let mut flight = Flight::new(config, DVec3::Y * height, -DVec3::Y * speed, DVec3::ZERO);
         while flight.climber.state().mode == ClimberMode::Falling {
             flight.step(&HOLD);
         }
