@@ -113,6 +113,11 @@ pub(crate) struct Tick<'a> {
     has_moved: bool,
     /// True if that movement was through the air.
     has_flown: bool,
+    /// How the velocity of its support has changed since the last tick, beyond what its own recoil has changed; `None` if
+    /// that is not known.
+    support_change: Option<DVec3>,
+    /// The impulse that its arms gave to the body, if it hangs by them.
+    pull: Option<DVec3>,
     /// What the last movement's hits changed its velocity by. Zero if it hit nothing that gives way.
     recoil: DVec3,
     /// Its velocity after those hits.
@@ -183,6 +188,8 @@ impl<'a> Tick<'a> {
             is_lost: false,
             has_moved: false,
             has_flown: false,
+            support_change: None,
+            pull: None,
             recoil: DVec3::ZERO,
             after_hits: DVec3::ZERO,
             was_pressed,

@@ -6,6 +6,7 @@
 )]
 
 mod carts;
+mod hanging;
 mod hitting;
 #[allow(dead_code, reason = "shared with other targets")]
 #[path = "../sizes/numbers.rs"]
