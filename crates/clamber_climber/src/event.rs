@@ -132,7 +132,9 @@ pub enum ClimberEvent {
 
 /// An impulse that a climber gives to an obstacle that can be pushed.
 ///
-/// - The support gets the climber's weight, mass times gravity, at the supporting point.
+/// - The support gets the climber's weight at the supporting point: mass times gravity, less what the support
+///   accelerates along it. While both fall freely, that is nothing.
+/// - A hold from which it hangs gets the pull of its arms, by the masses of both.
 /// - An obstacle that it lands on or hits in the air gets, along the contact normal, the impulse that brings both to
 ///   the same speed.
 /// - An obstacle that it runs into gets the same, but at most

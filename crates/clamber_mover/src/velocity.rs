@@ -52,6 +52,18 @@ impl Mover<'_> {
     /// faster than the body and the fastest of the obstacles together: between half-spaces that close like scissors,
     /// the nearest velocity has no bound.
     pub fn clip_velocity(&self, velocity: DVec3, frame: DVec3, limit: Option<HalfSpace>) -> DVec3 {
+        self.clip_velocity_with(velocity, frame, limit, |_, of_material| of_material)
+    }
+
+    /// [`Mover::clip_velocity`] among contacts that move at other velocities than their material did over the last
+    /// tick, such as bodies that the movement has pushed. `velocity_of` gets each contact and its material's velocity.
+    pub fn clip_velocity_with(
+        &self,
+        velocity: DVec3,
+        frame: DVec3,
+        limit: Option<HalfSpace>,
+        velocity_of: impl Fn(&Touch, DVec3) -> DVec3,
+    ) -> DVec3 {
         let mut half_spaces = [HalfSpace {
             normal: DVec3::Y,
             offset: 0.0,
@@ -64,7 +76,7 @@ impl Mover<'_> {
             count = 1;
         }
         for touch in self.touched().iter().take(STOPS - count) {
-            let own = self.velocity_of(touch);
+            let own = velocity_of(touch, self.velocity_of(touch));
             half_spaces[count] = HalfSpace {
                 normal: touch.normal,
                 offset: touch.normal.dot(own),

@@ -193,6 +193,9 @@ pub(crate) struct State {
     /// Its displacement in the last tick beyond that of its support.
     #[prost(message, required, tag = "31")]
     pub(crate) own_way: Vector,
+    /// Share of its weight that it put on its support.
+    #[prost(double, tag = "32")]
+    pub(crate) load: f64,
 }
 
 /// A stick that is held while the climber climbs.
@@ -398,6 +401,7 @@ impl State {
             self.jump_buffer,
             self.open_handed,
             self.untouched,
+            self.load,
             self.down,
         ];
         vectors.iter().any(Vector::has_negative_zero)
@@ -573,6 +577,7 @@ impl From<&ClimberState> for State {
             memory: state.memory.into(),
             shoved: state.standing.shoved,
             untouched: state.untouched,
+            load: state.load,
             down: state.tumbling.down,
             held_stick: Some(HeldStick {
                 stick: state.holding.stick.into(),
@@ -678,6 +683,7 @@ impl State {
                 shoved: self.shoved,
             },
             untouched: self.untouched,
+            load: self.load,
             holding: self
                 .held_stick
                 .map_or(HoldingMemory::default(), |held| HoldingMemory {

@@ -43,6 +43,9 @@ pub struct ClimberState {
     /// Velocity of its support over the last tick, in world space, metres a second. `None` without a support, and after
     /// it was placed elsewhere or pushed by the climber's landing.
     pub support_velocity: Option<DVec3>,
+    /// Share of its weight that it put on its support in the last tick: 1 while that is at rest, 0 while both fall
+    /// freely. 0 without a support that can be pushed. Not negative.
+    pub load: f64,
     /// Shake: the acceleration of its support, low-pass filtered over
     /// [`ClimberConfig::shake_time`](crate::ClimberConfig::shake_time), in world space, metres a second squared. Decays
     /// while it has no support.
@@ -100,6 +103,7 @@ impl ClimberState {
             mode: ClimberMode::Falling,
             support: None,
             support_velocity: None,
+            load: 0.0,
             shake: DVec3::ZERO,
             stamina: 1.0,
             hit_points: 1.0,
@@ -178,7 +182,7 @@ impl ClimberState {
     }
 
     /// Every number, with its name.
-    fn numbers(&self) -> [(&'static str, f64); 12] {
+    fn numbers(&self) -> [(&'static str, f64); 13] {
         [
             ("stamina", self.stamina),
             ("hit_points", self.hit_points),
@@ -192,6 +196,7 @@ impl ClimberState {
             ("jump_buffer", self.jump_buffer),
             ("open_handed", self.open_handed),
             ("untouched", self.untouched),
+            ("load", self.load),
         ]
     }
 

@@ -170,7 +170,7 @@ impl<'a> ModeContext<'_, 'a> {
             self.tick.keep_support(&carried, moved.position);
         }
         self.tick.state.position = moved.position;
-        self.tick.state.velocity = self.tick.clipped(velocity);
+        self.tick.state.velocity = self.tick.clipped_after_hits(velocity);
         moved
     }
 

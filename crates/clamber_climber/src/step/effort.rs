@@ -89,11 +89,9 @@ impl Tick<'_> {
     /// Updates the shake from the motion of its support. A support that was placed elsewhere, or whose last velocity is
     /// not known, adds no acceleration.
     pub(super) fn feel(&mut self, motion: &PointMotion, was_placed: bool) {
-        let change = match self.state.support_velocity {
-            Some(before) if !was_placed => motion.velocity - before,
-            _ => DVec3::ZERO,
-        };
-        self.shake_by(change);
+        let before = self.state.support_velocity.filter(|_| !was_placed);
+        self.support_change = before.map(|before| motion.velocity - before);
+        self.shake_by(self.support_change.unwrap_or(DVec3::ZERO));
         self.state.support_velocity = (!was_placed).then_some(motion.velocity);
     }
 
@@ -124,7 +122,9 @@ impl Tick<'_> {
         if self.state.mode.is_supported() {
             return true;
         }
-        let speed = (self.state.velocity - self.mover.velocity_of(touch)).length();
+        // By its speed before contacts: whether the tick ends in one is chance.
+        let velocity = self.flew_at.unwrap_or(self.state.velocity);
+        let speed = (velocity - self.mover.velocity_of(touch)).length();
         let hard = (speed - self.config.ground.walk_speed).max(0.0);
         if speed <= fastest && self.spend(|stamina| stamina.catch_cost * hard) {
             return true;

@@ -143,9 +143,10 @@ impl Tick<'_> {
         let change = self.limited_by_air(self.config.gravity * (weight * dt));
         let target = self.state.position + (self.state.velocity + change * 0.5) * dt;
         let falling = self.state.velocity + change;
+        self.flew_at = Some(falling);
         let moved = self.slide_at(&self.path(target), Intent::Go, falling);
         self.state.position = moved.position;
-        self.state.velocity = self.clipped(falling);
+        self.state.velocity = self.clipped_after_hits(falling);
         if self.state.mode == ClimberMode::Sliding {
             self.be_braked_by_slope(falling);
         }
@@ -215,10 +216,13 @@ impl Tick<'_> {
         if self.config.health.is_none() {
             return;
         }
-        let speeds = self.mover.touched().iter().map(|touch| {
-            let own = falling - self.mover.velocity_of(touch);
-            -own.dot(touch.normal)
-        });
+        let touched = self.mover.touched().iter();
+        let speeds = touched
+            .filter(|touch| !self.hit_before(touch))
+            .map(|touch| {
+                let own = falling - self.mover.velocity_of(touch);
+                -own.dot(touch.normal)
+            });
         let speed = speeds.fold(0.0, f64::max);
         // A body that rests or slides meets its ground at the speed that gravity adds in a tick.
         if speed > RESTS * self.config.gravity.length() * self.dt() {
@@ -262,11 +266,15 @@ impl Tick<'_> {
     /// Lands on ground, and keeps its speed along it.
     fn land_on(&mut self, ground: &Ground, falling: DVec3) -> NextMode {
         let touch = &ground.touch;
-        let own = falling - self.mover.velocity_of(touch);
+        let ground_velocity = self.mover.velocity_of(touch);
+        let own = falling - ground_velocity;
         let speed = (-own.dot(touch.normal)).max(0.0);
         let along = own - touch.normal * own.dot(touch.normal);
         self.state.position = ground.position;
         self.attach(touch, ground.position);
+        // What it lands on gives way, and both go on at one speed.
+        self.state.base_velocity +=
+            self.velocity_after_hit(touch, ground_velocity) - ground_velocity;
         self.state.velocity = self.clipped(self.state.base_velocity + along);
         self.event(ClimberEvent::Landed {
             obstacle: touch.obstacle,

@@ -59,7 +59,14 @@ impl Tick<'_> {
         let now = carried.velocity();
         // A climber that has just begun to hang is at rest below its hands, except for a blow.
         let (pivot_was, relative) = match carried.velocity_before {
-            Some(before) if !self.has_entered => (before, self.was - before),
+            Some(before) if !self.has_entered => {
+                // What it has changed the hands' velocity by, along the arms, is no acceleration that it feels: the pull
+                // of the arms was that between two bodies. Across the arms, what holds the hold may have kept that off.
+                let changed = before + self.change_by_load() - self.base_was;
+                let arm = carried.start - carried.motion.previous_position;
+                let along = changed.project_onto_normalized(arm.normalize_or(self.config.up()));
+                (self.base_was + along, self.was - self.base_was)
+            }
             _ => (now, self.struck),
         };
         self.reach_or_pull(&carried, &grip);
@@ -102,13 +109,21 @@ impl Tick<'_> {
             arm,
             velocity: relative,
         };
+        let pivot_change = carried.velocity() - pivot_was;
         pendulum.step(&PendulumTick {
             length,
             gravity: self.config.gravity,
-            pivot_change: carried.velocity() - pivot_was,
+            pivot_change,
             damping: hang.damping,
             dt: self.dt(),
         });
+        let free = relative - pivot_change + self.config.gravity * self.dt();
+        let stopped = if self.has_entered {
+            self.own_velocity()
+        } else {
+            DVec3::ZERO
+        };
+        self.pull = Some((pendulum.velocity - free - stopped) * self.config.body.mass);
         let path = Path {
             arm: Some(Arm { pivot, length }),
             ..self.path(pivot + pendulum.arm)
@@ -120,7 +135,8 @@ impl Tick<'_> {
         self.state.velocity = if moved.position == path.target {
             velocity
         } else {
-            self.clipped_by_arm(velocity, carried, moved.position - pivot)
+            let clipped = self.clipped_by_arm(velocity, carried, moved.position - pivot);
+            velocity + self.shared_with_hold(clipped - velocity)
         };
         // After a blow it swings although the hold is calm: the swing ends only after `calm_time`.
         let calm_time = self.config.grip.map_or(0.0, |grip| grip.calm_time);
@@ -157,6 +173,23 @@ impl Tick<'_> {
         let is_free = were == DVec3::ZERO && self.mover.is_free(&ball, legs);
         self.state.hanging.legs = if is_free { legs } else { DVec3::ZERO };
         moved
+    }
+
+    /// Its share of a change of velocity by contacts, of which the hold takes the rest if it touches nothing else: a
+    /// light hold that swings against the climber is stopped by it.
+    fn shared_with_hold(&mut self, change: DVec3) -> DVec3 {
+        let touched = self.mover.touched();
+        let Some(attachment) = self.attachment() else {
+            return change;
+        };
+        if self.state.crushed || !touched.iter().all(|touch| self.is_on(touch)) {
+            return change;
+        }
+        let mass = self.config.body.mass;
+        if let Some(pull) = &mut self.pull {
+            *pull += change * mass;
+        }
+        change / (1.0 + mass * self.response_of(&attachment, change))
     }
 
     /// Clips a velocity by the contacts and by the arms, if they are taut.

@@ -35,6 +35,10 @@ const FULL: f64 = 0.1;
 /// Cosine from up of a hold's normal, below which the hold is a ceiling: it leans over by more than 45 degrees.
 const CEILING: f64 = -0.707;
 
+/// A jump off a hold goes straight away from it where its normal and up sum to less than this: off ceilings within 6
+/// degrees of level. Between them the sum has a direction of rounding, and of bumps.
+const STRAIGHT: f64 = 0.1;
+
 /// Cosine of the angle by which a held stick may turn before its direction is taken anew: 20 degrees.
 const HELD_STILL: f64 = 0.939_692_620_785_908_4;
 
@@ -153,10 +157,16 @@ impl Tick<'_> {
         self.leave(ClimberMode::Falling)
     }
 
-    /// Jumps off its hold, away from it and upwards.
+    /// Jumps off its hold, away from it and upwards; off a level ceiling, straight down.
     pub(super) fn jump_off(&mut self, normal: DVec3, speed: f64) -> NextMode {
         let up = self.config.up();
-        self.state.velocity += (normal + up).normalize_or(normal) * speed;
+        let between = normal + up;
+        let direction = if between.length() < STRAIGHT {
+            normal
+        } else {
+            between.normalize_or(normal)
+        };
+        self.state.velocity += direction * speed;
         self.push_off();
         self.begin_jump();
         self.state.open_handed = OPEN_HANDED;

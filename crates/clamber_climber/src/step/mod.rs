@@ -113,6 +113,20 @@ pub(crate) struct Tick<'a> {
     has_moved: bool,
     /// True if that movement was through the air.
     has_flown: bool,
+    /// How the velocity of its support has changed since the last tick, beyond what its own recoil has changed; `None` if
+    /// that is not known.
+    support_change: Option<DVec3>,
+    /// The impulse that its arms gave to the body, if it hangs by them.
+    pull: Option<DVec3>,
+    /// What the last movement's hits changed its velocity by. Zero if it hit nothing that gives way.
+    recoil: DVec3,
+    /// Its velocity after those hits.
+    after_hits: DVec3,
+    /// If nothing carried it and it touched something in the last tick, the displacement by which contacts changed its
+    /// way; otherwise zero.
+    was_pressed: DVec3,
+    /// Velocity of its movement through the air before contacts clipped it.
+    flew_at: Option<DVec3>,
     /// True if its mode began in this tick.
     has_entered: bool,
 }
@@ -140,6 +154,11 @@ impl<'a> Tick<'a> {
         } = asked;
         input.validate()?;
         let mover = Mover::new(obstacles, dt, &mut scratch.mover)?.with_filters(filters);
+        let was_pressed = if state.support.is_none() && state.untouched == 0.0 {
+            state.own_way
+        } else {
+            DVec3::ZERO
+        };
         scratch.contacts.clear();
         scratch.contacts.reserve(CONTACTS);
         Ok(Self {
@@ -169,6 +188,12 @@ impl<'a> Tick<'a> {
             is_lost: false,
             has_moved: false,
             has_flown: false,
+            support_change: None,
+            pull: None,
+            recoil: DVec3::ZERO,
+            after_hits: DVec3::ZERO,
+            was_pressed,
+            flew_at: None,
             has_entered: false,
         })
     }

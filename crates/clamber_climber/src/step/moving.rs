@@ -111,7 +111,15 @@ impl Tick<'_> {
         if self.state.crushed {
             return base;
         }
-        self.mover.clip_velocity(velocity, base, None)
+        self.mover
+            .clip_velocity_with(velocity, base, None, |touch, velocity| {
+                self.velocity_after_hit(touch, velocity)
+            })
+    }
+
+    /// Clips the velocity that a movement would have had without contacts, after what it hit has taken its share.
+    pub(super) fn clipped_after_hits(&self, velocity: DVec3) -> DVec3 {
+        self.clipped(velocity + self.recoil)
     }
 
     /// Carries the body on at its velocity, in ticks in which no mode has moved it.
@@ -123,7 +131,7 @@ impl Tick<'_> {
             let target = self.state.position + self.state.velocity * self.dt();
             let moved = self.slide(&self.path(target), Intent::Stay);
             self.state.position = moved.position;
-            self.state.velocity = self.clipped(self.state.velocity);
+            self.state.velocity = self.clipped_after_hits(self.state.velocity);
         }
     }
 

@@ -1,8 +1,8 @@
 //! Weight on the support, and impulses on the obstacles in the climber's way, if they can be pushed.
 //!
 //! An airborne climber transfers its momentum to what it hits: the impulse that brings both to one speed, this tick's
-//! gravity included. A climber that stands or holds on gives its support its weight, and obstacles in its way a push of
-//! limited force. Every push, and every change of its own velocity, has its reaction on the support. None of this
+//! gravity included. A climber that stands or holds on gives its support its weight, or the pull of its arms, and
+//! obstacles in its way a push of limited force. Every push, and every change of its own velocity, has its reaction on the support. None of this
 //! changes where the climber goes.
 
 use clamber_mover::Touch;
@@ -10,8 +10,20 @@ use clamber_world::{Attachment, MaterialPoint, ObstacleId};
 use glam::DVec3;
 
 use super::Tick;
+use super::carrying::Carried;
 use crate::ClimberMode;
 use crate::event::Push;
+
+/// A support that accelerates by at most this multiple of gravity carries all of the climber's weight. From twice this
+/// on, its whole acceleration counts. Physics engines let bodies at rest jitter by a part of it.
+const JITTER: f64 = 0.03;
+
+/// The largest square of the angle, radians, by which a light hold may swing in a tick under the pull of the arms. Where
+/// it would swing farther, it gets less of their pull. At twice this, the pull of ticks that lag behind drives the swing.
+const STIFFEST: f64 = 0.15;
+
+/// Cosine of the largest angle between the normals of contacts on the same side of the body: 60 degrees.
+const SAME_SIDE: f64 = 0.5;
 
 impl Tick<'_> {
     /// Pushes the obstacles that kept the body from moving at the velocity `wanted`, except those that it stands on or
@@ -20,6 +32,8 @@ impl Tick<'_> {
         let body = &self.config.body;
         let dt = self.dt();
         let strikes = !self.state.mode.is_supported();
+        self.recoil = DVec3::ZERO;
+        self.after_hits = wanted;
         let most = if strikes {
             f64::INFINITY
         } else {
@@ -50,7 +64,48 @@ impl Tick<'_> {
         let share = 1.0 / pushes.len() as f64;
         pushes.iter_mut().for_each(|push| push.impulse *= share);
         let given = pushes.iter().map(|push| push.impulse).sum();
-        self.brace_against(given);
+        if strikes && self.carried.is_none() {
+            let presses = |push: &&Push| !self.presses_on(-push.impulse);
+            let hits = self.report.pushes[first..].iter().filter(presses);
+            let taken: DVec3 = hits.map(|push| push.impulse).sum();
+            self.recoil = -taken / self.config.body.mass;
+            self.after_hits = wanted + self.recoil;
+        } else {
+            self.brace_against(given);
+        }
+    }
+
+    /// True if it was pressed against the same side in the last tick already. What it pushed then has not given way, or
+    /// both go on at one speed since.
+    fn presses_on(&self, normal: DVec3) -> bool {
+        let pressed = self.was_pressed.dot(normal);
+        pressed > SAME_SIDE * self.was_pressed.length() * normal.length()
+    }
+
+    /// True for a contact with something that can be pushed, and was in the last tick.
+    pub(super) fn hit_before(&self, touch: &Touch) -> bool {
+        let material = &touch.contact.material;
+        self.presses_on(touch.normal)
+            && self
+                .mover
+                .push_response(touch.obstacle, material, -touch.normal)
+                > 0.0
+    }
+
+    /// The velocity of a contact that moves at `velocity`, after the last movement has hit it. Along the contact's
+    /// normal it is no slower than the climber, which has shared its momentum with all that it hit.
+    pub(super) fn velocity_after_hit(&self, touch: &Touch, velocity: DVec3) -> DVec3 {
+        let normal = touch.normal;
+        let closing = (velocity - self.after_hits).dot(normal);
+        let is_hit = self.recoil != DVec3::ZERO
+            && closing > 0.0
+            && self.is_pushed(touch.obstacle, &touch.contact.material)
+            && !self.presses_on(normal);
+        if is_hit {
+            velocity - normal * closing
+        } else {
+            velocity
+        }
     }
 
     /// Gives the reaction to an impulse to what the climber stands on or holds, if that can be pushed. Without it a
@@ -70,25 +125,90 @@ impl Tick<'_> {
     }
 
     /// Puts its weight on its support, except after a movement through the air: then the support got the impulse of the
-    /// hit. It also gets the reaction to changes of the climber's own velocity.
+    /// hit. It also gets the reaction to changes of the climber's own velocity, or to the pull of its arms.
     pub(super) fn weigh_down(&mut self) {
-        let Some(support) = self.state.support else {
+        let Some(attachment) = self.attachment() else {
+            self.state.load = 0.0;
             return;
         };
-        let attachment = support.attachment;
-        self.recoil(&attachment);
-        if self.has_flown {
-            if self.is_pushed(attachment.obstacle, &attachment.material) {
-                // The impulse will change the support's velocity, which must not count as shake.
-                self.state.support_velocity = None;
+        if !self.has_flown {
+            self.state.load = self.load_on(&attachment);
+            let weight = self.weight(self.state.load);
+            match self.pull {
+                Some(pull) => self.pull_on(&attachment, pull, weight),
+                None => self.recoil(&attachment),
+            }
+            if self.state.load > 0.0 {
+                self.add_to_support(&attachment, weight);
             }
             return;
         }
-        let gravity = self.config.gravity;
-        if self.response_of(&attachment, gravity) > 0.0 {
-            let weight = gravity * (self.config.body.mass * self.dt());
-            self.add_to_support(&attachment, weight);
+        self.state.load = 0.0;
+        let was_hit = self.is_pushed(attachment.obstacle, &attachment.material);
+        self.recoil(&attachment);
+        if was_hit {
+            // The impulse will change the support's velocity, which must not count as shake.
+            self.state.support_velocity = None;
         }
+    }
+
+    /// The impulse of a share of its weight over the tick.
+    fn weight(&self, share: f64) -> DVec3 {
+        self.config.gravity * (self.config.body.mass * self.dt() * share)
+    }
+
+    /// The share of its weight that its support gets in this tick: mass times gravity, less the support's acceleration.
+    /// Zero for a support that cannot be pushed.
+    ///
+    /// The support's acceleration includes what the weight gave to it in the last tick, as far as nothing held it. So
+    /// the share is that of two bodies which move on together, of any masses: a light one is neither pulled down faster
+    /// than gravity nor weighed down by turns.
+    fn load_on(&self, attachment: &Attachment) -> f64 {
+        let gravity = self.config.gravity;
+        let response = self.response_of(attachment, gravity);
+        if response == 0.0 {
+            return 0.0;
+        }
+        let key = |attachment: &Attachment| (attachment.obstacle, attachment.material.key);
+        let same = |carried: &Carried| key(&carried.support.attachment) == key(attachment);
+        let change = self
+            .support_change
+            .filter(|_| self.carried.as_ref().is_some_and(same));
+        let Some(change) = change else {
+            // A body that was hit gives way by the next tick. Feet stand on it then; hands only begin to pull.
+            return if self.state.mode == ClimberMode::Standing {
+                1.0
+            } else {
+                self.state.load
+            };
+        };
+        let sinks = change.dot(gravity) / (gravity.length_squared() * self.dt());
+        let relative = response * self.config.body.mass;
+        let share = (1.0 - without_jitter(sinks) + self.state.load * relative) / (1.0 + relative);
+        share.max(0.0)
+    }
+
+    /// What the weight of the last tick has changed its support's velocity by, if nothing held that.
+    pub(super) fn change_by_load(&self) -> DVec3 {
+        let Some(attachment) = self.attachment() else {
+            return DVec3::ZERO;
+        };
+        let weight = self.weight(self.state.load);
+        weight * self.response_of(&attachment, weight)
+    }
+
+    /// Gives its hold the reaction to the pull of its arms: as the arms hold one body at each end, by the share of the
+    /// hold's inertia. `weight` of it is the climber's weight, which it gets in any case.
+    fn pull_on(&mut self, attachment: &Attachment, pull: DVec3, weight: DVec3) {
+        // Slack arms do not pull: then the weight is taken back.
+        let response = self.response_of(attachment, pull);
+        let relative = response * self.config.body.mass;
+        // A hold of a hundredth of the climber's mass that something else holds swings faster than the ticks follow.
+        let dt = self.dt();
+        let length = self.state.hanging.arm.max(self.config.body.radius);
+        let stiffness = relative * self.config.gravity.length() * dt * dt / length;
+        let given = -pull * (STIFFEST / stiffness).min(1.0) / (1.0 + relative);
+        self.push_support(attachment, given - weight);
     }
 
     /// The reaction to starting, stopping and turning, and to being brought to the support's velocity. Both move on
@@ -133,7 +253,7 @@ impl Tick<'_> {
     }
 
     /// The speed along a direction that an impulse of 1 N s in it gives to the support.
-    fn response_of(&self, attachment: &Attachment, direction: DVec3) -> f64 {
+    pub(super) fn response_of(&self, attachment: &Attachment, direction: DVec3) -> f64 {
         let direction = direction.normalize_or_zero();
         if direction == DVec3::ZERO {
             return 0.0;
@@ -144,7 +264,7 @@ impl Tick<'_> {
 
     /// True for contacts that it stands on or holds: its support, and while standing all that are level enough to be
     /// underfoot.
-    fn is_on(&self, touch: &Touch) -> bool {
+    pub(super) fn is_on(&self, touch: &Touch) -> bool {
         let is_underfoot = self.state.mode == ClimberMode::Standing
             && self.config.slope(touch.normal) <= self.standing_slope();
         let is_support = self.attachment().is_some_and(|attachment| {
@@ -157,5 +277,15 @@ impl Tick<'_> {
     fn is_pushed(&self, obstacle: ObstacleId, point: &MaterialPoint) -> bool {
         let mut pushes = self.report.pushes.iter();
         pushes.any(|push| (push.obstacle, push.material.key) == (obstacle, point.key))
+    }
+}
+
+/// The acceleration of a support, in multiples of gravity, without what may be a solver's jitter.
+fn without_jitter(acceleration: f64) -> f64 {
+    let beyond = (acceleration.abs() - JITTER).clamp(0.0, JITTER) * 2.0;
+    if beyond < 2.0 * JITTER {
+        beyond.copysign(acceleration)
+    } else {
+        acceleration
     }
 }

@@ -5,10 +5,16 @@
     reason = "a test's helpers may fail like the test"
 )]
 
+mod catching;
 mod corners;
 mod crushing;
 mod gripping;
 mod hanging;
 mod ledges;
+#[path = "../sizes/moving.rs"]
+mod moving;
+#[allow(dead_code, reason = "shared with other targets")]
+#[path = "../sizes/numbers.rs"]
+mod numbers;
 mod scene;
 mod shaking;

@@ -6,6 +6,11 @@
 )]
 
 mod carts;
+mod hanging;
+mod hitting;
+#[allow(dead_code, reason = "shared with other targets")]
+#[path = "../sizes/numbers.rs"]
+mod numbers;
 mod running;
 mod scene;
 mod weighing;

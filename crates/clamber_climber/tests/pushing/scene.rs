@@ -1,15 +1,21 @@
 //! A climber in a rapier world, whose bodies get its pushes.
 
 use clamber_climber::{
-    Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, Push, StepReport,
+    Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, ClimberState, Push, StepReport,
 };
 use clamber_world::rapier3d::prelude::{
-    ColliderBuilder, PhysicsWorld, RigidBodyBuilder, RigidBodyHandle, Vector,
+    Collider, ColliderBuilder, ColliderHandle, PhysicsWorld, RigidBodyBuilder, RigidBodyHandle,
+    Vector,
 };
-use clamber_world::{BodyPoses, ObstacleId, RapierTerrain, apply_push};
+use clamber_world::{BodyPoses, ObstacleId, RapierTerrain, SurfaceKind, SurfaceTag, apply_push};
 use glam::DVec3;
 
+use crate::numbers::in_world_of_size;
+
 pub(crate) const DT: f64 = 1.0 / 60.0;
+
+/// The user data of colliders with fur.
+pub(crate) const FUR: u128 = 1;
 
 pub(crate) const IDLE: ClimberInput = ClimberInput::IDLE;
 
@@ -27,22 +33,47 @@ pub(crate) struct Scene {
     /// Pushes of the last step, not applied yet.
     pub(crate) pushes: Vec<Push>,
     before: BodyPoses,
+    dt: f64,
 }
 
 impl Scene {
     /// An empty world with the climber's centre at a position.
     pub(crate) fn new(gravity: f64, position: DVec3) -> Self {
+        Self::with(ClimberConfig::walker(), 1.0, DT, gravity, position)
+    }
+
+    /// [`Scene::new`] in a world of another size: everything there takes as long as at size 1.
+    pub(crate) fn with(
+        config: ClimberConfig,
+        size: f64,
+        dt: f64,
+        gravity: f64,
+        position: DVec3,
+    ) -> Self {
         let mut world = PhysicsWorld {
-            gravity: Vector::new(0.0, -gravity as f32, 0.0),
+            gravity: Vector::new(0.0, (-gravity * size) as f32, 0.0),
             ..PhysicsWorld::default()
         };
-        world.integration_parameters.dt = DT as f32;
+        world.integration_parameters.dt = dt as f32;
+        world.integration_parameters.length_unit = size as f32;
+        let config = in_world_of_size(config, size);
         Self {
             world,
-            climber: Climber::new(ClimberConfig::walker(), position).unwrap(),
+            climber: Climber::new(config, position * size).unwrap(),
             pushes: Vec::new(),
             before: BodyPoses::new(),
+            dt,
         }
+    }
+
+    /// Makes the climber move at a velocity, in the air.
+    pub(crate) fn throw(&mut self, velocity: DVec3, frame: DVec3) {
+        let state = ClimberState {
+            velocity: velocity + frame,
+            base_velocity: frame,
+            ..*self.climber.state()
+        };
+        self.climber.restore(state).unwrap();
     }
 
     /// Adds a fixed floor with its top at height 0.
@@ -89,10 +120,17 @@ impl Scene {
     pub(crate) fn step(&mut self, input: &ClimberInput) -> StepReport {
         self.before.record(&self.world.bodies);
         self.world.step();
-        let terrain = RapierTerrain::of_world(&self.world, &self.before);
+        let fur = |_: ColliderHandle, collider: &Collider| {
+            if collider.user_data == FUR {
+                SurfaceTag::new(SurfaceKind::Fur)
+            } else {
+                SurfaceTag::default()
+            }
+        };
+        let terrain = RapierTerrain::of_world(&self.world, &self.before).with_tags(&fur);
         let report = self
             .climber
-            .step(input, &[(ObstacleId(0), &terrain)], DT)
+            .step(input, &[(ObstacleId(0), &terrain)], self.dt)
             .unwrap();
         self.pushes.clone_from(&report.pushes);
         report

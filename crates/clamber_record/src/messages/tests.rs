@@ -67,6 +67,7 @@ fn everything() -> (ClimberState, ClimberInput) {
         jump_buffer: next(),
         open_handed: next(),
         untouched: next(),
+        load: next(),
         holding: HoldingMemory {
             stick,
             along,
@@ -188,6 +189,7 @@ fn numbers<'a>(state: &'a mut ClimberState, input: &'a mut ClimberInput) -> Vec<
         &mut state.jump_buffer,
         &mut state.open_handed,
         &mut state.untouched,
+        &mut state.load,
     ]);
     list.extend(&mut state.memory);
     list
