@@ -22,9 +22,9 @@ fn spawn(mut commands: Commands) {
     let load = (
         RigidBody::Dynamic,
         Collider::cuboid(0.6, 0.6, 0.6),
-        ColliderDensity(555.0), // 120 kg; one of 10 kg rests on the climber's head
+        ColliderDensity(278.0), // 60 kg; one of 10 kg rests on the climber's head
     );
-    commands.spawn((load, Transform::from_xyz(0.0, 4.4, 0.0)));
+    commands.spawn((load, Transform::from_xyz(0.0, 2.4, 0.0)));
     let eye = Transform::from_xyz(0.0, 2.0, 8.0).looking_at(Vec3::Y, Vec3::Y);
     commands.spawn((Camera3d::default(), eye));
 }
