@@ -41,7 +41,10 @@ fn engines() -> TestRun {
     TestRun {
         packages: Packages::Named(owned(&["bevy_clamber"])),
         features: owned(&["bevy_clamber/avian", "bevy_clamber/rapier"]),
-        targets: vec![Targets::Test("plugin".into())],
+        targets: vec![
+            Targets::Test("plugin".into()),
+            Targets::Test("readme".into()),
+        ],
         options: owned(&[IGNORE_RUST_VERSION]),
         ..TestRun::default()
     }
