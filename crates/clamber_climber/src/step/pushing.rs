@@ -2,8 +2,8 @@
 //!
 //! An airborne climber transfers its momentum to what it hits: the impulse that brings both to one speed, this tick's
 //! gravity included. A climber that stands or holds on gives its support its weight, or the pull of its arms, and
-//! obstacles in its way a push of limited force. Every push, and every change of its own velocity, has its reaction on the support. None of this
-//! changes where the climber goes.
+//! obstacles in its way a push of limited force. Every push, and every change of its own velocity, has its reaction on
+//! the support. Only what it hits in the air changes its own velocity, to the common one.
 
 use clamber_mover::Touch;
 use clamber_world::{Attachment, MaterialPoint, ObstacleId};

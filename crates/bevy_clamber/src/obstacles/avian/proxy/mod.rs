@@ -7,6 +7,7 @@ mod strike;
 
 use std::collections::BTreeMap;
 
+use avian3d::collision::contact_types::ContactId;
 use avian3d::dynamics::integrator::IntegrationSystems;
 use avian3d::dynamics::solver::schedule::SolverSystems;
 use avian3d::prelude::{PhysicsSchedule, PhysicsStepSystems, PhysicsSystems};
@@ -113,4 +114,5 @@ pub(super) struct AvianProxies {
     recorded: Vec<Recorded>,
     /// Reused.
     impacts: Vec<Impact>,
+    contacts: Vec<ContactId>,
 }

@@ -18,11 +18,15 @@ use crate::{ClimberBlow, ClimberBody, ClimberInput};
 const FAR: f32 = -1e9;
 
 /// Drops the contacts with bodies with which climbers do not collide.
-pub(super) fn keep_apart(all: Res<AvianProxies>, mut graph: ResMut<ContactGraph>) {
-    for proxy in all.proxies.values().filter(|proxy| !proxy.apart.is_empty()) {
-        let ids = graph.contact_edges_with(proxy.body).map(|edge| edge.id);
-        for id in ids.collect::<Vec<_>>() {
-            let Some((_, pair)) = graph.get_mut_by_id(id) else {
+pub(super) fn keep_apart(mut all: ResMut<AvianProxies>, mut graph: ResMut<ContactGraph>) {
+    let AvianProxies {
+        proxies, contacts, ..
+    } = &mut *all;
+    for proxy in proxies.values().filter(|proxy| !proxy.apart.is_empty()) {
+        contacts.clear();
+        contacts.extend(graph.contact_edges_with(proxy.body).map(|edge| edge.id));
+        for id in contacts.iter() {
+            let Some((_, pair)) = graph.get_mut_by_id(*id) else {
                 continue;
             };
             if other(pair, proxy.body).is_some_and(|(body, _)| proxy.apart.contains(&body)) {
@@ -87,6 +91,7 @@ pub(super) fn strike(
         proxies,
         recorded,
         impacts,
+        ..
     } = &mut *all;
     let dt = time.delta_secs_f64();
     if time.is_paused() || dt <= 0.0 {
@@ -115,7 +120,10 @@ pub(super) fn strike(
                 continue;
             };
             let turned = turn(&body, point, share.body);
-            body.position.0 += share.shift.as_vec3();
+            // Otherwise avian takes it for moved by the game.
+            if share.shift != DVec3::ZERO {
+                body.position.0 += share.shift.as_vec3();
+            }
             if share.body != DVec3::ZERO {
                 let pushed = body.effective_inverse_mass().as_dvec3() * share.body;
                 body.linear_velocity.0 += pushed.as_vec3();
