@@ -79,19 +79,6 @@ fn growths(seed: u64) -> u32 {
     grew
 }
 
-fn entries(graph: &ClimbGraph, stamina: f64) -> Vec<Start> {
-    let footings = [Footing::Stands, Footing::Holds];
-    let all = graph.entries().iter().flat_map(|entry| {
-        footings.map(|footing| Start {
-            patch: entry.patch,
-            footing,
-            seconds: 0.0,
-            stamina,
-        })
-    });
-    all.collect()
-}
-
 #[test]
 fn more_stamina_never_takes_anything_away() {
     // Skin that cannot be gripped, but for a wall of fur: the way up is too long without a rest for who is weak.
@@ -99,7 +86,7 @@ fn more_stamina_never_takes_anything_away() {
     let kind = |u: f32, _: f32| if (0.3..0.7).contains(&u) { Fur } else { Skin };
     let (graph, _) = Body::grid([16, 60], wall, kind).report(&climber());
     let reachable = |stamina: f64| {
-        let starts = entries(&graph, stamina);
+        let starts: Vec<Start> = graph.starts_on_ground(stamina).collect();
         let is_reached = |patch: usize| {
             let goal = graph.goal(&[patch]);
             graph.plan(&starts, &goal, &Forecast::still()).is_some()

@@ -1,5 +1,6 @@
 //! Where a climber gets on from the ground.
 
+use clamber_climber::ClimberConfig;
 use clamber_surface::surface::SkinnedSurface;
 use glam::DVec3;
 
@@ -16,6 +17,9 @@ pub struct Entry {
     pub patch: usize,
     /// How high the middle of the climber's ball is there, metres above the ground.
     pub height: f64,
+    /// How fast a climber that jumps from the ground, at the speed of a walk, passes what its hands reach there, at most,
+    /// metres a second. 0 where it reaches that from the ground, without a jump.
+    pub speed: f64,
 }
 
 /// Patches that a climber on the ground gets to with a jump: straight up, to where its hands reach, or forwards at the speed of
@@ -39,9 +43,35 @@ pub(super) fn entries(survey: &Survey, patches: &[Patch], patch_of: &[u32]) -> V
     }
     let found = lowest.into_iter().enumerate();
     let found = found.filter(|(_, height)| height.is_finite());
+    let found = found.map(|(patch, height)| Entry {
+        patch,
+        height,
+        speed: speed_at(&survey.config, height),
+    });
     found
-        .map(|(patch, height)| Entry { patch, height })
+        .filter(|entry| patches[entry.patch].can_stand || entry.is_caught(&survey.config.climber))
         .collect()
+}
+
+impl Entry {
+    /// True if a jump passes it so slowly that hands catch it.
+    pub(super) fn is_caught(&self, climber: &ClimberConfig) -> bool {
+        climber
+            .grip
+            .is_some_and(|grip| self.speed <= grip.catch_speed)
+    }
+}
+
+/// The greatest speed of a jump from the ground where hands reach a place, which is that high above the ground: at the lowest
+/// point from where they reach it.
+fn speed_at(config: &GraphConfig, height: f64) -> f64 {
+    let rises = height - config.radius() - config.reach().max(0.0);
+    if rises <= 0.0 {
+        return 0.0;
+    }
+    let (climber, ground) = (&config.climber, &config.climber.ground);
+    let squared = ground.jump_speed * ground.jump_speed - 2.0 * climber.gravity.length() * rises;
+    libm::hypot(libm::sqrt(squared.max(0.0)), ground.walk_speed)
 }
 
 /// How high the middle of a climber's ball may be for its hands to reach something with a jump from the ground, metres.

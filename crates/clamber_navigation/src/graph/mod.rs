@@ -14,7 +14,7 @@ use clamber_surface::surface::SkinnedSurface;
 use crate::clips::ClipFacts;
 use crate::progress::Tell;
 use crate::survey::Survey;
-use crate::{GraphConfig, GraphSource, NavigationError, Progress};
+use crate::{GraphConfig, GraphSource, NavigationError, Progress, Start};
 
 pub use entries::Entry;
 pub(crate) use entries::highest_entry;
@@ -86,9 +86,31 @@ impl ClimbGraph {
         &self.patches
     }
 
-    /// Where it can be got onto from the ground.
+    /// Where it can be got onto from the ground. Holds are left out that a jump passes faster than hands catch them.
     pub fn entries(&self) -> &[Entry] {
         &self.entries
+    }
+
+    /// Where plans of a climber begin that is on the ground with some stamina, 0 to 1: at all entries, with what is left
+    /// after the catch at the end of a jump ([`StaminaConfig::catch_cost`](clamber_climber::StaminaConfig::catch_cost)).
+    /// Holds that hands do not catch, since the jump passes them too fast or stamina does not suffice, are left out.
+    pub fn starts_on_ground(&self, stamina: f64) -> impl Iterator<Item = Start> + '_ {
+        let climber = &self.config.climber;
+        let walks = climber.ground.walk_speed;
+        let catch_cost = climber.stamina.map_or(0.0, |costs| costs.catch_cost);
+        self.entries.iter().flat_map(move |entry| {
+            let start = |footing, stamina| Start {
+                patch: entry.patch,
+                footing,
+                seconds: 0.0,
+                stamina,
+            };
+            let left = stamina - catch_cost * (entry.speed - walks).max(0.0);
+            let catches = left >= 0.0 && entry.is_caught(climber);
+            let stands = Some(start(Footing::Stands, stamina));
+            let holds = catches.then(|| start(Footing::Holds, left));
+            stands.into_iter().chain(holds)
+        })
     }
 
     /// The patch of a point of the skin; `None` where a climber can neither stand nor hold on at rest.

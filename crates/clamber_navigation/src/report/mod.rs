@@ -13,7 +13,7 @@ use crate::plan::{slips, throws};
 use crate::progress::Tell;
 use crate::survey::Survey;
 use crate::{
-    ClimbGraph, Footing, Forecast, GraphConfig, GraphSource, NavigationError, Plan, Progress, Start,
+    ClimbGraph, Forecast, GraphConfig, GraphSource, NavigationError, Plan, Progress, Start,
 };
 
 /// What a climber can reach on a creature, and how its clips treat it.
@@ -215,19 +215,7 @@ impl View<'_> {
             .map(|patch| patch as usize)
             .collect();
         let goal = self.graph.goal_strained(&patches, strain);
-        let starts: Vec<Start> = self
-            .graph
-            .entries()
-            .iter()
-            .flat_map(|entry| {
-                [Footing::Stands, Footing::Holds].map(|footing| Start {
-                    patch: entry.patch,
-                    footing,
-                    seconds: 0.0,
-                    stamina: 1.0,
-                })
-            })
-            .collect();
+        let starts: Vec<Start> = self.graph.starts_on_ground(1.0).collect();
         self.graph.plan(&starts, &goal, &Forecast::still())
     }
 

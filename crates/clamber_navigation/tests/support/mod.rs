@@ -16,6 +16,7 @@ use clamber_surface::mesh::{
     BuildOptions, ColliderMesh, Influence, MeshSource, SurfaceKind, SurfaceTag,
 };
 use clamber_surface::rig::{Joint, JointId, Skeleton, Transform, WeakPoint};
+use clamber_surface::surface::SkinnedSurface;
 use glam::Vec3;
 
 /// A body: corners, triangles and their materials.
@@ -97,6 +98,15 @@ impl Body {
                 .unwrap()
                 .0,
         )
+    }
+
+    /// Its skin.
+    pub(crate) fn surface(&self) -> SkinnedSurface {
+        let skeleton = skeleton();
+        let palette = skeleton.palette(&skeleton.rest_pose()).unwrap();
+        let mut surface = SkinnedSurface::new(self.mesh());
+        surface.place(&palette, Similarity::IDENTITY).unwrap();
+        surface
     }
 
     /// The graph for a climber, above ground at height 0, and its report.
