@@ -36,7 +36,7 @@ pub use others::{Others, OthersError};
 /// The version of parry that [`shapes`] uses.
 #[cfg(feature = "parry")]
 pub use parry3d;
-pub use proxy::{ProxyBody, ProxyMeeting, ProxyShare, ProxyTouch};
+pub use proxy::{ProxyBody, ProxyImpact, ProxyMeeting, ProxyShare, ProxyTouch};
 #[cfg(feature = "rapier")]
 pub use rapier::{BodyPoses, ClimberProxy, ProxyHit, RapierTerrain, apply_push};
 /// The version of rapier that [`RapierTerrain`] uses.

@@ -1,4 +1,4 @@
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 
 use bevy_app::{App, FixedUpdate, Plugin};
 use bevy_ecs::prelude::*;
@@ -81,6 +81,8 @@ impl Plugin for RapierProxyPlugin {
 #[derive(Resource, Default)]
 pub(crate) struct RapierProxies {
     proxies: BTreeMap<Entity, ClimberProxy>,
+    /// Their colliders.
+    colliders: HashSet<ColliderHandle>,
     /// The bodies before the step that is under way.
     before: BodyPoses,
     /// Length of that step; `None` if there is none.
@@ -90,8 +92,7 @@ pub(crate) struct RapierProxies {
 impl RapierProxies {
     /// True if a collider of rapier is a climber.
     pub(crate) fn has(&self, collider: ColliderHandle) -> bool {
-        let mut proxies = self.proxies.values();
-        proxies.any(|proxy| proxy.collider() == collider)
+        self.colliders.contains(&collider)
     }
 }
 
@@ -158,6 +159,9 @@ fn follow(
             joints,
         );
     }
+    all.colliders.clear();
+    all.colliders
+        .extend(all.proxies.values().map(ClimberProxy::collider));
     let dt = step_of(*mode, &time).ok();
     all.dt = dt.filter(|dt| *dt > 0.0 && configuration.physics_pipeline_active);
     all.before.record(bodies);
@@ -173,6 +177,7 @@ fn strike(
         proxies,
         before,
         dt,
+        ..
     } = &mut *all;
     let (Some(dt), Ok((mut bodies, mut colliders, _, simulation, _))) =
         (*dt, contexts.single_mut())

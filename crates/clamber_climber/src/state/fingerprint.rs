@@ -27,11 +27,8 @@ impl ClimberState {
         if let Some(velocity) = self.support_velocity {
             hash.vector(velocity);
         }
-        for (name, x) in self.numbers() {
-            // Like a support's velocity, only if there is one.
-            if name != "load" || x != 0.0 {
-                hash.word(x.to_bits());
-            }
+        for (_, x) in self.numbers() {
+            hash.word(x.to_bits());
         }
         for x in self.memory {
             hash.word(x.to_bits());

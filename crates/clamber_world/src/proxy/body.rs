@@ -37,6 +37,12 @@ pub struct ProxyBody {
     pub support: Option<MaterialPoint>,
 }
 
+impl ProxyBody {
+    /// Coefficient of friction that the engine's body of a climber has: what lies on a climber slides off where it is
+    /// steep.
+    pub const FRICTION: f32 = 0.5;
+}
+
 /// A contact that the climber found by itself: it moves along the body there, and pushes it by its own rules.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProxyTouch {

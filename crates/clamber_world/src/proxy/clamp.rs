@@ -11,12 +11,16 @@ use crate::{RigidPose, SweepContact, WorldCapsule};
 /// overlap.
 const STOPS: f64 = 0.4;
 
+/// Rounding error of a bounding sphere in f32, several times over, as a share of its radius.
+const ROUNDING: f64 = 1e-6;
+
 impl ProxyBody {
     /// Where to put a body that entered the climber by its own motion in a step of a physics engine: where it touched the
     /// climber first, and for the rest of the tick with it. `None` if it did not enter, or is below the climber.
     ///
     /// Engines find contacts once a step. Without this, a fast body is in the climber for a tick before they stop it, and
-    /// presses it away. It is the motion clamping of continuous collision detection, in the climber's frame.
+    /// presses it away. It is the motion clamping of continuous collision detection, in the climber's frame. A body that
+    /// turns by at most one radian in the step ends outside of the climber; a faster one may end in it.
     ///
     /// `from` and `to` are the body's poses before the step and after it, in a space with its origin at `origin`.
     /// `solids` are its shapes, with their poses on the body. `dt` is the length of the tick, seconds.
@@ -32,6 +36,10 @@ impl ProxyBody {
             ..self.capsule.moved(-origin)
         };
         let way = self.drift * dt;
+        let path = [from.translation, to.translation - way];
+        if solids.clone().all(|solid| is_far(solid, path, &capsule)) {
+            return None;
+        }
         let touch = self.entered(&capsule, [from, to], solids.clone(), dt)?;
         let (mut pose, mut was) = (*to, 0.0);
         if touch.started_inside {
@@ -74,6 +82,20 @@ impl ProxyBody {
         }
         search.contact(DVec3::ZERO)
     }
+}
+
+/// True if a shape of a body does not reach a capsule beside which the body's origin moves along a path, however it turns.
+fn is_far((shape, on_body): (&dyn Shape, RigidPose), path: [DVec3; 2], to: &WorldCapsule) -> bool {
+    let sphere = shape.compute_local_bounding_sphere();
+    let around = sphere.center.as_dvec3().length() + f64::from(sphere.radius);
+    let [a, b] = to.ends;
+    let near = on_body.translation.length()
+        + around * (1.0 + ROUNDING)
+        + a.distance(b) * 0.5
+        + to.radius
+        + 2.0 * to.sweep_tolerance();
+    let middle = a.midpoint(b);
+    nearest_on(path, middle).distance_squared(middle) > near * near
 }
 
 /// How deep a body in a pose is in a capsule, and the unit vector along which it gets out; `None` if it is outside.
@@ -121,3 +143,6 @@ fn between(from: &RigidPose, to: &RigidPose, share: f64) -> RigidPose {
         translation: from.translation.lerp(to.translation, share),
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -72,10 +72,11 @@ impl ProxyBody {
     /// for an impulse there, newton seconds: linear in it. `None` if the body does not move, or if a number is not
     /// finite.
     ///
-    /// A body with the response w to a unit impulse along the normal and the approach v, and a climber of mass M, share
-    /// the impulse of an inelastic impact, v / (w + k / M). k is the share of the climber's mobility along the normal
-    /// that its support leaves: 1 in the air, 0 straight into the ground, the squared sine of the angle between them. The
-    /// support takes what would change the climber's velocity by more than v.
+    /// Of the impulse by which the engine stops the body, w / (w + k / M) is left. w is the body's change of velocity
+    /// along a unit impulse in that direction, M the climber's mass. k is the share of the climber's mobility there that
+    /// its support leaves: 1 in the air, 0 straight into the ground, the squared sine of the angle between them. Without
+    /// friction it is the impulse of an inelastic impact of both; with it, too, both together get no energy. The support
+    /// takes what would change the climber's velocity by more than the approach.
     ///
     /// ```
     /// use clamber_world::{ProxyBody, ProxyMeeting, WorldCapsule};
@@ -112,26 +113,19 @@ impl ProxyBody {
         meeting: &ProxyMeeting,
         response: impl Fn(DVec3) -> DVec3,
     ) -> Option<ProxyShare> {
-        let normal = meeting.normal;
         let approach = self.approach(meeting);
-        let along_normal = response(normal);
-        let stiffness = along_normal.dot(normal);
-        let whole = approach.taken / stiffness;
-        if !whole.is_finite() {
-            return None;
-        }
+        let contact = Contact::new(meeting, self.drift, response)?;
+        let whole = contact.along_normal(approach.taken);
         let is_felt = approach.taken > approach.pressed && approach.brought > self.gentle;
-        let felt = approach.brought / (stiffness + self.mobility(normal) / self.mass);
+        let felt = contact.along_normal(approach.brought) * self.part_of(&contact);
         let kept = if is_felt {
-            felt + approach.pressed * approach.share / stiffness
+            felt + contact.along_normal(approach.pressed) * approach.share
         } else {
             // Too slow to be felt: it rests on the climber.
             whole * approach.share
         };
-        let along = slip_direction(self.drift - meeting.free, normal);
-        let dragged = meeting.after - meeting.free - along_normal * whole;
-        let most = whole.max(0.0) * meeting.friction;
-        let friction = friction(dragged, along, response).clamp_length_max(most);
+        let (normal, along) = (contact.normal, contact.along);
+        let friction = along * (contact.friction * whole);
         // What leaves the climber on its own takes that along.
         let (body, dragging) = if whole > 0.0 {
             let share = |part: f64| (part / whole).min(1.0);
@@ -150,7 +144,10 @@ impl ProxyBody {
             climber: is_felt.then_some(-climber),
             shift,
         };
-        let is_finite = body.is_finite() && shift.is_finite() && (climber.is_finite() || !is_felt);
+        let is_finite = whole.is_finite()
+            && body.is_finite()
+            && shift.is_finite()
+            && (climber.is_finite() || !is_felt);
         is_finite.then_some(share)
     }
 
@@ -180,13 +177,75 @@ impl ProxyBody {
         }
     }
 
-    /// The share of the climber's mobility that its support leaves it along a normal, away from the body: 0 straight
-    /// into the support.
-    fn mobility(&self, normal: DVec3) -> f64 {
-        let into = self
-            .support_normal
-            .map_or(0.0, |support| normal.dot(support).max(0.0));
-        (1.0 - into * into).max(0.0)
+    /// The part of an impulse that is left where not only the body gives way, but the climber as well.
+    fn part_of(&self, contact: &Contact) -> f64 {
+        let impulse = contact.impulse();
+        let squared = impulse.length_squared();
+        // The climber's mobility along it, of which its support leaves a share: none straight into the support.
+        let into = self.support_normal.map_or(0.0, |support| {
+            let into = impulse.dot(support).max(0.0);
+            into * into / squared
+        });
+        let mobility = (1.0 - into).max(0.0) / self.mass;
+        contact.mobility / (contact.mobility + mobility)
+    }
+}
+
+/// How a body answers to the impulse of an engine at a contact.
+struct Contact {
+    normal: DVec3,
+    /// The direction of friction: a unit vector, or zero if there is none.
+    along: DVec3,
+    /// The impulse along it, for each newton second along the normal.
+    friction: f64,
+    /// The body's change of velocity along the normal for such an impulse, metres a second.
+    stiffness: f64,
+    /// Its change along the impulse, for each newton second of it.
+    mobility: f64,
+}
+
+impl Contact {
+    /// Finds the impulse from the change of the body's velocity. `None` if the body does not give way.
+    fn new(
+        meeting: &ProxyMeeting,
+        drift: DVec3,
+        response: impl Fn(DVec3) -> DVec3,
+    ) -> Option<Self> {
+        let normal = meeting.normal;
+        let change = meeting.after - meeting.free;
+        let along = slip_direction(drift - meeting.free, normal);
+        let [by_normal, by_friction] = [normal, along].map(response);
+        // Of a body that turns, each of the two changes the velocity in the direction of the other.
+        let [n, t] = [by_normal, by_friction].map(|by| [by.dot(normal), by.dot(along)]);
+        let [in_normal, in_slip] = [change.dot(normal), change.dot(along)];
+        let pressing = in_normal * t[1] - in_slip * t[0];
+        let dragging = in_slip * n[0] - in_normal * n[1];
+        let friction = (dragging / pressing).clamp(0.0, meeting.friction);
+        let friction = if pressing > 0.0 && friction.is_finite() {
+            friction
+        } else {
+            0.0
+        };
+        let impulse = normal + along * friction;
+        let answer = by_normal + by_friction * friction;
+        let stiffness = answer.dot(normal);
+        let mobility = answer.dot(impulse) / impulse.length_squared();
+        (stiffness > 0.0 && mobility > 0.0).then_some(Self {
+            normal,
+            along,
+            friction,
+            stiffness,
+            mobility,
+        })
+    }
+
+    /// The impulse along the normal that changes the velocity there by so much.
+    fn along_normal(&self, velocity: f64) -> f64 {
+        velocity / self.stiffness
+    }
+
+    fn impulse(&self) -> DVec3 {
+        self.normal + self.along * self.friction
     }
 }
 
@@ -195,17 +254,6 @@ fn slip_direction(velocity: DVec3, normal: DVec3) -> DVec3 {
     let slip = velocity.reject_from_normalized(normal);
     if slip.length() > SLIPS * velocity.length() {
         slip.normalize_or_zero()
-    } else {
-        DVec3::ZERO
-    }
-}
-
-/// The impulse of the engine's friction: of the change of the body's velocity, what follows the climber's slip, whose
-/// direction is given; zero if there is none.
-fn friction(change: DVec3, along: DVec3, response: impl Fn(DVec3) -> DVec3) -> DVec3 {
-    let impulse = change.dot(along) / response(along).dot(along);
-    if impulse > 0.0 && impulse.is_finite() {
-        along * impulse
     } else {
         DVec3::ZERO
     }

@@ -3,7 +3,9 @@
 mod body;
 #[cfg(feature = "parry")]
 mod clamp;
+mod impact;
 mod meeting;
 
 pub use body::{ProxyBody, ProxyTouch};
+pub use impact::ProxyImpact;
 pub use meeting::{ProxyMeeting, ProxyShare};

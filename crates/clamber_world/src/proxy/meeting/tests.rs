@@ -174,3 +174,74 @@ fn numbers_that_are_not_finite_and_bodies_that_cannot_move_are_no_meetings() {
         assert!(share.is_none_or(|share| share.body.is_finite()));
     }
 }
+
+/// The response of a body's point to an impulse there: the body turns, too.
+fn turning(mass: f64) -> impl Fn(DVec3) -> DVec3 {
+    let arm = vector();
+    // The inverse moments of inertia of a box about its axes.
+    let sides = DVec3::new(fastrand::f64(), fastrand::f64(), fastrand::f64()) + 0.05;
+    let squares = sides * sides;
+    let moments = DVec3::splat(squares.element_sum()) - squares;
+    let inverse = DVec3::splat(12.0 / mass) / moments;
+    move |impulse| impulse / mass + (inverse * arm.cross(impulse)).cross(arm)
+}
+
+/// Bodies that turn, with friction, and climbers on supports: a blow is bounded by the approach, and nobody gains energy.
+#[test]
+fn no_blow_is_harder_than_the_approach_and_makes_energy() {
+    fastrand::seed(3);
+    let (mut felt, mut hardest) = (0, 0.0f64);
+    for round in 0..50_000 {
+        let frame = vector() * spread(0.1, 4) * f64::from(fastrand::u8(0..2));
+        let mut climber = climber();
+        climber.mass = spread(0.1, 6);
+        (climber.velocity, climber.drift, climber.frame_velocity) = (frame, frame, frame);
+        climber.support_normal = fastrand::bool().then(|| vector().normalize());
+        let normal = vector().normalize();
+        let (mass, speed) = (spread(1e-3, 8), spread(0.1, 4));
+        let respond = turning(mass);
+        let mut meeting = stopped(&climber, normal, speed);
+        meeting.friction = fastrand::f64();
+        // The impulse of an engine that stops the point along the normal, and slows it along the surface.
+        let slips = |velocity: DVec3| (velocity - frame).reject_from_normalized(normal);
+        let along = slips(meeting.before).normalize();
+        let mut drag = meeting.friction * fastrand::f64();
+        let engine = loop {
+            let unit = normal - along * drag;
+            let stiffness = respond(unit).dot(normal);
+            let engine = unit * (speed / stiffness);
+            meeting.after = meeting.before + respond(engine);
+            if stiffness > 0.0 && slips(meeting.after).dot(along) >= 0.0 || drag == 0.0 {
+                break engine;
+            }
+            drag = if drag > 1e-3 { drag * 0.5 } else { 0.0 };
+        };
+        let Some(share) = climber.share(&meeting, &respond) else {
+            panic!("round {round}: {meeting:?}");
+        };
+        // All in the climber's frame.
+        let [before, after] =
+            [meeting.before, meeting.after + respond(share.body)].map(|v| v - frame);
+        let gains = (engine + share.body).dot(before + after) * 0.5;
+        let slack = 1e-9 * mass * (speed + frame.length()) * (speed + frame.length());
+        let Some(blow) = share.climber else {
+            assert!(gains <= slack, "round {round}: {gains}");
+            continue;
+        };
+        felt += 1;
+        let change = blow.length() / climber.mass;
+        let approach = speed * libm::hypot(1.0, meeting.friction);
+        hardest = hardest.max(change / approach);
+        assert!(
+            change <= approach * (1.0 + 1e-9),
+            "round {round}: {change} of {approach}"
+        );
+        if climber.support_normal.is_none() {
+            let own = blow.length_squared() / climber.mass * 0.5;
+            assert!(gains + own <= slack, "round {round}: {gains} and {own}");
+        } else {
+            assert!(gains <= slack, "round {round}: {gains}");
+        }
+    }
+    assert!(felt > 10_000 && hardest > 0.9, "{felt}, {hardest}");
+}

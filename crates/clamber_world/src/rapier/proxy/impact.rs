@@ -8,28 +8,10 @@ use super::{ClimberProxy, ProxyHit};
 use crate::rapier::BodyPoses;
 use crate::rapier::push::point_response;
 use crate::rapier::terrain::{key_of, pose_of};
-use crate::{MaterialPoint, ProxyMeeting};
+use crate::{MaterialPoint, ProxyImpact, ProxyMeeting};
 
-/// The contacts of one body with the climber.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Impact {
-    body: RigidBodyHandle,
-    /// The collider with the strongest of them.
-    collider: ColliderHandle,
-    /// Rapier's impulse there.
-    strongest: f64,
-    /// Sums over the contacts, weighed by their impulses: the impulses, the points in rapier's space, and the normals
-    /// from the climber to the body.
-    weight: f64,
-    point: DVec3,
-    normal: DVec3,
-}
-
-impl Impact {
-    fn key(&self) -> ((u32, u32), (u32, u32)) {
-        (self.body.into_raw_parts(), self.collider.into_raw_parts())
-    }
-}
+/// Of bodies and colliders, the index and the generation.
+pub(super) type Impact = ProxyImpact<(u32, u32), (u32, u32)>;
 
 impl ClimberProxy {
     pub(super) fn take_impacts(
@@ -45,19 +27,7 @@ impl ClimberProxy {
         for pair in narrow_phase.contact_pairs_with(self.collider) {
             found.extend(self.contacts_of(pair, bodies, colliders));
         }
-        found.sort_unstable_by_key(Impact::key);
-        found.dedup_by(|next, first| {
-            let is_same = next.body == first.body;
-            if is_same {
-                first.weight += next.weight;
-                first.point += next.point;
-                first.normal += next.normal;
-                if next.strongest > first.strongest {
-                    (first.collider, first.strongest) = (next.collider, next.strongest);
-                }
-            }
-            is_same
-        });
+        Impact::merge(&mut found);
         let mut hit = None;
         for impact in &found {
             self.weigh(impact, (before, dt), bodies, colliders, &mut hit);
@@ -85,38 +55,28 @@ impl ClimberProxy {
         let body = colliders.get(collider)?.parent()?;
         bodies.get(body).filter(|body| body.is_dynamic())?;
         let place = pose_of(bodies.get(self.handle)?.position());
-        let mut impact = Impact {
-            body,
-            collider,
-            strongest: 0.0,
-            weight: 0.0,
-            point: DVec3::ZERO,
-            normal: DVec3::ZERO,
-        };
-        let mut add = |weighed: &dyn Fn(f64, f64) -> f64| {
+        let mut impact = Impact::new(body.into_raw_parts(), collider.into_raw_parts());
+        let friction = self.friction_with(collider, colliders);
+        let mut add = |weigh: &dyn Fn(f64, f64) -> f64| {
             for manifold in pair.manifolds() {
                 let normal = manifold.data.normal.as_dvec3();
                 let normal = if is_first { normal } else { -normal };
                 for contact in &manifold.points {
-                    let weight = weighed(contact.data.impulse.into(), contact.dist.into());
+                    let weight = weigh(contact.data.impulse.into(), contact.dist.into());
                     let local = if is_first {
                         contact.local_p1
                     } else {
                         contact.local_p2
                     };
-                    impact.weight += weight;
-                    impact.point += place.transform(local.as_dvec3()) * weight;
-                    impact.normal += normal * weight;
+                    impact.add(weight, place.transform(local.as_dvec3()), normal, friction);
                 }
             }
-            impact.weight
+            impact.touches()
         };
         // A body that rapier has pushed out is on its way in the last of rapier's substeps, which has no impulse.
-        if add(&|impulse, _| impulse.max(0.0)) <= 0.0 {
-            add(&|_, distance| (-distance).max(0.0));
-        }
-        impact.strongest = impact.weight;
-        (impact.weight > 0.0).then_some(impact)
+        let touches =
+            add(&|impulse, _| impulse.max(0.0)) || add(&|_, distance| (-distance).max(0.0));
+        touches.then_some(impact)
     }
 
     /// Gives back to a body what the climber does not take, and adds what it takes to the hit.
@@ -128,22 +88,24 @@ impl ClimberProxy {
         colliders: &ColliderSet,
         hit: &mut Option<(f64, ProxyHit)>,
     ) -> Option<()> {
-        let normal = impact.normal.try_normalize()?;
-        let point = impact.point / impact.weight;
-        let [linvel, angvel] = before.velocities(impact.body)?.map(|v| v.as_dvec3());
-        let body = bodies.get_mut(impact.body)?;
+        let normal = impact.normal()?;
+        let point = impact.point();
+        let handle = RigidBodyHandle::from_raw_parts(impact.body.0, impact.body.1);
+        let collider = ColliderHandle::from_raw_parts(impact.collider.0, impact.collider.1);
+        let [linvel, angvel] = before.velocities(handle)?.map(|v| v.as_dvec3());
+        let body = bodies.get_mut(handle)?;
         let arm = point - body.mass_properties().world_com.as_dvec3();
         let was = linvel + angvel.cross(arm);
         let free = was + acceleration(body) * dt;
         let local = pose_of(body.position()).inverse_transform(point);
-        let from = pose_of(before.get(impact.body)?).transform(local);
+        let from = pose_of(before.get(handle)?).transform(local);
         let meeting = ProxyMeeting {
             normal,
             before: was,
             free,
             after: super::velocity_at(body, point),
             shifted: point - from - free * dt,
-            friction: self.friction_with(impact.collider, colliders),
+            friction: impact.friction(),
         };
         let share = self
             .body
@@ -155,12 +117,11 @@ impl ClimberProxy {
             body.apply_impulse_at_point(share.body.as_vec3(), point.as_vec3(), true);
         }
         if let Some(impulse) = share.climber {
-            let collider = colliders.get(impact.collider)?;
-            let local = pose_of(collider.position()).inverse_transform(point);
+            let local = pose_of(colliders.get(collider)?.position()).inverse_transform(point);
             let this = ProxyHit {
                 impulse,
                 material: MaterialPoint {
-                    key: key_of(impact.collider),
+                    key: key_of(collider),
                     coordinates: local.to_array(),
                 },
                 point: point + self.origin,

@@ -24,9 +24,6 @@ use rapier3d::pipeline::{ActiveHooks, PhysicsWorld};
 use super::{BodyPoses, RapierTerrain};
 use crate::{MaterialPoint, ProxyBody, ProxyTouch};
 
-/// Coefficient of friction of the proxy: what lies on a climber slides off where it is steep.
-const FRICTION: f32 = 0.5;
-
 /// Rapier takes the contacts of two bodies that hardly moved from the last step, and does not see then that a joint
 /// disables them since. It does so for no collider that has hooks. This hook is for sensors, which a proxy is not.
 const FRESH: ActiveHooks = ActiveHooks::FILTER_INTERSECTION_PAIR;
@@ -130,7 +127,7 @@ impl ClimberProxy {
             .linvel(body.drift.as_vec3());
         let handle = bodies.insert(kinematic);
         let collider = ColliderBuilder::new(shape(body))
-            .friction(FRICTION)
+            .friction(ProxyBody::FRICTION)
             .active_hooks(FRESH)
             .mass(body.mass as f32);
         let collider = colliders.insert_with_parent(collider, handle, bodies);

@@ -12,9 +12,6 @@ use super::{AvianProxies, AvianProxy, Proxy, StandIn};
 use crate::climber::AVIAN;
 use crate::{ClimberBody, WorldOrigin};
 
-/// Coefficient of friction of the body: what lies on a climber slides off where it is steep.
-const FRICTION: f32 = 0.5;
-
 type Moving = (
     &'static RigidBody,
     &'static Position,
@@ -114,7 +111,7 @@ fn spawn(commands: &mut Commands, shown: &ProxyBody, place: Vec3, drift: Vec3) -
         StandIn,
         RigidBody::Kinematic,
         shape(shown),
-        Friction::new(FRICTION),
+        Friction::new(ProxyBody::FRICTION),
         Transform::from_translation(place),
         Position(place),
         LinearVelocity(drift),

@@ -10,7 +10,7 @@ use bevy_time::Time;
 use clamber_world::{ProxyMeeting, RigidPose};
 use glam::DVec3;
 
-use super::impact::{Impact, Recorded, other};
+use super::impact::{Impact, Recorded, impact_of, other};
 use super::{AvianProxies, AvianProxy};
 use crate::{ClimberBlow, ClimberBody, ClimberInput};
 
@@ -100,7 +100,7 @@ pub(super) fn strike(
     for (climber, proxy) in proxies {
         impacts.clear();
         let pairs = graph.contact_pairs_with(proxy.body);
-        impacts.extend(pairs.filter_map(|pair| Impact::of(pair, proxy.body)));
+        impacts.extend(pairs.filter_map(|pair| impact_of(pair, proxy.body)));
         Impact::merge(impacts);
         let mut hit: Option<(DVec3, f64, Entity)> = None;
         for impact in impacts
@@ -114,7 +114,7 @@ pub(super) fn strike(
             let Some(meeting) = meeting(impact, before, &body, dt) else {
                 continue;
             };
-            let point = impact.point / impact.weight;
+            let point = impact.point();
             let respond = |impulse| response(&body, point, impulse);
             let Some(share) = proxy.shown.share(&meeting, respond) else {
                 continue;
@@ -159,7 +159,7 @@ fn meeting(
     body: &RigidBodyQueryItem,
     dt: f64,
 ) -> Option<ProxyMeeting> {
-    let point = impact.point / impact.weight;
+    let point = impact.point();
     let arm = point - center_of(body);
     let was = before.velocity_at(point);
     let is = body.linear_velocity.0.as_dvec3() + body.angular_velocity.0.as_dvec3().cross(arm);
@@ -168,12 +168,12 @@ fn meeting(
         .pose
         .transform(pose_of(body).inverse_transform(point));
     Some(ProxyMeeting {
-        normal: impact.normal.try_normalize()?,
+        normal: impact.normal()?,
         before: was,
         free,
         after: is,
         shifted: point - from - free * dt,
-        friction: impact.friction / impact.weight,
+        friction: impact.friction(),
     })
 }
 

@@ -1,5 +1,7 @@
 //! Bodies of avian and of `bevy_rapier3d` that meet climbers.
 
+mod elsewhere;
+
 use bevy_app::{App, TaskPoolPlugin};
 use bevy_asset::AssetPlugin;
 use bevy_clamber::clamber_climber::ClimberMode;
@@ -129,6 +131,34 @@ impl Scene {
             }
         }
         entity.id()
+    }
+
+    /// Adds a level deck of 6 m that moves at a velocity, and puts the climber onto it.
+    fn add_deck(&mut self, top: f32, velocity: Vec3) {
+        let at = Transform::from_xyz(0.0, top - 0.5, 0.0);
+        let mut deck = self.app.world_mut().spawn(at);
+        match self.engine {
+            Engine::Avian => {
+                use avian3d::prelude::{Collider, LinearVelocity, RigidBody};
+                let deck_collider = Collider::cuboid(6.0, 1.0, 6.0);
+                deck.insert((
+                    RigidBody::Kinematic,
+                    deck_collider,
+                    LinearVelocity(velocity),
+                ));
+            }
+            Engine::Rapier => {
+                use bevy_rapier3d::prelude::{Collider, RigidBody, Velocity};
+                let kind = RigidBody::KinematicVelocityBased;
+                deck.insert((
+                    kind,
+                    Collider::cuboid(3.0, 0.5, 3.0),
+                    Velocity::linear(velocity),
+                ));
+            }
+        }
+        let (climber, place) = (self.climber, Transform::from_xyz(0.0, top + 0.41, 0.0));
+        self.app.world_mut().entity_mut(climber).insert(place);
     }
 
     /// Adds a crate of 0.6 m whose middle is above the climber's.
