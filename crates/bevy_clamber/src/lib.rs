@@ -37,8 +37,8 @@ pub use arena::{
 };
 pub use camera::{ClimberCamera, ClimberCameraInput, ClimberCameraPlugin};
 pub use climber::{
-    Climber, ClimberBlow, ClimberBody, ClimberFilter, ClimberInput, ClimberModes, ClimberPlugin,
-    ClimberRule, ClimberState, ClimberTouch, CustomObstacle, events,
+    AirVelocity, Climber, ClimberBlow, ClimberBody, ClimberFilter, ClimberInput, ClimberModes,
+    ClimberPlugin, ClimberRule, ClimberState, ClimberTouch, CustomObstacle, events,
 };
 pub use collider::{
     ColliderError, ColliderFailure, ColliderNeeds, ColliderStatus, ColliderTag, SkinnedCollider,

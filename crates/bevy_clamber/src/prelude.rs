@@ -3,11 +3,11 @@
 #[cfg(feature = "diagnostics")]
 pub use crate::SurfaceDiagnosticsPlugin;
 pub use crate::{
-    AnchorLost, ClamberPlugins, ClamberSystems, Climber, ClimberBlow, ClimberBody, ClimberCamera,
-    ClimberCameraInput, ClimberCameraPlugin, ClimberFilter, ClimberInput, ClimberModes,
-    ClimberPlugin, ClimberRule, ClimberState, ColliderStatus, ColliderTag, CustomObstacle,
-    DrawnSurfaceQuery, EntityHit, PoseTiming, PosedSurface, SkinnedCollider, SurfaceAnchor,
-    SurfaceFilter, SurfaceQuery, WorldOrigin,
+    AirVelocity, AnchorLost, ClamberPlugins, ClamberSystems, Climber, ClimberBlow, ClimberBody,
+    ClimberCamera, ClimberCameraInput, ClimberCameraPlugin, ClimberFilter, ClimberInput,
+    ClimberModes, ClimberPlugin, ClimberRule, ClimberState, ColliderStatus, ColliderTag,
+    CustomObstacle, DrawnSurfaceQuery, EntityHit, PoseTiming, PosedSurface, SkinnedCollider,
+    SurfaceAnchor, SurfaceFilter, SurfaceQuery, WorldOrigin,
 };
 #[cfg(feature = "fight")]
 pub use crate::{

@@ -25,7 +25,8 @@ use super::shown::Shown;
 /// feet, as this frame should draw it; its -Z looks where the climber is heading. To teleport the climber, write
 /// another translation into it.
 ///
-/// The configuration can be changed at any time. One that is refused is logged, and the last one stays.
+/// The configuration can be changed at any time. One that is refused is logged, and the last one stays. A body that grows
+/// does so as soon as it has room; until then it keeps the whole last configuration ([`ClimberBody::config`]).
 ///
 /// ```
 /// # use bevy_ecs::prelude::*;

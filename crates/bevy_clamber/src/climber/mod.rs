@@ -23,4 +23,4 @@ pub(crate) use obstacles::RAPIER;
 #[cfg(feature = "colossus")]
 pub(crate) use obstacles::Touchable;
 pub use plugin::ClimberPlugin;
-pub use rules::{ClimberModes, ClimberRule, ClimberTouch};
+pub use rules::{AirVelocity, ClimberModes, ClimberRule, ClimberTouch};

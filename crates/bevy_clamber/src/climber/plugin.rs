@@ -6,6 +6,7 @@ use bevy_ecs::schedule::{InternedScheduleLabel, ScheduleLabel};
 
 use super::component::{Climber, ClimberBody, ClimberFilter, ClimberState};
 use super::input::{ClimberInput, LatchedInput, latch};
+use super::rules::AirVelocity;
 use super::{draw, events, step};
 use crate::needs::need_plugin;
 #[cfg(feature = "avian")]
@@ -43,6 +44,8 @@ impl Plugin for ClimberPlugin {
             .register_type::<ClimberState>()
             .register_type::<ClimberInput>()
             .register_type::<ClimberFilter>()
+            .register_type::<AirVelocity>()
+            .init_resource::<AirVelocity>()
             .add_observer(remove_body)
             .configure_sets(
                 self.schedule,

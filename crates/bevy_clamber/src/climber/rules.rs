@@ -2,7 +2,9 @@ use std::ops::Deref;
 use std::sync::Arc;
 
 use bevy_ecs::prelude::*;
+use bevy_reflect::prelude::*;
 use clamber_climber::{ContactQuery, ContactRule, CustomMode};
+use glam::DVec3;
 
 /// Decides what climbers may stand on, step onto, hang from, grip and pass through, and with which friction: as a resource
 /// for all of them, as a component for one. Without either, everything is solid, fur is gripped and other climbers are not
@@ -12,6 +14,7 @@ use clamber_climber::{ContactQuery, ContactRule, CustomMode};
 /// # use bevy_app::App;
 /// # use bevy_clamber::prelude::*;
 /// # use bevy_ecs::prelude::*;
+use bevy_reflect::prelude::*;
 /// # let mut app = App::new();
 /// # let (door, owner) = (Entity::PLACEHOLDER, Entity::PLACEHOLDER);
 /// // Everything but stone is gripped, and a door lets its owner pass.
@@ -65,3 +68,11 @@ impl ClimberRule {
 /// asked in this order whether they begin. See [`CustomMode`].
 #[derive(Resource, Default)]
 pub struct ClimberModes(pub Vec<Box<dyn CustomMode + Send + Sync>>);
+
+/// A resource with the velocity of the air, in world space, metres a second: a wind. A climber that has touched nothing for
+/// a second steers against it; its greatest speed of fall is relative to it
+/// ([`StepRules::air_velocity`](clamber_climber::StepRules::air_velocity)). Zero by default. While it is not finite,
+/// climbers stand still.
+#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Reflect)]
+#[reflect(Resource, Default, Clone, Debug, PartialEq)]
+pub struct AirVelocity(pub DVec3);

@@ -6,7 +6,7 @@ use bevy_math::{Quat, Vec3};
 use bevy_time::Time;
 use bevy_transform::components::Transform;
 use clamber_climber::{
-    ClimberConfig, ClimberGroup, ContactQuery, CustomMode, StepReport, StepRules,
+    ClimberConfig, ClimberError, ClimberGroup, ContactQuery, CustomMode, StepReport, StepRules,
 };
 use clamber_surface::mesh::MeshId;
 use clamber_world::{Attachment, MaterialPoint, ObstacleId};
@@ -16,7 +16,7 @@ use super::component::{Climber, ClimberBody, ClimberFilter, ClimberState};
 use super::events::{Told, tell_event};
 use super::input::{ClimberInput, LatchedInput};
 use super::obstacles::{Touchable, touched};
-use super::rules::{ClimberModes, ClimberRule, ClimberTouch};
+use super::rules::{AirVelocity, ClimberModes, ClimberRule, ClimberTouch};
 use super::shown::Shown;
 use crate::{PosedSurface, WorldOrigin};
 
@@ -32,7 +32,7 @@ type Followed = (
     Option<&'static mut ClimberBody>,
 );
 
-/// Makes the bodies of new climbers, and takes over what the app changed: configurations, states, transforms.
+/// Makes the bodies of new climbers, and takes over what the app changed: states and transforms.
 pub(super) fn follow_changes(
     mut climbers: Query<Followed>,
     origin: Res<WorldOrigin>,
@@ -59,12 +59,6 @@ pub(super) fn follow_changes(
             let state = ClimberState(*body.climber.state());
             commands.entity(entity).try_insert(state);
         }
-        if *body.climber.config() != climber.config
-            && let Err(error) = body.climber.set_config(climber.config)
-            && climber.is_changed()
-        {
-            tracing::error!("climber {entity} keeps its configuration: {error}");
-        }
         if let Some(state) = state
             && state.0 != *body.climber.state()
         {
@@ -84,7 +78,7 @@ fn new_body(
     transform: &Transform,
     origin: DVec3,
     state: Option<&ClimberState>,
-) -> Result<ClimberBody, clamber_climber::ClimberError> {
+) -> Result<ClimberBody, ClimberError> {
     let position = origin + transform.translation.as_dvec3();
     let mut climber = clamber_climber::Climber::new(*config, position)?;
     let mut begin = *climber.state();
@@ -141,6 +135,7 @@ impl ClimberBody {
 #[query_data(mutable)]
 pub(super) struct Stepped {
     entity: Entity,
+    climber: Ref<'static, Climber>,
     body: &'static mut ClimberBody,
     state: &'static mut ClimberState,
     input: &'static mut ClimberInput,
@@ -155,7 +150,8 @@ pub(super) fn step_climbers(
     touchable: Touchable<'_, '_>,
     rule: Option<Res<ClimberRule>>,
     modes: Option<Res<ClimberModes>>,
-    mut climbers: Query<Stepped, With<Climber>>,
+    air: Res<AirVelocity>,
+    mut climbers: Query<Stepped>,
     mut group: Local<ClimberGroup>,
 ) {
     let dt = time.delta_secs_f64();
@@ -193,12 +189,19 @@ pub(super) fn step_climbers(
             contact: rule.is_some().then_some(&decide),
             modes: &modes,
             id: Some(ObstacleId(entity.to_bits())),
-            ..StepRules::default()
+            air_velocity: air.0,
         };
         let gone = body.lost_point(&touchable);
         body.forget_jump(&touchable);
         let climber = &mut body.climber;
+        let wanted = &stepped.climber;
         let result = touchable.around(entity, stepped.filter, Some(group), gone, |obstacles| {
+            if *climber.config() != wanted.config
+                && let Err(error) = climber.try_resize_with(wanted.config, obstacles, &rules)
+                && wanted.is_changed()
+            {
+                tell_refused(entity, &error);
+            }
             climber.step_with(&input, obstacles, &rules, dt)
         });
         match result {
@@ -218,6 +221,15 @@ pub(super) fn step_climbers(
         climbers.iter_mut().for_each(step);
     } else {
         climbers.par_iter_mut().for_each(step);
+    }
+}
+
+/// Tells of a configuration that is not taken over, or not yet.
+fn tell_refused(entity: Entity, error: &ClimberError) {
+    if matches!(error, ClimberError::NoRoom) {
+        tracing::debug!("climber {entity} keeps its size until there is room");
+    } else {
+        tracing::error!("climber {entity} keeps its configuration: {error}");
     }
 }
 

@@ -26,8 +26,9 @@ macro_rules! use_each {
 }
 
 use_each! { ALWAYS, cfg(all()),
-    AnchorLost ClamberPlugins ClamberSystems Climber ClimberBlow ClimberBody ClimberCamera ClimberCameraInput
-    ClimberCameraPlugin ClimberFilter ClimberInput ClimberModes ClimberPlugin ClimberRule ClimberState ColliderStatus ColliderTag CustomObstacle DrawnSurfaceQuery ContactRule EntityHit PoseTiming
+    AirVelocity AnchorLost ClamberPlugins ClamberSystems Climber ClimberBlow ClimberBody ClimberCamera
+    ClimberCameraInput ClimberCameraPlugin ClimberFilter ClimberInput ClimberModes ClimberPlugin ClimberRule
+    ClimberState ColliderStatus ColliderTag CustomObstacle DrawnSurfaceQuery ContactRule EntityHit PoseTiming
     PosedSurface SkinnedCollider SurfaceAnchor SurfaceFilter SurfaceKind SurfaceQuery SurfaceTag TargetMotion WorldOrigin
 }
 use_each! { AVIAN, cfg(feature = "avian"), AvianProxy AvianProxyPlugin }
