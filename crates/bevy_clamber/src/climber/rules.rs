@@ -14,7 +14,6 @@ use glam::DVec3;
 /// # use bevy_app::App;
 /// # use bevy_clamber::prelude::*;
 /// # use bevy_ecs::prelude::*;
-use bevy_reflect::prelude::*;
 /// # let mut app = App::new();
 /// # let (door, owner) = (Entity::PLACEHOLDER, Entity::PLACEHOLDER);
 /// // Everything but stone is gripped, and a door lets its owner pass.

@@ -226,7 +226,7 @@ pub(super) fn step_climbers(
 
 /// Tells of a configuration that is not taken over, or not yet.
 fn tell_refused(entity: Entity, error: &ClimberError) {
-    if matches!(error, ClimberError::NoRoom) {
+    if matches!(error, ClimberError::NoRoom { .. }) {
         tracing::debug!("climber {entity} keeps its size until there is room");
     } else {
         tracing::error!("climber {entity} keeps its configuration: {error}");

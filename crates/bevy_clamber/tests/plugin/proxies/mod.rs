@@ -8,7 +8,7 @@ use bevy_clamber::clamber_climber::ClimberMode;
 use bevy_clamber::events::ClimberTumbled;
 use bevy_clamber::prelude::*;
 use bevy_ecs::prelude::*;
-use bevy_math::Vec3;
+use bevy_math::{DVec3, Vec3};
 use bevy_mesh::MeshPlugin;
 use bevy_rapier3d::prelude::{NoUserData, RapierPhysicsPlugin, TimestepMode};
 use bevy_time::{Fixed, Time, TimePlugin, TimeUpdateStrategy};
@@ -133,14 +133,14 @@ impl Scene {
         entity.id()
     }
 
-    /// Adds a level deck of 6 m that moves at a velocity, and puts the climber onto it.
+    /// Adds a level deck of 60 m that moves at a velocity, and puts the climber onto it.
     fn add_deck(&mut self, top: f32, velocity: Vec3) {
         let at = Transform::from_xyz(0.0, top - 0.5, 0.0);
         let mut deck = self.app.world_mut().spawn(at);
         match self.engine {
             Engine::Avian => {
                 use avian3d::prelude::{Collider, LinearVelocity, RigidBody};
-                let deck_collider = Collider::cuboid(6.0, 1.0, 6.0);
+                let deck_collider = Collider::cuboid(60.0, 1.0, 60.0);
                 deck.insert((
                     RigidBody::Kinematic,
                     deck_collider,
@@ -157,8 +157,18 @@ impl Scene {
                 ));
             }
         }
-        let (climber, place) = (self.climber, Transform::from_xyz(0.0, top + 0.41, 0.0));
+        let (climber, place) = (self.climber, Transform::from_xyz(0.0, top + 0.42, 0.0));
         self.app.world_mut().entity_mut(climber).insert(place);
+        self.run(3.5 / self.hz);
+        // It comes along with the deck.
+        let world = self.app.world_mut();
+        let config = *world.get::<ClimberBody>(climber).unwrap().config();
+        let above = DVec3::Y * (f64::from(top) + 0.42);
+        let fresh = bevy_clamber::clamber_climber::Climber::new(config, above).unwrap();
+        let mut state = *fresh.state();
+        (state.velocity, state.base_velocity) = (velocity.as_dvec3(), velocity.as_dvec3());
+        world.get_mut::<ClimberState>(climber).unwrap().0 = state;
+        world.resource_mut::<Falls>().0.clear();
     }
 
     /// Adds a crate of 0.6 m whose middle is above the climber's.

@@ -120,9 +120,9 @@ pub(super) fn strike(
                 continue;
             };
             let turned = turn(&body, point, share.body);
-            // Otherwise avian takes it for moved by the game.
+            // Otherwise avian takes it for moved by the game, and its transform for old.
             if share.shift != DVec3::ZERO {
-                body.position.0 += share.shift.as_vec3();
+                body.position.bypass_change_detection().0 += share.shift.as_vec3();
             }
             if share.body != DVec3::ZERO {
                 let pushed = body.effective_inverse_mass().as_dvec3() * share.body;
