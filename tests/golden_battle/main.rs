@@ -13,10 +13,10 @@ use clamber_scenes::giant::giant;
 
 /// Hash of the ride. It changes with any bit of a result, and with rapier. Check that a change is intended, then store
 /// the new hash, and the file by `CLAMBER_BLESS=1`.
-const RIDE: u64 = 0xd6c9_06f1_1013_5793;
+const RIDE: u64 = 0x1a24_53f9_17c8_3503;
 
 /// Hash of the climb.
-const CLIMB: u64 = 0x9278_22fa_75d3_d070;
+const CLIMB: u64 = 0xa74b_c813_c341_31a1;
 
 /// A tick of a battle: the climber's fields, the creature's pose and the rocks.
 fn add(run: &mut GoldenRun, battle: &Battle<'_>) {
