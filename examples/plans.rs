@@ -1,5 +1,5 @@
-//! A bot climbs a giant that breathes, to the highest place that can be reached, by its input alone; and foresees when a shake
-//! would throw it off.
+//! A bot climbs a giant that breathes, to the highest place that can be reached, by its input alone; and foresees when
+//! a shake would throw it off.
 //!
 //! The graph is built on a thread of its own, and kept in `target/plans`: the second start takes a tenth of a second.
 

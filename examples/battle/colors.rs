@@ -1,5 +1,5 @@
-//! Colours of what is drawn over the pictures: of Okabe and Ito's set, which colour-blind people can tell apart, with white
-//! and magenta added.
+//! Colours of what is drawn over the pictures: of Okabe and Ito's set, which colour-blind people can tell apart, with
+//! white and magenta added.
 
 use clamber::render::Color;
 

@@ -185,8 +185,8 @@ impl Film {
     }
 }
 
-/// A camera a few steps from the climber: outward from the skin that it holds, and to a side, so that hands and face are
-/// seen; in front of skin that would hide it.
+/// A camera a few steps from the climber: outward from the skin that it holds, and to a side, so that hands and face
+/// are seen; in front of skin that would hide it.
 fn close(battle: &Battle<'_>) -> Camera {
     let (config, state) = (battle.climber().config(), battle.climber().state());
     let up = config.up();

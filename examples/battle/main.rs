@@ -22,16 +22,17 @@ use std::process::ExitCode;
 use clamber_scenes::battle::{self, BattleError, BattleOptions, Summary, TICK};
 use clap::{ArgGroup, CommandFactory, Parser, error::ErrorKind};
 
-/// A climber against a giant of stone and fur, which notices, hunts and strikes it, and shakes itself once it is climbed.
-/// Or the climber rides on a creature that walks and shakes. Rocks fall on both. Prints and checks the results, and writes a summary and a timeline.
+/// A climber against a giant of stone and fur, which notices, hunts and strikes it, and shakes itself once it is
+/// climbed. Or the climber rides on a creature that walks and shakes. Rocks fall on both. Prints and checks the
+/// results, and writes a summary and a timeline.
 #[derive(Debug, Parser)]
 #[command(name = "battle", version)]
 struct Options {
     #[command(flatten)]
     battle: BattleOptions,
 
-    /// Fight so many battles, with this seed and the next ones, each until the creature is dead; print a line for each, and
-    /// write no files.
+    /// Fight so many battles, with this seed and the next ones, each until the creature is dead; print a line for each,
+    /// and write no files.
     #[arg(long, value_name = "COUNT", conflicts_with = "pictures")]
     #[arg(value_parser = clap::value_parser!(u64).range(1..=10_000))]
     fights: Option<u64>,

@@ -1,7 +1,9 @@
-//! Two climbers against one giant, by rollback: two peers in one process over a bad line, or two processes over a network.
+//! Two climbers against one giant, by rollback: two peers in one process over a bad line, or two processes over a
+//! network.
 //!
-//! Both peers send each other only their players' inputs, eleven bytes a tick. Each guesses what has not arrived, goes back when a
-//! guess was wrong, and plays again. At the end both have the same fight, tick by tick, and have told of everything once.
+//! Both peers send each other only their players' inputs, eleven bytes a tick. Each guesses what has not arrived, goes
+//! back when a guess was wrong, and plays again. At the end both have the same fight, tick by tick, and have told of
+//! everything once.
 //!
 //! `cargo run --release --features ggrs --example duel` plays both. For two processes, on one machine or two:
 //!
@@ -48,7 +50,8 @@ struct Options {
     #[arg(value_parser = clap::value_parser!(u64).range(1..=3600))]
     seconds: u64,
 
-    /// Time of a message there and back, by how much it varies, and the share that gets lost, in a fight in one process.
+    /// Time of a message there and back, by how much it varies, and the share that gets lost, in a fight in one
+    /// process.
     #[arg(long, value_name = "MILLISECONDS", default_value_t = 100.0)]
     round_trip: f64,
     #[arg(long, value_name = "MILLISECONDS", default_value_t = 20.0)]

@@ -11,8 +11,8 @@
 //! - which of a target's tests or benches are named, and `--nocapture`; a name of a test must stand in the sources;
 //! - `CLAMBER_TEST_DATA`, which says where files are. With any other variable it is another command.
 //!
-//! `clamber` runs if a test that starts the program has the same words and options in its text. A command with a pipe, or
-//! of any other program, is run by no step.
+//! `clamber` runs if a test that starts the program has the same words and options in its text. A command with a pipe,
+//! or of any other program, is run by no step.
 //!
 //! Whoever runs it, the packages, targets, features and steps that a command names must exist.
 

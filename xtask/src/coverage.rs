@@ -1,5 +1,5 @@
-//! Nothing rots unseen: each test, bench, example and program in the documentation is run by a step of `cargo xtask ci` or
-//! of `cargo xtask nightly`, with the features that it requires, and so is each test that is marked as ignored.
+//! Nothing rots unseen: each test, bench, example and program in the documentation is run by a step of `cargo xtask ci`
+//! or of `cargo xtask nightly`, with the features that it requires, and so is each test that is marked as ignored.
 //!
 //! What the steps run, their [`TestRun`](crate::test_run::TestRun)s say, from which cargo's arguments follow too. What
 //! there is to run, cargo's metadata says, and for ignored tests the sources. This holds for the main workspace and for

@@ -1,10 +1,10 @@
 //! The library of every published crate alone, as its users build it: with no features, and with each of its features
 //! alone, without warnings. What only its tests depend on is left out, so that it turns no feature on; tests, benches
-//! and examples, and all features together, are linted in another step. Here dependencies that declare a newer Rust than
-//! ours are refused.
+//! and examples, and all features together, are linted in another step. Here dependencies that declare a newer Rust
+//! than ours are refused.
 //!
-//! Nightly: each feature alone of the crates whose features bring in much that is not ours, and the libraries' tests with
-//! each feature that is not on in the tests of the workspace.
+//! Nightly: each feature alone of the crates whose features bring in much that is not ours, and the libraries' tests
+//! with each feature that is not on in the tests of the workspace.
 
 use cargo_metadata::{Metadata, Package};
 

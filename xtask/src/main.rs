@@ -1,6 +1,6 @@
 //! `cargo xtask ci` runs what CI runs, for a person as well: tests, golden runs, format, lints, each feature,
-//! documentation, public items, examples, benches, dependency arrows and their picture, packages; and checks that nothing
-//! is left out of this, and no command of the documentation. `cargo xtask nightly` runs what takes hours.
+//! documentation, public items, examples, benches, dependency arrows and their picture, packages; and checks that
+//! nothing is left out of this, and no command of the documentation. `cargo xtask nightly` runs what takes hours.
 
 mod app;
 mod arrows;
@@ -53,8 +53,8 @@ enum Task {
         only: Option<String>,
     },
     /// What takes too long for CI: every case of tests that have short forms, golden runs in other builds, other
-    /// libraries, the app on all of Bevy, a soak of half an hour. Takes some two hours on a cold target. Adds a line for
-    /// each step to nightly.md in the target folder.
+    /// libraries, the app on all of Bevy, a soak of half an hour. Takes some two hours on a cold target. Adds a line
+    /// for each step to nightly.md in the target folder.
     Nightly {
         /// Run only the steps whose name contains this.
         #[arg(long, value_name = "NAME")]

@@ -35,8 +35,8 @@ pub(crate) const STEPS: [Step; 8] = [
     Step::runs("soak", |_| vec![soak::nightly()]),
 ];
 
-/// The plugins in apps with avian and `bevy_rapier3d`: climbers on their terrain, bodies on skin, and all the rest. These
-/// two take minutes to build.
+/// The plugins in apps with avian and `bevy_rapier3d`: climbers on their terrain, bodies on skin, and all the rest.
+/// These two take minutes to build.
 fn engines() -> TestRun {
     TestRun {
         packages: Packages::Named(owned(&["bevy_clamber"])),

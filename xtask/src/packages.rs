@@ -1,5 +1,5 @@
-//! Every publishable crate as crates.io would get it: metadata, licences, nothing that does not belong there. Nightly, it
-//! builds from its package alone.
+//! Every publishable crate as crates.io would get it: metadata, licences, nothing that does not belong there. Nightly,
+//! it builds from its package alone.
 
 use cargo_metadata::camino::Utf8Path;
 use cargo_metadata::{Metadata, Package};

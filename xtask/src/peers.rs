@@ -1,5 +1,5 @@
-//! `peers`, a workspace of its own: other libraries, whose answers and times are held against ours. Of those that Debian
-//! packages, what is installed is built.
+//! `peers`, a workspace of its own: other libraries, whose answers and times are held against ours. Of those that
+//! Debian packages, what is installed is built.
 
 use std::path::Path;
 

@@ -1,5 +1,5 @@
-//! One call of cargo that runs tests, benches or examples, as a value. Both the arguments that cargo gets and the list of
-//! what it runs follow from it, so they cannot disagree.
+//! One call of cargo that runs tests, benches or examples, as a value. Both the arguments that cargo gets and the list
+//! of what it runs follow from it, so they cannot disagree.
 
 use std::collections::BTreeSet;
 

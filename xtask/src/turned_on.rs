@@ -1,5 +1,5 @@
-//! The features that are on in one call of cargo. Cargo builds each package once for all that it was told to build, with
-//! the features that anything of it asks for.
+//! The features that are on in one call of cargo. Cargo builds each package once for all that it was told to build,
+//! with the features that anything of it asks for.
 
 use std::collections::BTreeSet;
 
@@ -77,7 +77,8 @@ impl Search {
         }
     }
 
-    /// Adds what a feature implies: a feature of the same package, an optional dependency, or a feature of a dependency.
+    /// Adds what a feature implies: a feature of the same package, an optional dependency, or a feature of a
+    /// dependency.
     fn imply(&mut self, package: &str, implied: &str) {
         match implied.split_once('/') {
             None => {

@@ -62,8 +62,8 @@ pub enum ClamberSystems {
     /// In `PostUpdate`, after [`ClamberSystems::Sample`], before `TransformSystems::Propagate`: climbers are moved to
     /// where this frame draws them.
     Draw,
-    /// In `PostUpdate`, after [`ClamberSystems::Draw`], before `TransformSystems::Propagate`: the figures of climbers are
-    /// posed.
+    /// In `PostUpdate`, after [`ClamberSystems::Draw`], before `TransformSystems::Propagate`: the figures of climbers
+    /// are posed.
     Body,
     /// In `PostUpdate`, after [`ClamberSystems::Body`], before `TransformSystems::Propagate`: cameras follow climbers.
     Follow,
@@ -72,6 +72,7 @@ pub enum ClamberSystems {
     Anchor,
 }
 
-/// The part of [`ClamberSystems::Climb`] in which climbers that are entities of their own are stepped, before an arena is.
+/// The part of [`ClamberSystems::Climb`] in which climbers that are entities of their own are stepped, before an arena
+/// is.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct ClimberTicks;

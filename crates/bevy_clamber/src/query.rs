@@ -45,11 +45,11 @@ pub struct SurfaceQuery<'w, 's, P: SurfacePose = TickPose> {
     origin: Res<'w, WorldOrigin>,
 }
 
-/// A [`SurfaceQuery`] on the skin as the last frame drew it: for what has to fit to the picture, such as cameras, lasers
-/// and cursors. What it finds can be anchored.
+/// A [`SurfaceQuery`] on the skin as the last frame drew it: for what has to fit to the picture, such as cameras,
+/// lasers and cursors. What it finds can be anchored.
 ///
-/// In `PostUpdate`, order systems with it after [`ClamberSystems::Sample`](crate::ClamberSystems::Sample): they then see
-/// the pose of this frame.
+/// In `PostUpdate`, order systems with it after [`ClamberSystems::Sample`](crate::ClamberSystems::Sample): they then
+/// see the pose of this frame.
 pub type DrawnSurfaceQuery<'w, 's> = SurfaceQuery<'w, 's, DrawnPose>;
 
 /// The pose in which a [`SurfaceQuery`] sees skin: [`TickPose`] or [`DrawnPose`].

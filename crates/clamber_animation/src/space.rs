@@ -50,17 +50,17 @@ fn from_above(
     model
 }
 
-/// The transform of a joint in model space in a pose: from the joint's own space. `None` if the pose or the skeleton lacks
-/// the joint. Composes the joints from it to its root, and nothing else.
+/// The transform of a joint in model space in a pose: from the joint's own space. `None` if the pose or the skeleton
+/// lacks the joint. Composes the joints from it to its root, and nothing else.
 pub fn joint_in_model(skeleton: &Skeleton, pose: &Pose, joint: JointId) -> Option<DAffine3> {
     let joints = skeleton.joints().len();
     let is_there = joint.index() < joints && pose.transforms.len() == joints;
     is_there.then(|| model_from_joint(skeleton, pose, joint))
 }
 
-/// The transforms of several joints in model space in a pose, as [`joint_in_model`] gives them; `None` if the pose or the
-/// skeleton lacks one. Less work for joints of one limb, if they are given from its root to its tip: each is composed from
-/// the one before it, if that is above it.
+/// The transforms of several joints in model space in a pose, as [`joint_in_model`] gives them; `None` if the pose or
+/// the skeleton lacks one. Less work for joints of one limb, if they are given from its root to its tip: each is
+/// composed from the one before it, if that is above it.
 pub fn joints_in_model<const N: usize>(
     skeleton: &Skeleton,
     pose: &Pose,

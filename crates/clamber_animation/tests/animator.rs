@@ -287,8 +287,8 @@ fn root_motion_moves_the_creature_as_the_clip_did() {
     assert!(world_from_model.translation.length() > 1.0);
 }
 
-/// What an additive layer adds is the difference of two whole poses of its clip, also under root motion, and in joints that
-/// the clip does not move: nothing.
+/// What an additive layer adds is the difference of two whole poses of its clip, also under root motion, and in joints
+/// that the clip does not move: nothing.
 #[test]
 fn an_additive_layer_adds_the_difference_of_whole_poses() {
     let skeleton = skeleton();

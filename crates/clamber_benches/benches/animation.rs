@@ -1,7 +1,7 @@
 //! What do animation and inverse kinematics cost, beside sampling one clip and composing its palette?
 //!
-//! On the hero, whose skeleton has 43 joints. All take turns, frame by frame, on one thread. Times are medians of the mean
-//! over a hundred frames.
+//! On the hero, whose skeleton has 43 joints. All take turns, frame by frame, on one thread. Times are medians of the
+//! mean over a hundred frames.
 //!
 //! - An animator with one layer, with three, while it fades, and the change of a clip itself.
 //! - The body: four limbs that reach for points which move, and a look-at over head, neck and chest.

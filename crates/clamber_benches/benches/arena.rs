@@ -1,7 +1,8 @@
-//! What do an arena's save, load and rollback cost, beside one of its ticks? And what do many climbers, giants and arrows?
+//! What do an arena's save, load and rollback cost, beside one of its ticks? And what do many climbers, giants and
+//! arrows?
 //!
-//! The giant in the valley with its brain; one climber rides it, one stands before it. All take turns on one thread; times are
-//! medians.
+//! The giant in the valley with its brain; one climber rides it, one stands before it. All take turns on one thread;
+//! times are medians.
 //!
 //! - A plain tick, a save, a load, a fingerprint, and a rollback of eight ticks as ggrs asks for it: one load, and eight times a
 //!   tick, a save and a fingerprint. The same where a plate breaks in the fifth of the eight ticks. Ratios are to a plain tick.

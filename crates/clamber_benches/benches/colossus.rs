@@ -1,8 +1,8 @@
 //! What does a creature's life cost, beside sampling one clip and composing its palette?
 //!
-//! The giant in the valley, with somebody before it and somebody on its back. All take turns, hundred ticks at a time, on one
-//! thread; times are medians of the mean over them. A step's time is without that of posing the skin, which is measured
-//! beside it with the same palettes.
+//! The giant in the valley, with somebody before it and somebody on its back. All take turns, hundred ticks at a time,
+//! on one thread; times are medians of the mean over them. A step's time is without that of posing the skin, which is
+//! measured beside it with the same palettes.
 //!
 //! - A giant that walks about, one that stands, one that attacks over and over, and one that is asleep.
 //!

@@ -1,8 +1,9 @@
 //! What do eight climbers cost in a rapier world of 200 falling crates, as proxies that crates collide with?
 //!
-//! Two worlds have the same crates, and take turns. One has the proxies of eight climbers, which stand where the crates come
-//! down: a tick is recording the bodies, rapier's step, weighing what struck each climber and stopping what entered it, and
-//! following the climbers. The other has eight kinematic bodies of the same shape, and rapier's step alone.
+//! Two worlds have the same crates, and take turns. One has the proxies of eight climbers, which stand where the crates
+//! come down: a tick is recording the bodies, rapier's step, weighing what struck each climber and stopping what
+//! entered it, and following the climbers. The other has eight kinematic bodies of the same shape, and rapier's step
+//! alone.
 //!
 //! Prints a table and writes it to `target/measure/proxies.csv`: name, value, bound, holds.
 //!

@@ -1,12 +1,11 @@
 //! Clips of one body on another.
 //!
-//! What is carried over is how far each bone has turned, in model space, from a reference in which both bodies have the same
-//! posture: the source in its bind pose, and the target with each of its bones turned to where the source's bone points
-//! there.
-//! So a body in a T-pose and one in an A-pose move alike. Turns of whole bones in model space need no knowledge of how
-//! either skeleton lays the axes of its joints (as in Hecker et al. 2008, "Real-time Motion Retargeting to Highly Varied
-//! User-Created Morphologies", whose bodies are far more varied). Hips move as far as the legs are long. The target stands at a
-//! height of 0 in model space, wherever its file has that.
+//! What is carried over is how far each bone has turned, in model space, from a reference in which both bodies have the
+//! same posture: the source in its bind pose, and the target with each of its bones turned to where the source's bone
+//! points there. So a body in a T-pose and one in an A-pose move alike. Turns of whole bones in model space need no
+//! knowledge of how either skeleton lays the axes of its joints (as in Hecker et al. 2008, "Real-time Motion
+//! Retargeting to Highly Varied User-Created Morphologies", whose bodies are far more varied). Hips move as far as the
+//! legs are long. The target stands at a height of 0 in model space, wherever its file has that.
 
 use clamber_surface::rig::{
     Channel, Clip, Interpolation, JointId, Keyframes, Playback, Pose, RigError, Skeleton,
@@ -432,7 +431,8 @@ fn start(skeleton: &Skeleton, bound: &[DAffine3]) -> (Pose, Vec<JointId>) {
     (pose, turned)
 }
 
-/// The cosine of half the angle below which two rotations count as the same: 0.01°, which inverse bind matrices round to.
+/// The cosine of half the angle below which two rotations count as the same: 0.01°, which inverse bind matrices round
+/// to.
 const SAME: f64 = 1.0 - 4e-9;
 
 /// A rotation whose X axis is along a vector, and whose Y axis is nearest to another one.

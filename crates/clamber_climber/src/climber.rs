@@ -22,8 +22,8 @@ pub struct StepRules<'a> {
     /// By default zero.
     pub air_velocity: DVec3,
     /// Id of this climber among the obstacles of others ([`ClimberGroup`](crate::ClimberGroup)). Of two climbers at one
-    /// place, the ids decide who parts to which side; without them they stay there. `contact` gets it with each query, so that one rule can tell climbers
-    /// apart. By default `None`.
+    /// place, the ids decide who parts to which side; without them they stay there. `contact` gets it with each query,
+    /// so that one rule can tell climbers apart. By default `None`.
     pub id: Option<ObstacleId>,
 }
 

@@ -54,8 +54,8 @@ pub enum ClimberEvent {
         /// Speed of the climber relative to the hold, metres a second.
         speed: f64,
     },
-    /// Climbed around a corner between two faces, convex or concave. Along ledges there is no such event, and none on the
-    /// convex shapes of a physics engine: their edges count as round. A triangle mesh of the same box has faces.
+    /// Climbed around a corner between two faces, convex or concave. Along ledges there is no such event, and none on
+    /// the convex shapes of a physics engine: their edges count as round. A triangle mesh of the same box has faces.
     TurnedCorner {
         /// Angle between the normals of the face that it held before and the one that it holds now, radians.
         angle: f64,

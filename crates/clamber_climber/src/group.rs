@@ -42,8 +42,8 @@ impl ClimberGroup {
     /// when the other `obstacles` are where they are at the tick's end. Their order does not matter, nor does that of
     /// the climbers. Of two climbers with one id, the first counts.
     ///
-    /// Step each climber with its own id ([`StepRules::id`](crate::StepRules::id)), the one that it has here. Two climbers
-    /// at exactly one place part to opposite sides by their ids; without ids they stay there.
+    /// Step each climber with its own id ([`StepRules::id`](crate::StepRules::id)), the one that it has here. Two
+    /// climbers at exactly one place part to opposite sides by their ids; without ids they stay there.
     ///
     /// Climbers that stand on each other in a circle, which only restored states can, go on at their velocities.
     pub fn update<'a>(

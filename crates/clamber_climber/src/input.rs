@@ -32,8 +32,8 @@ pub struct ClimberInput {
     pub crouch: bool,
     /// A blow that struck the climber since the last tick.
     pub blow: Option<Blow>,
-    /// The game's own buttons, one bit each, for its custom modes. This crate ignores them; `clamber_fight` reads the lower
-    /// 16 bits.
+    /// The game's own buttons, one bit each, for its custom modes. This crate ignores them; `clamber_fight` reads the
+    /// lower 16 bits.
     pub actions: u32,
     /// Where the player aims: a direction in world space, of any length, for the game's custom modes. This crate
     /// ignores it; `clamber_fight` shoots there.

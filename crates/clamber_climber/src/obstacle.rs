@@ -145,8 +145,8 @@ impl ClimberObstacle {
     }
 
     /// The part of its own velocity with which a point of its surface moves away from what touches it there: above, its
-    /// fall; on its sides, the level part away from the other. With all of its velocity, two climbers that run into each
-    /// other would swap theirs, as balls do, and who stands on another one would feel each of its steps.
+    /// fall; on its sides, the level part away from the other. With all of its velocity, two climbers that run into
+    /// each other would swap theirs, as balls do, and who stands on another one would feel each of its steps.
     fn receding(&self, point: DVec3) -> DVec3 {
         let out = (point - self.now.nearest_on_axis(point)).normalize_or_zero();
         let (rise, high) = (self.own.dot(self.up), out.dot(self.up));

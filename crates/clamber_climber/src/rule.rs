@@ -16,11 +16,11 @@ use crate::{ClimberConfig, ClimberMode, ClimberState};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactRule {
-    /// Whether the contact blocks the body. If not, the contact is not there at all for the climber: it falls, walks and
-    /// reaches through, and the other fields do not matter.
+    /// Whether the contact blocks the body. If not, the contact is not there at all for the climber: it falls, walks
+    /// and reaches through, and the other fields do not matter.
     pub solid: bool,
-    /// Whether the climber may stand on it. If not, it slides off, as off a slope that is too steep. Level ground of this
-    /// kind leaves it lying in [`ClimberMode::Sliding`].
+    /// Whether the climber may stand on it. If not, it slides off, as off a slope that is too steep. Level ground of
+    /// this kind leaves it lying in [`ClimberMode::Sliding`].
     pub stand: bool,
     /// Whether walking may lead up onto it; other characters are never steps. If not, its steps, slopes and edges block
     /// like a vertical wall to a climber that stands on something with `step`. Ground that is flush with the feet, or
@@ -30,8 +30,8 @@ pub struct ContactRule {
     pub hang: bool,
     /// Whether hands may grip it.
     pub grip: bool,
-    /// How well feet and hands hold, as a share of the usual: 1 as usual, 0 not at all. Any value is allowed: NaN and both
-    /// infinities count as 1, and other negative values as 0.
+    /// How well feet and hands hold, as a share of the usual: 1 as usual, 0 not at all. Any value is allowed: NaN and
+    /// both infinities count as 1, and other negative values as 0.
     ///
     /// - Below 1, as on ice: feet accelerate and brake by no more than this times
     ///   [`GroundConfig::friction`](crate::GroundConfig::friction), and gravity pulls the climber down slopes that it
@@ -132,8 +132,8 @@ impl Default for ContactRule {
 /// A game's rule for contacts, passed to [`Climber::step_with`](crate::Climber::step_with) by
 /// [`StepRules::contact`](crate::StepRules::contact).
 ///
-/// It must be a pure function during a tick: it is called any number of times and in any order, for contacts at any time
-/// of the tick, and once for the climber's support.
+/// It must be a pure function during a tick: it is called any number of times and in any order, for contacts at any
+/// time of the tick, and once for the climber's support.
 pub type ContactRuleFn<'a> = dyn Fn(&ContactQuery<'_>) -> ContactRule + 'a;
 
 /// A contact that a [`ContactRuleFn`] decides about, and the climber as it was at the tick's beginning.
@@ -142,8 +142,8 @@ pub type ContactRuleFn<'a> = dyn Fn(&ContactQuery<'_>) -> ContactRule + 'a;
 pub struct ContactQuery<'a> {
     /// The climber, by [`StepRules::id`](crate::StepRules::id).
     pub climber: Option<ObstacleId>,
-    /// The climber's state at the tick's beginning. With its [`memory`](ClimberState::memory), a rule can depend on what
-    /// the game's modes remember.
+    /// The climber's state at the tick's beginning. With its [`memory`](ClimberState::memory), a rule can depend on
+    /// what the game's modes remember.
     pub state: &'a ClimberState,
     /// The climber's configuration.
     pub config: &'a ClimberConfig,
@@ -217,8 +217,8 @@ impl<'a> ContactQuery<'a> {
 
     /// True if the climber comes from above, as a one-way platform asks: the contact's face is level enough to be stood
     /// on, and at the tick's beginning the climber's lowest point was not below the face's plane. Down to a
-    /// [margin](crate::BodyConfig::margin) below, it counts as above unless it rises relative to the material. A climber
-    /// that stands on the same body is above it.
+    /// [margin](crate::BodyConfig::margin) below, it counts as above unless it rises relative to the material. A
+    /// climber that stands on the same body is above it.
     ///
     /// To drop through a platform, let the rule return [`ContactRule::PASS`] until the climber has fallen by a margin:
     /// for as long as a key is held, 0.05 s at least.

@@ -36,8 +36,8 @@ impl Shake {
         }
     }
 
-    /// The integral of `max(0, |acceleration| - threshold)` over a tick of `dt` seconds that ends with this shake and began with
-    /// `before`, metres a second, by the trapezoidal rule.
+    /// The integral of `max(0, |acceleration| - threshold)` over a tick of `dt` seconds that ends with this shake and
+    /// began with `before`, metres a second, by the trapezoidal rule.
     ///
     /// Summed over many swings, the error is within 5 % at ten ticks per swing, and within 3 % at
     /// twenty. Interpolating the accelerations linearly was tried: it cuts off every crest and has twice

@@ -143,8 +143,8 @@ fn shakes_throw_and_can_be_held_out() {
     }
 }
 
-/// A climber on the nape holds on through shakes with rests of three seconds: wherever it holds through one, where it holds out
-/// best through two and more, and nowhere through six.
+/// A climber on the nape holds on through shakes with rests of three seconds: wherever it holds through one, where it
+/// holds out best through two and more, and nowhere through six.
 #[test]
 fn a_fresh_climber_survives_two_shakes_and_not_six() {
     let kind = kind(&brain_file());

@@ -32,8 +32,8 @@ struct Figures {
     depth: f64,
     /// The most way of a settled ball, metres.
     drift: f64,
-    /// What feet on the ground add to the felt acceleration at hips and head, at most; and at swinging toes, at most and
-    /// the share of ticks with more than 6 m/s^2.
+    /// What feet on the ground add to the felt acceleration at hips and head, at most; and at swinging toes, at most
+    /// and the share of ticks with more than 6 m/s^2.
     hips: f64,
     head: f64,
     toes: f64,

@@ -62,8 +62,8 @@ impl Part {
 
 #[derive(Debug)]
 struct Figures {
-    /// The least angle of a knee, radians; and how far a knee is in front of the line from hip to ankle, at least, as a share
-    /// of the leg.
+    /// The least angle of a knee, radians; and how far a knee is in front of the line from hip to ankle, at least, as a
+    /// share of the leg.
     knee: f64,
     front: f64,
     /// How deep a leg is in the other one at most, metres, and when.

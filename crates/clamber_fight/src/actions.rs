@@ -4,9 +4,9 @@ use clamber_climber::ClimberInput;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-/// A press raises the sword for a stab, which then charges, and the next press strikes; bits of [`ClimberInput::actions`].
-/// While it stays down, the charge grows faster. After a stab that was broken off it has to be let go and pressed anew. The
-/// upper 16 bits of the actions are the game's.
+/// A press raises the sword for a stab, which then charges, and the next press strikes; bits of
+/// [`ClimberInput::actions`]. While it stays down, the charge grows faster. After a stab that was broken off it has to
+/// be let go and pressed anew. The upper 16 bits of the actions are the game's.
 pub const STAB: u32 = 1;
 /// A press cuts with the sword.
 pub const CUT: u32 = 1 << 1;
@@ -31,16 +31,16 @@ const LONGEST: f64 = 1.01;
 /// A player's input for one tick in eleven bytes, to be sent over a network.
 ///
 /// [`PlayerInput::from_input`] rounds: directions to 1/127 of their length, the aim to 0.006 degrees. All peers step their
-/// arenas with [`PlayerInput::to_input`], which gives all of them the same bits. It holds no blow: blows come out of the
-/// arena itself. Of the actions it holds the lower eight bits.
+/// arenas with [`PlayerInput::to_input`], which gives all of them the same bits. It holds no blow: blows come out of
+/// the arena itself. Of the actions it holds the lower eight bits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct PlayerInput {
     /// The direction to walk in, along x and z, in 127ths.
     pub walk: [i8; 2],
     /// The direction to climb in, in 127ths; zero for none.
     pub climb: [i8; 3],
-    /// Where it aims: the angle about Y from +Z, in 65,536ths of a turn, and the angle above the level, in 65,536ths of half a
-    /// turn.
+    /// Where it aims: the angle about Y from +Z, in 65,536ths of a turn, and the angle above the level, in 65,536ths of
+    /// half a turn.
     pub aim: [i16; 2],
     /// Buttons.
     pub buttons: u16,

@@ -11,15 +11,16 @@ pub struct Lead {
     pub seconds: f64,
 }
 
-/// The soonest way for an arrow without drag from one place to a target: the flat one of two arcs. `None` if it does not get
-/// there, or if a number is not finite.
+/// The soonest way for an arrow without drag from one place to a target: the flat one of two arcs. `None` if it does
+/// not get there, or if a number is not finite.
 ///
-/// `target` is where the target is now, `velocity` its velocity, which stays, and `speed` the arrow's speed. Places are in metres,
-/// velocities in metres a second, gravity in metres a second squared.
+/// `target` is where the target is now, `velocity` its velocity, which stays, and `speed` the arrow's speed. Places are
+/// in metres, velocities in metres a second, gravity in metres a second squared.
 ///
-/// The times at which an arrow of this speed and the target can be at one place are the positive roots of
-/// `|g|^2 t^4 / 4 - (w.g) t^3 + (|w|^2 - d.g - s^2) t^2 + 2 (d.w) t + |d|^2`, d being the way to the target, w its velocity, g
-/// gravity and s the speed. The least of them is found between the roots of the derivatives, where the polynomial is monotone.
+/// The times at which an arrow of this speed and the target can be at one place are the positive roots of `|g|^2 t^4 /
+/// 4 - (w.g) t^3 + (|w|^2 - d.g - s^2) t^2 + 2 (d.w) t + |d|^2`, d being the way to the target, w its velocity, g
+/// gravity and s the speed. The least of them is found between the roots of the derivatives, where the polynomial is
+/// monotone.
 pub fn lead(
     from: DVec3,
     target: DVec3,
@@ -34,7 +35,8 @@ pub fn lead(
     if d == DVec3::ZERO {
         return None;
     }
-    // Seconds of a straight flight as the unit of time, and the distance as that of length: all coefficients are moderate then.
+    // Seconds of a straight flight as the unit of time, and the distance as that of length: all coefficients are
+    // moderate then.
     let (length, unit) = (d.length(), d.length() / speed);
     let (d, w, g) = (d / length, w / speed, g * (unit / speed));
     let polynomial = [

@@ -1,8 +1,8 @@
 //! Rollback over a network, by the crate [ggrs]: the arena's side of it.
 //!
-//! Peers send each other their players' inputs, guess those that have not arrived, and when a guess was wrong, go back and step
-//! again. All of that is ggrs's; this module saves, restores and steps the arena as it asks, and keeps what happened until it is
-//! certain.
+//! Peers send each other their players' inputs, guess those that have not arrived, and when a guess was wrong, go back
+//! and step again. All of that is ggrs's; this module saves, restores and steps the arena as it asks, and keeps what
+//! happened until it is certain.
 //!
 //! ```no_run
 //! use clamber_fight::rollback::{ArenaSession, Rollback};
@@ -55,7 +55,8 @@ use crate::actions::PlayerInput;
 use crate::arena::{Arena, ArenaEvent, ArenaState};
 use crate::error::ArenaError;
 
-/// ggrs's configuration for an arena, with the peers' kind of address: `SessionBuilder::<ArenaSession<SocketAddr>>::new()`.
+/// ggrs's configuration for an arena, with the peers' kind of address:
+/// `SessionBuilder::<ArenaSession<SocketAddr>>::new()`.
 #[derive(Debug)]
 pub struct ArenaSession<A>(PhantomData<A>);
 
@@ -84,8 +85,8 @@ impl Rollback {
         }
     }
 
-    /// Does what a session asks for, in order: saves, restores, and steps by `step`, which gets one input for each player. All
-    /// states are saved with their [`Arena::fingerprint`] as checksum. A player who has left does nothing.
+    /// Does what a session asks for, in order: saves, restores, and steps by `step`, which gets one input for each
+    /// player. All states are saved with their [`Arena::fingerprint`] as checksum. A player who has left does nothing.
     ///
     /// # Errors
     /// Those of `step`, and [`ArenaError::OtherArena`] if a state is asked for that was not saved.
@@ -124,8 +125,8 @@ impl Rollback {
         Ok(())
     }
 
-    /// What has happened for certain since the last call, with its ticks, in order. `frame` is the session's `confirmed_frame`
-    /// after [`Rollback::handle`]: all inputs up to there are known, and were played.
+    /// What has happened for certain since the last call, with its ticks, in order. `frame` is the session's
+    /// `confirmed_frame` after [`Rollback::handle`]: all inputs up to there are known, and were played.
     pub fn confirmed(&mut self, frame: Frame) -> impl Iterator<Item = (u64, ArenaEvent)> + use<> {
         let certain = u64::try_from(frame).map_or(0, |frame| self.began + frame + 1);
         let later = self.events.split_off(&(certain + 1));

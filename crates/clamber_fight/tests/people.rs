@@ -181,8 +181,8 @@ fn a_sword_shows_the_way_in_the_sun() {
     assert_eq!(arena.sword_light(HERO, DVec3::X, &terrain), None);
 }
 
-/// When a weak point is used up, the next one is what the light leads to, in the same tick. (The blade itself is in the skin
-/// then, out of the sun.)
+/// When a weak point is used up, the next one is what the light leads to, in the same tick. (The blade itself is in the
+/// skin then, out of the sun.)
 #[test]
 fn the_light_leads_to_the_next_weak_point_at_once() {
     let mut slab = swaying();

@@ -96,8 +96,8 @@ fn text_hash(text: &str) -> u64 {
     })
 }
 
-/// If a field is left out of what is saved, a run that is loaded and played again has other bits: within 60 ticks from where it
-/// first matters.
+/// If a field is left out of what is saved, a run that is loaded and played again has other bits: within 60 ticks from
+/// where it first matters.
 #[test]
 fn each_field_that_is_left_out_is_noticed_within_a_second() {
     const FIELDS: [(&str, Path); 23] = [

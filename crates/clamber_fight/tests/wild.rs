@@ -1,5 +1,5 @@
-//! A thousand runs of random inputs, wild ones among them: typed errors, no panic, finite states, the same bits again. And the
-//! same fight at other sizes and far from the origin.
+//! A thousand runs of random inputs, wild ones among them: typed errors, no panic, finite states, the same bits again.
+//! And the same fight at other sizes and far from the origin.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 

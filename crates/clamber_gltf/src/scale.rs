@@ -1,8 +1,8 @@
 //! Scales a creature to a height.
 //!
 //! One factor multiplies every length: positions of vertices; translations of joints, of inverse bind matrices and of
-//! clips, tangents included; speeds of clips; positions and radii of weak points. Rotations and scales are kept, so every
-//! pose is the unscaled one times the factor. Each number is multiplied in f64 and rounded once.
+//! clips, tangents included; speeds of clips; positions and radii of weak points. Rotations and scales are kept, so
+//! every pose is the unscaled one times the factor. Each number is multiplied in f64 and rounded once.
 
 use clamber_surface::mesh::ColliderMesh;
 use clamber_surface::rig::{Channel, Clip, Keyframes, RigError, Skeleton};

@@ -44,8 +44,9 @@ pub(crate) fn of_nodes(nodes: &[Node<'_>], warnings: &mut Vec<ImportWarning>) ->
     transforms
 }
 
-/// A scale, without the rounding errors that exporters write where none is meant: Blender's are mostly below 1e-6. Joints
-/// without a scale are posed with less work. Each joint moves what hangs from it by at most 1e-6 of its distance.
+/// A scale, without the rounding errors that exporters write where none is meant: Blender's are mostly below 1e-6.
+/// Joints without a scale are posed with less work. Each joint moves what hangs from it by at most 1e-6 of its
+/// distance.
 pub(crate) fn without_rounding(scale: Vec3) -> Vec3 {
     let axis = |axis: f32| {
         if (axis - 1.0).abs() <= ROUNDED {

@@ -24,8 +24,8 @@ impl Mover<'_> {
         can_grip: impl Fn(&Touch) -> bool,
         merit: impl Fn(&Touch) -> f64,
     ) -> Option<Touch> {
-        // Nearly always there is a grip close to the body. Contacts that are farther than the nearest grip, and not about
-        // as near, do not matter: a grip that is found within this short reach is the one of the whole reach.
+        // Nearly always there is a grip close to the body. Contacts that are farther than the nearest grip, and not
+        // about as near, do not matter: a grip that is found within this short reach is the one of the whole reach.
         let as_near = AS_NEAR * body.radius;
         let at_body = as_near + 0.5 * body.margin;
         if at_body < reach {
@@ -48,8 +48,8 @@ impl Mover<'_> {
     ) -> Option<Touch> {
         let overlaps = self.overlap(&body.crouched(), position, reach).iter();
         let distances = overlaps.map(|touch| touch.contact.distance);
-        // Nothing is nearer than the nearest of all contacts, nor within the core, except for an obstacle that crushes the
-        // body.
+        // Nothing is nearer than the nearest of all contacts, nor within the core, except for an obstacle that crushes
+        // the body.
         let clear = distances
             .fold(f64::INFINITY, f64::min)
             .max(body.core_radius());

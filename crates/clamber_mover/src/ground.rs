@@ -118,8 +118,9 @@ impl Mover<'_> {
         (is_level && self.is_ground(&hit.touch)).then_some(hit)
     }
 
-    /// The contact of the last movement that holds the body up: of those that can, the most level one, if its slope is at most
-    /// `max_slope`, radians, or if the contacts together leave the body no way down. `None` if the body is not held up.
+    /// The contact of the last movement that holds the body up: of those that can, the most level one, if its slope is
+    /// at most `max_slope`, radians, or if the contacts together leave the body no way down. `None` if the body is not
+    /// held up.
     pub fn holding_up(&self, up: DVec3, max_slope: f64) -> Option<Touch> {
         let ground = self.touched().iter().filter(|touch| self.is_ground(touch));
         let best = ground.copied().reduce(|best, touch| {

@@ -70,7 +70,8 @@ impl LedgeHold {
 }
 
 /// A ledge goes on where its top is higher or lower by at most this fraction of the body's radius, and its wall farther
-/// ahead or back. Beyond half of the radius a body that rolls along the wall would have to turn by more than 60 degrees.
+/// ahead or back. Beyond half of the radius a body that rolls along the wall would have to turn by more than 60
+/// degrees.
 const STEP: f64 = 0.5;
 
 /// What a contact may differ from [`STEP`], as a fraction of the body's radius, so that a step of exactly that height
@@ -115,7 +116,8 @@ pub struct Ledge {
     pub touch: Touch,
     /// Level unit vector straight towards the wall.
     pub facing: DVec3,
-    /// Where the wall is, straight ahead of the position that the ledge was found from, and at its height, in world space.
+    /// Where the wall is, straight ahead of the position that the ledge was found from, and at its height, in world
+    /// space.
     pub wall: DVec3,
 }
 
@@ -231,7 +233,8 @@ impl Mover<'_> {
     }
 
     /// The ledge around the corner at a position: above what is nearest to it of all walls that the body faces, no more
-    /// than `within` metres away. At an outer corner that is the corner's edge, which the body faces as it goes around it.
+    /// than `within` metres away. At an outer corner that is the corner's edge, which the body faces as it goes around
+    /// it.
     ///
     /// `None` as for [`Mover::ledge_in_corner`].
     pub fn ledge_around(

@@ -86,8 +86,8 @@ pub struct Walking {
     pub max_slope: f64,
 }
 
-/// A body as a character among others ([`Obstacle::character`](clamber_world::Obstacle::character)): how far it may come
-/// into their sides. What is above or below stops it all the same.
+/// A body as a character among others ([`Obstacle::character`](clamber_world::Obstacle::character)): how far it may
+/// come into their sides. What is above or below stops it all the same.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct IntoOthers {
     /// Unit vector that points up.

@@ -9,12 +9,12 @@ use crate::NavigationError;
 pub struct GraphConfig {
     /// The climber's body and abilities.
     pub climber: ClimberConfig,
-    /// Largest side of a patch of skin, metres, positive, at most 1.4 radii of the climber. Default: its radius. Smaller
-    /// patches follow narrow ways better, and cost more.
+    /// Largest side of a patch of skin, metres, positive, at most 1.4 radii of the climber. Default: its radius.
+    /// Smaller patches follow narrow ways better, and cost more.
     pub spacing: f64,
-    /// Materials that can be gripped. Default: fur. The climber's own steps do not know of it: give them the same rule, as
-    /// `StepRules::by(&|query| query.usual().with_grip(config.can_grip(&query.tag())))`, or it does not find the holds that the
-    /// graph promises.
+    /// Materials that can be gripped. Default: fur. The climber's own steps do not know of it: give them the same rule,
+    /// as `StepRules::by(&|query| query.usual().with_grip(config.can_grip(&query.tag())))`, or it does not find the
+    /// holds that the graph promises.
     pub grips: Vec<SurfaceKind>,
 }
 

@@ -9,8 +9,8 @@ use clamber_surface::surface::SkinnedSurface;
 
 use crate::NavigationError;
 
-/// Tells how a creature will stand: fills in the palette of a time from now on, in seconds, and gives its place in the world
-/// then. `None` if it does not know that far ahead.
+/// Tells how a creature will stand: fills in the palette of a time from now on, in seconds, and gives its place in the
+/// world then. `None` if it does not know that far ahead.
 ///
 /// Its clips tell, until its brain decides on other ones.
 pub trait Future {

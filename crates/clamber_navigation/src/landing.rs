@@ -32,9 +32,9 @@ pub struct Flight<'a> {
 }
 
 impl FutureSkin {
-    /// Where a climber that falls or jumps comes down, on a creature as it will be then: the climber is stepped, tick by tick,
-    /// until it stands, holds on or hangs. `None` if it does not within `most` seconds, or for as long as the future is known.
-    /// `dt` is the length of a tick, seconds.
+    /// Where a climber that falls or jumps comes down, on a creature as it will be then: the climber is stepped, tick
+    /// by tick, until it stands, holds on or hangs. `None` if it does not within `most` seconds, or for as long as the
+    /// future is known. `dt` is the length of a tick, seconds.
     ///
     /// # Errors
     /// [`NavigationError::Climber`] if the climber refuses the input, [`NavigationError::Surface`] if a pose does not fit the

@@ -38,8 +38,8 @@ pub enum Ride {
     Ends(RideEnd),
     /// The climber stays on for as long as was asked.
     Stays,
-    /// It cannot be told: the future is not known that far, the climber is not on the creature, or the future does not begin
-    /// with the creature's present pose.
+    /// It cannot be told: the future is not known that far, the climber is not on the creature, or the future does not
+    /// begin with the creature's present pose.
     Unknown,
 }
 
@@ -64,11 +64,12 @@ pub(crate) struct Rider {
 }
 
 impl Rider {
-    /// A tick passes, in which its support has moved at a velocity and has a normal now. Says why it does not stay on, if it
-    /// does not.
+    /// A tick passes, in which its support has moved at a velocity and has a normal now. Says why it does not stay on,
+    /// if it does not.
     ///
-    /// The rules are those of `clamber_climber`, of a climber that gives no input but its grip: the acceleration of its support
-    /// is low-pass filtered, and shakes cost strength by how much they exceed a threshold, by the trapezoidal rule.
+    /// The rules are those of `clamber_climber`, of a climber that gives no input but its grip: the acceleration of its
+    /// support is low-pass filtered, and shakes cost strength by how much they exceed a threshold, by the trapezoidal
+    /// rule.
     pub(crate) fn tick(
         &mut self,
         config: &ClimberConfig,
@@ -115,14 +116,15 @@ impl Rider {
 }
 
 impl FutureSkin {
-    /// How long a climber that stands on this creature, or holds on to it, stays there within `most` seconds if it does nothing
-    /// else: it holds its grip if it does so now. `creature` is the creature's obstacle id, `dt` the length of a tick, seconds;
-    /// a million ticks at most are looked at.
+    /// How long a climber that stands on this creature, or holds on to it, stays there within `most` seconds if it does
+    /// nothing else: it holds its grip if it does so now. `creature` is the creature's obstacle id, `dt` the length of
+    /// a tick, seconds; a million ticks at most are looked at.
     ///
-    /// The future has to begin with the pose that the creature has now: a clip that begins has to fade in, as it does on the
-    /// creature. The example `plans` shows how.
+    /// The future has to begin with the pose that the creature has now: a clip that begins has to fade in, as it does
+    /// on the creature. The example `plans` shows how.
     ///
-    /// Three vertices are skinned a tick. What pushes the climber off, such as an arm that comes over it, is not looked for.
+    /// Three vertices are skinned a tick. What pushes the climber off, such as an arm that comes over it, is not looked
+    /// for.
     ///
     /// # Errors
     /// [`NavigationError::Surface`] if a pose does not fit the skin, [`NavigationError::OutOfRange`] if `dt` is not positive.
@@ -173,11 +175,11 @@ impl FutureSkin {
     }
 
     /// The hardest shake, metres a second squared, that a climber on this creature will feel where it is, within `most`
-    /// seconds. If it is not on the creature, whose obstacle id is `creature`, or if the future is not known: the shake that
-    /// it feels now.
+    /// seconds. If it is not on the creature, whose obstacle id is `creature`, or if the future is not known: the shake
+    /// that it feels now.
     ///
-    /// `dt` is the time between two looks, seconds. A tenth of a second is enough for a giant: it misses only shakes that are
-    /// over sooner. Half a second ahead is what a bot needs to take hold.
+    /// `dt` is the time between two looks, seconds. A tenth of a second is enough for a giant: it misses only shakes
+    /// that are over sooner. Half a second ahead is what a bot needs to take hold.
     ///
     /// # Errors
     /// [`NavigationError::Surface`] if a pose does not fit the skin, [`NavigationError::OutOfRange`] if `dt` is not positive.

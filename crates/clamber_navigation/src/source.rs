@@ -13,8 +13,8 @@ pub struct GraphSource<'a> {
     pub mesh: &'a Arc<ColliderMesh>,
     /// What it moves by.
     pub clips: &'a [Clip],
-    /// Parts of the skin that can be removed one by one, such as plates of armour: the skin below them is divided as well. None is
-    /// a good answer; those of a living creature are `clamber_colossus::CreatureKind::plates`.
+    /// Parts of the skin that can be removed one by one, such as plates of armour: the skin below them is divided as
+    /// well. None is a good answer; those of a living creature are `clamber_colossus::CreatureKind::plates`.
     pub plates: &'a [Vec<TriangleId>],
     /// Where it can be wounded.
     pub weak_points: &'a [WeakPoint],

@@ -24,18 +24,19 @@ use crate::{RecordError, RecordingInfo};
 /// Inputs, states, fingerprints and events are recorded every tick, whatever the options.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RecordOptions {
-    /// Ticks between two messages of transforms, of the creature and of figures, and of brains; 0 for none. Default 4: 15 messages
-    /// a second at 60 Hz. A message takes 6 kB for a creature of 45 joints. Lower it for smooth motion of limbs.
+    /// Ticks between two messages of transforms, of the creature and of figures, and of brains; 0 for none. Default 4:
+    /// 15 messages a second at 60 Hz. A message takes 6 kB for a creature of 45 joints. Lower it for smooth motion of
+    /// limbs.
     pub transforms_every: u32,
-    /// Ticks between two views of the skin and of the climber's body and support; 0 for none. Default 4, like the transforms: a skin
-    /// that is recorded less often lags the joints. Each view skins the whole creature and takes some 12 kB. Raise both for large
-    /// creatures.
+    /// Ticks between two views of the skin and of the climber's body and support; 0 for none. Default 4, like the
+    /// transforms: a skin that is recorded less often lags the joints. Each view skins the whole creature and takes
+    /// some 12 kB. Raise both for large creatures.
     ///
     /// Until a view is written, it shares the surface's mesh. The first edit in that time has to copy the mesh.
     pub skin_every: u32,
-    /// Ticks between two views of the triangles that queries touched; 0 for none. Default 60: once a second. They are shown until
-    /// the next view of the skin. They count only in ticks with such a view. This is the most expensive part: a view takes some
-    /// 50 kB.
+    /// Ticks between two views of the triangles that queries touched; 0 for none. Default 60: once a second. They are
+    /// shown until the next view of the skin. They count only in ticks with such a view. This is the most expensive
+    /// part: a view takes some 50 kB.
     pub touched_every: u32,
     /// Largest number of points in a view of the skin. Default 1000; 0 means 1.
     pub skin_points: usize,
@@ -76,11 +77,12 @@ pub struct TickView<'a> {
     pub scene_fingerprint: u64,
 }
 
-/// What a game passes to [`Recorder::figure`]: a figure as it is drawn at the end of a tick, such as the climber's body.
+/// What a game passes to [`Recorder::figure`]: a figure as it is drawn at the end of a tick, such as the climber's
+/// body.
 #[derive(Clone, Copy, Debug)]
 pub struct FigureView<'a> {
-    /// Name of the figure, for example `"hero"`. The frames of its joints are called `hero/hips` and so on. Choose a name
-    /// that no joint of the creature has.
+    /// Name of the figure, for example `"hero"`. The frames of its joints are called `hero/hips` and so on. Choose a
+    /// name that no joint of the creature has.
     pub name: &'a str,
     /// Its skeleton: the same at every call with this name.
     pub skeleton: &'a Skeleton,
@@ -197,8 +199,9 @@ impl<W: Write> Recorder<W> {
         names.push((obstacle, name.to_owned()));
     }
 
-    /// True if the tick recorded last takes joints, figures and places of meshes: see [`RecordOptions::transforms_every`].
-    /// In other ticks a figure, or a mesh that was recorded before, need not be prepared.
+    /// True if the tick recorded last takes joints, figures and places of meshes: see
+    /// [`RecordOptions::transforms_every`]. In other ticks a figure, or a mesh that was recorded before, need not be
+    /// prepared.
     ///
     /// # Errors
     /// [`RecordError::NoTick`] before the first tick; [`RecordError::Ended`] after writing failed.
@@ -206,8 +209,9 @@ impl<W: Write> Recorder<W> {
         Ok(self.chunks.last()?.transforms_due)
     }
 
-    /// Records a mesh at the tick recorded last, for people to look at, such as the ground or a rock: its shape the first
-    /// time, its place whenever [`RecordOptions::transforms_every`] lets transforms be due. What stands still is recorded once.
+    /// Records a mesh at the tick recorded last, for people to look at, such as the ground or a rock: its shape the
+    /// first time, its place whenever [`RecordOptions::transforms_every`] lets transforms be due. What stands still is
+    /// recorded once.
     ///
     /// # Errors
     /// [`RecordError::NoTick`] before the first tick; [`RecordError::Ended`] after writing failed.
@@ -273,8 +277,8 @@ impl<W: Write> Recorder<W> {
         self.snapshot_with(move || Ok::<_, Infallible>(scene))
     }
 
-    /// Records a snapshot as [`Recorder::snapshot`] does, but the recorder's thread makes its text, while the game goes on.
-    /// `scene` is called there, so it has to own a copy of what it writes.
+    /// Records a snapshot as [`Recorder::snapshot`] does, but the recorder's thread makes its text, while the game goes
+    /// on. `scene` is called there, so it has to own a copy of what it writes.
     ///
     /// If `scene` fails, the recording ends before its tick, as if the file could not be written: a later
     /// [`Recorder::tick`], or [`Recorder::finish`], returns [`RecordError::Encode`] with the reason. If `scene` panics,

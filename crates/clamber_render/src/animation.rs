@@ -9,9 +9,9 @@ use crate::{Image, RenderError};
 /// Writes an animated GIF, picture by picture. The animation repeats for ever.
 ///
 /// All pictures share one palette: colours of the first picture, chosen by NeuQuant (Dekker 1994, "Kohonen neural
-/// networks for optimal colour quantization"), and evenly spaced ones for what comes later. A pixel that keeps its colour
-/// within 8 of 255 in each channel is left out, so that a still background costs nothing. One that is within 8 of the
-/// colour of the pixel before it takes that colour. A file without a picture stays empty.
+/// networks for optimal colour quantization"), and evenly spaced ones for what comes later. A pixel that keeps its
+/// colour within 8 of 255 in each channel is left out, so that a still background costs nothing. One that is within 8
+/// of the colour of the pixel before it takes that colour. A file without a picture stays empty.
 pub struct Gif {
     path: PathBuf,
     size: (u16, u16),
@@ -40,7 +40,8 @@ const LEFT_OUT: u8 = u8::MAX;
 /// seconds of a battle at 640 by 360 and 15 pictures a second take 3.8 MB; with 6 and 4, 4.8 MB. Larger values show.
 const KEPT: u8 = 8;
 
-/// Largest difference in a channel at which a pixel takes the colour of the pixel before it, since runs take less space.
+/// Largest difference in a channel at which a pixel takes the colour of the pixel before it, since runs take less
+/// space.
 const RUN: u8 = 8;
 
 /// One in so many pixels teaches the palette. A picture of 640 by 360 still gives 23,000.

@@ -92,8 +92,8 @@ impl Creature {
         })
     }
 
-    /// The graph of its skin for a climber, when it is so many metres tall, stands on the ground, and has plates. A climber grips fur and
-    /// stone, or all of it if it has no fur. It is made once for each size: clones share it.
+    /// The graph of its skin for a climber, when it is so many metres tall, stands on the ground, and has plates. A
+    /// climber grips fur and stone, or all of it if it has no fur. It is made once for each size: clones share it.
     ///
     /// # Errors
     /// As [`ClimbGraph::build`].

@@ -15,8 +15,8 @@ pub enum Others {
     /// It stops.
     #[default]
     Block,
-    /// It pushes, and is pushed: two that meet go on at the common velocity that their masses give. They overlap by what
-    /// they would have made against each other in a tick, at most by three quarters of the smaller radius.
+    /// It pushes, and is pushed: two that meet go on at the common velocity that their masses give. They overlap by
+    /// what they would have made against each other in a tick, at most by three quarters of the smaller radius.
     Push,
     /// It goes through. Two that stand still in each other part softly.
     Pass,

@@ -16,8 +16,8 @@ use crate::{
 
 /// Terrain of plain triangles, without a physics engine: a level, a height field, a rock.
 ///
-/// It stands still. Like skin it is a sheet: a body that is put behind it is not pushed out. Positions are relative to an origin
-/// of its own in f64, so that a level far from the world's origin is as exact as one near it.
+/// It stands still. Like skin it is a sheet: a body that is put behind it is not pushed out. Positions are relative to
+/// an origin of its own in f64, so that a level far from the world's origin is as exact as one near it.
 ///
 /// ```
 /// use clamber_world::{Obstacle, SurfaceTag, TriangleTerrain};
@@ -47,8 +47,9 @@ pub enum TerrainError {
 }
 
 impl TriangleTerrain {
-    /// Terrain of triangles, which are given by indices of their corners, counter-clockwise seen from outside. `tags` has one tag
-    /// for each triangle, or none at all for [`SurfaceTag::default`]. `origin` is where the positions' origin is in the world.
+    /// Terrain of triangles, which are given by indices of their corners, counter-clockwise seen from outside. `tags`
+    /// has one tag for each triangle, or none at all for [`SurfaceTag::default`]. `origin` is where the positions'
+    /// origin is in the world.
     ///
     /// # Errors
     /// [`TerrainError`] if an index is out of range, a number is not finite, or there is another number of tags.

@@ -19,8 +19,9 @@ const ROOM: f64 = 4.0;
 /// Another direction has to be better by so much.
 const BETTER: f64 = 0.15;
 
-/// How much things count: a free view of the climber, skin near the eye, the ideal direction, a short way there, skin on
-/// the way there, too little height above the ground, and in a stab a free view of the face and a view from its front.
+/// How much things count: a free view of the climber, skin near the eye, the ideal direction, a short way there, skin
+/// on the way there, too little height above the ground, and in a stab a free view of the face and a view from its
+/// front.
 const FREE: f64 = 3.0;
 const NEAR: f64 = 0.8;
 const IDEAL: f64 = 2.0;
@@ -30,8 +31,8 @@ const LOW: f64 = 1.0;
 const FACE: f64 = 1.5;
 const FRONT: f64 = 2.0;
 
-/// Cosine of the angle from the face's front from which on it is seen well enough: hardly more than its profile, since from the
-/// front the head hides who is on the nape.
+/// Cosine of the angle from the face's front from which on it is seen well enough: hardly more than its profile, since
+/// from the front the head hides who is on the nape.
 const PROFILE: f64 = 0.25;
 
 /// How much height counts in a stab, up to the sine of this angle: from a low place the head hides who is on its top.
@@ -118,8 +119,8 @@ impl<'a> Scene<'a> {
         ground.map_or(skin, |ground| skin.min(0.9 * ground.distance))
     }
 
-    /// The direction from which the climber is best seen if nothing is in the way: outward from what it holds, along the
-    /// line from the giant to it, or from where the eye is already.
+    /// The direction from which the climber is best seen if nothing is in the way: outward from what it holds, along
+    /// the line from the giant to it, or from where the eye is already.
     pub(super) fn ideal(&self, away: DVec3) -> DVec3 {
         let state = self.battle.climber().state();
         let level = |way: DVec3| way - self.up * way.dot(self.up);

@@ -1,8 +1,9 @@
 //! The camera that follows the climber.
 //!
-//! It keeps a direction from the climber, and turns it towards the best of some [choices](choice) at a bounded rate, so that
-//! it neither flips nor jumps when the climber's support changes. It stays in front of skin that would hide the climber,
-//! and keeps a distance from all skin. While the climber stabs near the giant's face, it goes to where both are seen.
+//! It keeps a direction from the climber, and turns it towards the best of some [choices](choice) at a bounded rate, so
+//! that it neither flips nor jumps when the climber's support changes. It stays in front of skin that would hide the
+//! climber, and keeps a distance from all skin. While the climber stabs near the giant's face, it goes to where both
+//! are seen.
 
 mod choice;
 mod face;

@@ -1,11 +1,12 @@
-//! The creature's skin as the camera sees it: posed as it is, but with queries that the battle's own measurements do not see.
+//! The creature's skin as the camera sees it: posed as it is, but with queries that the battle's own measurements do
+//! not see.
 
 use clamber::prelude::*;
 use clamber_scenes::battle::Battle;
 use glam::DVec3;
 
-/// Distance of the eye from the skin, metres: what it keeps, and the least for a few ticks if skin comes from two sides.
-/// Visible fur reaches 0.8 m beyond the skin on a giant of 40 m.
+/// Distance of the eye from the skin, metres: what it keeps, and the least for a few ticks if skin comes from two
+/// sides. Visible fur reaches 0.8 m beyond the skin on a giant of 40 m.
 pub(super) const KEPT: f64 = 1.4;
 pub(super) const LEAST: f64 = 0.9;
 

@@ -15,8 +15,8 @@ const STAYS: f64 = 1.5;
 const CHANGES: f64 = 1.2;
 const RETREATS: f64 = 2.5;
 
-/// The fastest turn around the climber, radians a second: usually, and for a stab or where something is in the way; how fast
-/// it gets that fast, radians a second squared; and the share of the way that it turns in a second.
+/// The fastest turn around the climber, radians a second: usually, and for a stab or where something is in the way; how
+/// fast it gets that fast, radians a second squared; and the share of the way that it turns in a second.
 const TURN: f64 = 0.9;
 const FAST_TURN: f64 = 1.7;
 const SPEEDS_UP: f64 = 4.0;

@@ -1,7 +1,8 @@
 //! Dust where the giant strikes the ground, and the ring of a blow that runs out from there.
 //!
-//! A clip's marker `impact` says when a foot, a knee or a hand strikes; the joint near the ground that came down fastest is
-//! the one that did. The ring grows as far as the limb strikes, or up to a climber that the blow knocks down.
+//! A clip's marker `impact` says when a foot, a knee or a hand strikes; the joint near the ground that came down
+//! fastest is the one that did. The ring grows as far as the limb strikes, or up to a climber that the blow knocks
+//! down.
 
 use clamber::prelude::*;
 use clamber::render::Overlay;
@@ -40,7 +41,8 @@ const KNOCKS_AT: f64 = 0.5;
 const PUFFS: u32 = 22;
 const STEP_PUFFS: u32 = 9;
 
-/// Radius of a puff when it is thrown up and when it is gone, and how high it rises, as shares of the creature's height.
+/// Radius of a puff when it is thrown up and when it is gone, and how high it rises, as shares of the creature's
+/// height.
 const PUFF: [f64; 2] = [0.012, 0.05];
 const RISES: f64 = 0.05;
 

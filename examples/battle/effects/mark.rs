@@ -19,8 +19,8 @@ const WIDE: f64 = 11.0;
 const HIGH: f64 = 9.0;
 const ABOVE: f64 = 4.0;
 
-/// It is drawn so many metres nearer to the eye, so that fur does not hide it; its outline so near that nothing does: of a
-/// climber on the far side, the outline is seen and hardly more.
+/// It is drawn so many metres nearer to the eye, so that fur does not hide it; its outline so near that nothing does:
+/// of a climber on the far side, the outline is seen and hardly more.
 const NEARER: f64 = 2.5;
 const NEAREST: f64 = 1e3;
 

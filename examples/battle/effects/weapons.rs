@@ -1,5 +1,5 @@
-//! Sword and arrows: a gleam along the blade, a ring that closes while a stab is charged, sparks where a weapon hits, and
-//! the trails of arrows in flight.
+//! Sword and arrows: a gleam along the blade, a ring that closes while a stab is charged, sparks where a weapon hits,
+//! and the trails of arrows in flight.
 
 use std::collections::BTreeMap;
 

@@ -129,8 +129,8 @@ fn spawn(
     commands.insert_resource(Spawned { root, clips });
 }
 
-/// Makes skinned meshes surfaces: those that are for collision only, if the file has any, as `assets/colossus.glb`, else
-/// all. The former are not drawn, but pointers see them.
+/// Makes skinned meshes surfaces: those that are for collision only, if the file has any, as `assets/colossus.glb`,
+/// else all. The former are not drawn, but pointers see them.
 fn add_colliders(
     ready: On<WorldInstanceReady>,
     children: Query<&Children>,

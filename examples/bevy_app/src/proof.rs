@@ -10,7 +10,8 @@ use bevy_clamber::prelude::*;
 use crate::arrows::Arrow;
 use crate::hero::Hero;
 
-/// Largest distance of an arrow from the skin, metres: only rounding counts, since both are as the last frame drew them.
+/// Largest distance of an arrow from the skin, metres: only rounding counts, since both are as the last frame drew
+/// them.
 const SKIN: f32 = 1e-3;
 
 /// Largest distance from a pointer to its arrow when it was shot, pixels. A hit in the pose of the tick instead of the

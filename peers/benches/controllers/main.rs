@@ -25,9 +25,9 @@
 //! helped it most, of those tried: the world stepped before or after, bodies moved by position or by velocity, the
 //! press down, the nudge, the distance that it looks ahead.
 //!
-//! Prints a table, and writes one with a row for each scene and controller to `target/measure/controllers.csv`, and one of
-//! times, with their bound, to `controllers_times.csv`. Fails
-//! if the climber fails in a scene, or an error of any controller is not finite.
+//! Prints a table, and writes one with a row for each scene and controller to `target/measure/controllers.csv`, and one
+//! of times, with their bound, to `controllers_times.csv`. Fails if the climber fails in a scene, or an error of any
+//! controller is not finite.
 //!
 //! Run it with `cargo bench --manifest-path peers/Cargo.toml --bench controllers`, and `--features jolt` if CMake is
 //! installed. With `-- --test` it runs briefly, with at most 600 ticks a scene.

@@ -45,7 +45,8 @@ pub(super) fn marks(text: &str) -> Vec<(usize, Mark)> {
     marks
 }
 
-/// The names of the attributes that an attribute stands for: its own, or, after the condition of `cfg_attr`, the others.
+/// The names of the attributes that an attribute stands for: its own, or, after the condition of `cfg_attr`, the
+/// others.
 fn names(attribute: &str) -> Vec<&str> {
     let inside = attribute.trim_start().strip_prefix("cfg_attr");
     match inside.and_then(|inside| inside.trim_start().strip_prefix('(')) {

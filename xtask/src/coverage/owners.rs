@@ -6,8 +6,8 @@ use cargo_metadata::camino::{Utf8Path, Utf8PathBuf};
 use crate::parts::{Kind, Part, parts};
 
 /// The parts of a package with a harness that a source file may belong to. A target's own file belongs to it alone.
-/// Other files belong to the target in the nearest folder above them; if there are several, any of them may have it as a
-/// module, so all are given.
+/// Other files belong to the target in the nearest folder above them; if there are several, any of them may have it as
+/// a module, so all are given.
 pub(super) fn owners(package: &Package, file: &Utf8Path) -> Vec<Part> {
     let nearest = package.targets.iter().map(|target| {
         let folder = target.src_path.parent();

@@ -9,8 +9,8 @@ use crate::{ClimberInput, WorldOrigin};
 /// [`RigAssets::spawn`](crate::RigAssets::spawn) spawned from the creature's file, beside its
 /// [`RigJoints`](crate::RigJoints). In each tick the plugin writes the `Transform`s of root and joints.
 ///
-/// The arena has its own skin to be touched: the entity needs no [`SkinnedCollider`](crate::SkinnedCollider), unless something
-/// beside the fight is to touch it.
+/// The arena has its own skin to be touched: the entity needs no [`SkinnedCollider`](crate::SkinnedCollider), unless
+/// something beside the fight is to touch it.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ArenaCreature(pub CreatureId);
 
@@ -24,9 +24,9 @@ pub struct ArenaCreature(pub CreatureId);
 #[require(Transform, ClimberInput, LatchedInput)]
 pub struct ArenaFighter(pub FighterId);
 
-/// Shows an arrow or a stone of the [`FightArena`](super::FightArena). The plugin spawns an entity for each projectile, and
-/// despawns it with the projectile. In each tick it writes the entity's `Transform`: the tip, with -Z along the direction. To
-/// give it a mesh, observe `Add<ArenaProjectile>`.
+/// Shows an arrow or a stone of the [`FightArena`](super::FightArena). The plugin spawns an entity for each projectile,
+/// and despawns it with the projectile. In each tick it writes the entity's `Transform`: the tip, with -Z along the
+/// direction. To give it a mesh, observe `Add<ArenaProjectile>`.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Eq)]
 #[require(Transform)]
 pub struct ArenaProjectile(pub ProjectileId);

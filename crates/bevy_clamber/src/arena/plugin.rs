@@ -7,11 +7,12 @@ use super::{figure, show, step};
 use crate::needs::need_plugin;
 use crate::{ClamberSystems, ClimberPlugin, ClimberTicks};
 
-/// Steps the [`FightArena`](super::FightArena) once a tick, in [`ClamberSystems::Climb`], and shows what is in it. Add it beside
-/// [`ClamberPlugins`](crate::ClamberPlugins) and [`ClimberPlugin`].
+/// Steps the [`FightArena`](super::FightArena) once a tick, in [`ClamberSystems::Climb`], and shows what is in it. Add
+/// it beside [`ClamberPlugins`](crate::ClamberPlugins) and [`ClimberPlugin`].
 ///
 /// Creatures and climbers can be entities of their own instead, with [`Colossus`](crate::Colossus) and
-/// [`Climber`](crate::Climber), each stepped by its own plugin. Which of both suits a game is told in `docs/recipes/fight.md`.
+/// [`Climber`](crate::Climber), each stepped by its own plugin. Which of both suits a game is told in
+/// `docs/recipes/fight.md`.
 #[derive(Clone, Copy, Debug)]
 pub struct ArenaPlugin {
     schedule: InternedScheduleLabel,
@@ -27,8 +28,9 @@ impl ArenaPlugin {
         }
     }
 
-    /// Only shows the arena. The app steps it before [`ClamberSystems::Climb`], with [`ArenaTerrain`](super::ArenaTerrain), and
-    /// writes [`FightEvent`]s itself: for a rollback session, which steps as often as it has to.
+    /// Only shows the arena. The app steps it before [`ClamberSystems::Climb`], with
+    /// [`ArenaTerrain`](super::ArenaTerrain), and writes [`FightEvent`]s itself: for a rollback session, which steps as
+    /// often as it has to.
     #[must_use]
     pub fn without_steps(self) -> Self {
         Self {

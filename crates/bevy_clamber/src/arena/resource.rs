@@ -3,8 +3,8 @@ use std::ops::Deref;
 use bevy_ecs::prelude::*;
 use clamber_fight::{Arena, ArenaEvent};
 
-/// The fight: an [`Arena`] that [`ArenaPlugin`](super::ArenaPlugin) steps once a tick. Make the arena with its creatures and
-/// fighters, and insert it as a resource.
+/// The fight: an [`Arena`] that [`ArenaPlugin`](super::ArenaPlugin) steps once a tick. Make the arena with its
+/// creatures and fighters, and insert it as a resource.
 ///
 /// ```
 /// # use std::sync::Arc;
@@ -43,7 +43,8 @@ use clamber_fight::{Arena, ArenaEvent};
 /// ```
 ///
 /// To save, load and roll back, use the arena itself: [`FightArena::arena_mut`]. Do it before
-/// [`ClamberSystems::Climb`](crate::ClamberSystems::Climb): entities show it in the same tick then, otherwise in the next.
+/// [`ClamberSystems::Climb`](crate::ClamberSystems::Climb): entities show it in the same tick then, otherwise in the
+/// next.
 #[derive(Resource, Clone, Debug)]
 pub struct FightArena {
     arena: Arena,

@@ -8,9 +8,9 @@ use glam::DVec3;
 /// [`ClimberCameraPlugin`](crate::ClimberCameraPlugin) then writes the entity's `Transform` in each frame.
 ///
 /// It begins behind the climber. It moves with what carries the climber, without a lag, and follows the climber's own
-/// motion smoothly. It keeps [`radius`](Self::radius) away from skin as it is drawn, from terrain and from bodies: where
-/// they are in the way, it comes nearer at once, and goes back over half a second. Fill [`ClimberCameraInput`] to turn
-/// it.
+/// motion smoothly. It keeps [`radius`](Self::radius) away from skin as it is drawn, from terrain and from bodies:
+/// where they are in the way, it comes nearer at once, and goes back over half a second. Fill [`ClimberCameraInput`] to
+/// turn it.
 ///
 /// ```
 /// # use bevy_ecs::prelude::*;
@@ -71,9 +71,9 @@ impl ClimberCamera {
     }
 
     /// A camera with the measured limits of *Shadow of the Colossus* of 2005, in its version for PAL
-    /// (<https://github.com/cylfox/sotc-camera-fix>): it turns by up to 300 degrees a second and tilts by up to 80, takes
-    /// 0.87 s to reach that speed and to lose it, tilts only in the last quarter of the stick's way, and levels out
-    /// by itself.
+    /// (<https://github.com/cylfox/sotc-camera-fix>): it turns by up to 300 degrees a second and tilts by up to 80,
+    /// takes 0.87 s to reach that speed and to lose it, tilts only in the last quarter of the stick's way, and levels
+    /// out by itself.
     pub const fn like_2005(target: Entity) -> Self {
         Self {
             speed: Vec2::new(5.236, 1.396),

@@ -25,8 +25,8 @@ use super::shown::Shown;
 /// feet, as this frame should draw it; its -Z looks where the climber is heading. To teleport the climber, write
 /// another translation into it.
 ///
-/// The configuration can be changed at any time. One that is refused is logged, and the last one stays. A body that grows
-/// does so as soon as it has room; until then it keeps the whole last configuration ([`ClimberBody::config`]).
+/// The configuration can be changed at any time. One that is refused is logged, and the last one stays. A body that
+/// grows does so as soon as it has room; until then it keeps the whole last configuration ([`ClimberBody::config`]).
 ///
 /// ```
 /// # use bevy_ecs::prelude::*;
@@ -76,8 +76,9 @@ impl Default for Climber {
 /// To load a saved state, or to roll back, write it: the next tick goes on from there. A state that is refused is
 /// logged, and the last one stays. An entity that is spawned with a state starts with it.
 ///
-/// The support's obstacle id is the bits of an entity. Where Bevy maps entities, as when it loads a scene, it is mapped. On
-/// a physics engine's world, avian's colliders are mapped; rapier numbers its own anew, so that support may be lost.
+/// The support's obstacle id is the bits of an entity. Where Bevy maps entities, as when it loads a scene, it is
+/// mapped. On a physics engine's world, avian's colliders are mapped; rapier numbers its own anew, so that support may
+/// be lost.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[component(map_entities)]
 #[reflect(Component, Clone, Debug, PartialEq, MapEntities)]
@@ -110,8 +111,8 @@ impl Deref for ClimberState {
 #[derive(Component, Clone, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Clone, Debug, PartialEq)]
 pub struct ClimberFilter {
-    /// Entities that it passes through: surfaces, climbers, [`CustomObstacle`](crate::CustomObstacle)s, and colliders of
-    /// avian.
+    /// Entities that it passes through: surfaces, climbers, [`CustomObstacle`](crate::CustomObstacle)s, and colliders
+    /// of avian.
     pub ignored: HashSet<Entity>,
     /// The layers of the physics engine that it touches, one bit each: avian's `LayerMask`, rapier's `Group`. All by
     /// default.
@@ -178,8 +179,8 @@ impl ClimberBody {
         self.climber.body()
     }
 
-    /// How far its support has carried it from the last frame to this one, metres, as they are drawn: for what moves with
-    /// it, such as a camera.
+    /// How far its support has carried it from the last frame to this one, metres, as they are drawn: for what moves
+    /// with it, such as a camera.
     pub fn carried(&self) -> DVec3 {
         self.shown.carried()
     }

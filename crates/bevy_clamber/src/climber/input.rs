@@ -10,8 +10,8 @@ use clamber_world::ObstacleId;
 ///
 /// Directions are used as they are at each tick. A press of `jump` is kept until a tick comes, and only that tick gets
 /// it, however many frames there are in a tick, or ticks in a frame; it is then set to false. A button that is down in
-/// any frame since the last tick counts as down in the next one, so that a short tap is not lost. What was pressed while
-/// the game was paused is forgotten.
+/// any frame since the last tick counts as down in the next one, so that a short tap is not lost. What was pressed
+/// while the game was paused is forgotten.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Reflect)]
 #[reflect(Component, Default, Clone, Debug, PartialEq)]
 pub struct ClimberInput {

@@ -73,8 +73,8 @@ impl CustomObstacle {
 pub(crate) const AVIAN: ObstacleId = ObstacleId(u64::MAX);
 pub(crate) const RAPIER: ObstacleId = ObstacleId(u64::MAX - 1);
 
-/// The same in an arena, which keeps the ids from 2^62 on for its creatures and fighters. No entity lives long enough to have
-/// these bits.
+/// The same in an arena, which keeps the ids from 2^62 on for its creatures and fighters. No entity lives long enough
+/// to have these bits.
 #[cfg(all(feature = "avian", feature = "colossus"))]
 const ARENA_AVIAN: ObstacleId = ObstacleId((1 << 62) - 1);
 #[cfg(all(feature = "rapier", feature = "colossus"))]

@@ -6,9 +6,9 @@ use bevy_reflect::prelude::*;
 use clamber_climber::{ContactQuery, ContactRule, CustomMode};
 use glam::DVec3;
 
-/// Decides what climbers may stand on, step onto, hang from, grip and pass through, and with which friction: as a resource
-/// for all of them, as a component for one. Without either, everything is solid, fur is gripped and other climbers are not
-/// held ([`ContactQuery::usual`]).
+/// Decides what climbers may stand on, step onto, hang from, grip and pass through, and with which friction: as a
+/// resource for all of them, as a component for one. Without either, everything is solid, fur is gripped and other
+/// climbers are not held ([`ContactQuery::usual`]).
 ///
 /// ```
 /// # use bevy_app::App;
@@ -68,8 +68,8 @@ impl ClimberRule {
 #[derive(Resource, Default)]
 pub struct ClimberModes(pub Vec<Box<dyn CustomMode + Send + Sync>>);
 
-/// A resource with the velocity of the air, in world space, metres a second: a wind. A climber that has touched nothing for
-/// a second steers against it; its greatest speed of fall is relative to it
+/// A resource with the velocity of the air, in world space, metres a second: a wind. A climber that has touched nothing
+/// for a second steers against it; its greatest speed of fall is relative to it
 /// ([`StepRules::air_velocity`](clamber_climber::StepRules::air_velocity)). Zero by default. While it is not finite,
 /// climbers stand still.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Reflect)]

@@ -119,9 +119,9 @@ impl Shown {
         self.now = now;
     }
 
-    /// Position and heading in a frame that lies at a fraction of a tick after the last tick, and `dt` seconds after the
-    /// last frame. `base_velocity` is the velocity of what carries the climber, if that is no skin. `drawn` gives the
-    /// surface of an attachment, as the frame draws it.
+    /// Position and heading in a frame that lies at a fraction of a tick after the last tick, and `dt` seconds after
+    /// the last frame. `base_velocity` is the velocity of what carries the climber, if that is no skin. `drawn` gives
+    /// the surface of an attachment, as the frame draws it.
     pub(super) fn draw<'a>(
         &mut self,
         fraction: f64,

@@ -7,14 +7,14 @@ use glam::DVec3;
 use super::ColossusBrain;
 
 /// A creature that lives: insert it on the root of a rig that [`RigAssets::spawn`](crate::RigAssets::spawn) spawned,
-/// beside its [`RigJoints`](crate::RigJoints), and a [`SkinnedCollider::each_tick`](crate::SkinnedCollider::each_tick) on
-/// its meshes.
+/// beside its [`RigJoints`](crate::RigJoints), and a [`SkinnedCollider::each_tick`](crate::SkinnedCollider::each_tick)
+/// on its meshes.
 ///
-/// Once the brain is loaded, [`ColossusPlugin`](super::ColossusPlugin) inserts a [`ColossusBody`], and from then on writes
-/// the `Transform`s of root and joints in every tick: the creature begins where the root is, looks along the root's +Z,
-/// and is as large as the root's scale makes it. It senses all climbers, and strikes them. Where its file is changed while
-/// the app runs, with Bevy's `file_watcher`, it lives by the new one from the next tick on: it stays in its state if the
-/// states are still the same ones, or else begins anew where it stands.
+/// Once the brain is loaded, [`ColossusPlugin`](super::ColossusPlugin) inserts a [`ColossusBody`], and from then on
+/// writes the `Transform`s of root and joints in every tick: the creature begins where the root is, looks along the
+/// root's +Z, and is as large as the root's scale makes it. It senses all climbers, and strikes them. Where its file is
+/// changed while the app runs, with Bevy's `file_watcher`, it lives by the new one from the next tick on: it stays in
+/// its state if the states are still the same ones, or else begins anew where it stands.
 ///
 /// ```
 /// # use bevy_asset::AssetServer;
@@ -81,8 +81,9 @@ impl ColossusBody {
         brain.path(self.creature.state().current())
     }
 
-    /// An arrow or a blade strikes it at a place in world space, which is Bevy's plus [`WorldOrigin`](crate::WorldOrigin).
-    /// Returns the damage done, which is 0 unless an open weak point is there. It feels the blow in any case.
+    /// An arrow or a blade strikes it at a place in world space, which is Bevy's plus
+    /// [`WorldOrigin`](crate::WorldOrigin). Returns the damage done, which is 0 unless an open weak point is there. It
+    /// feels the blow in any case.
     ///
     /// `reach` is how far from its skin the place may be, metres; beyond it nothing happens.
     pub fn strike(&mut self, place: DVec3, damage: f64, reach: f64) -> f64 {

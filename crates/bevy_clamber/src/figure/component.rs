@@ -10,12 +10,12 @@ use crate::creature::transform;
 use crate::{SpawnedRig, WorldOrigin};
 
 /// Draws a [`Climber`](crate::Climber) as a humanoid: insert it on the climber's entity.
-/// [`ClimberFigurePlugin`](crate::ClimberFigurePlugin) then writes the `Transform`s of the figure's root and joints in each
-/// frame, so that hands hold skin as it is drawn and feet stand where they came down.
+/// [`ClimberFigurePlugin`](crate::ClimberFigurePlugin) then writes the `Transform`s of the figure's root and joints in
+/// each frame, so that hands hold skin as it is drawn and feet stand where they came down.
 ///
-/// The rig is an entity of its own, without a parent, that `RigAssets` or your own loader has spawned. Any humanoid that
-/// [`Humanoid::find`](clamber_body::Humanoid::find) knows will do; `clamber_body` says how a file without clips gets those
-/// of another one.
+/// The rig is an entity of its own, without a parent, that `RigAssets` or your own loader has spawned. Any humanoid
+/// that [`Humanoid::find`](clamber_body::Humanoid::find) knows will do; `clamber_body` says how a file without clips
+/// gets those of another one.
 ///
 /// ```
 /// # use std::sync::Arc;
@@ -88,8 +88,8 @@ impl ClimberFigure {
         Self::with_joints(figure, rig.root, rig.joints.clone())
     }
 
-    /// Poses joints that something else has spawned below `root`: one entity for each joint of the figure's skeleton, in its
-    /// order.
+    /// Poses joints that something else has spawned below `root`: one entity for each joint of the figure's skeleton,
+    /// in its order.
     ///
     /// # Errors
     /// [`WrongJoints`] if there are more or fewer.

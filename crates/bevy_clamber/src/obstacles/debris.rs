@@ -151,8 +151,8 @@ impl DebrisBodies {
     }
 }
 
-/// The physics hooks of `RapierPhysicsPlugin` beside a [`DebrisPlugin`]: skin near a body collides with that body alone.
-/// Hooks of your own can call [`DebrisHooks::filter_contact_pair`] first.
+/// The physics hooks of `RapierPhysicsPlugin` beside a [`DebrisPlugin`]: skin near a body collides with that body
+/// alone. Hooks of your own can call [`DebrisHooks::filter_contact_pair`] first.
 #[derive(SystemParam)]
 pub struct DebrisHooks<'w> {
     bodies: Option<Res<'w, DebrisBodies>>,

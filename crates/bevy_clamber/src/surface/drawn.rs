@@ -147,8 +147,8 @@ impl DrawnSurface {
         Ok(())
     }
 
-    /// Logs an implausible speed, metres a second, once. An animation that begins is no fault: it takes the creature from
-    /// its rest to the clip's first pose.
+    /// Logs an implausible speed, metres a second, once. An animation that begins is no fault: it takes the creature
+    /// from its rest to the clip's first pose.
     pub(super) fn tell_teleport(&mut self, surface: &PosedSurface, speed: f64) {
         if self.frames >= FIRST_FRAMES && !std::mem::replace(&mut self.has_told, true) {
             let entity = surface.entity();

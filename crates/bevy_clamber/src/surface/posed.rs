@@ -68,8 +68,8 @@ pub struct PosedSurface {
     teleports: u32,
     /// Counts times at which somebody may have changed the surface, for [`DrawnSurface`].
     edits: u32,
-    /// In the last tick, and in the one before, nobody knew how a creature moved that had a pose before: it was placed, or
-    /// its pose had not been drawn yet.
+    /// In the last tick, and in the one before, nobody knew how a creature moved that had a pose before: it was placed,
+    /// or its pose had not been drawn yet.
     has_jumped: [bool; 2],
     /// Somebody may have changed the surface since the last tick.
     edited: bool,
@@ -190,8 +190,8 @@ impl PosedSurface {
         self.is_placed
     }
 
-    /// True if the tick, or the one before, did not know how a surface moved that had a pose before: the skin's velocity
-    /// says nothing then about what a rider feels.
+    /// True if the tick, or the one before, did not know how a surface moved that had a pose before: the skin's
+    /// velocity says nothing then about what a rider feels.
     pub(crate) fn has_jumped(&self) -> bool {
         self.has_jumped.contains(&true)
     }

@@ -99,8 +99,8 @@ impl Animator {
         Ok(())
     }
 
-    /// Plays clips that were made for one size on a creature that is `scale` times as large: at the rate
-    /// `1 / sqrt(scale)`, so that things fall, swing and stride as they do under the same gravity (Froude's law; Alexander
+    /// Plays clips that were made for one size on a creature that is `scale` times as large: at the rate `1 /
+    /// sqrt(scale)`, so that things fall, swing and stride as they do under the same gravity (Froude's law; Alexander
     /// 1989, "Optimization and gaits in the locomotion of vertebrates").
     ///
     /// # Errors
@@ -118,9 +118,9 @@ impl Animator {
         Ok(())
     }
 
-    /// Changes layers in any way. Within `fade` seconds, the pose becomes that of the new layers, by inertialisation: it
-    /// starts with the velocity that it had, and only the new layers are sampled. A fade of 0 shows the change at once.
-    /// Changes may come during other changes, as often as you like. Allocates.
+    /// Changes layers in any way. Within `fade` seconds, the pose becomes that of the new layers, by inertialisation:
+    /// it starts with the velocity that it had, and only the new layers are sampled. A fade of 0 shows the change at
+    /// once. Changes may come during other changes, as often as you like. Allocates.
     ///
     /// # Errors
     /// [`AnimationError::OutOfRange`] if the fade is negative or not finite, and the errors of

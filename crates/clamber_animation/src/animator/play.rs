@@ -30,9 +30,9 @@ pub enum AnimationEvent {
 const MOST_LOOPS: f64 = 1000.0;
 
 impl Animator {
-    /// Lets `dt` seconds pass. Appends to `events` what was passed: layer by layer, in the order of time. Of a clip that
-    /// is shorter than `dt`, each marker is told once. Returns the motion of the root, mixed from the
-    /// layers that override; zero unless the set has [root motion](AnimationSet::with_root_motion).
+    /// Lets `dt` seconds pass. Appends to `events` what was passed: layer by layer, in the order of time. Of a clip
+    /// that is shorter than `dt`, each marker is told once. Returns the motion of the root, mixed from the layers that
+    /// override; zero unless the set has [root motion](AnimationSet::with_root_motion).
     ///
     /// # Errors
     /// [`AnimationError::OutOfRange`] if `dt` is negative or not finite, and those of [`Animator::pose_into`]. Nothing is

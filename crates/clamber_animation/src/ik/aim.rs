@@ -6,11 +6,12 @@ use super::{IkError, frame_turn};
 use crate::pose::{rotation_of, store_rotation};
 use crate::space::{model_from_parent, uniform_inverse};
 
-/// Turns a joint so that two axes of its own space point where they should in model space: the first exactly, the second
-/// as nearly as the first allows. A palm, for example, lies on skin with its normal first and its fingers second.
+/// Turns a joint so that two axes of its own space point where they should in model space: the first exactly, the
+/// second as nearly as the first allows. A palm, for example, lies on skin with its normal first and its fingers
+/// second.
 ///
-/// `axes` are in the joint's own space, `directions` in model space; each may have any length but zero, and the two of a
-/// pair must not be parallel.
+/// `axes` are in the joint's own space, `directions` in model space; each may have any length but zero, and the two of
+/// a pair must not be parallel.
 ///
 /// # Errors
 /// [`IkError::NotFinite`] for the vectors or the pose, [`IkError::BadSetUp`] if two of a pair are parallel,
@@ -44,8 +45,8 @@ pub fn aim(
     Ok(())
 }
 
-/// Turns a joint so that the axes of its own space point in model space as a rotation has them. Parents that mirror or scale
-/// uniformly change lengths and sides, but not that.
+/// Turns a joint so that the axes of its own space point in model space as a rotation has them. Parents that mirror or
+/// scale uniformly change lengths and sides, but not that.
 ///
 /// # Errors
 /// [`IkError::NotFinite`] for the rotation or the pose, [`IkError::NoJoint`], [`IkError::NotInvertible`], and

@@ -1,9 +1,10 @@
 //! Two bones in a plane, by similar triangles instead of angles.
 //!
-//! With the shoulder at the origin, the target at distance `d` along `u`, and bones of lengths `a` and `b`, the elbow is
-//! at `along = (a² - b² + d²) / 2d` on the line to the target and `across = sqrt((a - along)(a + along))` beside it, on the
-//! side of the pole. No inverse trigonometry is needed, and the product keeps digits that `a² - along²` loses near a
-//! straight arm. (Lander 1998, "Oh My God, I Inverted Kine!", Game Developer, has the same triangle with angles.)
+//! With the shoulder at the origin, the target at distance `d` along `u`, and bones of lengths `a` and `b`, the elbow
+//! is at `along = (a² - b² + d²) / 2d` on the line to the target and `across = sqrt((a - along)(a + along))` beside it,
+//! on the side of the pole. No inverse trigonometry is needed, and the product keeps digits that `a² - along²` loses
+//! near a straight arm. (Lander 1998, "Oh My God, I Inverted Kine!", Game Developer, has the same triangle with
+//! angles.)
 
 use glam::DVec3;
 
@@ -31,12 +32,13 @@ pub struct Bend {
 
 /// Bends two bones so that their end is at `target`, relative to where they begin.
 ///
-/// `lengths` are those of the bones, not both 0. `pole` is the side to which the elbow goes: of any length, and only its
-/// part across the line to the target counts. Where it has none, any side is taken. `soft` is the share of the full length
-/// from which a far target is approached softly, more than 0 to 1, where 1 does not; see [`soft_distance`]. `least` is the
-/// smallest distance to which the limb folds.
+/// `lengths` are those of the bones, not both 0. `pole` is the side to which the elbow goes: of any length, and only
+/// its part across the line to the target counts. Where it has none, any side is taken. `soft` is the share of the full
+/// length from which a far target is approached softly, more than 0 to 1, where 1 does not; see [`soft_distance`].
+/// `least` is the smallest distance to which the limb folds.
 ///
-/// All arguments must be finite. The end is at the target to 1e-6 of the bones' length, or `reach` says what is missing.
+/// All arguments must be finite. The end is at the target to 1e-6 of the bones' length, or `reach` says what is
+/// missing.
 pub fn bend(lengths: [f64; 2], target: DVec3, pole: DVec3, soft: f64, least: f64) -> Bend {
     let [first, second] = lengths;
     let full = first + second;

@@ -19,8 +19,8 @@ pub struct SwingTwist {
 }
 
 impl SwingTwist {
-    /// Limits about a bone that lies along `axis` in the joint's own space. `swing` is the largest angle of the bone from
-    /// rest, `twist` the range of angles about it, radians, -pi to pi.
+    /// Limits about a bone that lies along `axis` in the joint's own space. `swing` is the largest angle of the bone
+    /// from rest, `twist` the range of angles about it, radians, -pi to pi.
     ///
     /// # Errors
     /// [`IkError::BadSetUp`] if the axis has no length, the swing is not from 0 to pi, or the range is not within -pi to pi

@@ -14,8 +14,9 @@ pub struct LookLimits {
     pub yaw: f64,
     /// Up and down.
     pub pitch: f64,
-    /// How fast its turning may change about either axis, radians a second squared: above 0, and infinite to follow a target
-    /// wherever it goes. A gaze with a limit lags behind fast targets, and passes from one shoulder to the other in a while.
+    /// How fast its turning may change about either axis, radians a second squared: above 0, and infinite to follow a
+    /// target wherever it goes. A gaze with a limit lags behind fast targets, and passes from one shoulder to the other
+    /// in a while.
     pub acceleration: f64,
 }
 
@@ -32,8 +33,8 @@ impl Default for LookLimits {
 
 /// Turns a chain of joints, from the head down to the neck or the spine, so that the eye looks at a target.
 ///
-/// Each joint takes its share of the turn that is left after the joints above it, and the last one takes all of the rest,
-/// so that the gaze arrives; no iteration is needed (Guillaume Blanc, ozz-animation, sample "look at").
+/// Each joint takes its share of the turn that is left after the joints above it, and the last one takes all of the
+/// rest, so that the gaze arrives; no iteration is needed (Guillaume Blanc, ozz-animation, sample "look at").
 #[derive(Clone, Debug, PartialEq)]
 pub struct LookAt {
     /// From the chain's last joint up to the head, with shares; joints between those of the chain have none.
@@ -55,8 +56,8 @@ pub struct LookMemory {
     side: f64,
     /// Seconds since it changed.
     since: f64,
-    /// Where it looks, yaw and pitch in radians, and how fast these change, in a gaze with a limit; `None` before the first
-    /// time.
+    /// Where it looks, yaw and pitch in radians, and how fast these change, in a gaze with a limit; `None` before the
+    /// first time.
     turned: Option<[Follow; 2]>,
 }
 
@@ -85,14 +86,15 @@ impl Follow {
 /// The most joints from a chain's last one up to its head: they are turned by recursion.
 const MOST_JOINTS: usize = 256;
 
-/// How far beyond straight behind a target must be to change the side, and how long the side stays, radians and seconds.
+/// How far beyond straight behind a target must be to change the side, and how long the side stays, radians and
+/// seconds.
 const BEHIND: f64 = 0.35;
 const STAYS: f64 = 1.0;
 
 impl LookAt {
-    /// A gaze by the joints of `chain`, from the head down, each with the share that it takes of the turn that is left, 0
-    /// to 1; the last one takes all of it. `eye` and `forward` are in the head's own space, `up` is the creature's up in
-    /// model space at rest.
+    /// A gaze by the joints of `chain`, from the head down, each with the share that it takes of the turn that is left,
+    /// 0 to 1; the last one takes all of it. `eye` and `forward` are in the head's own space, `up` is the creature's up
+    /// in model space at rest.
     ///
     /// # Errors
     /// [`IkError::BadSetUp`] if the chain is empty or spans more than 256 joints, a share is not from 0 to 1, or `forward` or `up` have no length or are
@@ -179,9 +181,9 @@ impl LookAt {
         }
     }
 
-    /// Turns the gaze of a pose towards a target in model space: by `weight`, 0 (not at all) to 1 (all the way), and within
-    /// the limits. `dt` is the time since the last call with this memory, seconds. Returns the angle between the gaze and the
-    /// target that is left, radians.
+    /// Turns the gaze of a pose towards a target in model space: by `weight`, 0 (not at all) to 1 (all the way), and
+    /// within the limits. `dt` is the time since the last call with this memory, seconds. Returns the angle between the
+    /// gaze and the target that is left, radians.
     ///
     /// # Errors
     /// [`IkError::NotFinite`] for target, weight or pose, [`IkError::NoJoint`], [`IkError::NotInvertible`], and
@@ -289,9 +291,9 @@ struct Gaze<'a> {
 }
 
 impl Gaze<'_> {
-    /// Turns the joints from one of the path on to the head, the head first. A joint's parents are turned after it, so their
-    /// frames, which are composed on the way up to the head, are those of the pose that was given. Returns the sight after
-    /// that, and the point to look at; `None` if the eye is at the target.
+    /// Turns the joints from one of the path on to the head, the head first. A joint's parents are turned after it, so
+    /// their frames, which are composed on the way up to the head, are those of the pose that was given. Returns the
+    /// sight after that, and the point to look at; `None` if the eye is at the target.
     fn turn(
         &mut self,
         pose: &mut Pose,
@@ -354,8 +356,8 @@ struct Sight {
 }
 
 impl Sight {
-    /// The turn about an origin that makes the eye look at a point. `None` for points that are nearer to the origin than
-    /// the line of sight passes.
+    /// The turn about an origin that makes the eye look at a point. `None` for points that are nearer to the origin
+    /// than the line of sight passes.
     fn turn_to(&self, point: DVec3, origin: DVec3) -> Option<DQuat> {
         let (eye, target) = (self.eye - origin, point - origin);
         // The point of the line of sight that is as far from the origin as the target is turned onto the target.

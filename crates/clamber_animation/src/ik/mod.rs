@@ -2,8 +2,8 @@
 //!
 //! All solvers work on a [`Pose`](clamber_surface::rig::Pose) and take targets in model space. They change rotations
 //! only, so bones keep their lengths. Mirrored and uniformly scaled parents are no approximation. [`TwoBone`] and
-//! [`Chain`] solve in the space of the chain's parent, which may scale unevenly; a joint *within* their chain must scale
-//! uniformly, and so must all parents for [`aim`], [`orient`] and [`LookAt`], else [`IkError::Sheared`].
+//! [`Chain`] solve in the space of the chain's parent, which may scale unevenly; a joint *within* their chain must
+//! scale uniformly, and so must all parents for [`aim`], [`orient`] and [`LookAt`], else [`IkError::Sheared`].
 
 mod aim;
 mod bend;

@@ -14,8 +14,8 @@ const FASTEST: f64 = 8.0;
 /// Where an elbow pointed last, so that it does not flip when the hand passes the pole.
 ///
 /// A limb in line with its pole has no side to bend to; when the target crosses that line, the side changes by half a
-/// turn at once. With a memory the elbow keeps its side there, carried along with the limb, and swings back once the pole
-/// is clear again.
+/// turn at once. With a memory the elbow keeps its side there, carried along with the limb, and swings back once the
+/// pole is clear again.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PoleMemory {
@@ -24,8 +24,8 @@ pub struct PoleMemory {
 }
 
 impl PoleMemory {
-    /// The side to which the elbow goes: a unit vector across the direction to the target. `dt` is the time since the last
-    /// call, seconds.
+    /// The side to which the elbow goes: a unit vector across the direction to the target. `dt` is the time since the
+    /// last call, seconds.
     ///
     /// `direction` is a unit vector, `pole` may have any length; both in a space that the limb's root does not turn in.
     pub fn side(&mut self, direction: DVec3, pole: DVec3, dt: f64) -> DVec3 {

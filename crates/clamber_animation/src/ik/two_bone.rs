@@ -27,11 +27,11 @@ pub struct TwoBone {
 pub struct TwoBoneGoal {
     /// Where its end should be, in model space.
     pub target: DVec3,
-    /// To which side of the line from shoulder to target the elbow points: a vector in model space of any length. `None`
-    /// for the side to which the pose bends it.
+    /// To which side of the line from shoulder to target the elbow points: a vector in model space of any length.
+    /// `None` for the side to which the pose bends it.
     pub pole: Option<DVec3>,
-    /// The share of the limb's length from which a far target is approached softly, more than 0 to 1. 0.97 keeps elbows from
-    /// snapping straight; 1 reaches as far as the bones do, for hands and feet that must not slip.
+    /// The share of the limb's length from which a far target is approached softly, more than 0 to 1. 0.97 keeps elbows
+    /// from snapping straight; 1 reaches as far as the bones do, for hands and feet that must not slip.
     pub soft: f64,
 }
 
@@ -88,8 +88,9 @@ impl TwoBone {
         Self::with_tip(skeleton, [upper, lower, end], DVec3::ZERO, bends_towards)
     }
 
-    /// The limb of a rig whose foot does not hang below the knee, but stands beside the leg as a target of its own, as in
-    /// files with baked controls. It ends at a point in the space of the lower joint: that where the foot is at rest.
+    /// The limb of a rig whose foot does not hang below the knee, but stands beside the leg as a target of its own, as
+    /// in files with baked controls. It ends at a point in the space of the lower joint: that where the foot is at
+    /// rest.
     ///
     /// # Errors
     /// As [`TwoBone::new`]; [`IkError::BadSetUp`] also if the point is not finite.
@@ -146,8 +147,8 @@ impl TwoBone {
         Ok(limb)
     }
 
-    /// The same limb, which does not fold further than to this angle between its bones, radians: 0 is folded flat, pi is
-    /// straight.
+    /// The same limb, which does not fold further than to this angle between its bones, radians: 0 is folded flat, pi
+    /// is straight.
     ///
     /// # Errors
     /// [`IkError::BadSetUp`] if the angle is not from 0 to pi.
@@ -178,11 +179,11 @@ impl TwoBone {
         Ok(self.posed(skeleton, pose)?.lengths)
     }
 
-    /// Turns the upper and the lower joint so that the end is at the target. With a `memory`, the elbow does not flip when
-    /// the limb passes its pole; pass the seconds since the last call with it.
+    /// Turns the upper and the lower joint so that the end is at the target. With a `memory`, the elbow does not flip
+    /// when the limb passes its pole; pass the seconds since the last call with it.
     ///
-    /// The bend of the pose is the plane in which its bones lie. If they are straight, or bent the wrong way, it is that
-    /// in which the limb bends at rest. A pose that is at the target already is kept.
+    /// The bend of the pose is the plane in which its bones lie. If they are straight, or bent the wrong way, it is
+    /// that in which the limb bends at rest. A pose that is at the target already is kept.
     ///
     /// # Errors
     /// [`IkError::NotFinite`] for the target, the pole or softness; [`IkError::NoJoint`] if the pose is not the skeleton's;
@@ -331,8 +332,8 @@ impl TwoBone {
     }
 }
 
-/// The sine of the angle between two bones below which they count as straight: rotations of poses are rounded to f32, so
-/// that the plane of the bones is uncertain by 1e-7 over this.
+/// The sine of the angle between two bones below which they count as straight: rotations of poses are rounded to f32,
+/// so that the plane of the bones is uncertain by 1e-7 over this.
 const STRAIGHT: f64 = 1e-3;
 
 /// The transforms of the joints between two, without either.

@@ -1,10 +1,10 @@
 //! Holds with inverse kinematics alone, beside the body.
 //!
-//! What engines offer: a clip plays, the model is a child of the climber, and a two-bone solver brings each hand and foot
-//! to a place that the game names. Here the places are those that the body chose, so that its choice costs the others
-//! nothing. The model stands where the body has it on average over the climb, seen from the climber, and turns as the body
-//! does. **Hard** reaches as far as the bones do. **Soft** begins to slow down at 97 % of the limb, so that elbows do not
-//! snap, and keeps its elbows by pole memory.
+//! What engines offer: a clip plays, the model is a child of the climber, and a two-bone solver brings each hand and
+//! foot to a place that the game names. Here the places are those that the body chose, so that its choice costs the
+//! others nothing. The model stands where the body has it on average over the climb, seen from the climber, and turns
+//! as the body does. **Hard** reaches as far as the bones do. **Soft** begins to slow down at 97 % of the limb, so that
+//! elbows do not snap, and keeps its elbows by pole memory.
 
 use std::error::Error;
 use std::time::Instant;

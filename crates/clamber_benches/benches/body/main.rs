@@ -1,15 +1,15 @@
 //! What does the body of a climber cost in a frame, and how far are its hands and feet from what they hold?
 //!
-//! The project's hero walks, goes up and down stairs, stands with a foot on a block, climbs a wall, hangs from skin that
-//! shakes, and climbs a walking giant. One frame for each tick of 60 Hz, on one thread. Times are medians; those of the body
-//! include its queries, and not the climber's own step. In the same run, one clip of the hero is sampled and its palette is
-//! composed, for comparison.
+//! The project's hero walks, goes up and down stairs, stands with a foot on a block, climbs a wall, hangs from skin
+//! that shakes, and climbs a walking giant. One frame for each tick of 60 Hz, on one thread. Times are medians; those
+//! of the body include its queries, and not the climber's own step. In the same run, one clip of the hero is sampled
+//! and its palette is composed, for comparison.
 //!
-//! Then the same climbs with inverse kinematics alone: the model is fixed to the climber, and its limbs reach for the same
-//! places, as far as the bones do (hard) or softly. See [`compare`].
+//! Then the same climbs with inverse kinematics alone: the model is fixed to the climber, and its limbs reach for the
+//! same places, as far as the bones do (hard) or softly. See [`compare`].
 //!
-//! Prints a table and writes it to `target/measure/body.csv`: name, value, bound, holds; and draws errors beside costs to
-//! `target/measure/body.svg`.
+//! Prints a table and writes it to `target/measure/body.csv`: name, value, bound, holds; and draws errors beside costs
+//! to `target/measure/body.svg`.
 //!
 //! Run it with `cargo bench -p clamber_benches --bench body`; briefly with `-- --test`.
 

@@ -181,8 +181,8 @@ pub(crate) fn measure(
     Ok(())
 }
 
-/// The valley and the giants as meshes that never move, and as many of rapier's characters where climbers could stand. None
-/// of them can climb: one in five walks, as of the climbers, and the others stand.
+/// The valley and the giants as meshes that never move, and as many of rapier's characters where climbers could stand.
+/// None of them can climb: one in five walks, as of the climbers, and the others stand.
 fn beside(
     giants: &[Giant],
     count: usize,

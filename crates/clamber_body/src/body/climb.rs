@@ -1,8 +1,8 @@
-//! When hands and feet move on while the body holds on: a clock that turns with the way, and rules that keep enough of them
-//! on their holds.
+//! When hands and feet move on while the body holds on: a clock that turns with the way, and rules that keep enough of
+//! them on their holds.
 //!
-//! One hand or foot at a time at low speed, so that three hold; a hand and the opposite foot when it is faster. LEMUR IIb
-//! climbs with stances of three and four holds (Bretl 2006); each step is at most 0.65 m and takes 0.12 to 0.3 s.
+//! One hand or foot at a time at low speed, so that three hold; a hand and the opposite foot when it is faster. LEMUR
+//! IIb climbs with stances of three and four holds (Bretl 2006); each step is at most 0.65 m and takes 0.12 to 0.3 s.
 
 use glam::DVec3;
 
@@ -26,7 +26,8 @@ const STEPS: [f64; 2] = [0.3, 0.65];
 /// Arms for which that is, metres.
 const ARM: f64 = 0.537;
 
-/// Share of the time of a step in which the limb is on its way, one at a time and two together; bounds of that time, seconds.
+/// Share of the time of a step in which the limb is on its way, one at a time and two together; bounds of that time,
+/// seconds.
 const SHARE: [f64; 2] = [0.24, 0.4];
 const TIMES: [f64; 2] = [0.12, 0.30];
 
@@ -43,8 +44,8 @@ const PEAK: f64 = 5.77;
 const HURRIES: f64 = 0.14;
 const LATE: f64 = 0.2;
 
-/// Slower than this is still, metres a second; after this time, seconds, limbs that are farther than this from where they
-/// belong, metres, are put there.
+/// Slower than this is still, metres a second; after this time, seconds, limbs that are farther than this from where
+/// they belong, metres, are put there.
 const SLOW: f64 = 0.05;
 const RESTS: f64 = 0.2;
 const TIDY: f64 = 0.14;
@@ -337,8 +338,8 @@ impl Schedule<'_, '_> {
         }
     }
 
-    /// A place to hold near a goal: nearer to the shoulder if that is too far, and nearer to what carries the climber if
-    /// there is nothing to hold.
+    /// A place to hold near a goal: nearer to the shoulder if that is too far, and nearer to what carries the climber
+    /// if there is nothing to hold.
     fn choose(&self, extremity: Extremity, goal: &Goal, time: f64) -> Option<Hold> {
         let length = self.context.shape(extremity).length;
         let shoulder = self.shoulders[extremity.index()] + self.motion * time;

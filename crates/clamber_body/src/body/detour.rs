@@ -52,8 +52,8 @@ impl Detour {
         self.way = carry.vector(self.way);
     }
 
-    /// Leads a point that comes to be in something back to its surface. The detour grows as fast as the point would sink
-    /// in; if it is deep already, or comes out on another side, by [`CHANGES`].
+    /// Leads a point that comes to be in something back to its surface. The detour grows as fast as the point would
+    /// sink in; if it is deep already, or comes out on another side, by [`CHANGES`].
     pub(crate) fn step(&mut self, context: &Context<'_>, touching: DVec3) {
         let size = context.size();
         let near = context.around.nearest(touching, THROUGH * size);

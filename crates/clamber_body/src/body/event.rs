@@ -17,7 +17,7 @@ pub struct Plant {
     pub normal: DVec3,
     /// Tag of what it came down on.
     pub tag: SurfaceTag,
-    /// How fast the hand or foot was on its way there, relative to what it came down on, metres a second: 1 to 3 for steps,
-    /// more after falls.
+    /// How fast the hand or foot was on its way there, relative to what it came down on, metres a second: 1 to 3 for
+    /// steps, more after falls.
     pub speed: f64,
 }

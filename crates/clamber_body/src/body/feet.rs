@@ -15,8 +15,8 @@ use super::walk::Walk;
 use crate::figure::{LimbShape, Place};
 use crate::{Extremity, Side};
 
-/// Distance from where it should be at which a foot leaves its place, metres, and angle, radians (Unreal's foot placement:
-/// 0.35 m, 45°); and the same for somebody who stands.
+/// Distance from where it should be at which a foot leaves its place, metres, and angle, radians (Unreal's foot
+/// placement: 0.35 m, 45°); and the same for somebody who stands.
 const UNPLANT: (f64, f64) = (0.35, 0.785);
 const REPLANT: (f64, f64) = (0.13, 0.4);
 
@@ -46,7 +46,8 @@ const ROLLS: [f64; 2] = [0.84, 0.99];
 const HEEL_UP: f64 = 0.9;
 const HALVINGS: usize = 12;
 
-/// Who stands has a foot on the ground if the clip's sole is at most so high, metres, and its top faces up, as a cosine.
+/// Who stands has a foot on the ground if the clip's sole is at most so high, metres, and its top faces up, as a
+/// cosine.
 const DOWN_TO: f64 = 0.15;
 const LEVEL: f64 = 0.8;
 
@@ -205,8 +206,8 @@ impl Foot<'_, '_> {
         over_ground(self.context, &self.clip, &self.memory, extremity)
     }
 
-    /// Somebody who walks lifts the heel of a foot that stays behind before the leg is too short; down stairs, toes come
-    /// first.
+    /// Somebody who walks lifts the heel of a foot that stays behind before the leg is too short; down stairs, toes
+    /// come first.
     fn lift_heel(&mut self) {
         let extremity = Extremity::Foot(self.side);
         let mut wanted = 0.0;
@@ -375,8 +376,8 @@ fn over_ground(
     Place::with_point_at(sole, contact, rotation)
 }
 
-/// How far the toes are above the heel, radians: as in the clip on level ground, and not at all on steep slopes, where feet
-/// go flat.
+/// How far the toes are above the heel, radians: as in the clip on level ground, and not at all on steep slopes, where
+/// feet go flat.
 fn pitch(context: &Context<'_>, extremity: Extremity, hold: &Hold) -> f64 {
     let clip = &context.clip[extremity.index()];
     let pitch = libm::asin((clip.rotation * DVec3::X).y.clamp(-1.0, 1.0));

@@ -5,8 +5,8 @@ use glam::DVec3;
 
 use super::hold::Surroundings;
 
-/// Where the ground is looked for, as shares of the leg: from above the feet to below (Unreal's foot placement: 0.75 m and
-/// 1 m), and half of the way over which it is averaged.
+/// Where the ground is looked for, as shares of the leg: from above the feet to below (Unreal's foot placement: 0.75 m
+/// and 1 m), and half of the way over which it is averaged.
 const ABOVE: f64 = 0.9;
 const BELOW: f64 = 1.2;
 const HALF_WINDOW: f64 = 0.36;
@@ -18,8 +18,8 @@ const POINTS: i32 = 3;
 const STEP: f64 = 0.3;
 const SLOPE: f64 = 1.4;
 
-/// Time for half of the way to the ground's height, seconds: Unreal's spring of the pelvis. It does not lag on slopes, since
-/// it follows with the slope's own speed.
+/// Time for half of the way to the ground's height, seconds: Unreal's spring of the pelvis. It does not lag on slopes,
+/// since it follows with the slope's own speed.
 const SETTLE: f64 = 0.09;
 
 /// The ground below the feet.

@@ -75,8 +75,8 @@ pub(crate) struct Hold {
 }
 
 impl Hold {
-    /// On a contact, turned to directions in world space: where fingers or toes point, and where the back of the hand or
-    /// foot faces.
+    /// On a contact, turned to directions in world space: where fingers or toes point, and where the back of the hand
+    /// or foot faces.
     pub(crate) fn new(found: &Found<'_>, along: DVec3, outward: DVec3, touching: DVec3) -> Self {
         let Found {
             id,

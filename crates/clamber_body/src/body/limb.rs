@@ -47,8 +47,8 @@ pub(crate) struct Swing {
 }
 
 impl Swing {
-    /// Where it is: on the quintic that begins with its velocity and ends at rest, both without acceleration (Flash and Hogan
-    /// 1985, "The coordination of arm movements").
+    /// Where it is: on the quintic that begins with its velocity and ends at rest, both without acceleration (Flash and
+    /// Hogan 1985, "The coordination of arm movements").
     pub(crate) fn place(&self) -> Place {
         let t = (self.time / self.duration).clamp(0.0, 1.0);
         let share = t * t * t * (10.0 + t * (6.0 * t - 15.0));
@@ -239,8 +239,8 @@ impl LimbMemory {
     }
 }
 
-/// Time for half of a way for which a critically damped spring does not start with more than 144 metres a second squared: 4 cm
-/// a sixtieth beyond the last one.
+/// Time for half of a way for which a critically damped spring does not start with more than 144 metres a second
+/// squared: 4 cm a sixtieth beyond the last one.
 pub(crate) fn soft_half(way: f64) -> f64 {
     0.14 * way.sqrt()
 }

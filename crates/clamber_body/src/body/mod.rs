@@ -41,8 +41,8 @@ use crate::{Extremity, Figure, Side};
 
 /// The body of one climber: it is posed in every drawn frame, from what the climber does and what it touches.
 ///
-/// It is for the eye alone. It belongs to no saved state; a body that is made anew, or whose climber was teleported, is in
-/// place at once. It remembers where hands and feet are, so give each climber one of its own.
+/// It is for the eye alone. It belongs to no saved state; a body that is made anew, or whose climber was teleported, is
+/// in place at once. It remembers where hands and feet are, so give each climber one of its own.
 #[derive(Clone, Debug)]
 pub struct Body {
     pose: Pose,
@@ -65,8 +65,8 @@ impl Body {
         }
     }
 
-    /// Poses the body, `dt` seconds after the last frame. Any frame rate is right. Allocates only where the climber begins
-    /// something else.
+    /// Poses the body, `dt` seconds after the last frame. Any frame rate is right. Allocates only where the climber
+    /// begins something else.
     ///
     /// # Errors
     /// [`BodyError`] for numbers that are not finite, another figure's body, or limbs that cannot be posed, such as those
@@ -110,8 +110,8 @@ impl Body {
         &self.plants
     }
 
-    /// Markers and ends that clips came past in the last update, such as `loose` of an act that looses an arrow. An act is
-    /// the last layer; the clips' names and markers are in [`Figure::animations`].
+    /// Markers and ends that clips came past in the last update, such as `loose` of an act that looses an arrow. An act
+    /// is the last layer; the clips' names and markers are in [`Figure::animations`].
     pub fn events(&self) -> &[AnimationEvent] {
         self.player.events()
     }
@@ -123,8 +123,8 @@ impl Body {
         limb.hold().map(|hold| &hold.attachment)
     }
 
-    /// Where the part of a hand or foot is that touches what it is on, in world space: the middle of the palm, or the sole.
-    /// `None` before the first update.
+    /// Where the part of a hand or foot is that touches what it is on, in world space: the middle of the palm, or the
+    /// sole. `None` before the first update.
     pub fn touching_point(&self, figure: &Figure, extremity: Extremity) -> Option<DVec3> {
         let memory = self.memory.as_ref()?;
         let limb = &memory.limbs[extremity.index()];

@@ -44,12 +44,12 @@ enum Base {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Act {
-    /// The clip, how it is mixed in, and for which joints; [`Figure::upper_body`](crate::Figure::upper_body) is a mask of
-    /// the joints above the hips.
+    /// The clip, how it is mixed in, and for which joints; [`Figure::upper_body`](crate::Figure::upper_body) is a mask
+    /// of the joints above the hips.
     pub layer: Layer,
-    /// Which hands follow the clip, left and right. They are not kept out of walls. While the climber holds on, a hand leaves
-    /// its hold once the other one holds, and that one stays as long as it reaches: climb at most 0.3 m/s meanwhile, or it
-    /// has to move.
+    /// Which hands follow the clip, left and right. They are not kept out of walls. While the climber holds on, a hand
+    /// leaves its hold once the other one holds, and that one stays as long as it reaches: climb at most 0.3 m/s
+    /// meanwhile, or it has to move.
     pub hands: [bool; 2],
 }
 

@@ -3,8 +3,8 @@
 use clamber_animation::damp;
 use glam::DVec3;
 
-/// Share of a limb's length at which it counts as stretched: arms keep from snapping straight (soft reach begins there),
-/// legs stand nearly straight.
+/// Share of a limb's length at which it counts as stretched: arms keep from snapping straight (soft reach begins
+/// there), legs stand nearly straight.
 pub(crate) const ARM: f64 = 0.97;
 pub(crate) const LEG: f64 = 0.992;
 
@@ -20,8 +20,8 @@ const MOST: f64 = 0.8;
 /// Nearer than this share of their length, limbs push the body away.
 const NEAR: f64 = 0.25;
 
-/// How far and how fast the pelvis goes down for its feet, metres and metres a second, and the time for half of the way up
-/// again, seconds (Unreal's foot placement: 0.5 m, and 0.09 s).
+/// How far and how fast the pelvis goes down for its feet, metres and metres a second, and the time for half of the way
+/// up again, seconds (Unreal's foot placement: 0.5 m, and 0.09 s).
 const DEEPEST: f64 = 0.5;
 const SINKS: f64 = 1.2;
 const RISES: f64 = 0.09;
@@ -41,8 +41,8 @@ pub(crate) struct Tie {
     pub(crate) length: f64,
 }
 
-/// The displacement of the body by which all ties are within reach, if that is not too far: from `from` onto one ball after
-/// the other.
+/// The displacement of the body by which all ties are within reach, if that is not too far: from `from` onto one ball
+/// after the other.
 pub(crate) fn pulled(from: DVec3, ties: &[Option<Tie>; 4], size: f64) -> DVec3 {
     let mut moved = from;
     for _ in 0..ROUNDS {
@@ -68,8 +68,8 @@ pub(crate) fn out_of_reach(ties: &[Option<Tie>; 4], moved: DVec3) -> Option<usiz
     worst.map(|(index, _)| index)
 }
 
-/// How far the pelvis has to go down for its feet: the hip above each foot meets the ball about the ankle (Johansen 2009,
-/// "Automated semi-procedural animation for character locomotion", 7.4.2).
+/// How far the pelvis has to go down for its feet: the hip above each foot meets the ball about the ankle (Johansen
+/// 2009, "Automated semi-procedural animation for character locomotion", 7.4.2).
 pub(crate) fn needed_drop(ties: &[Option<Tie>; 2], up: DVec3) -> f64 {
     let drops = ties.iter().flatten().filter_map(|tie| {
         let way = tie.root - tie.end;

@@ -37,7 +37,8 @@ const OFFSET: f64 = 0.09;
 /// The same per change of speed, seconds for a metre a second.
 const OFFSET_PER_SPEED: f64 = 0.0233;
 
-/// The fastest difference between two stances that is kept, metres a second: a body that lands from higher goes down as far.
+/// The fastest difference between two stances that is kept, metres a second: a body that lands from higher goes down as
+/// far.
 const FASTEST: f64 = 9.0;
 
 /// Time over which a change of velocity is leaned into, seconds; the lean per change, radians for a metre a second, and
@@ -289,8 +290,8 @@ impl<'a> Update<'a> {
         Ok(memory)
     }
 
-    /// Bends limbs to where they have to be. Those that are free follow their clip; legs that hang are turned by `swung`
-    /// about their hips.
+    /// Bends limbs to where they have to be. Those that are free follow their clip; legs that hang are turned by
+    /// `swung` about their hips.
     fn pose_limbs(
         &self,
         context: &Context<'_>,
@@ -505,8 +506,8 @@ impl<'a> Update<'a> {
         }
     }
 
-    /// What is left of the difference between where the model is shown and where its stance has it; `None` where the stance
-    /// is new.
+    /// What is left of the difference between where the model is shown and where its stance has it; `None` where the
+    /// stance is new.
     fn kept_offset(&self) -> Option<Spring<DVec3>> {
         let memory = self.memory.filter(|memory| memory.stance == self.stance)?;
         let mut offset = memory.offset;
@@ -550,8 +551,8 @@ impl<'a> Update<'a> {
         }
     }
 
-    /// Time for half of a difference between two stances: longer after a hard change of speed, so that the body gives way
-    /// softly.
+    /// Time for half of a difference between two stances: longer after a hard change of speed, so that the body gives
+    /// way softly.
     fn offset_half(&self, offset: &Spring<DVec3>) -> f64 {
         match &self.memory {
             Some(memory) if memory.stance == self.stance => memory.offset_half,
@@ -604,8 +605,8 @@ impl<'a> Update<'a> {
         }
     }
 
-    /// The way of the body by which hands and feet reach what they hold. What cannot be reached is let go: limbs on their
-    /// way first, then feet, and the last hand never, unless all of the way does not suffice.
+    /// The way of the body by which hands and feet reach what they hold. What cannot be reached is let go: limbs on
+    /// their way first, then feet, and the last hand never, unless all of the way does not suffice.
     fn pull(
         &self,
         context: &Context<'_>,

@@ -2,7 +2,8 @@
 
 use clamber_animation::{AnimationSet, ClipId};
 
-/// What a body's clip shows. [`BodyClip::name`] is the name under which [`Figure::new`](crate::Figure::new) looks for it.
+/// What a body's clip shows. [`BodyClip::name`] is the name under which [`Figure::new`](crate::Figure::new) looks for
+/// it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum BodyClip {
     /// Stands still. The one clip that a figure needs.

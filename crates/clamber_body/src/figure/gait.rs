@@ -19,8 +19,8 @@ pub(crate) const STRIDES: [BodyClip; 5] = [
 /// Phases of a clip at which feet are looked at.
 const SAMPLES: usize = 96;
 
-/// A foot stands while its sole is at most this high above its lowest, as a share of the leg, and is slower than this over
-/// ground, as a share of the gait's speed: Unreal's foot placement has 0.6 m/s for a walk.
+/// A foot stands while its sole is at most this high above its lowest, as a share of the leg, and is slower than this
+/// over ground, as a share of the gait's speed: Unreal's foot placement has 0.6 m/s for a walk.
 const LOW: f64 = 0.04;
 const SLOW: f64 = 0.45;
 
@@ -126,7 +126,8 @@ impl Gait {
 }
 
 impl Stride {
-    /// Whether a foot stands at a phase; if not, how much of its step is done, 0 to 1, and how much of the cycle is left.
+    /// Whether a foot stands at a phase; if not, how much of its step is done, 0 to 1, and how much of the cycle is
+    /// left.
     pub(crate) fn step(&self, side: Side, phase: f64) -> Option<(f64, f64)> {
         let (down, up) = (self.down[side.index()], self.up[side.index()]);
         let air = (down - up).rem_euclid(1.0);

@@ -7,8 +7,8 @@ use glam::{DAffine3, DMat3, DQuat, DVec3};
 
 use crate::{Humanoid, Limb, LimbEnd, Side};
 
-/// The palm's middle, as a share of the forearm from the wrist; how far its skin is from the bone; the same for the ankle
-/// above the sole, the heel behind and the ball before it, as shares of the leg. The hero's, rounded.
+/// The palm's middle, as a share of the forearm from the wrist; how far its skin is from the bone; the same for the
+/// ankle above the sole, the heel behind and the ball before it, as shares of the leg. The hero's, rounded.
 const PALM: f64 = 0.34;
 const PALM_SKIN: f64 = 0.12;
 const ANKLE: f64 = 0.09;
@@ -18,8 +18,8 @@ const BALL: f64 = 0.16;
 /// Angles between the bones below which elbows and knees do not fold, radians: 20° and 25°.
 const LEAST: [f64; 2] = [0.35, 0.44];
 
-/// A hand or foot in space: where its joint is, and how it is turned. The turn takes X to where fingers or toes point, and
-/// Y to where the back of the hand or the top of the foot faces, which is away from what it touches.
+/// A hand or foot in space: where its joint is, and how it is turned. The turn takes X to where fingers or toes point,
+/// and Y to where the back of the hand or the top of the foot faces, which is away from what it touches.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Place {
     pub(crate) position: DVec3,
@@ -107,8 +107,8 @@ impl LimbShape {
         }
     }
 
-    /// The axes of [`Place`] in the end joint's own space, for [`aim`](clamber_animation::ik::aim): the second one first, since
-    /// palms and soles lie on what they touch.
+    /// The axes of [`Place`] in the end joint's own space, for [`aim`](clamber_animation::ik::aim): the second one
+    /// first, since palms and soles lie on what they touch.
     pub(crate) fn aim_axes(&self) -> [DVec3; 2] {
         [self.axes[1], self.axes[0]]
     }

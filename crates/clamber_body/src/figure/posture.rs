@@ -7,7 +7,8 @@ use glam::DVec3;
 use super::{BodyClip, Clips, LimbShape};
 use crate::Humanoid;
 
-/// The hero's own measures, as shares of the leg: hips; hands and feet on a wall; its distance; a ledge's edge; hands above.
+/// The hero's own measures, as shares of the leg: hips; hands and feet on a wall; its distance; a ledge's edge; hands
+/// above.
 const HIPS: f64 = 0.97;
 const HANDS: [f64; 2] = [0.31, 1.64];
 const FEET: [f64; 2] = [0.13, 0.23];

@@ -8,8 +8,8 @@ use super::{HumanJoint, Humanoid, Side};
 use crate::HumanoidError;
 
 impl Humanoid {
-    /// Finds the body in a skeleton by the names of joints. The hips are where legs and spine meet, whatever their name;
-    /// the chest is where the arms meet.
+    /// Finds the body in a skeleton by the names of joints. The hips are where legs and spine meet, whatever their
+    /// name; the chest is where the arms meet.
     ///
     /// # Errors
     /// [`HumanoidError::Missing`] with all that was not found, and the errors of [`Humanoid::from_joints`].

@@ -84,8 +84,8 @@ pub struct Limb {
 pub enum LimbEnd {
     /// At a joint below the lower bone: it moves along.
     Joint(JointId),
-    /// At a joint that stands beside the limb, as in files with baked controls. Whoever poses the limb has to move it to
-    /// this point in the space of the lower bone.
+    /// At a joint that stands beside the limb, as in files with baked controls. Whoever poses the limb has to move it
+    /// to this point in the space of the lower bone.
     Beside(JointId, DVec3),
     /// At a point in the space of the lower bone, between several joints: a hand that consists of fingers.
     Point(DVec3),

@@ -4,20 +4,20 @@ use clamber_surface::geometry::Affine;
 use clamber_surface::rig::{JointId, Skeleton};
 use glam::{DAffine3, DVec3};
 
-/// How upright a bind pose must be, as the cosine of its angle to Y, and how much larger or smaller than the rest pose it
-/// may be: 45°, and a factor of 2.
+/// How upright a bind pose must be, as the cosine of its angle to Y, and how much larger or smaller than the rest pose
+/// it may be: 45°, and a factor of 2.
 const UPRIGHT: f64 = 0.7;
 const SIZE: f64 = 2.0;
 
-/// All joints in model space in the bind pose, in which the artist has laid the skeleton into the mesh: usually a T or an A.
-/// Nodes at rest may be in any pose of a clip.
+/// All joints in model space in the bind pose, in which the artist has laid the skeleton into the mesh: usually a T or
+/// an A. Nodes at rest may be in any pose of a clip.
 ///
-/// A joint that skins nothing has no bind pose; it hangs from its parent as at rest. Meshes may have other units and axes than
-/// the model: those of a node above the hips, such as an armature that is rotated and scaled. If no such node makes the
-/// bind pose stand upright at the size of the rest pose, it is the rest pose.
+/// A joint that skins nothing has no bind pose; it hangs from its parent as at rest. Meshes may have other units and
+/// axes than the model: those of a node above the hips, such as an armature that is rotated and scaled. If no such node
+/// makes the bind pose stand upright at the size of the rest pose, it is the rest pose.
 ///
-/// The mesh may also stand elsewhere than the skeleton: the posture is moved so that it has its hips above or below those of
-/// the rest pose, and its lower foot as high as the lower foot there.
+/// The mesh may also stand elsewhere than the skeleton: the posture is moved so that it has its hips above or below
+/// those of the rest pose, and its lower foot as high as the lower foot there.
 pub(crate) fn reference(
     skeleton: &Skeleton,
     hips: JointId,

@@ -12,8 +12,8 @@ use crate::play::play;
 /// Frames after a change of mode in which joints and hands are looked at.
 const FRAMES: f64 = 2.5;
 
-/// A change of the climber's own speed within a tick that no body takes up without folding, metres a second: a landing from
-/// a fall of half a metre.
+/// A change of the climber's own speed within a tick that no body takes up without folding, metres a second: a landing
+/// from a fall of half a metre.
 const HARD: f64 = 3.2;
 
 fn angle(q: DQuat) -> f64 {

@@ -28,8 +28,8 @@ struct Holds {
     frames: usize,
     /// The frames in which something was taken hold of, and what: hands 0 and 1, feet 2 and 3.
     plants: Vec<(f64, usize)>,
-    /// Rates at which elbows and knees bend, radians a second, and for arms that hold the same for a metre of way between
-    /// shoulder and hand, as a share of that of an arm at 97 % of its length.
+    /// Rates at which elbows and knees bend, radians a second, and for arms that hold the same for a metre of way
+    /// between shoulder and hand, as a share of that of an arm at 97 % of its length.
     bends: Vec<f64>,
     shares: Vec<f64>,
 }
@@ -171,8 +171,9 @@ impl Holds {
             "{what}: drift {} m",
             most(&self.drifts)
         );
-        // No elbow bends faster for the way of its hand than one at 97 % of the arm: 9.1 rad a metre for bones of 45 cm.
-        // In a single frame of 36 rides one does, by 1.5 times: the skin pulls an arm straight that is about to let go.
+        // No elbow bends faster for the way of its hand than one at 97 % of the arm: 9.1 rad a metre for bones of 45
+        // cm. In a single frame of 36 rides one does, by 1.5 times: the skin pulls an arm straight that is about to let
+        // go.
         let faster = self.shares.iter().filter(|share| **share > 1.0).count();
         let share = most(&self.shares);
         assert!(

@@ -15,8 +15,8 @@ use crate::figures;
 
 const DT: f64 = 1.0 / 60.0;
 
-/// A wall at z = 0, 8 m wide and high, of squares of 5 cm. Its upper half hangs from joint 1, the lower from joint 0, with
-/// a soft border between heights 3.8 and 4.2 m.
+/// A wall at z = 0, 8 m wide and high, of squares of 5 cm. Its upper half hangs from joint 1, the lower from joint 0,
+/// with a soft border between heights 3.8 and 4.2 m.
 fn wall() -> SkinnedSurface {
     let cells = 160u32;
     let place = |k: u32| f64::from(k) * 0.05;

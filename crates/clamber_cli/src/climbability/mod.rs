@@ -23,8 +23,9 @@ use crate::progress::Progress;
 
 /// Tells where a climber can get to on a creature, and what keeps it from the weak points.
 ///
-/// Divides the creature's skin into patches, looks from which to which a climber walks and climbs, and plays all clips. With
-/// --require it is a check for a game's CI: it exits with 1 if a requirement does not hold, and with 2 if there is no report.
+/// Divides the creature's skin into patches, looks from which to which a climber walks and climbs, and plays all clips.
+/// With --require it is a check for a game's CI: it exits with 1 if a requirement does not hold, and with 2 if there is
+/// no report.
 #[derive(Args, Clone, Debug)]
 pub struct ClimbabilityOptions {
     /// A .glb or .gltf file.
@@ -46,9 +47,9 @@ pub struct ClimbabilityOptions {
     #[arg(long, value_name = "METRES", default_value_t = 0.4, value_parser = positive, allow_negative_numbers = true)]
     pub spacing: f64,
 
-    /// What has to hold, such as "weak_points>=3": a number of the report, one of >=, <=, >, < and =, and a number. Numbers are
-    /// weak_points (how many are reachable), reachable (share of the skin, 0 to 1), reachable_area and rest_area (square
-    /// metres), entries. May be given more than once.
+    /// What has to hold, such as "weak_points>=3": a number of the report, one of >=, <=, >, < and =, and a number.
+    /// Numbers are weak_points (how many are reachable), reachable (share of the skin, 0 to 1), reachable_area and
+    /// rest_area (square metres), entries. May be given more than once.
     #[arg(long, value_name = "WHAT")]
     pub require: Vec<Requirement>,
 
@@ -56,8 +57,8 @@ pub struct ClimbabilityOptions {
     #[arg(long)]
     pub json: bool,
 
-    /// File for a picture from four sides: coloured from dark blue to yellow by how long it takes to get there, grey where no
-    /// climber gets to, with red discs for weak points.
+    /// File for a picture from four sides: coloured from dark blue to yellow by how long it takes to get there, grey
+    /// where no climber gets to, with red discs for weak points.
     #[arg(long, value_name = "FILE.png")]
     pub picture: Option<PathBuf>,
 }

@@ -78,8 +78,8 @@ fn table(rig: &Rig, body: &Humanoid) -> String {
 /// Width and height of the drawing, pixels.
 const SIZE: (u32, u32) = (1200, 720);
 
-/// Draws the skeleton at rest from the front and from its left: the body's joints with what they are, or without a body all
-/// joints with their names.
+/// Draws the skeleton at rest from the front and from its left: the body's joints with what they are, or without a body
+/// all joints with their names.
 fn draw(rig: &Rig, body: Option<&Humanoid>, file: &Path) -> Result<(), String> {
     let palette = rig.skeleton.palette(&rig.skeleton.rest_pose());
     let palette = palette.map_err(|error| error.to_string())?;

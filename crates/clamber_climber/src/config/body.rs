@@ -15,12 +15,13 @@ pub struct BodyConfig {
     /// Height of a second ball of the same radius above the first, centre to centre, metres, not negative. The body is
     /// the capsule around both balls while it stands, slides, falls, tumbles or is in a custom mode. It is the first
     /// ball alone while the climber grips, hangs or is asked to crouch
-    /// ([`ClimberInput::crouch`](crate::ClimberInput::crouch)), and where there is no room to stand up. Default 0: always a ball.
+    /// ([`ClimberInput::crouch`](crate::ClimberInput::crouch)), and where there is no room to stand up. Default 0:
+    /// always a ball.
     pub height: f64,
-    /// Thickness of the body's outer layer, which may overlap obstacles, metres, from a thousandth to half of the radius.
-    /// Default 0.01. The core inside it enters nothing, unless the climber is crushed or the solver's rounds do not
-    /// suffice ([`StepReport::is_clear`](crate::StepReport::is_clear)). A wider margin forgives rougher deformation and
-    /// shows more overlap.
+    /// Thickness of the body's outer layer, which may overlap obstacles, metres, from a thousandth to half of the
+    /// radius. Default 0.01. The core inside it enters nothing, unless the climber is crushed or the solver's rounds do
+    /// not suffice ([`StepReport::is_clear`](crate::StepReport::is_clear)). A wider margin forgives rougher deformation
+    /// and shows more overlap.
     pub margin: f64,
     /// Mass, kilograms, positive. Default 80. Obstacles that can be pushed feel it ([`Push`](crate::Push)).
     pub mass: f64,

@@ -7,8 +7,8 @@ use crate::ClimberError;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
 pub struct GroundConfig {
-    /// Steepest slope to stand on, radians from level, from one degree to below a right angle. Default 50 degrees, 0.873. A climber
-    /// that stands already stays on slopes up to 2 degrees steeper.
+    /// Steepest slope to stand on, radians from level, from one degree to below a right angle. Default 50 degrees,
+    /// 0.873. A climber that stands already stays on slopes up to 2 degrees steeper.
     pub max_slope: f64,
     /// Speed along the ground under full input, metres a second, not negative. Default 3.
     pub walk_speed: f64,
@@ -34,11 +34,11 @@ pub struct GroundConfig {
     /// Acceleration by input in the air, metres a second squared, not negative. Default 0: no steering. Platformers
     /// have about 10.
     pub air_acceleration: f64,
-    /// Fastest fall relative to the air, along gravity, metres a second, positive, may be infinite. Default 60, that of a
-    /// person. A body that is thrown down faster is slowed by as much as gravity would speed it up.
+    /// Fastest fall relative to the air, along gravity, metres a second, positive, may be infinite. Default 60, that of
+    /// a person. A body that is thrown down faster is slowed by as much as gravity would speed it up.
     pub terminal_speed: f64,
-    /// Coefficient of friction on slopes that are too steep to stand on, not negative. Default 0. However large it is, a
-    /// body slides on, down slopes that it cannot stand on.
+    /// Coefficient of friction on slopes that are too steep to stand on, not negative. Default 0. However large it is,
+    /// a body slides on, down slopes that it cannot stand on.
     pub slide_friction: f64,
     /// Factor on gravity while a jump still rises and [`jump_held`](crate::ClimberInput::jump_held) is false, at least
     /// 1 and finite. Default 1: every jump is equally high. At 3 a tap jumps a third as high.

@@ -9,8 +9,8 @@ use crate::ClimberError;
 pub struct LedgeConfig {
     /// Greatest height of a ledge above the ball's centre, metres, not negative. Default 0.9. A climber that stands on
     /// level ground reaches ledges up to radius + `reach_up` above the ground, and with a jump up to its height more,
-    /// `jump_speed`² / (2 · gravity). [`BodyConfig::height`](crate::BodyConfig::height) does not count: for a taller body,
-    /// raise `reach_up`, `drop` and [`HangConfig::arm_length`](crate::HangConfig::arm_length) as well.
+    /// `jump_speed`² / (2 · gravity). [`BodyConfig::height`](crate::BodyConfig::height) does not count: for a taller
+    /// body, raise `reach_up`, `drop` and [`HangConfig::arm_length`](crate::HangConfig::arm_length) as well.
     pub reach_up: f64,
     /// Greatest distance of the wall in front from the ball, and width of a gap in a ledge that hands reach across,
     /// metres, not negative. Default 0.35.
@@ -22,8 +22,8 @@ pub struct LedgeConfig {
     pub shimmy_speed: f64,
     /// Duration of a pull-up, seconds, positive. Default 0.6.
     pub pull_up_time: f64,
-    /// Fastest that hands catch a ledge in flight, metres a second relative to the ledge, not negative, may be infinite.
-    /// Default 15. See [`GripConfig::catch_speed`](crate::GripConfig::catch_speed).
+    /// Fastest that hands catch a ledge in flight, metres a second relative to the ledge, not negative, may be
+    /// infinite. Default 15. See [`GripConfig::catch_speed`](crate::GripConfig::catch_speed).
     pub catch_speed: f64,
 }
 

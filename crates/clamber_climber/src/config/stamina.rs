@@ -18,8 +18,8 @@ pub struct StaminaConfig {
     /// Stamina regained per second while the climber stands on ground whose shake is not above the threshold, not
     /// negative. Default 1/5.
     pub refill: f64,
-    /// Stamina spent by a jump off a hold or a ledge, 0 to 1. Default 0.03: a jump gains less height than climbing for as
-    /// much. A climber with less stamina does not jump.
+    /// Stamina spent by a jump off a hold or a ledge, 0 to 1. Default 0.03: a jump gains less height than climbing for
+    /// as much. A climber with less stamina does not jump.
     pub jump_cost: f64,
     /// Stamina spent by catching a hold or a ledge in flight, for each metre a second by which the speed relative to it
     /// exceeds that of a walk, not negative. Default 1/400. A climber whose stamina does not suffice slips.

@@ -25,8 +25,8 @@ pub struct ClimberState {
     /// Velocity after the last tick, in world space, metres a second. Corrections of position, such as steps up, are
     /// not part of it, and neither is how other climbers push it aside: `own_way` over the tick's length includes both.
     pub velocity: DVec3,
-    /// Velocity of its support, in world space, metres a second; in the air, that of what it touched last. A climber that
-    /// has touched nothing for a second takes on the velocity of the air
+    /// Velocity of its support, in world space, metres a second; in the air, that of what it touched last. A climber
+    /// that has touched nothing for a second takes on the velocity of the air
     /// ([`StepRules::air_velocity`](crate::StepRules::air_velocity)) within the next. The climber's own motion is
     /// measured against it, so that a fall or a late jump is the same in every frame that moves steadily.
     pub base_velocity: DVec3,
@@ -65,8 +65,8 @@ pub struct ClimberState {
     /// How long it has touched nothing, seconds, counted up to 2. 0 while it has a support.
     pub untouched: f64,
     /// True if its body is the ball alone although [`BodyConfig::height`](crate::BodyConfig::height) is not 0: it was
-    /// asked to crouch ([`ClimberInput::crouch`](crate::ClimberInput::crouch)), holds on, was crushed, or has no room to
-    /// stand up.
+    /// asked to crouch ([`ClimberInput::crouch`](crate::ClimberInput::crouch)), holds on, was crushed, or has no room
+    /// to stand up.
     pub crouched: bool,
     /// True if obstacles left it too little room in the last tick.
     pub crushed: bool,

@@ -209,8 +209,9 @@ impl<'a> ModeContext<'_, 'a> {
         self.tick.held_up(position, slope)
     }
 
-    /// The rule for a contact: whether it may be stood on, gripped and so on ([`StepRules::contact`](crate::StepRules)).
-    /// Contacts that are not solid are not found by [`ModeContext::mover`]; the rest of the rule is for the mode to keep.
+    /// The rule for a contact: whether it may be stood on, gripped and so on
+    /// ([`StepRules::contact`](crate::StepRules)). Contacts that are not solid are not found by [`ModeContext::mover`];
+    /// the rest of the rule is for the mode to keep.
     pub fn rule(&self, touch: &Touch) -> ContactRule {
         self.tick.judge.rule_of(touch)
     }

@@ -60,8 +60,9 @@ impl Tick<'_> {
         // A climber that has just begun to hang is at rest below its hands, except for a blow.
         let (pivot_was, relative) = match carried.velocity_before {
             Some(before) if !self.has_entered => {
-                // What it has changed the hands' velocity by, along the arms, is no acceleration that it feels: the pull
-                // of the arms was that between two bodies. Across the arms, what holds the hold may have kept that off.
+                // What it has changed the hands' velocity by, along the arms, is no acceleration that it feels: the
+                // pull of the arms was that between two bodies. Across the arms, what holds the hold may have kept that
+                // off.
                 let changed = before + self.change_by_load() - self.base_was;
                 let arm = carried.start - carried.motion.previous_position;
                 let along = changed.project_onto_normalized(arm.normalize_or(self.config.up()));

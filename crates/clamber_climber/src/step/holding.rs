@@ -12,8 +12,8 @@ use crate::{ClimberEvent, ClimberInput, ClimberMode};
 /// Speed at which arms draw the body to its hold, as a share of the climbing speed.
 const DRAW: f64 = 8.0 / 3.0;
 
-/// Longest time in which arms draw the body over the length of its radius, seconds: at least 1 m/s for a radius of 0.4 m,
-/// for a climber that climbs slowly or not at all.
+/// Longest time in which arms draw the body over the length of its radius, seconds: at least 1 m/s for a radius of 0.4
+/// m, for a climber that climbs slowly or not at all.
 const DRAW_TIME: f64 = 0.4;
 
 /// How long it grips nothing after it jumped off a hold, let go or was torn off, seconds.
@@ -44,9 +44,9 @@ const HELD_STILL: f64 = 0.939_692_620_785_908_4;
 
 /// Memory of a climber that climbs by [`ClimberInput::walk`]: in which direction along its hold the stick leads.
 ///
-/// The direction is found when the stick is pressed, or turned by more than 20 degrees. While the stick is held, it goes
-/// along with the hold's normal, over bumps and round edges, by the shortest rotation (parallel transport). All are zero
-/// without a held stick.
+/// The direction is found when the stick is pressed, or turned by more than 20 degrees. While the stick is held, it
+/// goes along with the hold's normal, over bumps and round edges, by the shortest rotation (parallel transport). All
+/// are zero without a held stick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
@@ -327,10 +327,11 @@ fn projected(wanted: DVec3, normal: DVec3) -> DVec3 {
     along.normalize_or_zero() * if fade.is_finite() { share * fade } else { 0.0 }
 }
 
-/// The direction along a hold in which a stick that is pressed now climbs, a unit vector. `stick` is a level unit vector.
+/// The direction along a hold in which a stick that is pressed now climbs, a unit vector. `stick` is a level unit
+/// vector.
 ///
-/// On walls it is turned with the hold from level ground, so that towards the wall is up. Under ceilings this turn has no
-/// axis that stays the same from one bump to the next, and the stick's own direction is taken.
+/// On walls it is turned with the hold from level ground, so that towards the wall is up. Under ceilings this turn has
+/// no axis that stays the same from one bump to the next, and the stick's own direction is taken.
 fn pressed(up: DVec3, normal: DVec3, stick: DVec3) -> DVec3 {
     if normal.dot(up) > CEILING {
         turn_to(up, normal) * stick

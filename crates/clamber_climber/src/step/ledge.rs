@@ -19,8 +19,8 @@ const DRAW: f64 = 7.5;
 /// A climber farther from its place than this share of its radius is drawn there before it pulls itself up.
 const OUT_OF_PLACE: f64 = 0.1;
 
-/// Hands may be up to this share of the radius to the side of where the body hangs, as on a sharp corner, where there is
-/// nothing straight ahead to hold: 0.45 of it, and what a hand leans over an edge.
+/// Hands may be up to this share of the radius to the side of where the body hangs, as on a sharp corner, where there
+/// is nothing straight ahead to hold: 0.45 of it, and what a hand leans over an edge.
 const BESIDE: f64 = 0.6;
 
 /// Share of the input towards the wall above which the climber pulls itself up, and away from it, climbs down.
@@ -46,8 +46,8 @@ pub struct LedgeHangingMemory {
     pub gave_up: bool,
     /// True while it goes back to its place below the edge, from a pull-up that was given up or from the top.
     pub returns: bool,
-    /// Direction of the input that leads to the climber's right, a level unit vector in world space. Set while the input
-    /// has led it around a corner, so that the same input leads on; otherwise zero.
+    /// Direction of the input that leads to the climber's right, a level unit vector in world space. Set while the
+    /// input has led it around a corner, so that the same input leads on; otherwise zero.
     pub right: DVec3,
 }
 
@@ -158,8 +158,8 @@ impl Tick<'_> {
         input - up * input.dot(up)
     }
 
-    /// What the input asks for, relative to the wall. Since the ledge turned a corner, the stick leads on along the ledge
-    /// as it did before, as long as it is held there or straight back.
+    /// What the input asks for, relative to the wall. Since the ledge turned a corner, the stick leads on along the
+    /// ledge as it did before, as long as it is held there or straight back.
     fn ledge_wish(&mut self) -> LedgeWish {
         let up = self.config.up();
         let facing = self.state.heading;

@@ -43,7 +43,8 @@ use carrying::Carried;
 /// Most changes of mode in a tick. Further changes follow in the next tick.
 const MOST_CHANGES: u32 = 4;
 
-/// Least share of a direction that is level, for a climber to face it. Less is rounding: the normal of level skin, for example.
+/// Least share of a direction that is level, for a climber to face it. Less is rounding: the normal of level skin, for
+/// example.
 const LEVEL: f64 = 1e-6;
 
 /// Memory that a climber reuses from tick to tick. Of its contents, only the contacts of the last tick are used later.
@@ -113,8 +114,8 @@ pub(crate) struct Tick<'a> {
     has_moved: bool,
     /// True if that movement was through the air.
     has_flown: bool,
-    /// How the velocity of its support has changed since the last tick, beyond what its own recoil has changed; `None` if
-    /// that is not known.
+    /// How the velocity of its support has changed since the last tick, beyond what its own recoil has changed; `None`
+    /// if that is not known.
     support_change: Option<DVec3>,
     /// The impulse that its arms gave to the body, if it hangs by them.
     pull: Option<DVec3>,

@@ -18,8 +18,9 @@ use crate::event::Push;
 /// on, its whole acceleration counts. Physics engines let bodies at rest jitter by a part of it.
 const JITTER: f64 = 0.03;
 
-/// The largest square of the angle, radians, by which a light hold may swing in a tick under the pull of the arms. Where
-/// it would swing farther, it gets less of their pull. At twice this, the pull of ticks that lag behind drives the swing.
+/// The largest square of the angle, radians, by which a light hold may swing in a tick under the pull of the arms.
+/// Where it would swing farther, it gets less of their pull. At twice this, the pull of ticks that lag behind drives
+/// the swing.
 const STIFFEST: f64 = 0.15;
 
 /// Cosine of the largest angle between the normals of contacts on the same side of the body: 60 degrees.

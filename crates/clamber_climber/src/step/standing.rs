@@ -225,8 +225,8 @@ impl Tick<'_> {
         }
     }
 
-    /// True if ground is farther than the margin, and either it or what carries the climber is another climber: nobody is
-    /// a step down, and whoever leaves another one falls.
+    /// True if ground is farther than the margin, and either it or what carries the climber is another climber: nobody
+    /// is a step down, and whoever leaves another one falls.
     fn is_far_onto_another(&self, carried: &Carried, ground: &Ground) -> bool {
         let from = carried.support.attachment.obstacle;
         let far = self.state.position.distance(ground.position) > self.config.body.margin;

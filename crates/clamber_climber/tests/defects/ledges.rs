@@ -118,8 +118,8 @@ fn catching_a_ledge_moves_no_faster_than_arms_do() {
     assert!(caught * 3 > starts, "{caught} of {starts}");
 }
 
-/// A friend stands behind the edge of each side of a tower. The climber goes back to hanging, and gets up once the friend
-/// has gone.
+/// A friend stands behind the edge of each side of a tower. The climber goes back to hanging, and gets up once the
+/// friend has gone.
 #[test]
 fn a_friend_at_the_edge_is_waited_for_from_below() {
     let tower = cuboid(Vec3::splat(3.0), STONE);

@@ -8,8 +8,8 @@ use crate::crowd::{Crowd, IDLE};
 /// Half of the room's length, metres.
 const HALF: f64 = 1.5;
 
-/// Farthest step of a tick beside what carries it, metres, where the climber's own speed does not make it. Those who push
-/// each other may part as fast as two walk against each other.
+/// Farthest step of a tick beside what carries it, metres, where the climber's own speed does not make it. Those who
+/// push each other may part as fast as two walk against each other.
 fn farthest(others: Others) -> f64 {
     match others {
         Others::Block | Others::Pass => 0.1,

@@ -2,8 +2,8 @@
 //!
 //! Some are tested elsewhere. bevy#25605, picking hits in mid-air beside an animated body, is in
 //! `bevy_clamber/tests/plugin/picking.rs`. avian#813 (eight overlapping moving meshes) and the cost in Unity's thread
-//! 875257 (18 ms to bake 30,000 faces again) are measured for our skins by `clamber_benches`' benches `scene` and `tick`.
-//! The other part of that thread, velocities of a posed mesh, is here.
+//! 875257 (18 ms to bake 30,000 faces again) are measured for our skins by `clamber_benches`' benches `scene` and
+//! `tick`. The other part of that thread, velocities of a posed mesh, is here.
 
 use core::f64::consts::TAU;
 

@@ -115,8 +115,8 @@ fn until_in_place(run: &mut Run, place: DVec3, input: &ClimberInput, most: f64) 
     })
 }
 
-/// Steps a climber that is blocked until it gives up. Its velocity is how it moves. Once it slides along the obstacle, it
-/// does not go to and fro.
+/// Steps a climber that is blocked until it gives up. Its velocity is how it moves. Once it slides along the obstacle,
+/// it does not go to and fro.
 fn blocked_at_rest(run: &mut Run, input: &ClimberInput, case: &str) {
     let dt = run.stage.dt;
     let (mut blocked, mut last) = (0, DVec3::ZERO);

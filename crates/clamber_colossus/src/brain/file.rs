@@ -97,8 +97,8 @@ pub struct TransitionFile {
     /// A marker of the clip that must have been passed in this tick.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub on: Option<String>,
-    /// Seconds that the state must have lasted. A time that is drawn by lot is the same for all transitions of a state with
-    /// the same range, so that their weights decide.
+    /// Seconds that the state must have lasted. A time that is drawn by lot is the same for all transitions of a state
+    /// with the same range, so that their weights decide.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub after: Option<After>,
     /// Of the transitions that can be taken, those of the highest priority are; 0 if it does not say.
@@ -152,7 +152,8 @@ pub struct Attack {
     pub damage: f64,
     /// Speed that a blow gives along the limb's motion, metres a second.
     pub throw: f64,
-    /// The limb's end goes to its prey if that is within this distance of where the clip strikes, metres. 0 strikes where the clip does.
+    /// The limb's end goes to its prey if that is within this distance of where the clip strikes, metres. 0 strikes
+    /// where the clip does.
     #[serde(default, skip_serializing_if = "is_zero_f64")]
     pub aim: f64,
 }

@@ -3,7 +3,8 @@ use serde::{Deserialize, Serialize};
 use super::{Brain, MOST_DEPTH, MOST_TRANSITIONS, StateId, Transition};
 use crate::senses::Senses;
 
-/// What changes in a brain: where it is, for how long, its moods and its lots. Below 1 KB, and all that has to be saved.
+/// What changes in a brain: where it is, for how long, its moods and its lots. Below 1 KB, and all that has to be
+/// saved.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct BrainState {
     current: StateId,

@@ -18,12 +18,12 @@ pub struct Foresight {
 }
 
 impl Creature {
-    /// How the creature will stand after some seconds, not negative, if its brain does not decide on anything else until then:
-    /// its clips and fades go on, and so does its way at the speed that it has. Fills in the palette, and gives its place in
-    /// the world.
+    /// How the creature will stand after some seconds, not negative, if its brain does not decide on anything else
+    /// until then: its clips and fades go on, and so does its way at the speed that it has. Fills in the palette, and
+    /// gives its place in the world.
     ///
-    /// Feet are not put on the ground and the head is not turned: what rides on those is carried elsewhere by as much as they
-    /// are corrected now.
+    /// Feet are not put on the ground and the head is not turned: what rides on those is carried elsewhere by as much
+    /// as they are corrected now.
     ///
     /// # Errors
     /// [`ColossusError::Animation`] if `seconds` is negative or not finite.

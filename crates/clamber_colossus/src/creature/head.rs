@@ -7,7 +7,8 @@ use glam::DVec3;
 use super::{Creature, Surroundings};
 use crate::brain::Gaze;
 
-/// Half time of a gaze that goes to something else, and of its beginning and end, seconds, for a creature of human size.
+/// Half time of a gaze that goes to something else, and of its beginning and end, seconds, for a creature of human
+/// size.
 const LOOKS: f64 = 0.25;
 
 /// How long a glance lasts, seconds.

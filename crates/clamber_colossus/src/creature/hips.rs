@@ -1,5 +1,5 @@
-//! The hips of the pose: low enough for all feet to reach the ground, over the feet that stand while another one steps, and
-//! shaken by what comes down.
+//! The hips of the pose: low enough for all feet to reach the ground, over the feet that stand while another one steps,
+//! and shaken by what comes down.
 
 use clamber_animation::joint_in_model;
 use clamber_animation::rig::JointId;
@@ -10,8 +10,8 @@ use serde::{Deserialize, Serialize};
 use super::Creature;
 use super::legs::PutLeg;
 
-/// The most acceleration of the hips, up and down and to the sides, metres a second squared. Riders feel it, together with
-/// that of following the ground.
+/// The most acceleration of the hips, up and down and to the sides, metres a second squared. Riders feel it, together
+/// with that of following the ground.
 const DROPS: f64 = 0.4;
 const SHIFTS: f64 = 0.4;
 
@@ -31,7 +31,8 @@ const RISES: f64 = 3.0;
 const SHIFT: f64 = 0.35;
 const SHIFTED: f64 = 0.7;
 
-/// Of the tremor of an impact: its circular frequency at 1 m of leg, radians a second; damping; and what a step gives of it.
+/// Of the tremor of an impact: its circular frequency at 1 m of leg, radians a second; damping; and what a step gives
+/// of it.
 const TREMOR_RATE: f64 = 50.0;
 const TREMOR_DAMPING: f64 = 0.25;
 const STEP_TREMOR: f64 = 0.15;

@@ -9,8 +9,9 @@ use super::state::Felt;
 use super::{Creature, Wound};
 
 impl Creature {
-    /// Tells the creature that something struck it. Returns the damage that was done to a weak point: none if there is no
-    /// open one there, or if a plate took the blow. The brain knows in the next step, whose report tells what happened.
+    /// Tells the creature that something struck it. Returns the damage that was done to a weak point: none if there is
+    /// no open one there, or if a plate took the blow. The brain knows in the next step, whose report tells what
+    /// happened.
     pub fn hurt(&mut self, wound: &Wound) -> f64 {
         if !wound.place.is_finite() || !(0.0..=f64::MAX).contains(&wound.damage) {
             return 0.0;
@@ -56,8 +57,8 @@ impl Creature {
         }
     }
 
-    /// What a blow at a point of the skin would strike: the open weak point there, and the whole plate that would take the blow
-    /// in its place. Both by their indices.
+    /// What a blow at a point of the skin would strike: the open weak point there, and the whole plate that would take
+    /// the blow in its place. Both by their indices.
     pub fn struck_at(&self, at: &MaterialPoint, place: DVec3) -> (Option<usize>, Option<usize>) {
         let triangle = u32::try_from(at.key).ok().map(TriangleId);
         let plate = triangle
@@ -108,8 +109,8 @@ impl Creature {
         Some(self.surface.world_from_model().transform_point(place))
     }
 
-    /// True if a weak point can be hurt now: it is not used up, and the current state exposes it, or all of lower order are
-    /// used up.
+    /// True if a weak point can be hurt now: it is not used up, and the current state exposes it, or all of lower order
+    /// are used up.
     pub fn is_open(&self, weak_point: usize) -> bool {
         let points = self.kind.weak_points();
         let hit_points = &self.state.hit_points;

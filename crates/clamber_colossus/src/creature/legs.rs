@@ -119,9 +119,9 @@ impl Creature {
         self.legs = legs;
     }
 
-    /// Height of a foot's sole above the ground: of its point that is lowest, negative if that is in the ground. Ground that is
-    /// more than a quarter of the leg's length above the foot is a wall, and does not count. `None` if there is no such leg, or
-    /// no ground below it.
+    /// Height of a foot's sole above the ground: of its point that is lowest, negative if that is in the ground. Ground
+    /// that is more than a quarter of the leg's length above the foot is a wall, and does not count. `None` if there is
+    /// no such leg, or no ground below it.
     pub fn foot_clearance(&self, leg: usize, terrain: &[&dyn Obstacle]) -> Option<f64> {
         let ground = Ground {
             terrain,
@@ -136,8 +136,8 @@ impl Creature {
             .min_by(f64::total_cmp)
     }
 
-    /// The corners of a rectangle around a foot's sole, in world space, one after the other around it. `None` if there is
-    /// no such leg.
+    /// The corners of a rectangle around a foot's sole, in world space, one after the other around it. `None` if there
+    /// is no such leg.
     pub fn sole(&self, leg: usize) -> Option<[DVec3; 4]> {
         let [right_heel, left_heel, right_toe, left_toe] = self.kind.legs().get(leg)?.sole.corners;
         let below = DVec3::Y * self.kind.legs().get(leg)?.sole.ball_height;

@@ -33,8 +33,8 @@ const LOOKS_AHEAD: f64 = 1.0;
 /// It looks for what is in its way in one of so many ticks.
 const LOOKS: u64 = 8;
 
-/// A way that is no further aside than this is straight ahead, radians; and what is no higher than this share of its height it
-/// steps over.
+/// A way that is no further aside than this is straight ahead, radians; and what is no higher than this share of its
+/// height it steps over.
 const STRAIGHT: f64 = 0.15;
 const STEPS_OVER: f64 = 0.06;
 
@@ -45,8 +45,8 @@ const WALK_ON: f64 = 0.5;
 /// The largest vertical acceleration from following the ground, metres a second squared.
 const CLIMBS: f64 = 0.5;
 
-/// Seconds in which one clip of the gait fades into another, for a creature of a human's height. Larger ones take longer, by
-/// the square root of their height (Froude's law).
+/// Seconds in which one clip of the gait fades into another, for a creature of a human's height. Larger ones take
+/// longer, by the square root of their height (Froude's law).
 const FADE: f64 = 0.35;
 const HUMAN: f64 = 1.75;
 
@@ -309,8 +309,8 @@ impl Creature {
         Ok(arrived && stands)
     }
 
-    /// The direction to walk in, radians from its heading, for one that it wants: that one if it is free, straight on while only
-    /// that is, or else the free one that is nearest to it; `None` if there is none.
+    /// The direction to walk in, radians from its heading, for one that it wants: that one if it is free, straight on
+    /// while only that is, or else the free one that is nearest to it; `None` if there is none.
     fn free_way(&self, around: &Surroundings<'_>, wanted: f64) -> Option<f64> {
         if self.is_free(around, 0.0) {
             let is_free = wanted.abs() < STRAIGHT || self.is_free(around, wanted.clamp(-0.7, 0.7));

@@ -28,7 +28,8 @@ pub struct CreatureState {
     /// Where the model's origin is. Its height follows the ground.
     pub(super) position: DVec3,
     pub(super) climb: f64,
-    /// Heights of the ground along its heading, from behind to ahead, and to the left and right; one is looked for in each tick.
+    /// Heights of the ground along its heading, from behind to ahead, and to the left and right; one is looked for in
+    /// each tick.
     pub(super) ground: [f64; GROUND],
     /// How it goes round what is in its way.
     pub(super) detour: Detour,

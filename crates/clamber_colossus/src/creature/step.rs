@@ -22,9 +22,9 @@ const SETTLES: f64 = 0.8;
 impl Creature {
     /// Lets a tick pass, of the length that its brain was made for.
     ///
-    /// In this order: senses of what was around it at the end of the last tick; the brain; the act that it chose begins or
-    /// goes on; clips; the place in the world; the pose, with feet on the ground and the head turned; the skin; whom the
-    /// limbs strike. Step the creature before the climbers on it. A creature that is asleep only feels and thinks.
+    /// In this order: senses of what was around it at the end of the last tick; the brain; the act that it chose begins
+    /// or goes on; clips; the place in the world; the pose, with feet on the ground and the head turned; the skin; whom
+    /// the limbs strike. Step the creature before the climbers on it. A creature that is asleep only feels and thinks.
     ///
     /// # Errors
     /// [`ColossusError::Surface`] if the skin cannot be posed, for example since the creature has left the range of numbers.
@@ -99,8 +99,8 @@ impl Creature {
         }
     }
 
-    /// Begins the current state's act, as soon as the creature stands, or goes on with it. An act that interrupts another
-    /// one begins at once: giants may stop abruptly.
+    /// Begins the current state's act, as soon as the creature stands, or goes on with it. An act that interrupts
+    /// another one begins at once: giants may stop abruptly.
     fn act(&mut self) -> Result<(), ColossusError> {
         let state = self.state.brain.current();
         if self.state.acting == Some(state) {

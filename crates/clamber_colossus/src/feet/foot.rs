@@ -89,7 +89,8 @@ pub(crate) struct FootGoal {
     pub(crate) lands_in: f64,
     /// Where the clip's ball will be then.
     pub(crate) lands_at: DVec3,
-    /// From there to where it is to land, level; and with how much acceleration it may go there, metres a second squared.
+    /// From there to where it is to land, level; and with how much acceleration it may go there, metres a second
+    /// squared.
     pub(crate) aside: DVec3,
     pub(crate) most_aside: f64,
     /// Height of the clip's ball at [`SHARES`] of the time until then.
@@ -113,13 +114,13 @@ pub(crate) struct FootGoal {
 const STEPS_BEYOND: f64 = 0.12;
 const STEPS_TURNED: f64 = 0.45;
 
-/// The least time of a step of its own, as a share of `sqrt(leg / g)`, and how high it goes at least, as a share of the leg's
-/// length.
+/// The least time of a step of its own, as a share of `sqrt(leg / g)`, and how high it goes at least, as a share of the
+/// leg's length.
 const STEP_TIME: f64 = 1.5;
 const STEP_HEIGHT: f64 = 0.04;
 
-/// The most acceleration of an offset up and down, and to the sides, metres a second squared, and of a foot's turn, radians a
-/// second squared. Together the first two are 5.6: below 6, which skin below the knee may have in a swing.
+/// The most acceleration of an offset up and down, and to the sides, metres a second squared, and of a foot's turn,
+/// radians a second squared. Together the first two are 5.6: below 6, which skin below the knee may have in a swing.
 const MOST_UP: f64 = 4.4;
 pub(crate) const MOST_ASIDE: f64 = 3.4;
 const MOST_TURN: f64 = 3.0;
@@ -133,8 +134,8 @@ const LEAST: f64 = 0.15;
 /// Time constant with which a foot leans to the ground, seconds.
 const LEANS: f64 = 0.1;
 
-/// A foot that is higher than this above the ground when its clip stands comes down first, and ground that moves by more
-/// than that carries it no longer, as shares of the leg's length.
+/// A foot that is higher than this above the ground when its clip stands comes down first, and ground that moves by
+/// more than that carries it no longer, as shares of the leg's length.
 const HIGH: f64 = 0.03;
 const GONE: f64 = 0.003;
 
@@ -371,7 +372,8 @@ impl Foot {
         self.lean(at.normal, LEANS, dt);
     }
 
-    /// Flies as its clip does, but for an offset that goes to where it comes down in `left` seconds, over what lies between.
+    /// Flies as its clip does, but for an offset that goes to where it comes down in `left` seconds, over what lies
+    /// between.
     fn swing(&mut self, goal: &FootGoal, sole: &Sole<'_>, left: f64, dt: f64) {
         let lands = self.landing(goal.lands_at + goal.aside, goal, sole);
         if goal.looks || self.path.left <= 0.0 {
@@ -412,7 +414,8 @@ impl Foot {
         }
     }
 
-    /// Where an offset has to be, and when: where the foot lands, or over what lies between, if that takes more acceleration.
+    /// Where an offset has to be, and when: where the foot lands, or over what lies between, if that takes more
+    /// acceleration.
     fn path_over(&self, goal: &FootGoal, sole: &Sole<'_>, lands: &Footing, left: f64) -> Path {
         let ball = goal.clip + self.offset.value;
         let way = goal.lands_at + goal.aside - ball;
@@ -522,8 +525,8 @@ fn pull([value, velocity]: [f64; 2], goal: f64, left: f64) -> f64 {
     (goal - value) * (6.0 / (left * left)) - velocity * (4.0 / left)
 }
 
-/// The least time of at least `left` seconds in which [`arrive`] needs no more than an acceleration, at its beginning and its
-/// end.
+/// The least time of at least `left` seconds in which [`arrive`] needs no more than an acceleration, at its beginning
+/// and its end.
 fn unhurried(spring: &Spring<DVec3>, goal: DVec3, left: f64, most: f64) -> f64 {
     let (away, velocity) = (goal - spring.value, spring.velocity);
     let mut left = left;
@@ -538,7 +541,8 @@ fn unhurried(spring: &Spring<DVec3>, goal: DVec3, left: f64, most: f64) -> f64 {
     left
 }
 
-/// Moves a value so that it is at its goal, at rest, in `left` seconds, by a cubic in time; or as far as an acceleration allows.
+/// Moves a value so that it is at its goal, at rest, in `left` seconds, by a cubic in time; or as far as an
+/// acceleration allows.
 fn arrive<T: Bounded>(spring: &mut Spring<T>, goal: T, left: f64, most: f64, dt: f64) {
     let away = goal - spring.value;
     let acceleration = away * (6.0 / (left * left)) - spring.velocity * (4.0 / left);

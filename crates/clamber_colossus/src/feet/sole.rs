@@ -37,8 +37,8 @@ impl Sole<'_> {
         height.filter(|height| height - place.y < self.wall)
     }
 
-    /// Height of the ground that a foot has to pass over at a place of its ball, if it leans to a normal: the highest of those
-    /// below ball, heel and toe. `None` if there is none.
+    /// Height of the ground that a foot has to pass over at a place of its ball, if it leans to a normal: the highest
+    /// of those below ball, heel and toe. `None` if there is none.
     pub(crate) fn highest(&self, place: DVec3, normal: DVec3) -> Option<f64> {
         let [back_right, back_left, front_right, front_left] = self.shape.corners;
         let ends = [
@@ -59,8 +59,8 @@ impl Sole<'_> {
         !self.ground.terrain.is_empty()
     }
 
-    /// About where a foot stands with its ball above or below a place; at that place if there is no ground. It leans as the
-    /// ground below its corners does, and is lowered until it touches.
+    /// About where a foot stands with its ball above or below a place; at that place if there is no ground. It leans as
+    /// the ground below its corners does, and is lowered until it touches.
     pub(crate) fn at(&self, place: DVec3) -> Footing {
         let points = &self.shape.points;
         self.lowered(

@@ -20,8 +20,8 @@ pub struct BodyFile {
     /// Pieces of armour that break off.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub plates: Vec<PlateFile>,
-    /// How much the body trembles when a clip passes its marker `impact`: the largest acceleration at the hips, metres a second
-    /// squared. A step gives 15 % of it.
+    /// How much the body trembles when a clip passes its marker `impact`: the largest acceleration at the hips, metres
+    /// a second squared. A step gives 15 % of it.
     #[serde(default = "tremor")]
     pub tremor: f64,
 }
@@ -106,8 +106,8 @@ pub struct PlateFile {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HeadFile {
-    /// From the head down, with the share of the turn that each one takes of what the joints above it leave, 0 to 1. The last
-    /// one takes the rest.
+    /// From the head down, with the share of the turn that each one takes of what the joints above it leave, 0 to 1.
+    /// The last one takes the rest.
     pub joints: Vec<(String, f64)>,
     /// The eye, in the head joint's own space, in the model's units.
     #[serde(default)]

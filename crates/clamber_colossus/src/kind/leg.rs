@@ -206,7 +206,8 @@ impl Contacts {
         inside(time) || inside(time + self.duration)
     }
 
-    /// Seconds from a time until the foot stands next, and where its ball is then, in model space; `None` if it does not.
+    /// Seconds from a time until the foot stands next, and where its ball is then, in model space; `None` if it does
+    /// not.
     pub(crate) fn next(&self, time: f64) -> Option<(f64, DVec3)> {
         let ahead = |from: f64| {
             let wait = from - time;

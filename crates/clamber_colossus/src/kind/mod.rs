@@ -184,8 +184,8 @@ impl CreatureKind {
         })
     }
 
-    /// A 64-bit hash of all that the kind consists of, for comparing peers and saved states: skeleton, clips, skin, weak
-    /// points, and the brain's file.
+    /// A 64-bit hash of all that the kind consists of, for comparing peers and saved states: skeleton, clips, skin,
+    /// weak points, and the brain's file.
     pub fn fingerprint(&self) -> u64 {
         let body = creature_fingerprint(&self.skeleton, self.clips.clips(), &self.mesh);
         let mut hash = body ^ self.brain.tick().to_bits();
@@ -496,8 +496,9 @@ fn attack_with<'a>(brain: &'a Brain, clip: &str) -> Option<(StateId, &'a Attack)
     })
 }
 
-/// How fast the turning of a head changes, radians a second squared, for a creature of human size; larger ones take longer, by
-/// the square root of their height. Whoever rides on it feels two fifths of it in metres a second squared, at any size.
+/// How fast the turning of a head changes, radians a second squared, for a creature of human size; larger ones take
+/// longer, by the square root of their height. Whoever rides on it feels two fifths of it in metres a second squared,
+/// at any size.
 const TURNS_HEAD: f64 = 20.0;
 
 fn look(names: &Names<'_>, file: &HeadFile) -> Result<(LookAt, JointId), ColossusError> {

@@ -5,7 +5,8 @@ use glam::DVec3;
 /// How far above the lowest skin of a foot its sole reaches, as a share of the leg's length.
 const THICK: f64 = 0.03;
 
-/// Skin of the sole moves with the foot by at least this share: what follows the shin as well leaves the ground with it.
+/// Skin of the sole moves with the foot by at least this share: what follows the shin as well leaves the ground with
+/// it.
 const RIGID: f32 = 0.99;
 
 /// Rows and columns of points on a sole, of which those at the edge lie within it by a share of its size.

@@ -100,8 +100,8 @@ impl Strike {
         })
     }
 
-    /// How much of a way the spot can be moved along it, as a share: a leg does not reach everywhere. The way is in model
-    /// space.
+    /// How much of a way the spot can be moved along it, as a share: a leg does not reach everywhere. The way is in
+    /// model space.
     pub(crate) fn reach(&self, way: DVec3) -> f64 {
         let length = STRETCH * self.length;
         let share = |from: &DVec3| {

@@ -73,7 +73,8 @@ impl Senses {
         }
     }
 
-    /// One of the game's own senses, by its index in [`Brain::own_senses`](crate::Brain::own_senses); 0 if there is none.
+    /// One of the game's own senses, by its index in [`Brain::own_senses`](crate::Brain::own_senses); 0 if there is
+    /// none.
     pub fn own(&self, index: usize) -> f64 {
         self.own.get(index).copied().unwrap_or(0.0)
     }

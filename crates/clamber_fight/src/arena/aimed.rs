@@ -23,8 +23,8 @@ pub struct Aimed {
 }
 
 impl Arena {
-    /// Where a fighter's stab would go if it struck now: for a mark on the screen, and for bots. `None` without a sword, and if no
-    /// skin is in reach.
+    /// Where a fighter's stab would go if it struck now: for a mark on the screen, and for bots. `None` without a
+    /// sword, and if no skin is in reach.
     pub fn stab_aim(&self, fighter: FighterId) -> Option<Aimed> {
         let fighter = self.fighter(fighter)?;
         let skins: Vec<&SkinnedSurface> = self.creatures.iter().map(|one| one.surface()).collect();

@@ -59,8 +59,8 @@ pub enum ArenaEvent {
         weak_point: Option<usize>,
         /// The whole plate that took the hit, by its index: weak points below it are not hurt.
         plate: Option<usize>,
-        /// Damage done to a weak point: less than the weapon could do if the point had less left, 0 elsewhere.
-        /// The creature tells in the next step what became of it: [`CreatureEvent::Hurt`], [`CreatureEvent::Staggered`].
+        /// Damage done to a weak point: less than the weapon could do if the point had less left, 0 elsewhere. The
+        /// creature tells in the next step what became of it: [`CreatureEvent::Hurt`], [`CreatureEvent::Staggered`].
         ///
         /// [`CreatureEvent::Hurt`]: clamber_colossus::CreatureEvent::Hurt
         /// [`CreatureEvent::Staggered`]: clamber_colossus::CreatureEvent::Staggered

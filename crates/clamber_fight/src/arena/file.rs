@@ -14,8 +14,8 @@ const VERSION: u32 = 2;
 const HEADER: usize = 8 + 4 + 8 + 8;
 
 impl Arena {
-    /// All that changes as bytes, for a file or to send it: a header with version, hash of the assets and a checksum, then the
-    /// state in the format of the crate postcard.
+    /// All that changes as bytes, for a file or to send it: a header with version, hash of the assets and a checksum,
+    /// then the state in the format of the crate postcard.
     ///
     /// # Errors
     /// [`ArenaError::Damaged`] if it cannot be written, which does not happen.

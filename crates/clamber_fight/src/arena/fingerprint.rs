@@ -1,5 +1,5 @@
-//! A hash of all that changes, over what is saved of it: what is left out of a saved state cannot be in the hash, and what is in
-//! it is.
+//! A hash of all that changes, over what is saved of it: what is left out of a saved state cannot be in the hash, and
+//! what is in it is.
 
 use std::fmt::Display;
 
@@ -13,7 +13,8 @@ use super::{Arena, ArenaState};
 use crate::fighter::FighterState;
 
 impl Arena {
-    /// A 64-bit hash of every bit of what [`Arena::save`] would save, for comparing runs and peers; not for hash tables.
+    /// A 64-bit hash of every bit of what [`Arena::save`] would save, for comparing runs and peers; not for hash
+    /// tables.
     pub fn fingerprint(&self) -> u64 {
         let mut hash = Hasher::default();
         hash.take(&(self.tick, self.next_projectile));

@@ -29,15 +29,15 @@ pub struct SwordLight {
     pub off: f64,
     /// Half angle of the rays' cone, radians: the smaller, the nearer the sword points to the weak point.
     pub spread: f64,
-    /// The rays: unit vectors around the direction in which the sword points. At the smallest spread all of them lead to the
-    /// weak point.
+    /// The rays: unit vectors around the direction in which the sword points. At the smallest spread all of them lead
+    /// to the weak point.
     pub rays: [DVec3; RAYS],
 }
 
 impl Arena {
-    /// The light of a fighter's sword that points along `aim`, a direction in world space: rays that gather as it turns to the
-    /// nearest weak point that can be hurt now. `None` in the shade of terrain or creatures, without a sword, and if no weak
-    /// point is open.
+    /// The light of a fighter's sword that points along `aim`, a direction in world space: rays that gather as it turns
+    /// to the nearest weak point that can be hurt now. `None` in the shade of terrain or creatures, without a sword,
+    /// and if no weak point is open.
     pub fn sword_light(
         &self,
         fighter: FighterId,

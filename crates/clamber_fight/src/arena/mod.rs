@@ -32,7 +32,8 @@ use crate::projectile::{Projectile, ProjectileId, ProjectileMotion, ProjectilePl
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct CreatureId(pub u32);
 
-/// Where the obstacle ids of creatures and of fighters begin. Terrain has smaller ones, such as the bits of an engine's entities.
+/// Where the obstacle ids of creatures and of fighters begin. Terrain has smaller ones, such as the bits of an engine's
+/// entities.
 const CREATURES: u64 = 1 << 62;
 const FIGHTERS: u64 = 1 << 63;
 
@@ -52,10 +53,11 @@ pub(crate) fn creature_index(obstacle: ObstacleId) -> Option<usize> {
     (index < FIGHTERS - CREATURES).then_some(index as usize)
 }
 
-/// All that fights: creatures, fighters, projectiles, and their random streams, as one value that is stepped by a list of inputs.
+/// All that fights: creatures, fighters, projectiles, and their random streams, as one value that is stepped by a list
+/// of inputs.
 ///
-/// Terrain is the game's: it is passed to each step, and is not part of what is saved. Terrain that moves has to be where it was
-/// when a step is repeated.
+/// Terrain is the game's: it is passed to each step, and is not part of what is saved. Terrain that moves has to be
+/// where it was when a step is repeated.
 #[derive(Clone, Debug)]
 pub struct Arena {
     config: ArenaConfig,
@@ -93,8 +95,8 @@ impl Arena {
         })
     }
 
-    /// Adds a creature. Do it before the first step, or in the same tick everywhere: states that were saved before are of
-    /// another arena.
+    /// Adds a creature. Do it before the first step, or in the same tick everywhere: states that were saved before are
+    /// of another arena.
     ///
     /// # Errors
     /// [`ArenaError::Tick`] if its brain was made for another tick, and [`ArenaError::Creature`] as of [`Creature::new`].
@@ -113,9 +115,9 @@ impl Arena {
         Ok(CreatureId(self.creatures.len() as u32 - 1))
     }
 
-    /// Adds a fighter, at rest in the air; `position` is the centre of its climber's ball. It comes back there after its
-    /// death. Do it before the first step, or in the same tick everywhere: states that were saved before are of another
-    /// arena.
+    /// Adds a fighter, at rest in the air; `position` is the centre of its climber's ball. It comes back there after
+    /// its death. Do it before the first step, or in the same tick everywhere: states that were saved before are of
+    /// another arena.
     ///
     /// # Errors
     /// [`ArenaError::OutOfRange`] and [`ArenaError::Climber`] for a configuration outside its ranges, or a position that is not
@@ -219,8 +221,8 @@ impl Arena {
         self.projectiles.get(found)
     }
 
-    /// Hash of all that does not change: the arena's configuration, its creatures' files and configurations, and those of its
-    /// fighters. Arenas that fight each other over a network have the same.
+    /// Hash of all that does not change: the arena's configuration, its creatures' files and configurations, and those
+    /// of its fighters. Arenas that fight each other over a network have the same.
     pub fn assets(&self) -> u64 {
         self.assets
     }

@@ -43,7 +43,8 @@ impl Arena {
         }
     }
 
-    /// Goes back to a saved state: all goes on with the same bits as it did then. Events of the last step are forgotten.
+    /// Goes back to a saved state: all goes on with the same bits as it did then. Events of the last step are
+    /// forgotten.
     ///
     /// # Errors
     /// [`ArenaError::Assets`] if it is of another arena, and [`ArenaError::OtherArena`], [`ArenaError::Climber`] and

@@ -21,16 +21,17 @@ pub(super) struct Scratch {
     outcome: Outcome,
 }
 
-/// Fighters that are farther from each other than this times a fighter's radius, beside the way that both make in the tick, do
-/// not touch.
+/// Fighters that are farther from each other than this times a fighter's radius, beside the way that both make in the
+/// tick, do not touch.
 const APART: f64 = 20.0;
 
 impl Arena {
     /// Lets a tick pass. `inputs` has one input for each fighter, in their order. Fur can be gripped.
     ///
-    /// In this order: creatures sense what was around them at the end of the last tick, decide, move, and strike; fighters' climbers
-    /// move among terrain, creatures and each other; weapons go on, then projectiles; what they hit does damage, by the time of
-    /// the hit within the tick. A blow that a creature deals reaches its fighter with the next step.
+    /// In this order: creatures sense what was around them at the end of the last tick, decide, move, and strike;
+    /// fighters' climbers move among terrain, creatures and each other; weapons go on, then projectiles; what they hit
+    /// does damage, by the time of the hit within the tick. A blow that a creature deals reaches its fighter with the
+    /// next step.
     ///
     /// # Errors
     /// [`ArenaError::Inputs`], [`ArenaError::Blow`], [`ArenaError::InputNotFinite`], [`ArenaError::TerrainId`] and
@@ -228,8 +229,8 @@ impl Arena {
         }
     }
 
-    /// What was hit takes damage: first what was hit first, and of what was hit at the same time first what blades hit, then by
-    /// the numbers of fighters and projectiles.
+    /// What was hit takes damage: first what was hit first, and of what was hit at the same time first what blades hit,
+    /// then by the numbers of fighters and projectiles.
     fn do_damage(&mut self, outcome: &mut Outcome) {
         outcome.hits.sort_by(|a, b| a.time.total_cmp(&b.time));
         for hit in &outcome.hits {

@@ -184,8 +184,8 @@ impl Fighter {
         Ok(())
     }
 
-    /// True if what it does with its weapons is broken off: a stab by a shake beyond the one that makes it hang, by the loss of
-    /// its hold or a blow, and what needs both hands by a hold.
+    /// True if what it does with its weapons is broken off: a stab by a shake beyond the one that makes it hang, by the
+    /// loss of its hold or a blow, and what needs both hands by a hold.
     fn is_broken_off(&self, is_struck: bool) -> bool {
         use ClimberMode::{Falling, Hanging, LedgeHanging, Sliding, Standing, Tumbling};
         let state = self.climber.state();

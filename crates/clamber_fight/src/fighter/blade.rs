@@ -17,7 +17,8 @@ pub struct Blade {
 /// How far below the level the blade cuts, radians.
 const DOWN: f64 = 0.25;
 
-/// Where a raised sword's hilt is, from the centre of the climber's ball: right, up, and ahead, metres; and where it points.
+/// Where a raised sword's hilt is, from the centre of the climber's ball: right, up, and ahead, metres; and where it
+/// points.
 const RAISED: DVec3 = DVec3::new(0.1, 1.5, 0.1);
 const POINTS: DVec3 = DVec3::new(0.0, 0.94, -0.34);
 
@@ -91,7 +92,8 @@ impl Blade {
 }
 
 impl Fighter {
-    /// Where its sword is after the last tick, in world space; `None` without a sword. The drawn hand holds it at the hilt.
+    /// Where its sword is after the last tick, in world space; `None` without a sword. The drawn hand holds it at the
+    /// hilt.
     pub fn blade(&self) -> Option<Blade> {
         let sword = self.config.sword.as_ref()?;
         let frame = BodyFrame::of(&self.climber);

@@ -17,8 +17,8 @@ pub struct FighterConfig {
     pub stones: Option<StoneConfig>,
     /// What being crushed costs.
     pub crush: Option<CrushConfig>,
-    /// Seconds for which whoever struck is held still by the impact; 0.1 by default. The creature never is: its riders would
-    /// feel it.
+    /// Seconds for which whoever struck is held still by the impact; 0.1 by default. The creature never is: its riders
+    /// would feel it.
     pub hit_stop: f64,
     /// Seconds after its death at which a fighter stands where it began, unhurt; `None` for never. 4 by default.
     pub respawn: Option<f64>,
@@ -68,7 +68,8 @@ pub struct SwordConfig {
 /// A bow and its arrows.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BowConfig {
-    /// Where an arrow's tip is when it is let go, from the centre of the climber's ball: to its right, up, and ahead, metres.
+    /// Where an arrow's tip is when it is let go, from the centre of the climber's ball: to its right, up, and ahead,
+    /// metres.
     pub nock: DVec3,
     /// Seconds until the bow is fully drawn; 1 by default.
     pub draw: f64,

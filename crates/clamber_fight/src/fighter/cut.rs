@@ -31,14 +31,15 @@ impl SwordConfig {
         self.angle * ((seconds - self.wind_up) / self.cut).clamp(0.0, 1.0)
     }
 
-    /// What the blade strikes in a tick of `dt` seconds, in which the cut gets from one time to another and the body from one
-    /// place to another: of each part of each creature the first contact, by time. Parts that are in `struck` are left out, and
-    /// those that are struck are added to it.
+    /// What the blade strikes in a tick of `dt` seconds, in which the cut gets from one time to another and the body
+    /// from one place to another: of each part of each creature the first contact, by time. Parts that are in `struck`
+    /// are left out, and those that are struck are added to it.
     ///
-    /// The blade's arc is swept in chords. Those of an arc of radius r that are at most e from it span `2 acos(1 - e / r)`; a
-    /// blade that is thicker by e covers the arc, so that nothing is missed. Chords of [`ARC`] tell whether anything is near
-    /// enough. Only there chords of an eighth of their length follow, which are 64 times nearer to the arc, and tell what is
-    /// struck, and when: early by no more than it takes to come nearer by 0.06 mm and the sweep's tolerance.
+    /// The blade's arc is swept in chords. Those of an arc of radius r that are at most e from it span `2 acos(1 - e /
+    /// r)`; a blade that is thicker by e covers the arc, so that nothing is missed. Chords of [`ARC`] tell whether
+    /// anything is near enough. Only there chords of an eighth of their length follow, which are 64 times nearer to the
+    /// arc, and tell what is struck, and when: early by no more than it takes to come nearer by 0.06 mm and the sweep's
+    /// tolerance.
     pub(crate) fn cut_through(
         &self,
         [from, to]: [f64; 2],

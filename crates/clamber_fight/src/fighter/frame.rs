@@ -2,7 +2,8 @@ use clamber_climber::Climber;
 use clamber_surface::geometry::slerp;
 use glam::{DMat3, DQuat, DVec3};
 
-/// A climber's body as its weapons see it: a place, and where right, up and ahead are. On a hold it faces what it holds.
+/// A climber's body as its weapons see it: a place, and where right, up and ahead are. On a hold it faces what it
+/// holds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyFrame {
     /// Centre of the climber's ball, in world space.

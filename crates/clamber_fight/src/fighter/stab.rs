@@ -8,8 +8,8 @@ use glam::DVec3;
 use super::{Blade, BodyFrame, Fighter, SwordConfig, Target};
 use crate::arena::{CreatureId, creature_obstacle};
 
-/// Where a stab begins to look for skin, from the centre of the climber's ball, as shares of the ball's radius: how far ahead
-/// along the skin, and how far above it.
+/// Where a stab begins to look for skin, from the centre of the climber's ball, as shares of the ball's radius: how far
+/// ahead along the skin, and how far above it.
 const ALONG: f64 = 0.9;
 const ABOVE: f64 = 1.0;
 
@@ -28,8 +28,8 @@ impl SwordConfig {
 }
 
 impl Fighter {
-    /// The point of the skin before it into which a stab would go: below where it stands, ahead of it, or before its hands. The
-    /// attachment's offset is a unit vector into the skin.
+    /// The point of the skin before it into which a stab would go: below where it stands, ahead of it, or before its
+    /// hands. The attachment's offset is a unit vector into the skin.
     pub(crate) fn stab_target(&self, skins: &[&SkinnedSurface]) -> Target {
         let Some(sword) = &self.config.sword else {
             return Target::Air;

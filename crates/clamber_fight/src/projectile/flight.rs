@@ -9,15 +9,15 @@ pub struct Flight {
     pub drag: f64,
 }
 
-/// The longest step with drag, seconds. Runge and Kutta's method of fourth order then errs by less than a micrometre in 4 s at
-/// 60 m/s.
+/// The longest step with drag, seconds. Runge and Kutta's method of fourth order then errs by less than a micrometre in
+/// 4 s at 60 m/s.
 const LONGEST: f64 = 1.0 / 60.0;
 
 impl Flight {
     /// Position and velocity after `dt` seconds.
     ///
-    /// Without drag this is exact: `p + v t + g t^2 / 2`. With drag it is integrated by the classical Runge-Kutta method, in
-    /// steps of at most 1/60 s.
+    /// Without drag this is exact: `p + v t + g t^2 / 2`. With drag it is integrated by the classical Runge-Kutta
+    /// method, in steps of at most 1/60 s.
     pub fn step(&self, position: DVec3, velocity: DVec3, dt: f64) -> (DVec3, DVec3) {
         if self.drag == 0.0 {
             let moved = position + velocity * dt + self.gravity * (0.5 * dt * dt);
@@ -44,7 +44,8 @@ impl Flight {
         self.gravity - velocity * (velocity.length() * self.drag)
     }
 
-    /// Places along a flight, one each `dt` seconds, from its beginning on: for an arc that is drawn while somebody aims.
+    /// Places along a flight, one each `dt` seconds, from its beginning on: for an arc that is drawn while somebody
+    /// aims.
     pub fn arc(self, position: DVec3, velocity: DVec3, dt: f64) -> impl Iterator<Item = DVec3> {
         let mut now = (position, velocity);
         std::iter::from_fn(move || {

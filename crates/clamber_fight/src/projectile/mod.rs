@@ -54,8 +54,9 @@ pub enum ProjectileMotion {
     },
     /// Sticks.
     Stuck {
-        /// Where: the tip is the attachment's offset below the skin. Of creatures it is followed only when somebody asks
-        /// ([`Arena::place`](crate::Arena::place)): its `point` and `frame` are those of the tick in which it stuck.
+        /// Where: the tip is the attachment's offset below the skin. Of creatures it is followed only when somebody
+        /// asks ([`Arena::place`](crate::Arena::place)): its `point` and `frame` are those of the tick in which it
+        /// stuck.
         at: Attachment,
         /// Where it points, in the frame of the material.
         direction: DVec3,

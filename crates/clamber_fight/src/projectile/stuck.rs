@@ -6,8 +6,8 @@ use glam::{DQuat, DVec3};
 
 use super::{ProjectileMotion, ProjectilePlace};
 
-/// Sticks into what was touched, in its current state, at a share of the tick that ends now: the tip goes `depth` deeper than the
-/// contact along `direction`. `None` if the material has no motion.
+/// Sticks into what was touched, in its current state, at a share of the tick that ends now: the tip goes `depth`
+/// deeper than the contact along `direction`. `None` if the material has no motion.
 pub(super) fn stick(
     obstacle: ObstacleId,
     touched: &dyn Obstacle,

@@ -219,8 +219,8 @@ pub(crate) fn giant() -> Arc<CreatureKind> {
     Arc::new(CreatureKind::new(parts, brain).unwrap())
 }
 
-/// A fight in which everything happens: one rides the giant, stabs it and hangs on, another one runs about before it, shoots and
-/// throws, and one stands on a slab whose plate it breaks.
+/// A fight in which everything happens: one rides the giant, stabs it and hangs on, another one runs about before it,
+/// shoots and throws, and one stands on a slab whose plate it breaks.
 pub(crate) struct Melee {
     pub(crate) arena: Arena,
     ground: HalfSpace,

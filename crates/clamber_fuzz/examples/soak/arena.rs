@@ -14,8 +14,8 @@ use glam::DVec3;
 const TICKS: usize = 300;
 const AGAIN: usize = 8;
 
-/// Runs an arena; returns the number of checks. Panics if a number is not finite, if what is played again has other bits, or if a
-/// step ends with an error.
+/// Runs an arena; returns the number of checks. Panics if a number is not finite, if what is played again has other
+/// bits, or if a step ends with an error.
 pub(crate) fn arena(giant: &Creature, seed: u64) -> usize {
     let mut rng = Rng::with_seed(seed);
     let (mut arena, origin) = make(giant, &mut rng);

@@ -1,5 +1,5 @@
-//! Runs stress cases of every family, every fuzz target on random bytes, whole battles and whole arenas with fresh seeds, until
-//! the time is up. `cargo xtask soak` builds and runs it.
+//! Runs stress cases of every family, every fuzz target on random bytes, whole battles and whole arenas with fresh
+//! seeds, until the time is up. `cargo xtask soak` builds and runs it.
 
 #![expect(clippy::panic, reason = "a finding is a panic, caught and reported")]
 

@@ -247,7 +247,8 @@ const RISES: f64 = 0.5;
 /// Whoever is on a patch counts as no farther from its middle than so many radii.
 const ON_IT: f64 = 0.5;
 
-/// Below this share of its climbing speed, for so long, it counts as at rest; then it tries something else for a while; seconds.
+/// Below this share of its climbing speed, for so long, it counts as at rest; then it tries something else for a while;
+/// seconds.
 const SLOW: f64 = 0.2;
 const RESTS: f64 = 0.3;
 const TRIES: f64 = 0.5;

@@ -10,7 +10,8 @@ use crate::graph::highest_entry;
 /// It jumps within so many radii of where it gets on, seen from above.
 const NEAR: f64 = 2.2;
 
-/// It counts as blocked if it wants to walk but moves at less than this share of its walking speed for `PUZZLED` seconds.
+/// It counts as blocked if it wants to walk but moves at less than this share of its walking speed for `PUZZLED`
+/// seconds.
 const KEPT: f64 = 0.15;
 const PUZZLED: f64 = 0.3;
 

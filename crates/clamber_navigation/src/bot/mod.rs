@@ -21,9 +21,9 @@ use room::Room;
 
 /// Drives a climber to a goal on a creature, by its input alone.
 ///
-/// On the ground it walks to where it can get on, keeps away while the creature attacks, and jumps. On the creature it follows a
-/// plan: it walks and climbs from patch to patch, holds on while the skin shakes, rests where the plan says so, and plans
-/// anew when it has been carried off its way, does not get on, or has fallen.
+/// On the ground it walks to where it can get on, keeps away while the creature attacks, and jumps. On the creature it
+/// follows a plan: it walks and climbs from patch to patch, holds on while the skin shakes, rests where the plan says
+/// so, and plans anew when it has been carried off its way, does not get on, or has fallen.
 #[derive(Clone, Debug)]
 pub struct Bot {
     graph: Arc<ClimbGraph>,

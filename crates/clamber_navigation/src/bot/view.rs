@@ -33,14 +33,14 @@ pub struct View<'a> {
     pub surface: &'a SkinnedSurface,
     /// Where to go.
     pub goal: &'a Goal,
-    /// What the creature is expected to do from now on: a clip that it plays begins with its present time. Plans are made on it
-    /// now and then, so it may be a rough guess.
+    /// What the creature is expected to do from now on: a clip that it plays begins with its present time. Plans are
+    /// made on it now and then, so it may be a rough guess.
     pub forecast: &'a Forecast,
     /// What it is about to do to somebody on the ground.
     pub danger: Danger,
     /// The hardest shake that the climber's place is about to get, metres a second squared:
-    /// [`FutureSkin::shake_ahead`](crate::FutureSkin::shake_ahead), half a second ahead in steps of a tenth. 0 plays without
-    /// looking ahead, and is thrown off more often.
+    /// [`FutureSkin::shake_ahead`](crate::FutureSkin::shake_ahead), half a second ahead in steps of a tenth. 0 plays
+    /// without looking ahead, and is thrown off more often.
     pub shake_ahead: f64,
 }
 

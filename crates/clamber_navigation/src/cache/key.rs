@@ -19,8 +19,8 @@ impl fmt::Write for Digest {
     }
 }
 
-/// A hash of everything that a graph depends on, as it is printed for debugging: numbers are printed to their last bit, and no
-/// field can be forgotten.
+/// A hash of everything that a graph depends on, as it is printed for debugging: numbers are printed to their last bit,
+/// and no field can be forgotten.
 pub(super) fn key(source: &GraphSource<'_>, config: &GraphConfig) -> u128 {
     let GraphSource {
         skeleton,

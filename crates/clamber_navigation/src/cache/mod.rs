@@ -40,12 +40,12 @@ pub enum GraphOrigin {
 }
 
 impl ClimbGraph {
-    /// The graph of a creature, from its file in `folder`. Without a file the graph is built, as by [`ClimbGraph::build`], and
-    /// written there for the next time. The folder is created if it is missing.
+    /// The graph of a creature, from its file in `folder`. Without a file the graph is built, as by
+    /// [`ClimbGraph::build`], and written there for the next time. The folder is created if it is missing.
     ///
-    /// The file's name is a hash of the skin, skeleton, clips, plates, place and configuration, and of this crate's version: a
-    /// creature that has changed gets a file of its own. Files that are not used any more are never removed. A file that is
-    /// damaged is built and written anew. Two programs may use a folder at the same time.
+    /// The file's name is a hash of the skin, skeleton, clips, plates, place and configuration, and of this crate's
+    /// version: a creature that has changed gets a file of its own. Files that are not used any more are never removed.
+    /// A file that is damaged is built and written anew. Two programs may use a folder at the same time.
     ///
     /// `progress` is called only by a build. A build takes seconds, so do it on a thread of its own:
     ///

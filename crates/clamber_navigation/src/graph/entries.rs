@@ -17,13 +17,13 @@ pub struct Entry {
     pub patch: usize,
     /// How high the middle of the climber's ball is there, metres above the ground.
     pub height: f64,
-    /// How fast a climber that jumps from the ground, at the speed of a walk, passes what its hands reach there, at most,
-    /// metres a second. 0 where it reaches that from the ground, without a jump.
+    /// How fast a climber that jumps from the ground, at the speed of a walk, passes what its hands reach there, at
+    /// most, metres a second. 0 where it reaches that from the ground, without a jump.
     pub speed: f64,
 }
 
-/// Patches that a climber on the ground gets to with a jump: straight up, to where its hands reach, or forwards at the speed of
-/// a walk. A jump forwards is tried in this many directions.
+/// Patches that a climber on the ground gets to with a jump: straight up, to where its hands reach, or forwards at the
+/// speed of a walk. A jump forwards is tried in this many directions.
 const DIRECTIONS: u32 = 16;
 
 /// The patches to which a jump leads through free space.
@@ -62,8 +62,8 @@ impl Entry {
     }
 }
 
-/// The greatest speed of a jump from the ground where hands reach a place, which is that high above the ground: at the lowest
-/// point from where they reach it.
+/// The greatest speed of a jump from the ground where hands reach a place, which is that high above the ground: at the
+/// lowest point from where they reach it.
 fn speed_at(config: &GraphConfig, height: f64) -> f64 {
     let rises = height - config.radius() - config.reach().max(0.0);
     if rises <= 0.0 {
@@ -92,7 +92,8 @@ const STEP: f64 = 0.5;
 /// A ball on its way may be so deep in skin, as a share of its radius: seats have as much.
 const TOUCH: f64 = 0.03;
 
-/// A jump does not lead onto skin that is nearer to its end than this, as a share of the radius: there it touches already.
+/// A jump does not lead onto skin that is nearer to its end than this, as a share of the radius: there it touches
+/// already.
 const ARRIVES: f64 = 0.5;
 
 /// Jumps from the ground.

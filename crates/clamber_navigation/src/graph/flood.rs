@@ -26,8 +26,8 @@ impl Reachable {
 }
 
 impl ClimbGraph {
-    /// All that can be reached at rest from some patches by a climber that does not tire. It walks where it can stand, climbs
-    /// where it can hold on, and changes from one to the other wherever it can do both.
+    /// All that can be reached at rest from some patches by a climber that does not tire. It walks where it can stand,
+    /// climbs where it can hold on, and changes from one to the other wherever it can do both.
     pub(crate) fn flood(&self, from: impl IntoIterator<Item = usize>) -> Reachable {
         let none = vec![false; self.patches.len()];
         let mut reached = Reachable {

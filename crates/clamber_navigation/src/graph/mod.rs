@@ -91,9 +91,10 @@ impl ClimbGraph {
         &self.entries
     }
 
-    /// Where plans of a climber begin that is on the ground with some stamina, 0 to 1: at all entries, with what is left
-    /// after the catch at the end of a jump ([`StaminaConfig::catch_cost`](clamber_climber::StaminaConfig::catch_cost)).
-    /// Holds that hands do not catch, since the jump passes them too fast or stamina does not suffice, are left out.
+    /// Where plans of a climber begin that is on the ground with some stamina, 0 to 1: at all entries, with what is
+    /// left after the catch at the end of a jump
+    /// ([`StaminaConfig::catch_cost`](clamber_climber::StaminaConfig::catch_cost)). Holds that hands do not catch,
+    /// since the jump passes them too fast or stamina does not suffice, are left out.
     pub fn starts_on_ground(&self, stamina: f64) -> impl Iterator<Item = Start> + '_ {
         let climber = &self.config.climber;
         let walks = climber.ground.walk_speed;

@@ -40,8 +40,9 @@ pub(crate) const NONE: u32 = u32::MAX;
 
 /// Merges pieces into patches, and tells the patch of each piece.
 ///
-/// The pieces of a patch are alike: a climber can stand on all of them or on none, and hold on at all of them or at none, and
-/// they face the same way. Each is reached from each within the patch. So whoever reaches one of them reaches all.
+/// The pieces of a patch are alike: a climber can stand on all of them or on none, and hold on at all of them or at
+/// none, and they face the same way. Each is reached from each within the patch. So whoever reaches one of them reaches
+/// all.
 pub(super) fn merge(survey: &Survey) -> (Vec<Patch>, Vec<u32>) {
     let (pieces, reach) = (&survey.pieces, survey.config.reach());
     let kinds: Vec<[bool; 2]> = (0..pieces.len())

@@ -3,8 +3,8 @@
 use crate::ClimbGraph;
 use crate::clips::{Moment, SLICE};
 
-/// What the creature is expected to do from the beginning of a plan on: clips, one after the other, and all of them again and
-/// again.
+/// What the creature is expected to do from the beginning of a plan on: clips, one after the other, and all of them
+/// again and again.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Forecast {
     /// Numbers of slices of clips.
@@ -25,10 +25,10 @@ impl Forecast {
         self.slices.is_empty()
     }
 
-    /// And then it plays a clip, from a time of it on and for so long, both in seconds and rounded to halves of one; an hour at
-    /// most. The clip is looped, with its length rounded up to half seconds. A clip that the graph does not know, and a time
-    /// that is not positive, change nothing. A forecast is of use on its own graph only: another one takes it for something
-    /// else.
+    /// And then it plays a clip, from a time of it on and for so long, both in seconds and rounded to halves of one; an
+    /// hour at most. The clip is looped, with its length rounded up to half seconds. A clip that the graph does not
+    /// know, and a time that is not positive, change nothing. A forecast is of use on its own graph only: another one
+    /// takes it for something else.
     #[must_use]
     pub fn then(mut self, graph: &ClimbGraph, clip: &str, from: f64, seconds: f64) -> Self {
         let in_slices = |seconds: f64| (seconds.min(LONGEST) / SLICE).round() as usize;

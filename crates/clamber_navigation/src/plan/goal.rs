@@ -36,8 +36,8 @@ impl Goal {
         &self.patches
     }
 
-    /// The least time from a patch to the goal on a creature at rest, seconds, for a climber that does not tire; infinite if
-    /// no way leads there.
+    /// The least time from a patch to the goal on a creature at rest, seconds, for a climber that does not tire;
+    /// infinite if no way leads there.
     pub fn least_seconds(&self, patch: usize, footing: Footing) -> f64 {
         let least = self.of(patch, footing);
         least.map_or(f64::INFINITY, |least| least.seconds)
@@ -50,18 +50,18 @@ impl Goal {
         stands.min(holds)
     }
 
-    /// The stamina from which on a climber comes from a patch to the goal on a creature at rest, 0 to 1, if it rests wherever it
-    /// can; infinite if no stamina is enough.
+    /// The stamina from which on a climber comes from a patch to the goal on a creature at rest, 0 to 1, if it rests
+    /// wherever it can; infinite if no stamina is enough.
     pub fn least_stamina(&self, patch: usize, footing: Footing) -> f64 {
         let least = self.of(patch, footing);
         least.map_or(f64::INFINITY, |least| least.stamina)
     }
 
-    /// The least time from a patch to the goal on a creature at rest for a climber with some stamina, 0 to 1, rests included,
-    /// seconds; infinite if that stamina is not enough. No plan is faster.
+    /// The least time from a patch to the goal on a creature at rest for a climber with some stamina, 0 to 1, rests
+    /// included, seconds; infinite if that stamina is not enough. No plan is faster.
     ///
-    /// It holds on for some seconds at least, on whichever way that is. What that costs beyond its stamina is brought by
-    /// standing, for so much longer.
+    /// It holds on for some seconds at least, on whichever way that is. What that costs beyond its stamina is brought
+    /// by standing, for so much longer.
     pub fn least_seconds_with(&self, patch: usize, footing: Footing, stamina: f64) -> f64 {
         if self.of(patch, footing).is_some() {
             return self.at(node(patch, footing), stamina);
@@ -172,11 +172,11 @@ impl ClimbGraph {
         }
     }
 
-    /// Of each node, the least that some cost comes to on a way to some patches. `cost` tells it for a way that takes a footing
-    /// for some seconds, from what it is beyond that.
+    /// Of each node, the least that some cost comes to on a way to some patches. `cost` tells it for a way that takes a
+    /// footing for some seconds, from what it is beyond that.
     ///
-    /// Dijkstra's search (1959), from the goal backwards: ways lead back as well as there. A cost that gets less on its way, as
-    /// what a rest leaves to be needed, has its node looked at again.
+    /// Dijkstra's search (1959), from the goal backwards: ways lead back as well as there. A cost that gets less on its
+    /// way, as what a rest leaves to be needed, has its node looked at again.
     fn backwards(&self, patches: &[usize], cost: impl Fn(f64, Footing, f64) -> f64) -> Vec<f64> {
         let mut least = vec![f64::INFINITY; 2 * self.patches.len()];
         let mut open = BinaryHeap::new();

@@ -59,8 +59,8 @@ impl Plan {
     }
 }
 
-/// Stamina is compared in so many steps, the last of which is a whole one: of two ways to a place that are as many steps high,
-/// the faster one is kept.
+/// Stamina is compared in so many steps, the last of which is a whole one: of two ways to a place that are as many
+/// steps high, the faster one is kept.
 const LEVELS: usize = 12;
 
 /// Sums in another order differ by less than this.
@@ -84,18 +84,18 @@ struct Label {
 const NOTHING: u32 = u32::MAX;
 
 impl ClimbGraph {
-    /// The fastest way from one of some starts to a goal on which stamina lasts, in the weather of a forecast; `None` if there
-    /// is none.
+    /// The fastest way from one of some starts to a goal on which stamina lasts, in the weather of a forecast; `None`
+    /// if there is none.
     ///
-    /// A label-setting search with a resource (Desrochers and Soumis 1988) in the order of A* (Hart, Nilsson and Raphael 1968):
-    /// of two ways to a patch, one that is neither faster nor leaves more stamina is dropped. Stamina is compared in 12 steps,
-    /// so that a way that would leave less than an eleventh more may be missed, and in a forecast with shakes one that comes
-    /// later and fresher. The least time to the goal at rest, rests included, never exceeds the time that is needed, so what
-    /// comes to the goal first is fastest; and where stamina does not last at rest it never lasts, so that such ways are not
-    /// looked at.
+    /// A label-setting search with a resource (Desrochers and Soumis 1988) in the order of A* (Hart, Nilsson and
+    /// Raphael 1968): of two ways to a patch, one that is neither faster nor leaves more stamina is dropped. Stamina is
+    /// compared in 12 steps, so that a way that would leave less than an eleventh more may be missed, and in a forecast
+    /// with shakes one that comes later and fresher. The least time to the goal at rest, rests included, never exceeds
+    /// the time that is needed, so what comes to the goal first is fastest; and where stamina does not last at rest it
+    /// never lasts, so that such ways are not looked at.
     ///
-    /// Starts whose numbers are not finite or that are later than a million seconds are left out. A search gives up after two
-    /// million ways. A goal of another graph is never reached.
+    /// Starts whose numbers are not finite or that are later than a million seconds are left out. A search gives up
+    /// after two million ways. A goal of another graph is never reached.
     pub fn plan(&self, starts: &[Start], goal: &Goal, forecast: &Forecast) -> Option<Plan> {
         self.plan_around(starts, goal, forecast, &|_, _| true)
     }
@@ -287,8 +287,8 @@ impl Search<'_> {
         None
     }
 
-    /// Waits until it can move. Returns the time and the stamina then, and how it stays there. `None` if it falls first, or
-    /// can never move.
+    /// Waits until it can move. Returns the time and the stamina then, and how it stays there. `None` if it falls
+    /// first, or can never move.
     #[inline]
     fn until_it_moves(&self, mut time: (f64, f64), mut stay: Stay) -> Option<((f64, f64), Stay)> {
         for _ in 0..=self.forecast.len() {

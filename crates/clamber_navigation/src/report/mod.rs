@@ -114,8 +114,8 @@ pub(crate) const LEVEL: f64 = 0.6;
 impl ClimbReport {
     /// Looks at a creature. `progress` is called again and again, and cancels by [`ControlFlow::Break`].
     ///
-    /// It takes as long as building the graph, which it gives as well. A report is for studios and their CI; a game takes
-    /// the graph alone, by `ClimbGraph::cached`.
+    /// It takes as long as building the graph, which it gives as well. A report is for studios and their CI; a game
+    /// takes the graph alone, by `ClimbGraph::cached`.
     ///
     /// # Errors
     /// As [`ClimbGraph::build`].
@@ -339,9 +339,10 @@ impl View<'_> {
         report
     }
 
-    /// How much farther hands would have to reach, to come from what is reached to one of some pieces: the way whose worst
-    /// place asks for the shortest arms. It is found as the shortest way is (Dijkstra 1959), with the largest in place of the
-    /// sum. A link is measured only when it is its turn: until then it counts as if no place on it asked more than its ends.
+    /// How much farther hands would have to reach, to come from what is reached to one of some pieces: the way whose
+    /// worst place asks for the shortest arms. It is found as the shortest way is (Dijkstra 1959), with the largest in
+    /// place of the sum. A link is measured only when it is its turn: until then it counts as if no place on it asked
+    /// more than its ends.
     fn missing(&self, goals: &[usize]) -> Missing {
         let survey = self.survey;
         let reach = survey.config.reach();

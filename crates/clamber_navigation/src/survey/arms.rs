@@ -8,8 +8,8 @@ use crate::GraphConfig;
 /// Something to grip is looked for within twice a climber's reach and so many of its radii.
 const BEYOND: f64 = 2.5;
 
-/// How far a hand has to reach from a ball, metres; infinite if there is nothing to grip within twice the climber's reach and
-/// some of its radii. `holds` is the skin that can be gripped.
+/// How far a hand has to reach from a ball, metres; infinite if there is nothing to grip within twice the climber's
+/// reach and some of its radii. `holds` is the skin that can be gripped.
 pub(super) fn arm(holds: &SkinnedSurface, seat: DVec3, config: &GraphConfig) -> f64 {
     if config.reach() < 0.0 {
         return f64::INFINITY;
@@ -23,11 +23,11 @@ pub(super) fn arm(holds: &SkinnedSurface, seat: DVec3, config: &GraphConfig) -> 
 /// The longest reach on a straight way is known to this much, metres.
 pub(crate) const EXACT: f64 = 0.004;
 
-/// How far a hand has to reach at most on the straight way between two seats, from the arms at both ends: too long by at most
-/// [`EXACT`], and never too short.
+/// How far a hand has to reach at most on the straight way between two seats, from the arms at both ends: too long by
+/// at most [`EXACT`], and never too short.
 ///
-/// A hand's reach changes by no more than the ball moves. So the ends bound what is between them, and halving the way narrows
-/// the bound. A way on which no bound exceeds `enough` by more is not halved.
+/// A hand's reach changes by no more than the ball moves. So the ends bound what is between them, and halving the way
+/// narrows the bound. A way on which no bound exceeds `enough` by more is not halved.
 pub(super) fn arm_between(
     seats: [DVec3; 2],
     arms: [f64; 2],

@@ -17,8 +17,8 @@ pub(crate) struct Links {
 impl Links {
     /// Links seats that are at most `longest` metres apart.
     ///
-    /// The balls at both ends are free of skin and overlap, if `longest` is less than their diameter. So no skin crosses the
-    /// way between them.
+    /// The balls at both ends are free of skin and overlap, if `longest` is less than their diameter. So no skin
+    /// crosses the way between them.
     pub(super) fn new(pieces: &[Piece], longest: f64) -> Self {
         let cell = |seat: DVec3| (seat / longest).floor().as_ivec3();
         let mut cells: BTreeMap<[i32; 3], Vec<u32>> = BTreeMap::new();

@@ -1,5 +1,5 @@
-//! The skin at rest: its pieces, where the climber's ball rests on them, what hands reach from there, and which of these seats
-//! are beside each other.
+//! The skin at rest: its pieces, where the climber's ball rests on them, what hands reach from there, and which of
+//! these seats are beside each other.
 
 mod arms;
 mod links;
@@ -20,16 +20,16 @@ pub(crate) use pieces::Piece;
 /// The ball's middle is at least so high above the ground, as a share of its radius.
 const LOWEST: f64 = 0.98;
 
-/// A ball that is no farther than this share of its radius above the skin still touches it: skin is rarely flat. In a corner
-/// it has to be nearer, since its hands let go of one side there.
+/// A ball that is no farther than this share of its radius above the skin still touches it: skin is rarely flat. In a
+/// corner it has to be nearer, since its hands let go of one side there.
 const OFF: f64 = 0.3;
 const OFF_IN_CORNER: f64 = 0.1;
 
 /// Two sides whose normals have a lower cosine than this meet in a corner.
 const CORNER: f64 = 0.7;
 
-/// Between sides whose normals have a lower cosine than this no input leads: who climbs along one does not push against the
-/// other.
+/// Between sides whose normals have a lower cosine than this no input leads: who climbs along one does not push against
+/// the other.
 const OPPOSITE: f64 = -0.87;
 
 /// What is known about the skin at rest, piece by piece.
@@ -41,8 +41,8 @@ pub(crate) struct Survey {
     /// The pieces, sorted by place.
     pub(crate) pieces: Vec<Piece>,
     pub(crate) links: Links,
-    /// Of each piece, how far a hand has to reach from the ball's seat for something to grip, metres; infinite if there is
-    /// nothing near.
+    /// Of each piece, how far a hand has to reach from the ball's seat for something to grip, metres; infinite if there
+    /// is nothing near.
     pub(crate) arms: Vec<f64>,
     /// The skin at rest.
     pub(crate) surface: SkinnedSurface,
@@ -132,15 +132,15 @@ impl Survey {
         })
     }
 
-    /// True if a climber gets from one of two pieces, where it can hold on, to the other and back: along the skin, with hands
-    /// that hold something all the way.
+    /// True if a climber gets from one of two pieces, where it can hold on, to the other and back: along the skin, with
+    /// hands that hold something all the way.
     pub(crate) fn can_climb(&self, ends: [usize; 2]) -> bool {
         let reach = self.config.reach();
         self.is_along(ends) && self.arm_between(ends, reach) <= reach + EXACT
     }
 
-    /// True if the ball comes from one of two pieces to the other along the skin: it does not have to rise off one of them to
-    /// where it does not touch the other yet. From a floor no hand gets to the ceiling, but by the wall.
+    /// True if the ball comes from one of two pieces to the other along the skin: it does not have to rise off one of
+    /// them to where it does not touch the other yet. From a floor no hand gets to the ceiling, but by the wall.
     fn is_along(&self, ends: [usize; 2]) -> bool {
         let [from, to] = ends.map(|piece| &self.pieces[piece]);
         let (Some(a), Some(b)) = (from.seat, to.seat) else {

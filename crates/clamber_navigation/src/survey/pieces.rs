@@ -34,8 +34,8 @@ pub(crate) struct Piece {
     pub(crate) below: Option<u16>,
 }
 
-/// Divides a surface, which stands at rest, into pieces. They are sorted by place, so that the numbers of triangles do not
-/// matter, and what is near in space is near in memory.
+/// Divides a surface, which stands at rest, into pieces. They are sorted by place, so that the numbers of triangles do
+/// not matter, and what is near in space is near in memory.
 pub(crate) fn divide(
     surface: &SkinnedSurface,
     config: &GraphConfig,
@@ -81,8 +81,8 @@ pub(crate) fn divide(
     Ok(sorted.into_iter().map(|(_, piece)| piece).collect())
 }
 
-/// The bits of a place's coordinates, whole and not negative, in turn: the order of numbers that are near each other where the
-/// places are (Morton 1966).
+/// The bits of a place's coordinates, whole and not negative, in turn: the order of numbers that are near each other
+/// where the places are (Morton 1966).
 fn morton(place: DVec3) -> u64 {
     let bits = |coordinate: f64| {
         let whole = coordinate as u64;

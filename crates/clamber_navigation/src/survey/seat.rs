@@ -9,12 +9,12 @@ const ROUNDS: u32 = 16;
 /// How deep a ball may be in skin and still have room, as a share of its radius: a climber's margin is 1/40.
 const GIVE: f64 = 0.02;
 
-/// A ray from a piece to its ball starts so far above the piece, as a share of the radius, so that it does not meet the piece
-/// itself.
+/// A ray from a piece to its ball starts so far above the piece, as a share of the radius, so that it does not meet the
+/// piece itself.
 const ABOVE: f64 = 0.01;
 
-/// Finds where a ball of `radius` rests at a point of the skin: above it, moved out of the skin around. `None` if it has no
-/// room within its radius, or other skin lies between it and the point.
+/// Finds where a ball of `radius` rests at a point of the skin: above it, moved out of the skin around. `None` if it
+/// has no room within its radius, or other skin lies between it and the point.
 pub(super) fn seat(
     surface: &SkinnedSurface,
     point: DVec3,

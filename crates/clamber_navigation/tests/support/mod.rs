@@ -29,8 +29,8 @@ pub(crate) struct Body {
 }
 
 impl Body {
-    /// A grid over a surface that is given by a function of two shares from 0 to 1, with the material at the middle of each
-    /// cell.
+    /// A grid over a surface that is given by a function of two shares from 0 to 1, with the material at the middle of
+    /// each cell.
     pub(crate) fn grid(
         cells: [u32; 2],
         place: impl Fn(f32, f32) -> Vec3,

@@ -38,7 +38,8 @@ pub enum Question {
         /// Largest distance.
         max_distance: f32,
     },
-    /// The nearest points of the surface and a capsule's segment: at most one [`Found::Nearest`](super::Found::Nearest).
+    /// The nearest points of the surface and a capsule's segment: at most one
+    /// [`Found::Nearest`](super::Found::Nearest).
     ClosestToCapsule {
         /// The capsule.
         shape: Shape,

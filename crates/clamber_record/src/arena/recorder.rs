@@ -18,11 +18,12 @@ use crate::views::{FigureJoints, SceneryNames, SceneryView};
 use crate::{RecordError, RecordOptions};
 
 /// Writes a recording of an arena: its inputs and fingerprints in each tick, so that
-/// [`ArenaRecording::replay`](super::ArenaRecording::replay) can play it again and compare; a saved state at the beginning of each
-/// chunk, to start from; and for people to look at, creatures, climbers, arrows, brains, and all events in words.
+/// [`ArenaRecording::replay`](super::ArenaRecording::replay) can play it again and compare; a saved state at the
+/// beginning of each chunk, to start from; and for people to look at, creatures, climbers, arrows, brains, and all
+/// events in words.
 ///
-/// It writes on a thread of its own, chunk by chunk, as [`Recorder`](crate::Recorder) does, and what is said there of files
-/// that were cut holds here too.
+/// It writes on a thread of its own, chunk by chunk, as [`Recorder`](crate::Recorder) does, and what is said there of
+/// files that were cut holds here too.
 pub struct ArenaRecorder<W: Write> {
     options: RecordOptions,
     info: ArenaInfo,
@@ -97,9 +98,9 @@ impl<W: Write> ArenaRecorder<W> {
     ///
     /// # Errors
     /// [`RecordError::Order`] unless it was stepped once since the last call, [`RecordError::Inputs`] for a wrong number of
-    /// inputs, [`RecordError::OtherArena`] if it is another arena. Such a tick is not recorded, but recording can go on.
-    /// [`RecordError::Write`] or another error if an earlier chunk could not be written, and [`RecordError::Ended`] at every call
-    /// after that.
+    /// inputs, [`RecordError::OtherArena`] if it is another arena. Such a tick is not recorded, but recording can go
+    /// on. [`RecordError::Write`] or another error if an earlier chunk could not be written, and [`RecordError::Ended`]
+    /// at every call after that.
     ///
     /// # Panics
     /// If `out` panicked while an earlier chunk was written: that panic is resumed here.
@@ -168,8 +169,9 @@ impl<W: Write> ArenaRecorder<W> {
         Ok(self.chunks.last()?.is_due)
     }
 
-    /// Records a mesh at the tick recorded last, for people to look at, such as the ground or a rock: its shape the first
-    /// time, its place whenever [`RecordOptions::transforms_every`] lets transforms be due. What stands still is recorded once.
+    /// Records a mesh at the tick recorded last, for people to look at, such as the ground or a rock: its shape the
+    /// first time, its place whenever [`RecordOptions::transforms_every`] lets transforms be due. What stands still is
+    /// recorded once.
     ///
     /// # Errors
     /// [`RecordError::Ended`] after writing failed.

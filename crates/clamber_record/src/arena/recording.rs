@@ -133,7 +133,8 @@ impl ArenaRecording {
         self.places.last()
     }
 
-    /// The ticks from this number on, in order: all for a number before the first one, none for a number after the last one.
+    /// The ticks from this number on, in order: all for a number before the first one, none for a number after the last
+    /// one.
     pub fn ticks_from(
         &self,
         tick: u64,

@@ -84,13 +84,14 @@ pub struct ArenaReplay {
 impl ArenaRecording {
     /// Plays a recording again and compares every tick, up to the first one that differs.
     ///
-    /// `arena` is made as it was for the recording. It is brought to the last saved state at or before the tick `from`, or to the
-    /// first tick. Then `step` is called with the inputs of one tick after another, and steps it over the same terrain.
+    /// `arena` is made as it was for the recording. It is brought to the last saved state at or before the tick `from`,
+    /// or to the first tick. Then `step` is called with the inputs of one tick after another, and steps it over the
+    /// same terrain.
     ///
     /// # Errors
     /// [`RecordError::OtherArena`] if the arena is another one, [`RecordError::NoTick`] and [`RecordError::NoSnapshot`] if there
-    /// is nothing to start from, [`RecordError::Message`] for a tick that cannot be read, and [`RecordError::Arena`] if a state
-    /// cannot be restored or `step` fails.
+    /// is nothing to start from, [`RecordError::Message`] for a tick that cannot be read, and [`RecordError::Arena`] if
+    /// a state cannot be restored or `step` fails.
     pub fn replay(
         &self,
         arena: &mut Arena,

@@ -11,7 +11,8 @@ use glam::{DQuat, DVec3, Vec3};
 
 use super::{WORLD, color, place, pose, rotation, timestamp, vector};
 
-/// What a game passes to a recorder to be looked at: a mesh in the world, at rest or moving, such as the ground or a rock.
+/// What a game passes to a recorder to be looked at: a mesh in the world, at rest or moving, such as the ground or a
+/// rock.
 #[derive(Clone, Copy, Debug)]
 pub struct SceneryView<'a> {
     /// Its name, which no joint, figure or other mesh has.

@@ -236,8 +236,8 @@ impl<'a> Choreography<'a> {
 
 /// The acts, by the names of the creature's clips.
 ///
-/// Idle, walk, and if there is a shake, shake and walk. Without idle and walk: the first pose of the first clip, and then
-/// every clip in turn, except deaths.
+/// Idle, walk, and if there is a shake, shake and walk. Without idle and walk: the first pose of the first clip, and
+/// then every clip in turn, except deaths.
 fn acts(creature: &Creature) -> Vec<Act> {
     let index = |words: &[&str]| {
         let clip = creature.clip_like(words)?;

@@ -40,8 +40,8 @@ impl Eyes {
         }
     }
 
-    /// The hardest shake that is about to come where the climber is, metres a second squared: 0 as long as it has not been
-    /// seen coming.
+    /// The hardest shake that is about to come where the climber is, metres a second squared: 0 as long as it has not
+    /// been seen coming.
     pub(super) fn shake_ahead(&mut self, performer: &Performer<'_>) -> f64 {
         let Some(life) = performer.life() else {
             return 0.0;

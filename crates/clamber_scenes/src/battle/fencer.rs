@@ -39,7 +39,8 @@ pub(super) struct Fencer {
 }
 
 impl Fencer {
-    /// The input of a stab: begins one if the blade would go where it should, and goes on with it. `None` if there is none.
+    /// The input of a stab: begins one if the blade would go where it should, and goes on with it. `None` if there is
+    /// none.
     pub(super) fn stab(&mut self, performer: &Performer<'_>, aim: Aim) -> Option<ClimberInput> {
         let fighter = performer.fighter()?;
         let state = fighter.climber().state();

@@ -1,9 +1,9 @@
 //! The main scene: a climber against a giant creature in a valley, while rocks fall.
 //!
-//! In a climb the creature lives by its brain: it notices the climber, hunts and attacks it, and shakes itself once it is
-//! ridden. The climber comes over the ground, gets out of the way of blows, climbs to the creature's top and stays there.
-//! In a ride the creature plays its clips by a timetable, and the climber is dropped on its back. The rocks fall on the
-//! creature and roll off.
+//! In a climb the creature lives by its brain: it notices the climber, hunts and attacks it, and shakes itself once it
+//! is ridden. The climber comes over the ground, gets out of the way of blows, climbs to the creature's top and stays
+//! there. In a ride the creature plays its clips by a timetable, and the climber is dropped on its back. The rocks fall
+//! on the creature and roll off.
 //!
 //! A fight is a thin program over [`clamber_fight::Arena`]: a bot gives the inputs. Order of a tick: the creature and
 //! the climber step, then the physics with the rocks, and the scene checks the result.

@@ -81,8 +81,8 @@ pub(super) struct Sight {
 }
 
 impl<'a> Performer<'a> {
-    /// A creature at the beginning of a battle: with a brain if the options have one, or else with a timetable. Nobody fights or
-    /// rides it yet.
+    /// A creature at the beginning of a battle: with a brain if the options have one, or else with a timetable. Nobody
+    /// fights or rides it yet.
     ///
     /// # Errors
     /// [`BattleError::NoHeight`] if it is flat, [`BattleError::Brain`] and [`BattleError::Colossus`] if its brain cannot be

@@ -13,12 +13,13 @@ use super::performer::Sight;
 use super::scene::CREATURE;
 use super::{BattleError, Performer};
 
-/// How far above a weak point what covers it may be, and how far from it a climber goes to wound it, in the units of the
-/// creature's file.
+/// How far above a weak point what covers it may be, and how far from it a climber goes to wound it, in the units of
+/// the creature's file.
 const COVER: f64 = 1.2;
 const BESIDE: f64 = 0.5;
 
-/// What can be reached this far below the highest place counts as the top, as a share of the height of all that can be reached.
+/// What can be reached this far below the highest place counts as the top, as a share of the height of all that can be
+/// reached.
 const TOP: f64 = 0.03;
 
 /// Seconds for which a creature has to look calm until it is taken for calm.
@@ -214,8 +215,8 @@ impl Planner {
         self.bot.forget();
     }
 
-    /// The targets that there are now: open weak points without a cover, and plates that cover one. If there are none, those
-    /// that are going to be open.
+    /// The targets that there are now: open weak points without a cover, and plates that cover one. If there are none,
+    /// those that are going to be open.
     fn open(&self, performer: &Performer<'_>) -> Vec<usize> {
         let Some(life) = performer.life() else {
             return vec![0];

@@ -65,8 +65,8 @@ impl Recording {
         &self.samples
     }
 
-    /// A 64-bit hash of the climber's states, the rocks' poses and all that changes in a fight, in all ticks, for comparing
-    /// battles.
+    /// A 64-bit hash of the climber's states, the rocks' poses and all that changes in a fight, in all ticks, for
+    /// comparing battles.
     pub fn hash(&self) -> u64 {
         self.hash
     }

@@ -58,8 +58,8 @@ impl fmt::Display for Fight {
 pub const HEADING: &str =
     "  seed  at top  killed  plate  weak damage falls blows  deaths  ground   on hang %  hash";
 
-/// Fights battles of several seeds, the one of the options and the next ones, on all cores. Calls `watch` after each with the
-/// number of fights done.
+/// Fights battles of several seeds, the one of the options and the next ones, on all cores. Calls `watch` after each
+/// with the number of fights done.
 ///
 /// # Errors
 /// The first [`BattleError`] of a fight.

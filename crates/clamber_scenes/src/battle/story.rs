@@ -1,8 +1,8 @@
 /// The climber's task in a battle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Story {
-    /// The climber comes over an outcrop, shoots, runs from blows, climbs to the weak points and stabs them, or to the top
-    /// of a creature that has none.
+    /// The climber comes over an outcrop, shoots, runs from blows, climbs to the weak points and stabs them, or to the
+    /// top of a creature that has none.
     Climb,
     /// The climber is dropped on the back, and stands, walks and jumps there.
     Ride,

@@ -152,7 +152,8 @@ pub fn stairs(up: bool, speed: f64) -> Result<Scene, Box<dyn Error>> {
     Ok(scene)
 }
 
-/// Stands with the left foot on a block of 0.4 m whose top is tilted by 30 degrees, and with the right one on the ground.
+/// Stands with the left foot on a block of 0.4 m whose top is tilted by 30 degrees, and with the right one on the
+/// ground.
 ///
 /// # Errors
 /// None.

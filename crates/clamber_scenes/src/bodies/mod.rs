@@ -1,7 +1,7 @@
 //! Scenes for the body of a climber: ground, walls, ledges and creatures, and what the player does there.
 //!
-//! A [`Scene`] is data and functions of time; a [`Stage`] plays it: it moves what there is, steps the climber, and poses
-//! bodies in frames.
+//! A [`Scene`] is data and functions of time; a [`Stage`] plays it: it moves what there is, steps the climber, and
+//! poses bodies in frames.
 
 mod creatures;
 mod grounds;

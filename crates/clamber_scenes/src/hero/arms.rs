@@ -2,8 +2,8 @@
 //!
 //! The clips of a stab hold the sword with its blade down. Inverse kinematics then brings the hand to the hilt of the
 //! fight's blade, and the drawn tip to the point of the skin that the stab goes to. While the other hand holds on, the
-//! raised blade points up, as the fight has it, or the body would hide it; and it comes down at a slant, since the body is
-//! between the hand and the skin.
+//! raised blade points up, as the fight has it, or the body would hide it; and it comes down at a slant, since the body
+//! is between the hand and the skin.
 
 mod bend;
 mod moves;
@@ -191,7 +191,8 @@ impl Arms {
         pose.transforms[sheathed.index()].scale = scale(!is_out);
     }
 
-    /// Turns the blade up in a fist that holds it blade down, while it is raised on a hold; a strike turns it down again.
+    /// Turns the blade up in a fist that holds it blade down, while it is raised on a hold; a strike turns it down
+    /// again.
     fn turn_blade_up(&self, pose: &mut Pose, fighter: &Fighter) {
         let (Some(sword), Some(config)) = (self.joints.sword, fighter.config().sword) else {
             return;

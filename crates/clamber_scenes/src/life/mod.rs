@@ -1,5 +1,5 @@
-//! The giant's life in fast forward: it wanders in a valley with boulders and a wall, five riders wander and climb on it,
-//! arrows and blades hit it now and then, and when it dies the next one lives.
+//! The giant's life in fast forward: it wanders in a valley with boulders and a wall, five riders wander and climb on
+//! it, arrows and blades hit it now and then, and when it dies the next one lives.
 
 mod options;
 mod rider;

@@ -125,8 +125,8 @@ impl Tally {
         self.depth = self.depth.max(-clearance);
     }
 
-    /// What is wrong: states that were never seen or never left, feet that do not stand. Empty if all is well. A life of less
-    /// than half an hour need not have seen everything.
+    /// What is wrong: states that were never seen or never left, feet that do not stand. Empty if all is well. A life
+    /// of less than half an hour need not have seen everything.
     pub fn faults(&self) -> Vec<String> {
         let mut faults = Vec::new();
         let is_long = self.ticks as f64 * TICK >= 1_800.0;

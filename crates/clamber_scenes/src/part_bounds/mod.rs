@@ -4,12 +4,12 @@
 //! bounds here serve benches, which compare them with the library's, and pictures.
 //!
 //! The spheres are derived in `clamber_surface`'s `bounds` module. The capsule follows with the same symbols. At rest
-//! `p = s + q`, with s on the segment from a to b and `|q| <= r`. Replace c by s in the weight interval:
-//! `p' = s' + sum w_i A_i q + sum (w_i - o_i) (M_i s - s')` with `s' = sum o_i M_i s`, which runs along the segment from
-//! a' to b' as s runs from a to b. `sum d_i |M_i s - s'|` is a sum of lengths of affine functions of s. It is therefore
-//! convex along the segment, and largest at one of its ends, so p' lies in the capsule around a'b' of radius
-//! `r max s_i + max over the two ends e of sum d_i |M_i e - e'|`. By the hull's argument p' also lies in the capsule
-//! around a'b' of radius `max_i (s_i r + max over the two ends e of |M_i e - e'|)`. The smaller radius is used.
+//! `p = s + q`, with s on the segment from a to b and `|q| <= r`. Replace c by s in the weight interval: `p' = s' + sum
+//! w_i A_i q + sum (w_i - o_i) (M_i s - s')` with `s' = sum o_i M_i s`, which runs along the segment from a' to b' as s
+//! runs from a to b. `sum d_i |M_i s - s'|` is a sum of lengths of affine functions of s. It is therefore convex along
+//! the segment, and largest at one of its ends, so p' lies in the capsule around a'b' of radius `r max s_i + max over
+//! the two ends e of sum d_i |M_i e - e'|`. By the hull's argument p' also lies in the capsule around a'b' of radius
+//! `max_i (s_i r + max over the two ends e of |M_i e - e'|)`. The smaller radius is used.
 
 mod capsule;
 mod joint_maps;

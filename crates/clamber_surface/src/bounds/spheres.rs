@@ -24,10 +24,10 @@
 //! takes five more roundings: a factor of `1 + 2^-21`.
 //!
 //! **Relative to the radius** ([`slack`]): d_i has one rounding in its differences, three under the root, which the
-//! root halves, and one in the root: 3.5. The product with `e_i` and the sum take m + 1, the sum with `r max s_i`
-//! takes one: m + 5.5. The hull has fewer. With the product with the slack and the last sum, m + 7.5 roundings may
-//! have made the radius smaller, and `(1 - u)^-k <= 1 + g(k)`. m is at most 2^16, the most joints of a mesh, so `g(k) <= (k + k / 255) u`: the
-//! factor is at least `1 + (m + 8 + m / 128) u`.
+//! root halves, and one in the root: 3.5. The product with `e_i` and the sum take m + 1, the sum with `r max s_i` takes
+//! one: m + 5.5. The hull has fewer. With the product with the slack and the last sum, m + 7.5 roundings may have made
+//! the radius smaller, and `(1 - u)^-k <= 1 + g(k)`. m is at most 2^16, the most joints of a mesh, so `g(k) <= (k + k /
+//! 255) u`: the factor is at least `1 + (m + 8 + m / 128) u`.
 //!
 //! **Absolute** ([`FLOOR`], 2^-56): a product that underflows is off by at most 2^-150; sums lose nothing to
 //! underflow. Squares under the root lose `3 2^-150`, so d_i loses at most `sqrt(3) 2^-75`, and the sum loses D

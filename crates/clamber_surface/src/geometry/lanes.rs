@@ -6,8 +6,8 @@
 //! lanes and fused products, so the trait has none of these.
 //!
 //! Everything is `inline(always)`, since SIMD instructions are emitted only within the function that enables them
-//! (fearless_simd, MANUAL_INLINING.md). A closure that is not inlined would leave that function. The package's `build.rs`
-//! tells why this does not hold for builds without optimisation.
+//! (fearless_simd, MANUAL_INLINING.md). A closure that is not inlined would leave that function. The package's
+//! `build.rs` tells why this does not hold for builds without optimisation.
 
 use core::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Sub};
 

@@ -123,10 +123,10 @@ impl ColliderMesh {
         &self.tags
     }
 
-    /// The parts, with lists of their triangles and vertices. A build sorts them by joint; edits may append more, and may
-    /// leave a part without triangles. The lists are made on first use, which takes O(n log n) for n triangles: by this
-    /// call, an edit, or [`ModelSpace::part_spheres`](crate::surface::ModelSpace::part_spheres). From then on the mesh
-    /// keeps them: they take some six bytes a triangle.
+    /// The parts, with lists of their triangles and vertices. A build sorts them by joint; edits may append more, and
+    /// may leave a part without triangles. The lists are made on first use, which takes O(n log n) for n triangles: by
+    /// this call, an edit, or [`ModelSpace::part_spheres`](crate::surface::ModelSpace::part_spheres). From then on the
+    /// mesh keeps them: they take some six bytes a triangle.
     ///
     /// [`ColliderMesh::part_count`], [`ColliderMesh::part_joint`] and [`ColliderMesh::part_of`] need no lists.
     pub fn parts(&self) -> &[Part] {

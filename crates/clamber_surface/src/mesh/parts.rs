@@ -36,7 +36,8 @@ impl Part {
 }
 
 /// The joint of every part, and the part of every triangle. Most queries need no more than this, so the lists of a
-/// part's triangles and vertices are made on first use: by edits, by spheres around parts, and by those who ask for them.
+/// part's triangles and vertices are made on first use: by edits, by spheres around parts, and by those who ask for
+/// them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Parts {
     /// By part.
@@ -113,8 +114,8 @@ impl Parts {
         }
     }
 
-    /// Adds the next triangle to the part of a joint, and the part if there is none yet. Its lists are out of date then,
-    /// until [`Parts::renew`].
+    /// Adds the next triangle to the part of a joint, and the part if there is none yet. Its lists are out of date
+    /// then, until [`Parts::renew`].
     pub(super) fn push(&mut self, triangle: TriangleId, joint: JointId) -> PartId {
         let known = self.joints.iter().position(|other| *other == joint);
         let part = known.unwrap_or(self.joints.len());

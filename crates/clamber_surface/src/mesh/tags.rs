@@ -5,8 +5,8 @@ use super::SurfaceTag;
 
 /// The tags of a mesh's triangles, by triangle id. Reads as a slice does: it is indexed, iterated, and has a length.
 ///
-/// Meshes have few different tags, so a triangle takes a byte. Once a mesh has had more than 256 different ones, it takes
-/// eight.
+/// Meshes have few different tags, so a triangle takes a byte. Once a mesh has had more than 256 different ones, it
+/// takes eight.
 ///
 /// ```
 /// use clamber_surface::mesh::{SurfaceKind, SurfaceTag, SurfaceTags};

@@ -6,12 +6,12 @@ use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 /// Values by index that queries compute on demand, shared by any number of threads.
 ///
 /// A value is computed once, where it is first requested, and handed out by reference. If two threads request it at the
-/// same time, one waits for the other. Forgetting takes `&mut`, and costs O(values), and one bit per entry if entries were
-/// filled ahead.
+/// same time, one waits for the other. Forgetting takes `&mut`, and costs O(values), and one bit per entry if entries
+/// were filled ahead.
 ///
 /// Entries without a value take a pointer each. What was forgotten is written again, the last one first, so few values
-/// are in use, and stay in the processor's caches, however many entries there are. With a few more values than were ever
-/// needed, a steady use allocates nothing.
+/// are in use, and stay in the processor's caches, however many entries there are. With a few more values than were
+/// ever needed, a steady use allocates nothing.
 #[derive(Debug)]
 pub(super) struct Memo<T> {
     entries: Vec<OnceLock<Box<T>>>,
@@ -60,8 +60,8 @@ impl<T: Default> Memo<T> {
         self.asked.grow(entries);
     }
 
-    /// The value of an entry, and marks it as requested. `compute` writes it over a default or forgotten value, if there
-    /// is none yet.
+    /// The value of an entry, and marks it as requested. `compute` writes it over a default or forgotten value, if
+    /// there is none yet.
     #[cfg_attr(not(unoptimized), inline(always))]
     pub(super) fn get(&self, entry: usize, compute: impl FnOnce(&mut T)) -> &T {
         if self.ahead {

@@ -53,12 +53,12 @@ pub struct CastOptions {
     /// size) if that is larger. Such a gap is too small to see.
     pub tolerance: Option<f64>,
     /// The part of the tick that the cast takes, from which share of it to which, 0..=1 and in order; the whole tick by
-    /// default. Skin that [moves](TargetMotion::Moving) goes this part of its way meanwhile. What moves on an arc is cast in
-    /// several parts, one after the other. Times of contacts are shares of the cast, not of the tick. A cast with another
-    /// order or NaN finds nothing.
+    /// default. Skin that [moves](TargetMotion::Moving) goes this part of its way meanwhile. What moves on an arc is
+    /// cast in several parts, one after the other. Times of contacts are shares of the cast, not of the tick. A cast
+    /// with another order or NaN finds nothing.
     pub during: [f64; 2],
-    /// Ignores the triangles that the shape overlaps at the start ([`SweepHit::started_inside`]): for a body that is pressed
-    /// into skin, and asks what else is in its way. Costs less than to reject these contacts one by one.
+    /// Ignores the triangles that the shape overlaps at the start ([`SweepHit::started_inside`]): for a body that is
+    /// pressed into skin, and asks what else is in its way. Costs less than to reject these contacts one by one.
     pub past_overlaps: bool,
 }
 

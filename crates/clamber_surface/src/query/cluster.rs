@@ -102,8 +102,8 @@ impl<'a, const P: usize> PosedCluster<'a, P> {
         !beyond
     }
 
-    /// False only if nothing of the cluster comes within a distance of a probe's core before it moves. For a capsule, that
-    /// is measured from the box around its segment.
+    /// False only if nothing of the cluster comes within a distance of a probe's core before it moves. For a capsule,
+    /// that is measured from the box around its segment.
     #[cfg_attr(not(unoptimized), inline(always))]
     pub(super) fn comes_within<const N: usize>(&self, probe: &Probe<N>, distance: f32) -> bool {
         let [a, b] = probe.segment();
@@ -238,7 +238,8 @@ impl<'a, const P: usize> PosedCluster<'a, P> {
         ]
     }
 
-    /// Finds the corners of up to eight triangles in each pose; unused lanes repeat the first triangle. There must be one.
+    /// Finds the corners of up to eight triangles in each pose; unused lanes repeat the first triangle. There must be
+    /// one.
     #[cfg_attr(not(unoptimized), inline(always))]
     pub(super) fn batch(&self, triangles: &[u8], batches: &mut [Corners8; P]) {
         let mut lanes = [triangles[0]; EIGHT];

@@ -145,8 +145,8 @@ pub(super) fn along_ray<S: Simd>(
     survivors(simd, corners, &codes)
 }
 
-/// Triangles with a corner in a ball before it moves, by more than rounding; none if the ball is too small or too far out to
-/// tell.
+/// Triangles with a corner in a ball before it moves, by more than rounding; none if the ball is too small or too far
+/// out to tell.
 #[cfg_attr(not(unoptimized), inline(always))]
 pub(super) fn within_ball<S: Simd>(
     simd: S,

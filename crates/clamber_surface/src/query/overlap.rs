@@ -58,8 +58,8 @@ impl Instance {
         }
     }
 
-    /// Calls `visit` with every triangle within the probe. The exact test is left to triangles that neither a plane rules
-    /// out nor a corner inside rules in.
+    /// Calls `visit` with every triangle within the probe. The exact test is left to triangles that neither a plane
+    /// rules out nor a corner inside rules in.
     #[cfg_attr(not(unoptimized), inline(always))]
     fn descend_triangles<S: Simd, const N: usize>(
         &self,
@@ -114,7 +114,8 @@ impl Instance {
         );
     }
 
-    /// Calls `test` with the triangles that may be within reach, cluster by cluster. It returns how many of them it tested.
+    /// Calls `test` with the triangles that may be within reach, cluster by cluster. It returns how many of them it
+    /// tested.
     #[cfg_attr(not(unoptimized), inline(always))]
     fn each_near<S: Simd, const N: usize>(
         &self,

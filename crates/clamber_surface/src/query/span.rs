@@ -14,8 +14,8 @@ pub(super) struct Span {
     to: f32,
 }
 
-/// Allowance for rounding in a sphere between two others, as a share of the coordinates: that of a vertex and that of the
-/// centre are each off by at most three halves of [`f32::EPSILON`] of both ends, along each of three axes.
+/// Allowance for rounding in a sphere between two others, as a share of the coordinates: that of a vertex and that of
+/// the centre are each off by at most three halves of [`f32::EPSILON`] of both ends, along each of three axes.
 const SLACK: f32 = 16.0 * f32::EPSILON;
 
 impl Span {
@@ -49,7 +49,8 @@ impl Span {
         })
     }
 
-    /// Replaces positions at both ends of the tick by those at both ends of the span, in the first `rows` rows of slots.
+    /// Replaces positions at both ends of the tick by those at both ends of the span, in the first `rows` rows of
+    /// slots.
     pub(super) fn positions(&self, [first, last]: [&mut ClusterPositions; 2], rows: usize) {
         for (first, last) in first.0.iter_mut().zip(&mut last.0) {
             for (first, last) in first.iter_mut().zip(last.iter_mut()).take(rows * ROW) {
@@ -59,8 +60,8 @@ impl Span {
         }
     }
 
-    /// Replaces spheres at both ends of the tick by those at both ends of the span. Where the contents of a sphere are at a
-    /// share of their way, they lie in the sphere at this share of its own.
+    /// Replaces spheres at both ends of the tick by those at both ends of the span. Where the contents of a sphere are
+    /// at a share of their way, they lie in the sphere at this share of its own.
     pub(super) fn spheres(&self, [first, last]: [&mut Spheres; 2]) {
         for lane in 0..LANES {
             let size =

@@ -8,11 +8,11 @@ use crate::mesh::hierarchy::{Child, Hierarchy, LANES, STACK};
 
 /// Descends from all roots to the clusters in which a query may find something.
 ///
-/// A key is a distance or a time, not negative, and `limit` is the largest key that still matters. `bounds` takes a node
-/// and the limit, rounded up. It returns which children of the node may matter, and for each child a lower bound of the
-/// keys of its contents. `leaf` takes a cluster and the limit. It returns the new limit, or `None` to end the search.
-/// With `NEAREST_FIRST`, children with smaller keys are visited first, which lowers the limit early, and children beyond
-/// the limit are skipped. Without it, the order is arbitrary.
+/// A key is a distance or a time, not negative, and `limit` is the largest key that still matters. `bounds` takes a
+/// node and the limit, rounded up. It returns which children of the node may matter, and for each child a lower bound
+/// of the keys of its contents. `leaf` takes a cluster and the limit. It returns the new limit, or `None` to end the
+/// search. With `NEAREST_FIRST`, children with smaller keys are visited first, which lowers the limit early, and
+/// children beyond the limit are skipped. Without it, the order is arbitrary.
 #[cfg_attr(not(unoptimized), inline(always))]
 pub(super) fn traverse<const NEAREST_FIRST: bool>(
     hierarchy: &Hierarchy,

@@ -309,8 +309,8 @@ impl Clip {
         &self.markers
     }
 
-    /// The speed over ground for which the clip was made, in the units of the model a second, so that feet on the ground
-    /// do not slide. `None` if the clip does not say.
+    /// The speed over ground for which the clip was made, in the units of the model a second, so that feet on the
+    /// ground do not slide. `None` if the clip does not say.
     pub fn ground_speed(&self) -> Option<f64> {
         self.ground_speed
     }

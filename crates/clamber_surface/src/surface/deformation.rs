@@ -118,8 +118,8 @@ fn frame_between(rest: &Flattened, now: &Flattened) -> Option<DQuat> {
     frame.is_finite().then_some(frame)
 }
 
-/// Area ratio and principal stretches, larger first, from one triangle to the other; 1 if the first has collapsed. Takes
-/// the corners of both, and both flattened.
+/// Area ratio and principal stretches, larger first, from one triangle to the other; 1 if the first has collapsed.
+/// Takes the corners of both, and both flattened.
 pub(super) fn stretch(
     [before, now]: [[Vec3; 3]; 2],
     [flat_before, flat_now]: [Option<&Flattened>; 2],

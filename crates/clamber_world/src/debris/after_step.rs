@@ -1,4 +1,5 @@
-//! After the step: bodies that skin entered are put back in front of it, and those around which it appeared are put out.
+//! After the step: bodies that skin entered are put back in front of it, and those around which it appeared are put
+//! out.
 
 use clamber_surface::surface::{SkinnedSurface, SurfaceHit};
 use glam::DVec3;

@@ -1,10 +1,10 @@
 //! Whether skin encloses a point, however little of a creature's skin is closed.
 //!
 //! A ray from inside a closed surface to infinity leaves it once more than it enters it
-//! ([`ModelSpace::is_inside`](clamber_surface::surface::ModelSpace::is_inside) has the sources). Models are often made of
-//! open pieces that pass through each other, so no single ray can be trusted. Sixteen rays are cast, in opposite pairs:
-//! behind a flat sheet of any size, at most half of them leave through it. Nearly all of them leave from inside a
-//! creature, also where a neck is open below the head.
+//! ([`ModelSpace::is_inside`](clamber_surface::surface::ModelSpace::is_inside) has the sources). Models are often made
+//! of open pieces that pass through each other, so no single ray can be trusted. Sixteen rays are cast, in opposite
+//! pairs: behind a flat sheet of any size, at most half of them leave through it. Nearly all of them leave from inside
+//! a creature, also where a neck is open below the head.
 //!
 //! An edit may add skin above a creature's own: a scab, a plate. Nothing gets out of the hollow between them. From its
 //! floor, half of all rays leave, and the others meet the creature's skin.
@@ -28,8 +28,8 @@ const DIRECTIONS: [Vec3; 8] = [
 
 const RAYS: usize = 2 * DIRECTIONS.len();
 
-/// A point is enclosed if at least this many rays leave. With fewer, rocks in an open bowl or under a dome would count as
-/// enclosed; with more, rocks inside creatures with openings would not.
+/// A point is enclosed if at least this many rays leave. With fewer, rocks in an open bowl or under a dome would count
+/// as enclosed; with more, rocks inside creatures with openings would not.
 const ENCLOSED: usize = 14;
 
 /// A point is in the open if at most this many rays leave: behind a flat sheet they are half of all.

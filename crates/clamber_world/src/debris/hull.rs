@@ -57,8 +57,8 @@ impl Hull {
         }
     }
 
-    /// True if skin may have touched it in this tick, on the way from one pose to the other. `origin` is the world position
-    /// of rapier's origin.
+    /// True if skin may have touched it in this tick, on the way from one pose to the other. `origin` is the world
+    /// position of rapier's origin.
     pub(super) fn may_touch(
         &self,
         surface: &SkinnedSurface,

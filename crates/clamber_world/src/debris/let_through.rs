@@ -125,8 +125,9 @@ pub(super) fn owner_in(
     Some(skin[index.ok()?].1)
 }
 
-/// True if a body touches no skin, and its middle is not inside the creature, after a tick that took it from one pose to
-/// the other. `origin` is the world position of rapier's origin, `hits` reused memory. `None` if the body is out of reach.
+/// True if a body touches no skin, and its middle is not inside the creature, after a tick that took it from one pose
+/// to the other. `origin` is the world position of rapier's origin, `hits` reused memory. `None` if the body is out of
+/// reach.
 ///
 /// All of the body counts, not only its core: rapier would drag a body along by a corner that sticks in the skin.
 pub(super) fn is_outside(

@@ -9,8 +9,8 @@ use super::inner_capsule::InnerCapsule;
 use super::put_out::PutOut;
 use crate::WorldCapsule;
 
-/// Radius of the point whose way through the skin is looked at, as a fraction of the inner radius: what is nearer to the
-/// skin than that may count as on either side of it.
+/// Radius of the point whose way through the skin is looked at, as a fraction of the inner radius: what is nearer to
+/// the skin than that may count as on either side of it.
 const POINT: f64 = 0.01;
 
 /// How a body and a creature's skin get past each other.
@@ -54,8 +54,8 @@ impl Passage {
     /// For a body that skin may have appeared around: [`Passage::Closed`] if it is outside. A body of which something
     /// still shows is put out, as long as its place outside is free of skin. One that is deeper is let through.
     ///
-    /// Skin and body are taken as they are at the end of the tick. A body that skin reaches during the tick collides with
-    /// it, so it counts as outside. `hits` is reused memory.
+    /// Skin and body are taken as they are at the end of the tick. A body that skin reaches during the tick collides
+    /// with it, so it counts as outside. `hits` is reused memory.
     pub(super) fn around(
         body: &Looked<'_>,
         surface: &SkinnedSurface,

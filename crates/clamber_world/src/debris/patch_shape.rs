@@ -58,9 +58,9 @@ impl PatchShape {
         self.set_normals();
     }
 
-    /// Computes the tree's boxes after the vertices have changed. The first time, this inserts the triangles one by one,
-    /// which is sooner done than a build for all of them at once. The tree is not as good, but a patch has few triangles,
-    /// most of them near the body.
+    /// Computes the tree's boxes after the vertices have changed. The first time, this inserts the triangles one by
+    /// one, which is sooner done than a build for all of them at once. The tree is not as good, but a patch has few
+    /// triangles, most of them near the body.
     fn set_bounds(&mut self) {
         for index in 0..self.triangles.len() {
             let bounds = self.triangle(index).local_aabb();

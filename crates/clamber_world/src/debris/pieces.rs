@@ -25,8 +25,8 @@ use crate::ObstacleId;
 /// sweep of the inside of the body against the moving skin finds it.
 ///
 /// A creature cannot be pushed, so it would drive a body that it steps on through the ground. Such a body is left where
-/// it is, and skin passes through it until it is outside the creature again. The same happens to a body on which a fold of
-/// the skin closes, such as between head and shoulder.
+/// it is, and skin passes through it until it is outside the creature again. The same happens to a body on which a fold
+/// of the skin closes, such as between head and shoulder.
 ///
 /// Skin may also appear around a body: a stone breaks off below the skin, or a creature is new, is
 /// [placed](SkinnedSurface::place), is [edited](SkinnedSurface::edit) or shows a part again where bodies are. A body
@@ -43,13 +43,13 @@ use crate::ObstacleId;
 /// dropped.
 ///
 /// Skin patches are colliders of the rapier world. Their `user_data`, and that of their bodies, is their creature's
-/// [`ObstacleId`]. If a climber gets both the creature and a [`RapierTerrain`](crate::RapierTerrain) without a filter, it
-/// touches that skin twice. Leave the patches out with
+/// [`ObstacleId`]. If a climber gets both the creature and a [`RapierTerrain`](crate::RapierTerrain) without a filter,
+/// it touches that skin twice. Leave the patches out with
 /// [`RapierTerrain::with_filter`](crate::RapierTerrain::with_filter): by [`DebrisConfig::groups`], or by
 /// [`Debris::triangle_at`], which gives `Some` for subshape 0 of a patch.
 ///
-/// They have a shape of their own, which rapier's debug renderer does not draw and serde does not save. Remove the bodies
-/// of patches from a world before serde saves it; they come back in the next tick. Rapier's continuous collision
+/// They have a shape of their own, which rapier's debug renderer does not draw and serde does not save. Remove the
+/// bodies of patches from a world before serde saves it; they come back in the next tick. Rapier's continuous collision
 /// detection (`ccd_enabled`) is weaker against such a shape, and not needed: a sweep of `Debris`'s own finds fast skin.
 ///
 /// Make these calls each tick, in this order. `Debris` is the step's [`PhysicsHooks`], which keep a patch from

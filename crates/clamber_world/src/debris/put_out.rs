@@ -69,8 +69,8 @@ pub(super) enum State {
 }
 
 impl PutOut {
-    /// The way out of a creature for a body whose core ends at `core`, a segment in world space inside the creature, and
-    /// where the middle of the segment will then be about. `None` if the body is too deep.
+    /// The way out of a creature for a body whose core ends at `core`, a segment in world space inside the creature,
+    /// and where the middle of the segment will then be about. `None` if the body is too deep.
     pub(super) fn new(
         surface: &SkinnedSurface,
         core: &WorldCapsule,
@@ -113,8 +113,8 @@ impl PutOut {
         }
     }
 
-    /// Goes on over a tick of `dt` seconds, which took the body to the pose `end` with a velocity. `None` if the skin at
-    /// which the way begins is gone.
+    /// Goes on over a tick of `dt` seconds, which took the body to the pose `end` with a velocity. `None` if the skin
+    /// at which the way begins is gone.
     ///
     /// The body gets ahead of the skin at an even speed. Sideways it moves freely. When it is out, it is as fast as the
     /// skin, so that it does not jump, unless it was faster by itself, as what is blown off is. If `skin` was placed in

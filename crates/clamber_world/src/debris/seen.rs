@@ -6,8 +6,8 @@ use glam::DVec3;
 
 use crate::ObstacleId;
 
-/// Number of vertices that stand for all skin. More would notice the jump of a smaller limb, but each costs the skinning
-/// of a vertex, twice a tick.
+/// Number of vertices that stand for all skin. More would notice the jump of a smaller limb, but each costs the
+/// skinning of a vertex, twice a tick.
 const MARKS: usize = 16;
 
 /// Skin has jumped if a vertex did not start its tick where the last one ended, as a fraction of the surface's radius:

@@ -2,11 +2,11 @@ use rapier3d::prelude::*;
 
 use super::Debris;
 
-/// A rapier world and its debris as they were between two ticks: what is to be saved beside an arena where rocks have to be rolled
-/// back with it.
+/// A rapier world and its debris as they were between two ticks: what is to be saved beside an arena where rocks have
+/// to be rolled back with it.
 ///
-/// It is dear beside a saved arena, since all of rapier's sets are copied; the bench `arena` measures it. Where rocks are
-/// decoration, leave them out.
+/// It is dear beside a saved arena, since all of rapier's sets are copied; the bench `arena` measures it. Where rocks
+/// are decoration, leave them out.
 ///
 /// ```
 /// use clamber_world::rapier3d::prelude::*;
@@ -53,8 +53,8 @@ impl DebrisSnapshot {
         }
     }
 
-    /// Goes back to it: world and debris go on with the same bits as they did then, if the skin does too. Gravity and parameters
-    /// of the integration stay as they are.
+    /// Goes back to it: world and debris go on with the same bits as they did then, if the skin does too. Gravity and
+    /// parameters of the integration stay as they are.
     pub fn restore(&self, world: &mut PhysicsWorld, debris: &mut Debris) {
         let saved = self.clone();
         world.islands = saved.islands;

@@ -15,12 +15,12 @@ const STOPS: f64 = 0.4;
 const ROUNDING: f64 = 1e-6;
 
 impl ProxyBody {
-    /// Where to put a body that entered the climber by its own motion in a step of a physics engine: where it touched the
-    /// climber first, and for the rest of the tick with it. `None` if it did not enter, or is below the climber.
+    /// Where to put a body that entered the climber by its own motion in a step of a physics engine: where it touched
+    /// the climber first, and for the rest of the tick with it. `None` if it did not enter, or is below the climber.
     ///
-    /// Engines find contacts once a step. Without this, a fast body is in the climber for a tick before they stop it, and
-    /// presses it away. It is the motion clamping of continuous collision detection, in the climber's frame. A body that
-    /// turns by at most one radian in the step ends outside of the climber; a faster one may end in it.
+    /// Engines find contacts once a step. Without this, a fast body is in the climber for a tick before they stop it,
+    /// and presses it away. It is the motion clamping of continuous collision detection, in the climber's frame. A body
+    /// that turns by at most one radian in the step ends outside of the climber; a faster one may end in it.
     ///
     /// `from` and `to` are the body's poses before the step and after it, in a space with its origin at `origin`.
     /// `solids` are its shapes, with their poses on the body. `dt` is the length of the tick, seconds.
@@ -84,7 +84,8 @@ impl ProxyBody {
     }
 }
 
-/// True if a shape of a body does not reach a capsule beside which the body's origin moves along a path, however it turns.
+/// True if a shape of a body does not reach a capsule beside which the body's origin moves along a path, however it
+/// turns.
 fn is_far((shape, on_body): (&dyn Shape, RigidPose), path: [DVec3; 2], to: &WorldCapsule) -> bool {
     let sphere = shape.compute_local_bounding_sphere();
     let around = sphere.center.as_dvec3().length() + f64::from(sphere.radius);

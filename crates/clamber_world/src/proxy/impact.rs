@@ -31,8 +31,8 @@ impl<B: Ord + Copy, C: Ord + Copy> ProxyImpact<B, C> {
         }
     }
 
-    /// Adds a contact of the collider. It counts by its `weight`, the engine's impulse. `normal` is the unit vector from
-    /// the climber to the body, `friction` the coefficient there or an upper bound of it.
+    /// Adds a contact of the collider. It counts by its `weight`, the engine's impulse. `normal` is the unit vector
+    /// from the climber to the body, `friction` the coefficient there or an upper bound of it.
     pub fn add(&mut self, weight: f64, point: DVec3, normal: DVec3, friction: f64) {
         self.strongest += weight;
         self.weight += weight;

@@ -73,10 +73,10 @@ impl ProxyBody {
     /// finite.
     ///
     /// Of the impulse by which the engine stops the body, w / (w + k / M) is left. w is the body's change of velocity
-    /// along a unit impulse in that direction, M the climber's mass. k is the share of the climber's mobility there that
-    /// its support leaves: 1 in the air, 0 straight into the ground, the squared sine of the angle between them. Without
-    /// friction it is the impulse of an inelastic impact of both; with it, too, both together get no energy. The support
-    /// takes what would change the climber's velocity by more than the approach.
+    /// along a unit impulse in that direction, M the climber's mass. k is the share of the climber's mobility there
+    /// that its support leaves: 1 in the air, 0 straight into the ground, the squared sine of the angle between them.
+    /// Without friction it is the impulse of an inelastic impact of both; with it, too, both together get no energy.
+    /// The support takes what would change the climber's velocity by more than the approach.
     ///
     /// ```
     /// use clamber_world::{ProxyBody, ProxyMeeting, WorldCapsule};

@@ -54,8 +54,8 @@ impl BodyPoses {
             .sort_unstable_by_key(|recorded| recorded.body.into_raw_parts());
     }
 
-    /// Moves the recorded poses, metres: for a game that has moved all bodies by as much, because the origin of its world
-    /// is elsewhere now. The bodies have then not moved.
+    /// Moves the recorded poses, metres: for a game that has moved all bodies by as much, because the origin of its
+    /// world is elsewhere now. The bodies have then not moved.
     pub fn translate(&mut self, by: Vector) {
         for recorded in &mut self.poses {
             recorded.pose.translation += by;

@@ -45,8 +45,8 @@ pub(super) fn key_of(handle: ColliderHandle) -> u64 {
 /// A rapier world as one obstacle: its enabled colliders as of the last step (or collision detection), without sensors.
 ///
 /// Create one each tick; it only borrows the world. Height fields and triangle meshes report contacts per triangle,
-/// from both sides; convex shapes are solid. A custom shape is seen by its support map or by its parts, and otherwise by
-/// rays only. Ray casts are rapier's own: a ray that exactly meets an edge between two triangles may slip through.
+/// from both sides; convex shapes are solid. A custom shape is seen by its support map or by its parts, and otherwise
+/// by rays only. Ray casts are rapier's own: a ray that exactly meets an edge between two triangles may slip through.
 ///
 /// The skin patches of [`Debris`](crate::Debris) are colliders of the world. Without a filter, a climber
 /// touches that skin twice: here, and on the creature itself. Leave the patches out with

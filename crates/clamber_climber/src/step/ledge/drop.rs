@@ -88,8 +88,8 @@ impl Tick<'_> {
         is_edge.then_some(ledge)
     }
 
-    /// True if the ball has room to go out over the edge, down to where it hangs, and there; and if there is no ground on
-    /// the way that it could step down to.
+    /// True if the ball has room to go out over the edge, down to where it hangs, and there; and if there is no ground
+    /// on the way that it could step down to.
     fn has_room_below(&mut self, position: DVec3, ledge: &Ledge, config: &LedgeConfig) -> bool {
         let up = self.config.up();
         let body = self.body().crouched();

@@ -152,8 +152,8 @@ impl Tick<'_> {
         NextMode::Change(ClimberMode::Standing)
     }
 
-    /// Keeps its ledge at a position to which its arms moved it, by at most `most` metres. Its velocity, relative to the
-    /// ledge, is the one that it got: `planned` if that is about the same, which has no rounding.
+    /// Keeps its ledge at a position to which its arms moved it, by at most `most` metres. Its velocity, relative to
+    /// the ledge, is the one that it got: `planned` if that is about the same, which has no rounding.
     pub(super) fn settle_by_arms(
         &mut self,
         carried: &Carried,

@@ -8,9 +8,9 @@ use super::super::moving::Intent;
 use super::super::{NextMode, Tick};
 use crate::config::LedgeConfig;
 
-/// A climber that makes less than this share of its way along the ledge looks for a wall that stands forward. It is made
-/// less at once by one that stands forward by a twentieth of the radius; otherwise the ball would creep ever more slowly,
-/// and rounding would decide when it is blocked.
+/// A climber that makes less than this share of its way along the ledge looks for a wall that stands forward. It is
+/// made less at once by one that stands forward by a twentieth of the radius; otherwise the ball would creep ever more
+/// slowly, and rounding would decide when it is blocked.
 const HINDERED: f64 = 0.9;
 
 /// A climber that makes less than this share of its way along the ledge is blocked, and looks for an inner corner.
@@ -24,14 +24,15 @@ const PAST: f64 = 1.3;
 /// not lie flat.
 const HAND_OVER: f64 = 0.5;
 
-/// A climber that goes around a corner is within this multiple of its radius of the corner. Otherwise something keeps it
-/// off, such as a lower wall beside the corner, and it would hang far beside its hands.
+/// A climber that goes around a corner is within this multiple of its radius of the corner. Otherwise something keeps
+/// it off, such as a lower wall beside the corner, and it would hang far beside its hands.
 const NEARLY: f64 = 1.05;
 
 /// A wall that is ahead by this share of the radius less than the one that the climber hangs at stands forward.
 const FORWARD: f64 = 0.02;
 
-/// Cosine of the angle by which the facing turns at least where a ledge turns, a hundredth of a degree: less is rounding.
+/// Cosine of the angle by which the facing turns at least where a ledge turns, a hundredth of a degree: less is
+/// rounding.
 const TURNS: f64 = 1.0 - 1e-8;
 
 /// Hands that are farther ahead than this share of the radius have gone ahead of the body, across a gap or past a step.
@@ -170,8 +171,8 @@ impl Tick<'_> {
         way - heading * way.dot(heading).clamp(-most, most)
     }
 
-    /// The part of a displacement that is not along the ledge, limited to what arms make in a tick. A climber that is far
-    /// from its place, since it has just caught the ledge, is drawn there faster.
+    /// The part of a displacement that is not along the ledge, limited to what arms make in a tick. A climber that is
+    /// far from its place, since it has just caught the ledge, is drawn there faster.
     fn beside(&self, ahead: DVec3, way: DVec3, most: f64) -> DVec3 {
         let beside = way - ahead * way.dot(ahead);
         let far = beside.length() / (HAND_OVER * self.config.body.radius);
@@ -242,8 +243,8 @@ impl Tick<'_> {
         self.can_hang_from(&ledge.touch).then_some(ledge)
     }
 
-    /// The place where it hangs from a ledge. Its distance is that from the wall: hands on a corner are not always as far
-    /// beyond the edge.
+    /// The place where it hangs from a ledge. Its distance is that from the wall: hands on a corner are not always as
+    /// far beyond the edge.
     pub(super) fn place_below(&self, ledge: &Ledge, config: &LedgeConfig) -> DVec3 {
         let up = self.config.up();
         let place = ledge.wall - ledge.facing * self.config.body.radius;

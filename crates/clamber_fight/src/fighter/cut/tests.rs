@@ -72,8 +72,8 @@ impl Phase {
         }
     }
 
-    /// The first contact of each part by a search that never steps farther than gap over speed, in the pose of each time; and the
-    /// least gaps.
+    /// The first contact of each part by a search that never steps farther than gap over speed, in the pose of each
+    /// time; and the least gaps.
     fn search(&self, surface: &mut SkinnedSurface, palette: &Palette) -> [(Option<f64>, f64); 2] {
         let reach = self.sword.arm + self.sword.blade;
         let spin = self.sword.angle / self.sword.cut + self.turns.abs();
@@ -175,7 +175,8 @@ fn ten_thousand_cuts_miss_nothing_and_strike_each_part_once_at_its_time() {
             match (time, ours.first()) {
                 (Some(time), Some(ours)) => {
                     struck += 1;
-                    // Early by the time in which the last 0.06 mm and the tolerance are passed, never late but by rounding.
+                    // Early by the time in which the last 0.06 mm and the tolerance are passed, never late but by
+                    // rounding.
                     assert!(ours - time < 1e-6, "phase {phase}: late by {}", ours - time);
                     worst = worst.max(time - ours);
                     grazed += u32::from(time - ours > 1e-3);

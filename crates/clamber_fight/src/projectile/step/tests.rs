@@ -75,7 +75,8 @@ impl Shot {
         }
     }
 
-    /// When its tip first touches the limb, by a search that never steps farther than gap over speed; and the least gap.
+    /// When its tip first touches the limb, by a search that never steps farther than gap over speed; and the least
+    /// gap.
     fn search(&self, skin: &mut SkinnedSurface, palette: &Palette) -> (Option<f64>, f64) {
         let radius = self.shooter.bow.unwrap().radius;
         let fastest = self.velocity.length() + 10.0 + self.moves.length() + self.spin.abs() * 2.0;
@@ -150,8 +151,8 @@ fn of_ten_thousand_arrows_none_passes_through_a_limb() {
         let (time, least) = shot.search(&mut searched, &palette);
         let rate = [30.0, 60.0, 120.0, 240.0][case % 4];
         let (ours, arrow) = fly(&shot, &mut hit, &palette, rate);
-        // Between two ticks the arrow flies straight, and skin as well: at 30 Hz by 1.4 mm beside the parabola, and by up to
-        // 0.1 mm for each of them beside the turning skin.
+        // Between two ticks the arrow flies straight, and skin as well: at 30 Hz by 1.4 mm beside the parabola, and by
+        // up to 0.1 mm for each of them beside the turning skin.
         let beside = 0.002;
         match (time, ours) {
             (Some(time), Some(ours)) => {

@@ -12,8 +12,8 @@ type Manifold = rapier3d::parry::query::ContactManifold<(), ()>;
 struct Sheet {
     side: u32,
     triangles: Vec<[u32; 3]>,
-    /// For each vertex, its place in the grid. Vertices are in the order in which triangles use them: a mesh of parry's with
-    /// normals sorts them so.
+    /// For each vertex, its place in the grid. Vertices are in the order in which triangles use them: a mesh of parry's
+    /// with normals sorts them so.
     places: Vec<u32>,
 }
 
@@ -158,8 +158,8 @@ fn contacts(
     all
 }
 
-/// A body that stands still for some ticks while the sheet heaves, then is elsewhere: contacts are those that a new mesh
-/// without any memory gives.
+/// A body that stands still for some ticks while the sheet heaves, then is elsewhere: contacts are those that a new
+/// mesh without any memory gives.
 #[test]
 fn contacts_are_those_of_a_trimesh_that_is_made_anew() {
     let mut rng = fastrand::Rng::with_seed(13);

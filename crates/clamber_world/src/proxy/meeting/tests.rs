@@ -186,7 +186,8 @@ fn turning(mass: f64) -> impl Fn(DVec3) -> DVec3 {
     move |impulse| impulse / mass + (inverse * arm.cross(impulse)).cross(arm)
 }
 
-/// Bodies that turn, with friction, and climbers on supports: a blow is bounded by the approach, and nobody gains energy.
+/// Bodies that turn, with friction, and climbers on supports: a blow is bounded by the approach, and nobody gains
+/// energy.
 #[test]
 fn no_blow_is_harder_than_the_approach_and_makes_energy() {
     fastrand::seed(3);

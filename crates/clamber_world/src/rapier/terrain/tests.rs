@@ -420,8 +420,8 @@ fn bad_input_and_removed_colliders_find_nothing() {
 mod agreement;
 mod capsules;
 
-/// Bodies that move across the way of a ball: one of them, and more than are looked at without a tree. The first contact
-/// among all is the first of those with each alone, at whatever place in the list its body is.
+/// Bodies that move across the way of a ball: one of them, and more than are looked at without a tree. The first
+/// contact among all is the first of those with each alone, at whatever place in the list its body is.
 #[test]
 fn among_many_moving_bodies_the_first_contact_is_that_with_one_of_them_alone() {
     let mut rng = fastrand::Rng::with_seed(31);

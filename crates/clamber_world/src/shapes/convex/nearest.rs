@@ -28,8 +28,8 @@ pub(in crate::shapes) struct ClosestPoints {
 }
 
 impl Convex<'_> {
-    /// The nearest points of a core and a segment in its local space, if the core is a cuboid, the segment is beyond one
-    /// of its faces, and the nearest point is on that face. `None` says nothing.
+    /// The nearest points of a core and a segment in its local space, if the core is a cuboid, the segment is beyond
+    /// one of its faces, and the nearest point is on that face. `None` says nothing.
     ///
     /// No point of the core is nearer than the plane of a face that the whole segment is beyond. So if the end that is
     /// nearest to the plane lies above the face, its foot is the nearest point.

@@ -25,8 +25,8 @@ use impact::{Impact, Recorded};
 /// beside the [`Climber`](crate::Climber). Needs an [`AvianProxyPlugin`].
 ///
 /// The climber gets a kinematic body on an entity of its own. What strikes it becomes a blow
-/// ([`ClimberInput::strike`](crate::ClimberInput::strike)) by the collider's entity, with the impulse that the climber's
-/// mass takes ([`ProxyBody::share`]). The climber itself needs no collider.
+/// ([`ClimberInput::strike`](crate::ClimberInput::strike)) by the collider's entity, with the impulse that the
+/// climber's mass takes ([`ProxyBody::share`]). The climber itself needs no collider.
 ///
 /// A body that is fast for its size is swept by avian (`SweptCcd`): it stops at the climber for the rest of the tick,
 /// even if it is one on which the climber lands.

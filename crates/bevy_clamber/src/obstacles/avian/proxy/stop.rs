@@ -60,8 +60,8 @@ pub(super) fn stop(
                 .shown
                 .stop(origin.0, [&before.pose, &to], solids(), dt);
             if let Some(pose) = stopped {
-                // In this tick, avian has moved it, too. A later change would count as the game's own, and its transform
-                // as old.
+                // In this tick, avian has moved it, too. A later change would count as the game's own, and its
+                // transform as old.
                 position.bypass_change_detection().0 = pose.translation.as_vec3();
                 rotation.bypass_change_detection().0 = pose.rotation.as_quat();
             }
