@@ -8,6 +8,7 @@
 //!   climb. Measured is the share of two cores that they take, and the time of as many of rapier's controllers on the
 //!   same giants as meshes that never move. None of those can climb, so they stand and walk.
 //! - Walls close in on a climber and crush it. Measured is a tick that crushes, beside a tick in which it has room.
+//! - Up to 512 climbers walk beside each other. Measured is a tick of each, with and without the others as obstacles.
 //!
 //! Prints a table and writes it to `target/measure/climber.csv`: name, value, bound, holds.
 //!
@@ -16,6 +17,7 @@
 mod characters;
 mod crowd;
 mod crushed;
+mod friends;
 
 use std::error::Error;
 use std::process::ExitCode;
@@ -114,6 +116,7 @@ fn run(brief: bool) -> Result<(), Box<dyn Error>> {
     let name = "climbing / rapier's controller";
     cells.push(name, climbing / controller, Bound::Most(0.18));
     crushed::measure(if brief { 1 } else { 10 }, &mut cells)?;
+    friends::measure(if brief { 2 } else { 120 }, &mut cells)?;
     if brief {
         crowd::measure((2, 2_000, 10), 30, &mut cells)?;
     } else {
