@@ -136,11 +136,22 @@ impl ClimberObstacle {
             point,
             normal: apart.away,
             distance: apart.distance - self.now.radius,
-            material: MaterialPoint {
-                key: 0,
-                coordinates: (point - self.now.ends[0]).to_array(),
-            },
+            material: self.material(apart),
             tag: SurfaceTag::default(),
+        }
+    }
+
+    /// A point of the body: on the ball about one of the axis's ends, whose index is the key, in radii. So who stands on
+    /// its head stays there when it crouches, stands up, or is resized.
+    fn material(&self, apart: &Apart) -> MaterialPoint {
+        let [low, high] = self.now.ends.map(|end| end.distance_squared(apart.on_axis));
+        let is_above = apart.away.dot(self.up) > 0.0;
+        let key = u64::from(high < low || high == low && is_above);
+        let end = self.now.ends[key as usize];
+        let from_end = apart.on_axis - end + apart.away * self.now.radius;
+        MaterialPoint {
+            key,
+            coordinates: (from_end / self.now.radius).to_array(),
         }
     }
 
@@ -274,7 +285,8 @@ impl Obstacle for ClimberObstacle {
     }
 
     fn motion(&self, point: &MaterialPoint, dt: f64) -> Option<PointMotion> {
-        let position = self.now.ends[0] + DVec3::from_array(point.coordinates);
+        let end = self.now.ends.get(usize::try_from(point.key).ok()?)?;
+        let position = *end + DVec3::from_array(point.coordinates) * self.now.radius;
         let usable = dt > 0.0 && position.is_finite();
         usable.then(|| PointMotion {
             velocity: self.base + self.receding(position),
@@ -284,9 +296,11 @@ impl Obstacle for ClimberObstacle {
     }
 
     fn character(&self) -> Option<CharacterBody> {
+        // Where it was placed, it was before.
+        let capsule = if self.placed { self.now } else { self.before };
         Some(CharacterBody {
-            capsule: self.before,
-            way: self.now.ends[0] - self.before.ends[0],
+            capsule,
+            way: self.now.ends[0] - capsule.ends[0],
             mass: self.mass,
             own_velocity: self.walk,
             others: self.others,

@@ -79,8 +79,15 @@ impl Climber {
         let rests = state
             .support
             .filter(|_| state.mode != ClimberMode::LedgeHanging);
-        let out = rests.map_or(DVec3::ZERO, |support| support.normal_in_world());
-        let wanted = state.position + out * wider;
+        let wanted = match rests {
+            // The arms are as much longer or shorter as the body.
+            Some(support) if state.mode == ClimberMode::Hanging && old.radius > 0.0 => {
+                let hold = support.attachment.point;
+                hold + (state.position - hold) * (body.radius / old.radius)
+            }
+            Some(support) => state.position + support.normal_in_world() * wider,
+            None => state.position,
+        };
         let judge = Judge {
             rules,
             config: &config,
@@ -95,7 +102,9 @@ impl Climber {
             solid: rules.contact.is_some().then_some(&is_solid),
             ..ContactFilters::default()
         };
-        let mut mover = Mover::new(obstacles, NOW, self.mover_memory())?.with_filters(filters);
+        let mut mover = Mover::new(obstacles, NOW, self.mover_memory())?
+            .with_filters(filters)
+            .with_character(crate::step::among_others(&config));
         let grows = wider > 0.0 || config.body.height > before.body.height;
         // A body that turns needs room as well.
         let turns = config.body.height > 0.0 && config.up() != before.up();

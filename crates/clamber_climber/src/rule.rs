@@ -218,7 +218,7 @@ impl<'a> ContactQuery<'a> {
     /// True if the climber comes from above, as a one-way platform asks: the contact's face is level enough to be stood
     /// on, and at the tick's beginning the climber's lowest point was not below the face's plane. Down to a
     /// [margin](crate::BodyConfig::margin) below, it counts as above unless it rises relative to the material. A
-    /// climber that stands on the same body is above it.
+    /// climber that stands on the same body, or hangs from its edge, is above it.
     ///
     /// To drop through a platform, let the rule return [`ContactRule::PASS`] until the climber has fallen by a margin:
     /// for as long as a key is held, 0.05 s at least.
@@ -232,8 +232,11 @@ impl<'a> ContactQuery<'a> {
             None => (contact.point, DVec3::ZERO),
         };
         let height = (state.position - place).dot(normal) - body.radius;
-        if self.stands_on_it() {
+        if self.is_supported_by_it(ClimberMode::Standing) {
             return rises && height >= -SUNK * body.radius;
+        }
+        if self.is_supported_by_it(ClimberMode::LedgeHanging) {
+            return rises;
         }
         let is_level = self.config.slope(normal) <= self.config.ground.stays_on_slope();
         let on = ON * body.margin;
@@ -241,9 +244,9 @@ impl<'a> ContactQuery<'a> {
         is_level && (height >= -on || height >= -body.margin && rising <= on)
     }
 
-    fn stands_on_it(&self) -> bool {
+    fn is_supported_by_it(&self, mode: ClimberMode) -> bool {
         let on = self.state.support.map(|support| support.attachment);
-        self.state.mode == ClimberMode::Standing
+        self.state.mode == mode
             && on.is_some_and(|on| {
                 on.obstacle == self.id && self.body_of(&on.material) == self.body()
             })

@@ -10,7 +10,7 @@ use glam::DVec3;
 use crate::half_spaces::HalfSpace;
 use crate::mover::{find, path_among};
 use crate::slide::TOUCH;
-use crate::{Hit, Mover, Path, Touch};
+use crate::{Hit, IntoOthers, Mover, Path, Touch};
 
 /// The characters among the obstacles of a tick, as a movement sees them.
 #[derive(Clone, Copy)]
@@ -19,6 +19,8 @@ pub(crate) struct Characters<'a> {
     dt: f64,
     /// True if there are any.
     any: bool,
+    /// The body as one of them.
+    into: Option<IntoOthers>,
     /// True if walls and characters have left no room, so that the walls alone count.
     yielding: bool,
 }
@@ -46,9 +48,12 @@ impl Characters<'_> {
 
     /// How deep a body may be in what it touches.
     pub(crate) fn allowed(&self, path: &Path, touch: &Touch) -> f64 {
-        let (Some(into), Some(other)) = (path.into_others, self.of(touch)) else {
+        let (Some(into), Some(other)) = (self.into, self.of(touch)) else {
             return 0.0;
         };
+        if into.carries(&path.body.at(path.start), &other) {
+            return f64::INFINITY;
+        }
         let least = path.body.radius.min(other.capsule.radius);
         let most = match into.others.between(other.others) {
             Others::Block => return 0.0,
@@ -125,12 +130,24 @@ pub fn is_beside(a: &WorldCapsule, b: &WorldCapsule, up: DVec3) -> bool {
     a.0 < b.1 && b.0 < a.1
 }
 
+impl IntoOthers {
+    /// True if a body carries another character: one that is above it and has no greater mass.
+    pub(crate) fn carries(&self, body: &WorldCapsule, other: &CharacterBody) -> bool {
+        let [highest, lowest] = [body, &other.capsule].map(|body| {
+            let [a, b] = body.ends.map(|end| end.dot(self.up));
+            (a.max(b), a.min(b) - body.radius)
+        });
+        other.mass <= self.mass && lowest.1 >= highest.0
+    }
+}
+
 impl<'a> Mover<'a> {
     pub(crate) fn characters(&self) -> Characters<'a> {
         Characters {
             obstacles: self.obstacles,
             dt: self.dt(),
             any: self.has_characters,
+            into: self.into_others,
             yielding: self.memory.characters_yield,
         }
     }

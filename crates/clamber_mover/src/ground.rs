@@ -220,7 +220,7 @@ impl Mover<'_> {
         }
         let core = probe.body.core_at(position);
         // Stay below a ceiling: otherwise it would block every way from there.
-        let room = self.cast(&core, up * height);
+        let room = self.obstruction(&core, up * height);
         let rise = room.map_or(height, |hit| {
             (height * hit.time - probe.body.margin).max(0.0)
         });

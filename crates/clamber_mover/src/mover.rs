@@ -1,7 +1,7 @@
 use std::ops::Range;
 
 use clamber_world::{
-    Attachment, Contact, MaterialPoint, Obstacle, ObstacleId, PointMotion, SweepContact,
+    Attachment, Contact, MaterialPoint, Obstacle, ObstacleId, Others, PointMotion, SweepContact,
     TargetMotion, WorldCapsule, WorldPath,
 };
 use glam::DVec3;
@@ -10,7 +10,7 @@ use crate::characters::is_beside;
 use crate::filters::{ContactFilter, ContactFilters, accepts};
 use crate::half_spaces::HalfSpace;
 use crate::surroundings::Surroundings;
-use crate::{Hit, MoverBody, MoverError, Touch};
+use crate::{Hit, IntoOthers, MoverBody, MoverError, Touch};
 
 /// Memory that movers reuse, so that a steady tick allocates nothing. It carries no state from tick to tick.
 #[derive(Clone, Debug, Default)]
@@ -72,6 +72,8 @@ pub struct Mover<'a> {
     pub(crate) filters: ContactFilters<'a>,
     /// True if there is another character among the obstacles.
     pub(crate) has_characters: bool,
+    /// The body as a character among others.
+    pub(crate) into_others: Option<IntoOthers>,
     pub(crate) memory: &'a mut MoverMemory,
 }
 
@@ -112,6 +114,7 @@ impl<'a> Mover<'a> {
             dt,
             filters: ContactFilters::default(),
             has_characters,
+            into_others: None,
             memory,
         })
     }
@@ -120,6 +123,15 @@ impl<'a> Mover<'a> {
     #[must_use]
     pub fn with_filters(self, filters: ContactFilters<'a>) -> Self {
         Self { filters, ..self }
+    }
+
+    /// The same mover for a body that is a character among others. Without it, others stop the body.
+    #[must_use]
+    pub fn with_character(self, body: IntoOthers) -> Self {
+        Self {
+            into_others: Some(body),
+            ..self
+        }
     }
 
     /// Length of the tick, seconds.
@@ -326,12 +338,32 @@ impl<'a> Mover<'a> {
     }
 
     /// True if a capsule that moves by `way` meets nothing, against obstacles in their current state. Also true for
-    /// input that is not finite.
+    /// input that is not finite. Characters that the capsule is inside of leave room, and so do those that it passes or
+    /// carries ([`Mover::with_character`]).
     pub fn is_free(&mut self, capsule: &WorldCapsule, way: DVec3) -> bool {
-        self.cast(capsule, way).is_none()
+        self.obstruction(capsule, way).is_none()
     }
 
-    /// [`Mover::cast`] past the characters that the capsule is inside of or beside.
+    /// What leaves a capsule no room along `way` first, as [`Mover::is_free`] says.
+    pub(crate) fn obstruction(&mut self, capsule: &WorldCapsule, way: DVec3) -> Option<Hit> {
+        if !self.has_characters {
+            return self.cast(capsule, way);
+        }
+        let (solid, into) = (self.filters.solid, self.into_others);
+        self.first(capsule, [way; 2], |id, obstacle| {
+            let other = obstacle.character();
+            let leaves_room = into.zip(other).is_some_and(|(into, other)| {
+                into.others.between(other.others) == Others::Pass || into.carries(capsule, &other)
+            });
+            let mut counts = |sweep: &SweepContact| {
+                let is_inside = other.is_some() && sweep.started_inside;
+                !leaves_room && !is_inside && accepts(solid, id, obstacle, &sweep.contact)
+            };
+            obstacle.cast_capsule_where(capsule, [way; 2], TargetMotion::Still, &mut counts)
+        })
+    }
+
+    /// [`Mover::cast`] past the characters that the capsule is inside of or beside, and past those that it carries.
     pub(crate) fn cast_past_characters(
         &mut self,
         capsule: &WorldCapsule,
@@ -341,12 +373,13 @@ impl<'a> Mover<'a> {
         if !self.has_characters {
             return self.cast(capsule, way);
         }
-        let solid = self.filters.solid;
+        let (solid, into) = (self.filters.solid, self.into_others);
         self.first(capsule, [way; 2], |id, obstacle| {
             let other = obstacle.character();
             let is_beside = other.is_some_and(|other| {
                 let there = other.capsule.moved(other.way);
                 is_beside(capsule, &there, up)
+                    || into.is_some_and(|into| into.carries(capsule, &other))
             });
             let mut counts = |sweep: &SweepContact| {
                 let is_passed = is_beside || other.is_some() && sweep.started_inside;

@@ -58,8 +58,6 @@ pub struct Path {
     pub walking: Option<Walking>,
     /// The arm that the body hangs by, if it hangs.
     pub arm: Option<Arm>,
-    /// The body as a character among others. Without it, others stop it.
-    pub into_others: Option<IntoOthers>,
     /// Whether the body moves from start to target, or was placed at the target.
     pub begin: Begin,
     /// Set this if the last movement ended crushed ([`Moved::missing_room`] above the margin). It limits the speed at
@@ -87,13 +85,15 @@ pub struct Walking {
 }
 
 /// A body as a character among others ([`Obstacle::character`](clamber_world::Obstacle::character)): how far it may
-/// come into their sides. What is above or below stops it all the same.
+/// come into their sides. What is below stops it all the same; so does what is above, if it has a greater mass.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct IntoOthers {
     /// Unit vector that points up.
     pub up: DVec3,
     /// What it does with others; [`Others::between`] counts.
     pub others: Others,
+    /// Its mass, kilograms. It moves up into what is above it and has no greater mass, which it carries.
+    pub mass: f64,
 }
 
 /// An arm that the body hangs by: it keeps the body's position within `length` of `pivot`.
@@ -135,7 +135,6 @@ impl Path {
             frame: DVec3::ZERO,
             walking: None,
             arm: None,
-            into_others: None,
             begin: Begin::Start,
             crushed: false,
         }

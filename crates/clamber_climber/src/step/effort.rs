@@ -117,11 +117,8 @@ impl Tick<'_> {
     }
 
     /// Whether hands that are in flight can hold a contact: not if it passes them too fast, nor if stamina does not
-    /// suffice. A catch costs stamina by its speed; on the ground and on holds, gripping is free.
+    /// suffice. A catch costs stamina by its speed; up to that of a walk, gripping is free.
     pub(super) fn catches(&mut self, touch: &Touch, fastest: f64) -> bool {
-        if self.state.mode.is_supported() {
-            return true;
-        }
         // By its speed before contacts: whether the tick ends in one is chance.
         let velocity = self.flew_at.unwrap_or(self.state.velocity);
         let speed = (velocity - self.mover.velocity_of(touch)).length();

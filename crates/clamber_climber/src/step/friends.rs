@@ -5,6 +5,7 @@ use clamber_world::{CharacterBody, Obstacle, ObstacleId};
 use glam::DVec3;
 
 use super::Tick;
+use crate::ClimberConfig;
 use crate::config::Others;
 use crate::obstacle::{SAME_PLACE, between};
 
@@ -22,6 +23,15 @@ const STILL: f64 = 0.1;
 
 /// Least level part of the direction between two bodies in which they part levelly.
 const ASIDE: f64 = 0.1;
+
+/// A climber as a character among others.
+pub(crate) fn among_others(config: &ClimberConfig) -> IntoOthers {
+    IntoOthers {
+        up: config.up(),
+        others: config.body.others,
+        mass: config.body.mass,
+    }
+}
 
 impl Tick<'_> {
     /// The displacement in this tick by which it parts from the climbers that it overlaps: from each by the other's
@@ -49,14 +59,6 @@ impl Tick<'_> {
             Others::Pass => PASSES * self.config.body.radius,
         };
         speed * self.dt()
-    }
-
-    /// It as a character among others.
-    pub(super) fn among_others(&self) -> IntoOthers {
-        IntoOthers {
-            up: self.config.up(),
-            others: self.config.body.others,
-        }
     }
 
     /// True if it or the other one moves by itself.
@@ -88,7 +90,9 @@ impl Tick<'_> {
             return DVec3::ZERO;
         }
         let body = self.body();
-        let capsule = body.at(self.began);
+        // Who stands on the head of one that stands up is placed there.
+        let placed = self.carried.filter(|carried| !carried.swept);
+        let capsule = body.at(placed.map_or(self.began, |carried| carried.position));
         let apart = between(&other.capsule, &capsule);
         let up = self.config.up();
         let least = other.capsule.radius.min(capsule.radius);

@@ -22,6 +22,7 @@ mod standing;
 pub use custom::{CustomMode, ModeContext, NextMode};
 pub(crate) use flying::slow_speed;
 pub use flying::{FlyingMemory, TumblingMemory};
+pub(crate) use friends::among_others;
 pub use hanging::HangingMemory;
 pub use holding::HoldingMemory;
 pub(crate) use judge::Judge;
@@ -154,7 +155,9 @@ impl<'a> Tick<'a> {
             dt,
         } = asked;
         input.validate()?;
-        let mover = Mover::new(obstacles, dt, &mut scratch.mover)?.with_filters(filters);
+        let mover = Mover::new(obstacles, dt, &mut scratch.mover)?
+            .with_filters(filters)
+            .with_character(among_others(config));
         let was_pressed = if state.support.is_none() && state.untouched == 0.0 {
             state.own_way
         } else {

@@ -30,11 +30,9 @@ impl Tick<'_> {
         let body = self.body();
         let target = target + self.parting;
         let crushed = self.was_crushed;
-        let into_others = Some(self.among_others());
         match &self.carried {
             Some(carried) => Path {
                 crushed,
-                into_others,
                 begin: if carried.swept {
                     Begin::Start
                 } else {
@@ -45,7 +43,6 @@ impl Tick<'_> {
             },
             None => Path {
                 crushed,
-                into_others,
                 frame: self.state.base_velocity * self.dt(),
                 ..Path::new(body, self.state.position, target)
             },

@@ -150,8 +150,10 @@ fn a_jump_off_a_friend_who_jumps_is_a_jump() {
                 });
                 top = top.max(crowd.position(1).y - from);
             }
+            // For so long, the friend lifts it.
+            let lifted = 5.0 * f64::from(lag) / rate;
             assert!(
-                (1.1..1.45).contains(&top),
+                (1.1..1.45 + lifted).contains(&top),
                 "{rate} Hz, {lag} ticks later: {top}"
             );
         }

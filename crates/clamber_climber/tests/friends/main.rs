@@ -6,6 +6,7 @@
     reason = "a test's helpers may fail like the test"
 )]
 
+mod carrying;
 mod crowd;
 mod landing;
 #[allow(dead_code, reason = "shared with other targets")]

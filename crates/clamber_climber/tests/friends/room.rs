@@ -17,6 +17,16 @@ fn farthest(others: Others) -> f64 {
     }
 }
 
+/// How far somebody went by itself, metres. Where a wall stops what carries it, it only stays where it is.
+fn beside_carrying(moved: DVec3, own: DVec3) -> f64 {
+    let carried = moved - own;
+    let left = [0, 1, 2].map(|axis| {
+        let undone = (-own[axis] * carried[axis].signum()).clamp(0.0, carried[axis].abs());
+        own[axis] + undone * carried[axis].signum()
+    });
+    DVec3::from_array(left).length()
+}
+
 fn play(others: Others, height: f64, minutes: f64, seed: u64) {
     let rate = 60.0;
     let mut config = ClimberConfig::walker();
@@ -57,9 +67,8 @@ fn play(others: Others, height: f64, minutes: f64, seed: u64) {
                 format!("{others:?}, height {height}, seed {seed}, tick {tick}, {index} at {p}");
             assert!(p.x.abs().max(p.z.abs()) < HALF - 0.38, "{told}: outside");
             assert!(p.y > 0.38, "{told}: below");
-            let way = p
-                .distance(before[index])
-                .min(crowd.state(index).own_way.length());
+            let own_way = beside_carrying(p - before[index], crowd.state(index).own_way);
+            let way = p.distance(before[index]).min(own_way);
             let own = speeds[index].max(crowd.state(index).velocity.length()) / rate;
             assert!(
                 way < farthest(others).max(own + 0.06),

@@ -71,8 +71,12 @@ impl Walker {
         let ground = self.ground.as_ref().map(|ground| ground as &dyn Obstacle);
         let both = [limb, (ObstacleId(1), ground.unwrap_or(limb.1))];
         let there = &both[..1 + usize::from(ground.is_some())];
-        self.climber
-            .step_with(&self.input, there, &StepRules::by(&|query| query.usual().with_grip(true)), dt)?;
+        self.climber.step_with(
+            &self.input,
+            there,
+            &StepRules::by(&|query| query.usual().with_grip(true)),
+            dt,
+        )?;
         Ok(())
     }
 
