@@ -42,7 +42,7 @@ fn tick(count: u64, ticks: u32, together: bool) -> Result<f64, Box<dyn Error>> {
     let (mut group, mut times) = (ClimberGroup::default(), Vec::new());
     for tick in 0..ticks {
         let angle = f64::from(tick) * DT * 4.0;
-        let walk = DVec3::new(angle.cos(), 0.0, angle.sin());
+        let walk = DVec3::new(libm::cos(angle), 0.0, libm::sin(angle));
         let input = ClimberInput {
             walk,
             ..ClimberInput::IDLE

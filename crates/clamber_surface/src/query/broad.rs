@@ -233,7 +233,8 @@ fn along_sheared<S: Simd>(
         (middles[k], halves[k]) = (low + high, high - low);
     }
     let [x, y, z] = middles;
-    let slack = (sizes(middles) + halves[0] + halves[1] + halves[2]) * SLACK;
+    let sizes = sizes(middles) + halves[0] + halves[1] + halves[2];
+    let slack = sizes * SLACK + f32::MIN_POSITIVE;
     let [shear_x, shear_y, scale] = ray.shear;
     let beside_x = (x - z * shear_x).abs();
     let beside_x = beside_x.simd_gt(halves[0] + halves[2] * shear_x.abs() + slack);

@@ -25,7 +25,8 @@ pub(super) fn may_meet(root: &RootBox, ray: &Ray, limit: f64) -> bool {
     let origin = widen(ray.origin());
     let (min, max) = (widen(root.min) - origin, widen(root.max) - origin);
     let farthest = min.abs().max(max.abs());
-    let slack = DVec3::splat(SLACK * (farthest.x + farthest.y + farthest.z));
+    let size = farthest.x + farthest.y + farthest.z;
+    let slack = DVec3::splat(SLACK * size + f64::from(f32::MIN_POSITIVE));
     let (min, max) = ((min - slack).to_array(), (max + slack).to_array());
     let direction = widen(ray.direction()).to_array();
     let (mut enter, mut leave) = (-slack.x, limit + slack.x);

@@ -15,9 +15,10 @@ use std::sync::Arc;
 
 use crate::SimdLevel;
 use crate::bounds::tests::random::{MOTIONS, Spread, creature, palette};
-use crate::geometry::{Ray, Similarity};
+use crate::geometry::{Affine, Ray, Similarity};
 use crate::measure::{BruteForce, skin_scalar};
 use crate::mesh::{ColliderMesh, VertexId};
+use crate::rig::Palette;
 use crate::surface::SkinnedSurface;
 use crate::surface::agreement::{assert_queries_agree, assert_same_answers, questions};
 use crate::testing::cases;
@@ -84,6 +85,31 @@ fn queries_and_skinning_agree_in_any_pose_at_every_simd_level() {
         }
     }
     assert!(found > cases(100_000), "{found} hits");
+}
+
+/// Rounding of numbers this small is no share of them.
+#[test]
+fn queries_agree_on_skin_that_is_smaller_than_normal_numbers() {
+    let mut rng = fastrand::Rng::with_seed(70);
+    let mut found = 0;
+    for exponent in [38, 40, 41, 42, 43] {
+        let scale = (0..exponent).fold(1.0, |scale: f32, _| scale * 0.1);
+        let matrix = Affine {
+            rows: [
+                [scale, 0.0, 0.0, 0.0],
+                [0.0, scale, 0.0, 0.0],
+                [0.0, 0.0, scale, 0.0],
+            ],
+        };
+        let palette = Palette::from_matrices([matrix; 4]);
+        for level in SimdLevel::available() {
+            let mesh = crate::testing::tube(4, 8);
+            let mut surface = SkinnedSurface::with_simd_level(mesh, level);
+            surface.advance(&palette, Similarity::IDENTITY).unwrap();
+            found += assert_queries_agree(&surface, &mut rng, 5);
+        }
+    }
+    assert!(found > 300, "{found} hits");
 }
 
 #[test]

@@ -68,7 +68,8 @@ impl ShearedRay {
             },
         );
         // More than corners, sheared in f32, and this test may be off.
-        let slack = SLACK * (x.abs() + y.abs() + z.abs() + half_x + half_y + half_z);
+        let size = x.abs() + y.abs() + z.abs() + half_x + half_y + half_z;
+        let slack = SLACK * size + f32::MIN_POSITIVE;
         let [shear_x, shear_y, scale] = self.shear;
         let beside = |middle: f32, half: f32, shear: f32| {
             (middle - shear * z).abs() > half + shear.abs() * half_z + slack
