@@ -8,6 +8,7 @@
 mod catching;
 mod corners;
 mod crushing;
+mod feet;
 mod gripping;
 mod hanging;
 mod ledges;

@@ -1,0 +1,131 @@
+//! What standing and hanging do not change: how fast hands catch, that they hold a body of another size, and one-way edges.
+
+use clamber_climber::{
+    Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, ClimberState, StepRules,
+};
+use clamber_world::{HalfSpace, Obstacle, ObstacleId};
+use glam::{DQuat, DVec3};
+
+use crate::moving::MovingHalfSpace;
+use crate::numbers::in_world_of_size;
+use crate::scene::{FUR, HOLD, STONE, cuboid, moved, placed};
+
+/// How a climber fares that stands on a deck and grips fur beside it, which passes it at a speed.
+fn beside_fur(speed: f64, size: f64, rate: f64, frame: f64) -> (Climber, bool) {
+    let config = in_world_of_size(ClimberConfig::colossus_climber(), size);
+    let dt = 1.0 / rate;
+    let (frame, passes) = (DVec3::X * (frame * size), DVec3::X * (speed * size));
+    let mut climber = Climber::new(config, DVec3::Y * (0.4 * size)).unwrap();
+    let begins = ClimberState {
+        velocity: frame,
+        base_velocity: frame,
+        heading: DVec3::Z,
+        ..*climber.state()
+    };
+    climber.restore(begins).unwrap();
+    let fur = HalfSpace::behind(DVec3::Z * (0.45 * size), DVec3::NEG_Z).unwrap();
+    let mut slipped = false;
+    for tick in 0..(0.5 * rate) as u32 {
+        let moves = |at_rest, velocity: DVec3| MovingHalfSpace {
+            at_rest,
+            shifts: [tick, tick + 1].map(|tick| velocity * (f64::from(tick) * dt)),
+        };
+        let deck = moves(HalfSpace::below(0.0), frame);
+        let wall = moves(fur.with_tag(FUR), frame + passes);
+        let around: [(ObstacleId, &dyn Obstacle); 2] =
+            [(ObstacleId(0), &deck), (ObstacleId(1), &wall)];
+        let input = if tick > 3 { HOLD } else { Default::default() };
+        let report = climber.step(&input, &around, dt).unwrap();
+        let slips = |event: &ClimberEvent| matches!(event, ClimberEvent::HandsSlipped { .. });
+        slipped |= report.events.iter().any(slips);
+    }
+    (climber, slipped)
+}
+
+#[test]
+fn hands_of_who_stands_catch_no_faster_than_in_flight() {
+    for (size, rate) in [
+        (1.0, 30.0),
+        (1.0, 60.0),
+        (1.0, 240.0),
+        (0.02, 60.0),
+        (100.0, 60.0),
+    ] {
+        for frame in [0.0, 30.0, 300.0] {
+            for (speed, holds) in [(0.0, true), (3.0, true), (10.0, true), (30.0, false)] {
+                let (climber, slipped) = beside_fur(speed, size, rate, frame);
+                let told = format!("size {size}, {rate} Hz, {frame} m/s, {speed} m/s past");
+                let state = climber.state();
+                let mode = if holds {
+                    ClimberMode::Holding
+                } else {
+                    ClimberMode::Standing
+                };
+                assert_eq!((state.mode, slipped), (mode, !holds), "{told}");
+                // Faster than a walk, it costs stamina at once.
+                let spent = 1.0 - state.stamina;
+                let costs = climber.config().stamina.unwrap().catch_cost;
+                let least = costs * (speed * size - climber.config().ground.walk_speed);
+                assert!(!holds || spent >= least, "{told}: {spent} of {least}");
+            }
+        }
+    }
+}
+
+#[test]
+fn who_hangs_and_is_resized_hangs_on() {
+    for size in [0.05, 1.0, 20.0] {
+        for share in [0.2, 0.3, 0.5, 0.9, 1.5] {
+            let mut config = ClimberConfig {
+                stamina: None,
+                ..ClimberConfig::colossus_climber()
+            };
+            // It hangs from all that is as steep as a ceiling.
+            config.grip.as_mut().unwrap().max_overhang = 1.7;
+            let config = config.scaled(size);
+            let ceiling = HalfSpace::behind(DVec3::Y * (6.0 * size), DVec3::NEG_Y);
+            let ceiling = ceiling.unwrap().with_tag(FUR);
+            let around: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(0), &ceiling)];
+            let mut climber = Climber::new(config, DVec3::Y * (5.3 * size)).unwrap();
+            let mut hang = |climber: &mut Climber| {
+                for _ in 0..120 {
+                    climber
+                        .step(&HOLD, &around, f64::sqrt(size) / 60.0)
+                        .unwrap();
+                }
+                let mode = climber.state().mode;
+                assert_eq!(mode, ClimberMode::Hanging, "{size}, to {share}");
+            };
+            hang(&mut climber);
+            climber.try_resize(config.scaled(share), &around).unwrap();
+            hang(&mut climber);
+        }
+    }
+}
+
+#[test]
+fn who_leaves_a_one_way_platform_with_the_grip_held_hangs_from_its_edge() {
+    for size in [0.05, 1.0, 20.0] {
+        for rate in [30.0, 60.0, 240.0] {
+            let half = DVec3::new(2.0, 0.3, 2.0) * size;
+            let mut platform = cuboid(half.as_vec3(), STONE);
+            placed(&mut platform, DVec3::NEG_Y * half.y, DQuat::IDENTITY);
+            let config = ClimberConfig::colossus_climber().scaled(size);
+            let at = DVec3::new(1.0, 0.4, 0.0) * size;
+            let mut climber = Climber::new(config, at).unwrap();
+            let dt = f64::sqrt(size) / rate;
+            for _ in 0..(1.5 * rate) as u32 {
+                moved(&mut platform, DVec3::NEG_Y * half.y, DQuat::IDENTITY);
+                let around: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(0), &platform)];
+                let input = ClimberInput {
+                    walk: DVec3::X,
+                    ..HOLD
+                };
+                let one_way = StepRules::by(&|query| query.one_way());
+                climber.step_with(&input, &around, &one_way, dt).unwrap();
+            }
+            let mode = climber.state().mode;
+            assert_eq!(mode, ClimberMode::LedgeHanging, "size {size}, {rate} Hz");
+        }
+    }
+}
