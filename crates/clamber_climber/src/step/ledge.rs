@@ -167,7 +167,8 @@ impl Tick<'_> {
         let stick = self.stick();
         let rises = self.input.climb.dot(up);
         let right = &mut self.state.ledge_hanging.right;
-        if stick.dot(*right).abs() < HELD * stick.length() || rises.abs() > UPWARD {
+        let is_kept = stick.dot(*right).abs() > HELD * stick.length();
+        if !is_kept || rises.abs() > UPWARD {
             *right = DVec3::ZERO;
         }
         let (over, along) = if *right == DVec3::ZERO {

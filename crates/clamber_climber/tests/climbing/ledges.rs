@@ -271,3 +271,34 @@ fn a_ledge_that_crushes_it_lets_go() {
     let height = climber.state().position.y;
     assert!((height - 1.4).abs() < 0.02, "{height}");
 }
+
+/// Around a corner, a held stick leads on along the ledge. Once it is released, it is read anew: at the wall is up.
+#[test]
+fn a_released_stick_is_read_anew_after_a_corner() {
+    for released in [1, 6, 60] {
+        for (stick, rises) in [(-DVec3::X, true), (DVec3::X, false)] {
+            let block = cuboid(Vec3::new(1.0, 1.0, 1.0), STONE);
+            let mut climber = climber(DVec3::new(0.5, 0.9, 1.42));
+            run(&mut climber, &[&block], &HOLD, 60);
+            assert_mode(&climber, ClimberMode::LedgeHanging);
+            let along = ClimberInput {
+                walk: DVec3::X,
+                ..HOLD
+            };
+            run(&mut climber, &[&block], &along, 180);
+            let heading = climber.state().heading;
+            assert!(heading.x < -0.99, "it is round the corner: {heading}");
+            run(&mut climber, &[&block], &HOLD, released);
+            let from = climber.state().position;
+            let input = ClimberInput {
+                walk: stick,
+                ..HOLD
+            };
+            run(&mut climber, &[&block], &input, 50);
+            let way = climber.state().position - from;
+            let told = format!("released for {released}, {stick}: {way}");
+            assert!((way.y > 0.5) == rises, "{told}");
+            assert!(rises || way.z.abs() < 0.05, "{told}");
+        }
+    }
+}
