@@ -1,5 +1,10 @@
 //! Catches at the end of jumps from the ground: what starts on the ground say of them is true of climbers.
 
+#![expect(
+    clippy::unwrap_used,
+    reason = "a test's helpers may fail like the test"
+)]
+
 mod support;
 
 use clamber_climber::{Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberState};

@@ -87,7 +87,7 @@ fn who_hangs_and_is_resized_hangs_on() {
             let ceiling = ceiling.unwrap().with_tag(FUR);
             let around: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(0), &ceiling)];
             let mut climber = Climber::new(config, DVec3::Y * (5.3 * size)).unwrap();
-            let mut hang = |climber: &mut Climber| {
+            let hang = |climber: &mut Climber| {
                 for _ in 0..120 {
                     climber
                         .step(&HOLD, &around, f64::sqrt(size) / 60.0)

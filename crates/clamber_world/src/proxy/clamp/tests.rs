@@ -1,3 +1,4 @@
+use clamber_surface::geometry::rotation_from_axis_angle;
 use fastrand::Rng;
 use glam::{DQuat, Vec3};
 use parry3d::math::Pose;
@@ -30,8 +31,18 @@ fn any(rng: &mut Rng, size: f64) -> DVec3 {
     DVec3::from_array(std::array::from_fn(|_| size * (2.0 * rng.f64() - 1.0)))
 }
 
+/// A rotation by as many radians as a vector is long.
+fn turned(by: DVec3) -> DQuat {
+    let angle = by.length();
+    if angle > 0.0 {
+        rotation_from_axis_angle(by / angle, angle)
+    } else {
+        DQuat::IDENTITY
+    }
+}
+
 fn turn(rng: &mut Rng) -> DQuat {
-    DQuat::from_scaled_axis(any(rng, 2.0))
+    turned(any(rng, 2.0))
 }
 
 /// Shapes that are in the middle of their body or beside it.
@@ -109,7 +120,7 @@ fn a_stopped_body_is_in_the_layer_around_the_climber_and_not_in_it() {
         };
         let (from, mut to) = (pose(), pose());
         let turns = any(&mut rng, 1.0).normalize() * rng.f64();
-        to.rotation = DQuat::from_scaled_axis(turns) * from.rotation;
+        to.rotation = turned(turns) * from.rotation;
         if deepest(&from, solids(&shapes), &climber.capsule).is_some() {
             continue;
         }
