@@ -220,7 +220,7 @@ impl Contact {
         let [in_normal, in_slip] = [change.dot(normal), change.dot(along)];
         let pressing = in_normal * t[1] - in_slip * t[0];
         let dragging = in_slip * n[0] - in_normal * n[1];
-        let friction = (dragging / pressing).clamp(0.0, meeting.friction);
+        let friction = (dragging / pressing).min(meeting.friction).max(0.0);
         let friction = if pressing > 0.0 && friction.is_finite() {
             friction
         } else {
@@ -230,7 +230,8 @@ impl Contact {
         let answer = by_normal + by_friction * friction;
         let stiffness = answer.dot(normal);
         let mobility = answer.dot(impulse) / impulse.length_squared();
-        (stiffness > 0.0 && mobility > 0.0).then_some(Self {
+        let is_sound = stiffness > 0.0 && mobility > 0.0 && !meeting.friction.is_nan();
+        is_sound.then_some(Self {
             normal,
             along,
             friction,

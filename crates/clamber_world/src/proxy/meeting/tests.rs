@@ -163,6 +163,15 @@ fn numbers_that_are_not_finite_and_bodies_that_cannot_move_are_no_meetings() {
     let climber = climber();
     let meeting = stopped(&climber, DVec3::X, 1.0);
     assert_eq!(climber.share(&meeting, |_| DVec3::ZERO), None);
+    for friction in [f64::NAN, f64::NEG_INFINITY, -1.0, f64::INFINITY] {
+        let odd = ProxyMeeting {
+            friction,
+            after: DVec3::Y * 0.1,
+            ..meeting
+        };
+        let share = climber.share(&odd, |impulse| impulse);
+        assert_eq!(share.is_none(), friction.is_nan(), "{friction}");
+    }
     for bad in [f64::NAN, f64::INFINITY] {
         let mut broken = meeting;
         broken.after.x = bad;
