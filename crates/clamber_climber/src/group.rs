@@ -45,7 +45,7 @@ impl ClimberGroup {
     /// Step each climber with its own id ([`StepRules::id`](crate::StepRules::id)), the one that it has here. Two
     /// climbers at exactly one place part to opposite sides by their ids; without ids they stay there.
     ///
-    /// Climbers that stand on each other in a circle, which only restored states can, go on at their velocities.
+    /// Of climbers that hold each other in a circle, the one with the lowest id lets go.
     pub fn update<'a>(
         &mut self,
         climbers: impl Iterator<Item = (ObstacleId, &'a Climber)> + Clone,
@@ -66,15 +66,14 @@ impl ClimberGroup {
         });
         self.carried
             .extend(is_on_another.map(|is_on_another| !is_on_another));
-        // From the ground up, one storey in each round at least.
+        // From the ground up, one storey in each round at least, or one circle.
         while self.carried.contains(&false) {
             let mut any = false;
             for (index, (_, climber)) in climbers.clone().enumerate() {
                 if self.carried[index] {
                     continue;
                 }
-                let carrier = on(climber);
-                let carrier = self.bodies.iter().position(|(id, _)| Some(*id) == carrier);
+                let carrier = self.carrier_of(climber);
                 let Some(carrier) = carrier.filter(|carrier| self.carried[*carrier]) else {
                     continue;
                 };
@@ -84,9 +83,45 @@ impl ClimberGroup {
                 any = true;
             }
             if !any {
-                break;
+                self.break_circle(climbers.clone(), dt);
             }
         }
+    }
+
+    /// The climber, by its place in `bodies`, that carries another one.
+    fn carrier_of(&self, climber: &Climber) -> Option<usize> {
+        let on = climber.state().support.map(|on| on.attachment.obstacle);
+        self.bodies.iter().position(|(id, _)| Some(*id) == on)
+    }
+
+    /// Finds a circle of climbers of whom each carries the next, and lets the one with the lowest id fall: it lets go in
+    /// its step. There is a circle if nobody who is not carried yet has a carrier who is.
+    fn break_circle<'a>(
+        &mut self,
+        climbers: impl Iterator<Item = (ObstacleId, &'a Climber)> + Clone,
+        dt: f64,
+    ) {
+        let next = |index: usize| {
+            let (_, climber) = climbers.clone().nth(index)?;
+            self.carrier_of(climber)
+        };
+        let Some(first) = self.carried.iter().position(|is_carried| !is_carried) else {
+            return;
+        };
+        // After as many steps as there are climbers, whoever is reached is in the circle.
+        let steps = 0..self.bodies.len();
+        let inside = steps.fold(first, |index, _| next(index).unwrap_or(index));
+        let (mut lowest, mut index) = (inside, inside);
+        while let Some(other) = next(index).filter(|other| *other != inside) {
+            if self.bodies[other].0 < self.bodies[lowest].0 {
+                lowest = other;
+            }
+            index = other;
+        }
+        if let Some((_, climber)) = climbers.clone().nth(lowest) {
+            self.bodies[lowest].1 = ClimberObstacle::falling(climber, dt);
+        }
+        self.carried[lowest] = true;
     }
 
     /// The obstacles of all climbers but one, in the order of the last update.

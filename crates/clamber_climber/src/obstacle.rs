@@ -55,6 +55,8 @@ pub struct ClimberObstacle {
     walk: DVec3,
     /// What it does with others.
     others: Others,
+    /// The lowest of the climbers that it stands on or holds.
+    carried_by: Option<ObstacleId>,
 }
 
 /// The nearest points of two capsules' axes.
@@ -93,6 +95,10 @@ impl ClimberObstacle {
             let carried = followed.motion.is_finite();
             carried.then(|| (attachment.position(), followed))
         });
+        let carried_by = support.zip(attachment).and_then(|(below, attachment)| {
+            let below = below.character()?;
+            Some(below.carried_by.unwrap_or(attachment.obstacle))
+        });
         let body = climber.body();
         let to = |position: DVec3| body.moved(position - state.position);
         match followed {
@@ -110,6 +116,7 @@ impl ClimberObstacle {
                     mass: config.body.mass,
                     walk: own,
                     others: config.body.others,
+                    carried_by,
                 }
             }
             None => {
@@ -125,8 +132,24 @@ impl ClimberObstacle {
                     mass: config.body.mass,
                     walk: own,
                     others: config.body.others,
+                    carried_by,
                 }
             }
+        }
+    }
+
+    /// The obstacle of a climber that falls, although something carries it.
+    pub(crate) fn falling(climber: &Climber, dt: f64) -> Self {
+        let (state, gravity) = (climber.state(), climber.config().gravity);
+        let position = state.position + (state.velocity + gravity * (0.5 * dt)) * dt;
+        let begin = state.position - state.own_way;
+        let body = climber.body();
+        Self {
+            now: body.moved(position - state.position),
+            way: position - begin,
+            placed: position == begin,
+            own: state.velocity - state.base_velocity + gravity * dt,
+            ..Self::on(climber, None, dt)
         }
     }
 
@@ -304,6 +327,7 @@ impl Obstacle for ClimberObstacle {
             mass: self.mass,
             own_velocity: self.walk,
             others: self.others,
+            carried_by: self.carried_by,
         })
     }
 }

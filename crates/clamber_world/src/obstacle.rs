@@ -146,6 +146,9 @@ pub struct CharacterBody {
     pub own_velocity: DVec3,
     /// What it does where it comes into the side of another one.
     pub others: Others,
+    /// The lowest of the characters that it stands on or holds, if any: whoever carries it in the end. That one cannot
+    /// hold it, since two that hold each other would be held by nobody.
+    pub carried_by: Option<ObstacleId>,
 }
 
 /// Something that a character can stand on, hit, or be carried by.

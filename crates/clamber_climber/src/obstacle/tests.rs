@@ -26,6 +26,7 @@ fn solid(now: WorldCapsule, way: DVec3) -> ClimberObstacle {
         own: DVec3::ZERO,
         mass: 80.0,
         walk: DVec3::ZERO,
+        carried_by: None,
         others: Others::Block,
     }
 }

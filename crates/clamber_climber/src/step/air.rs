@@ -68,7 +68,7 @@ impl Tick<'_> {
 }
 
 /// The point between `a` and `b` that is nearest to another one.
-fn nearest_between(a: DVec3, b: DVec3, to: DVec3) -> DVec3 {
+pub(super) fn nearest_between(a: DVec3, b: DVec3, to: DVec3) -> DVec3 {
     let way = b - a;
     let length_sq = way.length_squared();
     if length_sq == 0.0 {

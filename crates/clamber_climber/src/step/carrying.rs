@@ -48,6 +48,8 @@ impl Tick<'_> {
         let dt = self.dt();
         let attachment = &mut support.attachment;
         let obstacle = self.mover.obstacle(attachment.obstacle);
+        // Nobody is carried by whom it carries.
+        let obstacle = obstacle.filter(|obstacle| !self.judge.carries(*obstacle));
         let followed = obstacle.and_then(|obstacle| attachment.follow(obstacle, dt, slack));
         let followed = followed.filter(|followed| followed.motion.is_finite());
         let Some(followed) = followed else {

@@ -4,6 +4,7 @@ use clamber_mover::Touch;
 use clamber_world::{ObstacleId, PointMotion};
 use glam::DVec3;
 
+use super::air::nearest_between;
 use super::holding::OPEN_HANDED;
 use super::{NextMode, Tick};
 use crate::config::StaminaConfig;
@@ -91,7 +92,12 @@ impl Tick<'_> {
     pub(super) fn feel(&mut self, motion: &PointMotion, was_placed: bool) {
         let before = self.state.support_velocity.filter(|_| !was_placed);
         self.support_change = before.map(|before| motion.velocity - before);
-        self.shake_by(self.support_change.unwrap_or(DVec3::ZERO));
+        // Its own push has moved a free support as it was to, one that something holds not at all, and others in between.
+        let shaken = before.map(|before| {
+            let expected = nearest_between(before, self.base_was, motion.velocity);
+            motion.velocity - expected
+        });
+        self.shake_by(shaken.unwrap_or(DVec3::ZERO));
         self.state.support_velocity = (!was_placed).then_some(motion.velocity);
     }
 

@@ -4,12 +4,12 @@ use clamber_mover::{Ground, Touch};
 use glam::DVec3;
 
 use super::ground::GRAZING;
-use super::moving::Intent;
+use super::moving::{Intent, towards};
 use super::{LEVEL, NextMode, Tick};
 use crate::{ClimberConfig, ClimberEvent, ClimberMode};
 
 /// A contact at no more than this multiple of the speed that gravity adds in a tick is no impact.
-const RESTS: f64 = 1.5;
+pub(super) const RESTS: f64 = 1.5;
 
 /// How long a tumbling body that does not come to rest stays down after it has first touched ground, beyond the time in
 /// which it gets up, seconds. Without friction it would slide on for ever.
@@ -89,7 +89,7 @@ impl Tick<'_> {
         let own = self.state.velocity - self.state.base_velocity;
         let along = own - up * own.dot(up);
         let wanted = level * ground.walk_speed;
-        let steered = along.move_towards(wanted, ground.air_acceleration * self.dt());
+        let steered = towards(along, wanted, ground.air_acceleration * self.dt());
         let change = self.off_steep_slopes(steered - along);
         self.state.velocity += change;
     }
@@ -206,8 +206,7 @@ impl Tick<'_> {
         } else {
             friction * pressed
         };
-        let left = (along.length() - braked).max(0.0);
-        self.state.velocity += along.normalize_or_zero() * left - along;
+        self.rub(&touch, along, braked);
     }
 
     /// Costs hit points for the hardest of the last movement's impacts, by its speed along the contact's normal: on
@@ -318,14 +317,13 @@ impl Tick<'_> {
             .slow()
             .max(RESTS * self.config.gravity.length() * self.dt());
         if speed > slow {
-            self.state.velocity += touch.normal * (speed * tumble.restitution);
+            self.bounce(touch, speed * tumble.restitution);
         }
         let along = self.state.velocity - base;
         let sliding = along - touch.normal * along.dot(touch.normal);
         let friction = tumble.friction * self.friction_of(touch);
         let braked = friction * self.config.gravity.length() * self.dt();
-        let left = (sliding.length() - braked).max(0.0);
-        self.state.velocity += sliding.normalize_or_zero() * left - sliding;
+        let left = self.rub(touch, sliding, braked);
         let rest = (self.state.velocity - base).length();
         self.state.tumbling.still = if rest < slow {
             self.state.tumbling.still + self.dt()

@@ -37,10 +37,22 @@ impl Judge<'_> {
             contact,
             obstacle,
         };
-        match self.rules.contact {
-            Some(rule) => rule(&query),
-            None => query.usual(),
+        let Some(rule) = self.rules.contact else {
+            return query.usual();
+        };
+        let rule = rule(&query);
+        if (rule.grip || rule.hang) && self.carries(obstacle) {
+            rule.with_grip(false).with_hang(false)
+        } else {
+            rule
         }
+    }
+
+    /// True for another climber that this one carries in the end.
+    pub(super) fn carries(&self, other: &dyn Obstacle) -> bool {
+        let own = self.rules.id;
+        let carrier = || other.character().and_then(|other| other.carried_by);
+        own.is_some() && carrier() == own
     }
 
     /// The rule for a contact of the mover's.

@@ -12,6 +12,7 @@ mod flying;
 mod friends;
 mod ground;
 mod hanging;
+mod hitting;
 mod holding;
 mod judge;
 mod ledge;
@@ -122,8 +123,8 @@ pub(crate) struct Tick<'a> {
     pull: Option<DVec3>,
     /// What the last movement's hits changed its velocity by. Zero if it hit nothing that gives way.
     recoil: DVec3,
-    /// Its velocity after those hits.
-    after_hits: DVec3,
+    /// The velocity at which that movement would have gone on without contacts.
+    wanted: DVec3,
     /// If nothing carried it and it touched something in the last tick, the displacement by which contacts changed its
     /// way; otherwise zero.
     was_pressed: DVec3,
@@ -195,7 +196,7 @@ impl<'a> Tick<'a> {
             support_change: None,
             pull: None,
             recoil: DVec3::ZERO,
-            after_hits: DVec3::ZERO,
+            wanted: DVec3::ZERO,
             was_pressed,
             flew_at: None,
             has_entered: false,

@@ -196,3 +196,15 @@ impl Tick<'_> {
         self.state.velocity = self.clipped(wanted);
     }
 }
+
+/// A vector moved towards another one by at most a length. (glam's `move_towards` arrives from 1e-4 away, which is far
+/// for a small body.)
+pub(super) fn towards(from: DVec3, to: DVec3, most: f64) -> DVec3 {
+    let way = to - from;
+    let length = way.length();
+    if length <= most {
+        to
+    } else {
+        from + way / length * most
+    }
+}

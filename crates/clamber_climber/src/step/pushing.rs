@@ -1,9 +1,5 @@
-//! Weight on the support, and impulses on the obstacles in the climber's way, if they can be pushed.
-//!
-//! An airborne climber transfers its momentum to what it hits: the impulse that brings both to one speed, this tick's
-//! gravity included. A climber that stands or holds on gives its support its weight, or the pull of its arms, and
-//! obstacles in its way a push of limited force. Every push, and every change of its own velocity, has its reaction on
-//! the support. Only what it hits in the air changes its own velocity, to the common one.
+//! Weight on the support, and the reaction to every push and to every change of the climber's own velocity, if the
+//! support can be pushed.
 
 use clamber_mover::Touch;
 use clamber_world::{Attachment, MaterialPoint, ObstacleId};
@@ -16,112 +12,79 @@ use crate::event::Push;
 
 /// A support that accelerates by at most this multiple of gravity carries all of the climber's weight. From twice this
 /// on, its whole acceleration counts. Physics engines let bodies at rest jitter by a part of it.
-const JITTER: f64 = 0.03;
+pub(super) const JITTER: f64 = 0.03;
 
 /// The largest square of the angle, radians, by which a light hold may swing in a tick under the pull of the arms.
 /// Where it would swing farther, it gets less of their pull. At twice this, the pull of ticks that lag behind drives
 /// the swing.
 const STIFFEST: f64 = 0.15;
 
-/// Cosine of the largest angle between the normals of contacts on the same side of the body: 60 degrees.
-const SAME_SIDE: f64 = 0.5;
-
 impl Tick<'_> {
-    /// Pushes the obstacles that kept the body from moving at the velocity `wanted`, except those that it stands on or
-    /// holds.
-    pub(super) fn push_aside(&mut self, wanted: DVec3) {
-        let body = &self.config.body;
-        let dt = self.dt();
-        let strikes = !self.state.mode.is_supported();
-        self.recoil = DVec3::ZERO;
-        self.after_hits = wanted;
-        let most = if strikes {
-            f64::INFINITY
-        } else {
-            body.push_force * dt
-        };
-        let first = self.report.pushes.len();
-        for index in 0..self.mover.touched().len() {
-            let touch = self.mover.touched()[index];
-            let (obstacle, material) = (touch.obstacle, touch.contact.material);
-            let response = self.mover.push_response(obstacle, &material, -touch.normal);
-            if response == 0.0 || self.is_on(&touch) || self.is_pushed(obstacle, &material) {
-                continue;
-            }
-            let closing = -(wanted - self.mover.velocity_of(&touch)).dot(touch.normal);
-            if closing <= 0.0 {
-                continue;
-            }
-            let together = closing / (response + 1.0 / body.mass);
-            self.report.pushes.push(Push {
-                obstacle,
-                material,
-                point: touch.contact.point,
-                impulse: -touch.normal * together.min(most),
-            });
-        }
-        // The obstacles may be colliders of one body, which the pushes together must not make faster than the climber.
-        let pushes = &mut self.report.pushes[first..];
-        let share = 1.0 / pushes.len() as f64;
-        pushes.iter_mut().for_each(|push| push.impulse *= share);
-        let given = pushes.iter().map(|push| push.impulse).sum();
-        if strikes && self.carried.is_none() {
-            let presses = |push: &&Push| !self.presses_on(-push.impulse);
-            let hits = self.report.pushes[first..].iter().filter(presses);
-            let taken: DVec3 = hits.map(|push| push.impulse).sum();
-            self.recoil = -taken / self.config.body.mass;
-            self.after_hits = wanted + self.recoil;
-        } else {
-            self.brace_against(given);
-        }
-    }
-
-    /// True if it was pressed against the same side in the last tick already. What it pushed then has not given way, or
-    /// both go on at one speed since.
-    fn presses_on(&self, normal: DVec3) -> bool {
-        let pressed = self.was_pressed.dot(normal);
-        pressed > SAME_SIDE * self.was_pressed.length() * normal.length()
-    }
-
-    /// True for a contact with something that can be pushed, and was in the last tick.
-    pub(super) fn hit_before(&self, touch: &Touch) -> bool {
-        let material = &touch.contact.material;
-        self.presses_on(touch.normal)
-            && self
-                .mover
-                .push_response(touch.obstacle, material, -touch.normal)
-                > 0.0
-    }
-
-    /// The velocity of a contact that moves at `velocity`, after the last movement has hit it. Along the contact's
-    /// normal it is no slower than the climber, which has shared its momentum with all that it hit.
-    pub(super) fn velocity_after_hit(&self, touch: &Touch, velocity: DVec3) -> DVec3 {
-        let normal = touch.normal;
-        let closing = (velocity - self.after_hits).dot(normal);
-        let is_hit = self.recoil != DVec3::ZERO
-            && closing > 0.0
-            && self.is_pushed(touch.obstacle, &touch.contact.material)
-            && !self.presses_on(normal);
-        if is_hit {
-            velocity - normal * closing
-        } else {
-            velocity
-        }
-    }
-
     /// Gives the reaction to an impulse to what the climber stands on or holds, if that can be pushed. Without it a
     /// passenger would drive its cart by pushing against the cart's wall.
-    fn brace_against(&mut self, impulse: DVec3) {
+    pub(super) fn brace_against(&mut self, impulse: DVec3) {
         if let Some(carried) = self.carried {
             self.push_support(&carried.support.attachment, -impulse);
         }
     }
 
-    /// Gives its support the reaction to a jump off it: all of the momentum that it takes along.
+    /// Gives its support the reaction to a jump off it: all of the momentum that it takes along. What is light and held
+    /// up by something else passes the rest on to that: feet give it no more speed than the climber gets.
     pub(super) fn push_off(&mut self) {
-        if let Some(attachment) = self.attachment() {
-            let change = self.state.velocity - self.rides;
-            self.push_support(&attachment, -change * self.config.body.mass);
+        let Some(attachment) = self.attachment() else {
+            return;
+        };
+        let change = self.state.velocity - self.rides;
+        let relative = self.response_of(&attachment, change) * self.config.body.mass;
+        let held = self.is_held_up();
+        let share = held * (1.0 / relative).min(1.0) + (1.0 - held);
+        self.push_support(&attachment, -change * (self.config.body.mass * share));
+    }
+
+    /// The share of its jump speed that it gets from its support: all of it from what is held up by something else, and
+    /// from what falls freely the share that the masses leave.
+    pub(super) fn jump_share(&self) -> f64 {
+        let relative = self.attachment().map_or(0.0, |attachment| {
+            self.response_of(&attachment, self.config.up()) * self.config.body.mass
+        });
+        let held = self.is_held_up();
+        held + (1.0 - held) / (1.0 + relative)
+    }
+
+    /// How far something else holds up what it stands on: 1 if that carries all of its weight, 0 if both fall.
+    fn is_held_up(&self) -> f64 {
+        if self.state.mode == ClimberMode::Standing {
+            self.state.load.min(1.0)
+        } else {
+            0.0
+        }
+    }
+
+    /// Brakes its velocity `along` a contact, relative to that, by at most `braked`, and gives the contact the reaction.
+    /// Both come to one speed at most. Returns the speed that is left.
+    pub(super) fn rub(&mut self, touch: &Touch, along: DVec3, braked: f64) -> f64 {
+        let way = along.normalize_or_zero();
+        let mass = self.config.body.mass;
+        let response = self.response_at(touch, way);
+        let speed = along.length();
+        let most = speed / (1.0 + response * mass);
+        let left = speed - braked.min(most);
+        let change = way * left - along;
+        self.change_against(touch, change);
+        left
+    }
+
+    /// Changes its velocity against a contact, which gets the reaction.
+    fn change_against(&mut self, touch: &Touch, change: DVec3) {
+        self.state.velocity += change;
+        self.rides += change;
+        if self.response_at(touch, change.normalize_or_zero()) > 0.0 {
+            self.push(Push {
+                obstacle: touch.obstacle,
+                material: touch.contact.material,
+                point: touch.contact.point,
+                impulse: -change * self.config.body.mass,
+            });
         }
     }
 
@@ -236,21 +199,33 @@ impl Tick<'_> {
         self.add_to_support(attachment, impulse);
     }
 
+    /// Bounces off a contact at a speed, of which it gets the share that the masses leave, and gives the contact the
+    /// reaction.
+    pub(super) fn bounce(&mut self, touch: &Touch, speed: f64) {
+        let mass = self.config.body.mass;
+        let response = self.response_at(touch, touch.normal);
+        let change = touch.normal * (speed / (1.0 + response * mass));
+        self.change_against(touch, change);
+    }
+
     /// Adds an impulse to what the support gets in this tick.
     fn add_to_support(&mut self, attachment: &Attachment, impulse: DVec3) {
-        let (obstacle, material) = (attachment.obstacle, attachment.material);
-        let is_same =
-            |push: &&mut Push| (push.obstacle, push.material.key) == (obstacle, material.key);
-        if let Some(push) = self.report.pushes.iter_mut().find(is_same) {
-            push.impulse += impulse;
-            return;
-        }
-        self.report.pushes.push(Push {
-            obstacle,
-            material,
+        self.push(Push {
+            obstacle: attachment.obstacle,
+            material: attachment.material,
             point: attachment.point,
             impulse,
         });
+    }
+
+    /// Adds a push to those of this tick.
+    pub(super) fn push(&mut self, new: Push) {
+        let key = |push: &Push| (push.obstacle, push.material.key);
+        let mut pushes = self.report.pushes.iter_mut();
+        match pushes.find(|push| key(push) == key(&new)) {
+            Some(push) => push.impulse += new.impulse,
+            None => self.report.pushes.push(new),
+        }
     }
 
     /// The speed along a direction that an impulse of 1 N s in it gives to the support.
@@ -261,6 +236,13 @@ impl Tick<'_> {
         }
         let (obstacle, material) = (attachment.obstacle, &attachment.material);
         self.mover.push_response(obstacle, material, direction)
+    }
+
+    /// The speed along a unit vector that an impulse of 1 N s in this direction gives to a contact.
+    pub(super) fn response_at(&self, touch: &Touch, direction: DVec3) -> f64 {
+        let material = &touch.contact.material;
+        self.mover
+            .push_response(touch.obstacle, material, direction)
     }
 
     /// True for contacts that it stands on or holds: its support, and while standing all that are level enough to be
@@ -275,7 +257,7 @@ impl Tick<'_> {
         is_underfoot || is_support
     }
 
-    fn is_pushed(&self, obstacle: ObstacleId, point: &MaterialPoint) -> bool {
+    pub(super) fn is_pushed(&self, obstacle: ObstacleId, point: &MaterialPoint) -> bool {
         let mut pushes = self.report.pushes.iter();
         pushes.any(|push| (push.obstacle, push.material.key) == (obstacle, point.key))
     }

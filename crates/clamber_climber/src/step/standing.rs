@@ -4,7 +4,7 @@ use clamber_mover::{Ground, GroundProbe, Path, StepUp, Walking};
 use glam::DVec3;
 
 use super::carrying::Carried;
-use super::moving::Intent;
+use super::moving::{Intent, towards};
 use super::{NextMode, Tick};
 use crate::{ClimberEvent, ClimberMode};
 
@@ -53,6 +53,7 @@ impl Tick<'_> {
             self.event(ClimberEvent::Slipped);
             return self.leave(ClimberMode::Sliding);
         }
+        let own = own - self.left_behind(normal);
         let walk = self.walk_velocity(normal, own);
         if self.state.jump_buffer > 0.0 {
             return self.jump(walk);
@@ -82,7 +83,8 @@ impl Tick<'_> {
 
     /// Jumps, with the velocity of the ground that it leaves.
     fn jump(&mut self, walk: DVec3) -> NextMode {
-        self.state.velocity += walk + self.config.up() * self.config.ground.jump_speed;
+        let speed = self.config.ground.jump_speed * self.jump_share();
+        self.state.velocity += walk + self.config.up() * speed;
         self.push_off();
         self.begin_jump();
         self.leave(ClimberMode::Falling)
@@ -189,9 +191,14 @@ impl Tick<'_> {
 
     /// Stands on ground, with its own velocity clipped by the contacts of the last movement.
     fn stand_on(&mut self, ground: &Ground, own: DVec3) -> NextMode {
+        let from = self.carried.filter(|_| self.is_slippery());
         self.state.position = ground.position;
         self.attach(&ground.touch, ground.position);
-        self.state.velocity = self.clipped(self.state.base_velocity + own);
+        let base = self.state.base_velocity;
+        // On ground that turns, the next point has another velocity, to which only friction takes it.
+        let change = from.map_or(DVec3::ZERO, |from| from.velocity() - base);
+        let kept = change - ground.touch.normal * change.dot(ground.touch.normal);
+        self.state.velocity = self.clipped(base + own + kept);
         NextMode::Stay
     }
 
@@ -272,9 +279,23 @@ impl Tick<'_> {
             let gravity = self.config.gravity;
             own += (gravity - normal * gravity.dot(normal)) * self.dt();
         }
-        let walk = own.move_towards(wanted, change * self.dt());
+        let walk = towards(own, wanted, change * self.dt());
         self.state.standing.shoved &= walk != wanted;
         walk
+    }
+
+    /// What its ground has changed its own velocity by since the last tick, along itself, if that is slippery. Feet that
+    /// slip do not follow it by themselves: only friction takes them along.
+    fn left_behind(&mut self, normal: DVec3) -> DVec3 {
+        let carried = self.carried.filter(|_| self.is_slippery());
+        let Some(carried) = carried.filter(|carried| carried.velocity_before.is_some()) else {
+            return DVec3::ZERO;
+        };
+        let kept = self.was - carried.velocity();
+        let change = self.own_velocity() - kept;
+        let along = change - normal * change.dot(normal);
+        self.rides -= along;
+        along
     }
 
     /// True if its feet slip on its ground.

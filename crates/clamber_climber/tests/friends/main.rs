@@ -7,6 +7,7 @@
 )]
 
 mod carrying;
+mod circles;
 mod crowd;
 mod landing;
 #[allow(dead_code, reason = "shared with other targets")]

@@ -464,6 +464,7 @@ failures! {
     rules::a_one_way_platform_is_jumped_through_stood_on_and_dropped_through,
     rules::a_one_way_platform_that_moves_is_boarded_from_below,
     rules::ice_accelerates_and_brakes_slowly,
+    rules::ice_that_moves_takes_along_by_friction_alone,
     rules::an_icy_slope_pulls_down,
     rules::mud_slows_a_walk,
     rules::a_friction_out_of_range_counts_as_0_or_as_usual,

@@ -5,7 +5,7 @@ use clamber_climber::{ClimberConfig, ClimberInput, ContactRule};
 use glam::DVec3;
 
 use super::scene::{Case, G, GRIP, ODD, at_every_rate, at_wall, but, person, wall};
-use crate::stage::{IDLE, JUMP, Run, Shape, radians, walk, within};
+use crate::stage::{IDLE, JUMP, Run, Shape, radians, shifted, turned, walk, within};
 
 /// A walker at rest on a floor with a friction.
 fn on_floor(case: Case, floor: &Shape, friction: f64) -> Run {
@@ -38,6 +38,42 @@ pub(crate) fn ice_accelerates_and_brakes_slowly() {
         );
         run.sound()
     });
+}
+
+/// Ice that is pulled away below a climber, or turns, takes it along by its friction alone.
+pub(crate) fn ice_that_moves_takes_along_by_friction_alone() {
+    // Half of the square of the time since the first second, in which the climber comes to rest.
+    let half_square = |time: f64| 0.5 * (time - 1.0).max(0.0) * (time - 1.0).max(0.0);
+    for (friction, turns) in [(0.0, false), (0.1, false), (0.0, true)] {
+        at_every_rate(|at| {
+            let case = format!("{at}, friction {friction}, turns {turns}");
+            let stage = at
+                .stage()
+                .numbered(ODD)
+                .with(&Shape::floor(9.0), move |time| {
+                    if turns {
+                        turned(DVec3::Y, half_square(time))
+                    } else {
+                        shifted(DVec3::X * (5.0 * half_square(time)))
+                    }
+                });
+            let mut run = Run::new(stage, ClimberConfig::walker(), DVec3::X * 2.0);
+            run.set_rule(but(move |query| query.usual().with_friction(friction)));
+            run.steps(at.ticks(1.0), &IDLE);
+            assert_eq!(run.mode(), Standing, "{case}");
+            let start = run.position();
+            run.steps(at.ticks(1.5), &IDLE);
+            let pull = friction * 15.0;
+            let (went, speed) = (
+                run.position() - start,
+                run.state().velocity - DVec3::X * (pull * 1.5),
+            );
+            let off = (went - DVec3::X * (pull * 1.5 * 1.5 / 2.0)).length();
+            within!(speed.length(), 1e-4, "{case}: {speed} m/s off");
+            within!(off, 1e-4, "{case}: went {went}");
+            run.sound()
+        });
+    }
 }
 
 pub(crate) fn an_icy_slope_pulls_down() {

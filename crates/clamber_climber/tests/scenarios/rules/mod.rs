@@ -9,8 +9,8 @@ mod standing;
 
 pub(crate) use friction::{
     a_friction_out_of_range_counts_as_0_or_as_usual, an_icy_slope_pulls_down,
-    ice_accelerates_and_brakes_slowly, mud_slows_a_walk, the_stickiest_mud_holds_fast,
-    wet_fur_slips_through_hands,
+    ice_accelerates_and_brakes_slowly, ice_that_moves_takes_along_by_friction_alone,
+    mud_slows_a_walk, the_stickiest_mud_holds_fast, wet_fur_slips_through_hands,
 };
 pub(crate) use gripping::{
     a_friend_is_neither_hung_from_nor_gripped_unless_the_rule_says_so,

@@ -1,0 +1,390 @@
+//! Bodies that are light: hit in rows, stood on, jumped off, walked on and fallen on.
+
+use clamber_climber::{Blow, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, TumbleConfig};
+use clamber_world::rapier3d::prelude::{
+    ColliderBuilder, FixedJointBuilder, RigidBodyBuilder, RigidBodyHandle, Vector,
+};
+use glam::DVec3;
+
+use crate::scene::{IDLE, Scene, walk};
+
+const MASS: f64 = 80.0;
+
+/// Sizes of the world, and rates, hertz.
+const WORLDS: [(f64, f64); 6] = [
+    (1.0, 60.0),
+    (1.0, 30.0),
+    (1.0, 120.0),
+    (1.0, 240.0),
+    (0.05, 60.0),
+    (50.0, 60.0),
+];
+
+fn v32(v: DVec3) -> Vector {
+    v.as_vec3()
+}
+
+/// Without friction.
+fn cuboid(half: DVec3) -> ColliderBuilder {
+    let half = v32(half);
+    ColliderBuilder::cuboid(half.x, half.y, half.z).friction(0.0)
+}
+
+/// A body at a place, which does not fall asleep.
+fn awake(place: DVec3) -> RigidBodyBuilder {
+    RigidBodyBuilder::dynamic()
+        .translation(v32(place))
+        .can_sleep(false)
+}
+
+fn set_velocity(scene: &mut Scene, body: RigidBodyHandle, velocity: DVec3) {
+    scene.world.bodies[body].set_linvel(v32(velocity), true);
+}
+
+fn floating(size: f64, rate: f64, frame: DVec3) -> Scene {
+    let config = ClimberConfig {
+        gravity: DVec3::ZERO,
+        ..ClimberConfig::walker()
+    };
+    let mut scene = Scene::with(config, size, 1.0 / rate, 0.0, DVec3::ZERO);
+    scene.throw(DVec3::ZERO, frame);
+    scene
+}
+
+/// Momentum of the bodies and the climber.
+fn momentum(scene: &Scene, bodies: &[RigidBodyHandle]) -> DVec3 {
+    let own = scene.climber.state().velocity * MASS;
+    own + bodies
+        .iter()
+        .map(|body| scene.momentum(*body))
+        .sum::<DVec3>()
+}
+
+/// Their kinetic energy, in a frame.
+fn energy(scene: &Scene, bodies: &[RigidBodyHandle], frame: DVec3) -> f64 {
+    let own = scene.climber.state().velocity - frame;
+    let of_bodies = bodies.iter().map(|body| {
+        let body = &scene.world.bodies[*body];
+        let moves = f64::from(body.mass()) * (body.linvel().as_dvec3() - frame).length_squared();
+        let spin = body.rotation().inverse() * body.angvel();
+        let turns = spin.dot(body.mass_properties().local_mprops.principal_inertia() * spin);
+        0.5 * (moves + f64::from(turns))
+    });
+    0.5 * MASS * own.length_squared() + of_bodies.sum::<f64>()
+}
+
+/// The last of a row of balls hits the one before it, which touches the climber still.
+#[test]
+fn balls_in_a_row_give_a_floating_climber_their_momentum_and_no_more() {
+    for (size, rate) in WORLDS {
+        for (count, mass, speed, side) in [
+            (1, 1.0, 20.0, DVec3::X),
+            (2, 1.0, 20.0, DVec3::X),
+            (2, 0.1, 20.0, DVec3::NEG_Z),
+            (5, 0.1, 20.0, DVec3::X),
+            (9, 0.5, 8.0, DVec3::NEG_Y),
+            (2, 40.0, 5.0, DVec3::NEG_X),
+        ] {
+            let frame = side.cross(DVec3::new(3.0, -7.0, 5.0)) * size;
+            let mut scene = floating(size, rate, frame);
+            let balls: Vec<_> = (0..count)
+                .map(|index| {
+                    let place = -1.0 - f64::from(index) * (speed / rate).max(0.25);
+                    let body = awake(side * (place * size));
+                    let ball = ColliderBuilder::ball((0.1 * size) as f32).friction(0.0);
+                    scene.add(body, [(ball, mass)])
+                })
+                .collect();
+            for ball in &balls {
+                set_velocity(&mut scene, *ball, side * (speed * size) + frame);
+            }
+            let given = mass * speed * size * f64::from(count);
+            let had = momentum(&scene, &balls);
+            let joules = energy(&scene, &balls, frame);
+            for tick in 0..(2.0 * rate) as u32 {
+                scene.step(&IDLE);
+                scene.apply();
+                let told = format!(
+                    "size {size}, {rate} Hz, {count} of {mass} kg along {side}, tick {tick}: {:?}",
+                    scene.climber.state().velocity - frame
+                );
+                let off = (momentum(&scene, &balls) - had).length();
+                assert!(off < 0.02 * given, "{told}: {off} of {given} N s");
+                let has = energy(&scene, &balls, frame);
+                assert!(has < 1.01 * joules, "{told}: {joules} J became {has}");
+            }
+            let own = (scene.climber.state().velocity - frame).dot(side) * MASS;
+            assert!(
+                own > 0.5 * given,
+                "size {size}, {rate} Hz: {own} of {given}"
+            );
+        }
+    }
+}
+
+/// Corners of a box strike one after the other.
+#[test]
+fn a_box_that_spins_makes_no_energy_of_its_second_corner() {
+    for (size, rate) in WORLDS {
+        for (mass, spin, speed) in [(5.0, 30.0, 6.0), (20.0, 20.0, 3.0), (20.0, 10.0, 2.0)] {
+            for shift in 0..12 {
+                let mut scene = floating(size, rate, DVec3::ZERO);
+                let place = DVec3::new(-1.3 - 0.03 * f64::from(shift), 0.0, 0.1);
+                let hull = (cuboid(DVec3::splat(0.3 * size)), mass);
+                let bodies = [scene.add(awake(place * size), [hull])];
+                set_velocity(&mut scene, bodies[0], DVec3::X * (speed * size));
+                scene.world.bodies[bodies[0]].set_angvel(v32(DVec3::Z * spin), true);
+                let joules = energy(&scene, &bodies, DVec3::ZERO);
+                for tick in 0..(1.5 * rate) as u32 {
+                    scene.step(&IDLE);
+                    scene.apply();
+                    let has = energy(&scene, &bodies, DVec3::ZERO);
+                    // At 30 Hz it turns by a radian in a tick, and its corners' ways are arcs.
+                    let most = if rate < 50.0 { 1.15 } else { 1.05 };
+                    assert!(
+                        has < most * joules,
+                        "size {size}, {rate} Hz, {mass} kg, {spin} rad/s, {shift}, tick {tick}: {joules} J became {has}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// A floor, a box on it, and a climber that has stood on that for half a second.
+fn on_a_box(size: f64, rate: f64, half: DVec3, mass: f64, config: ClimberConfig) -> Scene {
+    let start = DVec3::Y * (2.0 * half.y + 0.4);
+    let mut scene = Scene::with(config, size, 1.0 / rate, 9.81, start);
+    let floor = cuboid(DVec3::new(50.0, 0.5, 50.0) * size).friction(1.0);
+    let floor = floor.translation(v32(DVec3::NEG_Y * (0.5 * size)));
+    scene.world.insert_collider(floor, None);
+    let body = awake(DVec3::Y * (half.y * size));
+    scene.add(body, [(cuboid(half * size).friction(1.0), mass)]);
+    for _ in 0..(0.5 * rate) as u32 {
+        scene.tick(&IDLE);
+    }
+    scene.assert_standing(&format!("size {size}, {rate} Hz, {mass} kg"));
+    scene
+}
+
+#[test]
+fn a_jump_off_a_light_box_on_the_floor_is_as_high_as_off_the_floor() {
+    for (size, rate) in WORLDS {
+        for (half, mass) in [
+            ([0.15, 0.15, 0.15], 1.0),
+            ([0.3, 0.3, 0.3], 2.0),
+            ([0.5, 0.25, 0.5], 1.0),
+            ([0.5, 0.5, 0.5], 40.0),
+            ([0.5, 0.5, 0.5], 4_000.0),
+        ] {
+            let half = DVec3::from_array(half);
+            let mut scene = on_a_box(size, rate, half, mass, ClimberConfig::walker());
+            let start = scene.climber.state().position.y;
+            scene.tick(&ClimberInput { jump: true, ..IDLE });
+            let held = ClimberInput {
+                jump_held: true,
+                ..IDLE
+            };
+            let mut high = 0.0f64;
+            for _ in 0..(0.9 * rate) as u32 {
+                scene.tick(&held);
+                high = high.max((scene.climber.state().position.y - start) / size);
+            }
+            let told = format!("size {size}, {rate} Hz, {mass} kg: {high} m");
+            assert!((1.2..1.3).contains(&high), "{told}");
+        }
+    }
+}
+
+/// Nobody jumps off a crate that falls with it as off the ground: both get the same momentum.
+#[test]
+fn a_jump_off_a_crate_that_falls_keeps_the_momentum_of_both() {
+    for (size, rate) in WORLDS {
+        for mass in [40.0, 80.0, 400.0] {
+            let config = ClimberConfig::walker();
+            let start = DVec3::Y * 0.9;
+            let mut scene = Scene::with(config, size, 1.0 / rate, 9.81, start);
+            let body = awake(DVec3::Y * (0.25 * size))
+                .gravity_scale(0.0)
+                .lock_rotations();
+            let deck = (cuboid(DVec3::new(1.0, 0.25, 1.0) * size), mass);
+            let bodies = [scene.add(body, [deck])];
+            // Its gravity begins when the climber stands, which it then does no longer with any weight.
+            for _ in 0..3 {
+                scene.step(&IDLE);
+                scene.pushes.clear();
+            }
+            scene.assert_standing("begins to fall");
+            scene.world.bodies[bodies[0]].set_gravity_scale(1.0, true);
+            for _ in 0..(3.0 * rate) as u32 {
+                scene.tick(&IDLE);
+            }
+            scene.assert_standing(&format!("falls: size {size}, {rate} Hz, {mass} kg"));
+            let before = scene.climber.state().velocity.y;
+            scene.step(&ClimberInput { jump: true, ..IDLE });
+            let gained = (scene.climber.state().velocity.y - before) / size;
+            let told = format!("size {size}, {rate} Hz, {mass} kg: gained {gained} m/s");
+            let jump = scene.climber.config().ground.jump_speed / size;
+            let share = jump * mass / (mass + MASS);
+            // Gravity gives it a tick's fall with the crate, and another one in the air.
+            let gained = gained + 2.0 * 9.81 / rate;
+            assert!((gained - share).abs() < 0.01 * jump, "{told}, not {share}");
+            let impulse: f64 = scene.pushes.iter().map(|push| push.impulse.y).sum();
+            let given = impulse / size + MASS * share;
+            assert!(given.abs() < 0.02 * MASS * jump, "{told}: {impulse} N s");
+        }
+    }
+}
+
+/// Its push does not move what something else holds, which is no shake.
+#[test]
+fn who_turns_round_on_a_light_plank_that_is_held_feels_no_shake() {
+    for (size, rate) in WORLDS {
+        for (mass, is_pushed) in [
+            (1.0, true),
+            (5.0, true),
+            (20.0, true),
+            (400.0, true),
+            (5.0, false),
+        ] {
+            let config = ClimberConfig::colossus_climber();
+            let mut scene = Scene::with(config, size, 1.0 / rate, 9.81, DVec3::Y * 0.6);
+            let floor = scene.world.insert_body(RigidBodyBuilder::fixed());
+            let body = awake(DVec3::Y * (0.1 * size));
+            let plank = scene.add(body, [(cuboid(DVec3::new(3.0, 0.1, 2.0) * size), mass)]);
+            let joint = FixedJointBuilder::new().local_anchor1(v32(DVec3::Y * (0.1 * size)));
+            scene
+                .world
+                .insert_impulse_joint(floor, plank, joint.build());
+            let mut most = 0.0f64;
+            for tick in 0..(4.0 * rate) as u32 {
+                let time = f64::from(tick) / rate;
+                let ahead = if time % 1.0 < 0.5 {
+                    DVec3::X
+                } else {
+                    DVec3::NEG_X
+                };
+                let input = if time < 0.5 { IDLE } else { walk(ahead) };
+                scene.step(&input);
+                if is_pushed {
+                    scene.apply();
+                }
+                if time > 0.4 {
+                    most = most.max(scene.climber.state().shake.length() / size);
+                }
+            }
+            let told = format!("size {size}, {rate} Hz, {mass} kg, pushed {is_pushed}");
+            scene.assert_standing(&told);
+            assert!(most < 1.0, "{told}: {most} m/s²");
+        }
+    }
+}
+
+/// A blow knocks a climber over on a cart, or it is thrown onto one: what brakes it takes the cart along.
+#[test]
+fn who_tumbles_on_a_cart_keeps_the_momentum_of_both() {
+    for (size, rate) in WORLDS {
+        for (mass, cart_speed, speed) in [
+            (80.0, 0.0, 6.0),
+            (80.0, 6.0, -6.0),
+            (20.0, 0.0, 6.0),
+            (800.0, -2.0, 5.0),
+        ] {
+            let config = ClimberConfig {
+                tumble: Some(TumbleConfig {
+                    restitution: 0.0,
+                    ..ClimberConfig::colossus_climber().tumble.unwrap()
+                }),
+                ..ClimberConfig::walker()
+            };
+            let mut scene = Scene::with(config, size, 1.0 / rate, 9.81, DVec3::Y * 0.9);
+            let body = awake(DVec3::Y * (0.25 * size))
+                .enabled_translations(true, false, false)
+                .lock_rotations();
+            let deck = (cuboid(DVec3::new(30.0, 0.25, 9.0) * size), mass);
+            let cart = scene.add(body, [deck]);
+            let frame = DVec3::X * (cart_speed * size);
+            set_velocity(&mut scene, cart, frame);
+            scene.throw(frame, frame);
+            for _ in 0..(0.2 * rate) as u32 {
+                scene.tick(&IDLE);
+            }
+            let told =
+                format!("size {size}, {rate} Hz, {mass} kg at {cart_speed} m/s, blow {speed}");
+            scene.assert_standing(&told);
+            let blow = Blow {
+                velocity: DVec3::X * (speed * size),
+                damage: 0.0,
+                by: None,
+            };
+            let had = momentum(&scene, &[cart]).x + blow.velocity.x * MASS;
+            let report = scene.step(&ClimberInput {
+                blow: Some(blow),
+                ..IDLE
+            });
+            scene.apply();
+            let fell = |event: &ClimberEvent| matches!(event, ClimberEvent::Tumbled { .. });
+            assert!(
+                report.events.iter().any(fell),
+                "{told}: {:?}",
+                report.events
+            );
+            for tick in 0..(4.0 * rate) as u32 {
+                scene.step(&IDLE);
+                scene.apply();
+                let off = (momentum(&scene, &[cart]).x - had).abs();
+                let given = MASS * speed.abs() * size;
+                assert!(
+                    off < 0.02 * given,
+                    "{told}, tick {tick}: {off} N s of {given}"
+                );
+            }
+            let apart = scene.climber.state().velocity.x - scene.velocity(cart).x;
+            assert!(apart.abs() < 0.05 * size, "{told}: {apart} m/s apart");
+        }
+    }
+}
+
+/// A wedge of 60 degrees on ice slides away from below a climber that slides down it.
+#[test]
+fn who_slides_down_a_free_wedge_gives_it_its_own_momentum() {
+    for (size, rate) in WORLDS {
+        for (mass, friction) in [(20.0, 0.0), (80.0, 0.0), (80.0, 0.3), (800.0, 0.3)] {
+            let mut config = ClimberConfig::walker();
+            config.ground.slide_friction = friction;
+            let start = DVec3::new(1.4, 4.2, 0.0);
+            let mut scene = Scene::with(config, size, 1.0 / rate, 9.81, start).with_floor();
+            let corners = [(0.0, 0.0), (3.0, 0.0), (0.0, 5.2)];
+            let points: Vec<Vector> = [-2.0, 2.0]
+                .into_iter()
+                .flat_map(|z| corners.map(|(x, y)| v32(DVec3::new(x, y, z) * size)))
+                .collect();
+            let hull = ColliderBuilder::convex_hull(&points).unwrap().friction(0.0);
+            let body = awake(DVec3::ZERO)
+                .enabled_translations(true, false, false)
+                .lock_rotations();
+            let wedge = scene.add(body, [(hull, mass)]);
+            let mut slid = 0;
+            for tick in 0..(1.5 * rate) as u32 {
+                scene.step(&IDLE);
+                scene.apply();
+                let state = scene.climber.state();
+                if state.mode == ClimberMode::Standing {
+                    break;
+                }
+                slid += u32::from(state.mode == ClimberMode::Sliding);
+                let off = momentum(&scene, &[wedge]).x.abs();
+                let told = format!(
+                    "size {size}, {rate} Hz, {mass} kg, friction {friction}, tick {tick}: {} and {} m/s",
+                    state.velocity.x,
+                    scene.velocity(wedge).x
+                );
+                assert!(off < 0.15 * MASS * size, "{told}: {off} N s");
+            }
+            assert!(
+                slid > (0.2 * rate) as u32,
+                "size {size}, {rate} Hz: {slid} ticks"
+            );
+        }
+    }
+}
