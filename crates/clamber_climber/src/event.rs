@@ -133,16 +133,19 @@ pub enum ClimberEvent {
 /// An impulse that a climber gives to an obstacle that can be pushed.
 ///
 /// - The support gets the climber's weight at the supporting point: mass times gravity, less what the support
-///   accelerates along it. While both fall freely, that is nothing.
+///   accelerates along it. While both fall freely, that is nothing. Other climbers that this one carries, on its head or
+///   by their hands, weigh on its support as well, if it knows its own id
+///   ([`StepRules::id`](crate::StepRules::id)).
 /// - A hold from which it hangs gets the pull of its arms, by the masses of both.
 /// - An obstacle that it lands on or hits in the air gets, along the contact normal, the impulse that brings both to
 ///   the same speed.
 /// - An obstacle that it runs into gets the same, but at most
-///   [`BodyConfig::push_force`](crate::BodyConfig::push_force) times the tick.
-///
+///   [`BodyConfig::push_force`](crate::BodyConfig::push_force) times the tick. Who slides on ice hits it as in the air.
+/// - What brakes it while it slides or tumbles, or what it bounces off, gets the reaction.
 /// - The support gets the reaction to all of this that the climber does while it stands or holds on: to running into
 ///   something, to starting, stopping and turning, and to a jump off it. So a passenger does not drive its cart by
-///   pushing. Bodies do not feel the climber's inertia while they carry it: the momentum of both together stays the
+///   pushing. A jump gives a light body that something holds up no more speed than the climber gets, and off a body that
+///   falls with it, a climber jumps by its share of both masses. Bodies do not feel the climber's inertia while they carry it: the momentum of both together stays the
 ///   same only as long as nothing else speeds them up or slows them down.
 ///
 /// If it hits several obstacles at once, each of the impulses of hits is divided by their number.

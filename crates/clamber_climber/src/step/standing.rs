@@ -84,6 +84,7 @@ impl Tick<'_> {
 
     /// Jumps, with the velocity of the ground that it leaves.
     fn jump(&mut self, walk: DVec3) -> NextMode {
+        self.face(self.input.walk);
         let speed = self.config.ground.jump_speed * self.jump_share();
         self.state.velocity += walk + self.config.up() * speed;
         self.push_off();

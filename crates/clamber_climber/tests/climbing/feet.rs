@@ -129,3 +129,37 @@ fn who_leaves_a_one_way_platform_with_the_grip_held_hangs_from_its_edge() {
         }
     }
 }
+
+/// As in any other tick in which it walks.
+#[test]
+fn who_jumps_with_the_stick_faces_its_direction() {
+    for size in [1.0, 0.02, 100.0] {
+        let config = in_world_of_size(ClimberConfig::walker(), size);
+        let floor = HalfSpace::below(0.0);
+        let around: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(0), &floor)];
+        for (walk, faces) in [
+            (DVec3::ZERO, DVec3::Z),
+            (DVec3::X * 0.3, DVec3::X),
+            (DVec3::new(0.0, 5.0, -1.0), DVec3::NEG_Z),
+        ] {
+            let mut climber = Climber::new(config, DVec3::Y * (0.4 * size)).unwrap();
+            let begins = ClimberState {
+                heading: DVec3::Z,
+                ..*climber.state()
+            };
+            climber.restore(begins).unwrap();
+            for jump in [false, false, true] {
+                let walk = if jump { walk } else { DVec3::ZERO };
+                let input = ClimberInput {
+                    walk,
+                    jump,
+                    ..Default::default()
+                };
+                climber.step(&input, &around, 1.0 / 60.0).unwrap();
+            }
+            let state = climber.state();
+            assert_eq!(state.mode, ClimberMode::Falling, "size {size}, {walk}");
+            assert_eq!(state.heading, faces, "size {size}, {walk}");
+        }
+    }
+}
