@@ -16,7 +16,7 @@ use clamber_scenes::giant::giant;
 const RIDE: u64 = 0x1a24_53f9_17c8_3503;
 
 /// Hash of the climb.
-const CLIMB: u64 = 0xa74b_c813_c341_31a1;
+const CLIMB: u64 = 0x5844_545e_26b8_2978;
 
 /// A tick of a battle: the climber's fields, the creature's pose and the rocks.
 fn add(run: &mut GoldenRun, battle: &Battle<'_>) {
