@@ -51,13 +51,19 @@ impl Tick<'_> {
         held + (1.0 - held) / (1.0 + relative)
     }
 
-    /// How far something else holds up what it stands on: 1 if that carries all of its weight, 0 if both fall.
+    /// How far something else holds up what it stands on: 1 if that has carried its weight or does not sink, 0 if it
+    /// falls as freely as the climber would. 1 if that is not known yet.
     fn is_held_up(&self) -> f64 {
-        if self.state.mode == ClimberMode::Standing {
-            self.state.load.min(1.0)
-        } else {
-            0.0
-        }
+        let stands = self.state.mode == ClimberMode::Standing;
+        let sinks = self.support_change.map_or(0.0, |change| self.sinks(change));
+        let held = self.state.load.max(1.0 - sinks);
+        if stands { held.clamp(0.0, 1.0) } else { 0.0 }
+    }
+
+    /// The acceleration of its support along gravity, in multiples of that, without what may be a solver's jitter.
+    fn sinks(&self, change: DVec3) -> f64 {
+        let gravity = self.config.gravity;
+        without_jitter(change.dot(gravity) / (gravity.length_squared() * self.dt()))
     }
 
     /// Brakes its velocity `along` a contact, relative to that, by at most `braked`, and gives the contact the reaction.
@@ -146,7 +152,6 @@ impl Tick<'_> {
     /// the share is that of two bodies which move on together, of any masses: a light one is neither pulled down faster
     /// than gravity nor weighed down by turns.
     fn load_on(&self, attachment: &Attachment, relative: f64) -> f64 {
-        let gravity = self.config.gravity;
         if relative == 0.0 {
             return 0.0;
         }
@@ -163,8 +168,7 @@ impl Tick<'_> {
                 self.state.load
             };
         };
-        let sinks = change.dot(gravity) / (gravity.length_squared() * self.dt());
-        let share = (1.0 - without_jitter(sinks) + self.state.load * relative) / (1.0 + relative);
+        let share = (1.0 - self.sinks(change) + self.state.load * relative) / (1.0 + relative);
         share.max(0.0)
     }
 

@@ -203,6 +203,47 @@ fn a_jump_off_a_light_box_on_the_floor_is_as_high_as_off_the_floor() {
     }
 }
 
+/// A jump that was asked for shortly before the landing follows it at once.
+#[test]
+fn a_jump_right_after_a_landing_on_a_box_is_as_high_as_off_the_floor() {
+    for (size, rate) in WORLDS {
+        for (half, mass, drop) in [
+            (0.5, 10.0, 0.3),
+            (0.5, 40.0, 0.02),
+            (0.5, 400.0, 1.0),
+            (0.5, 4_000.0, 1.0),
+        ] {
+            let config = ClimberConfig::walker();
+            let start = DVec3::Y * (2.0 * half + 0.4 + drop);
+            let mut scene = Scene::with(config, size, 1.0 / rate, 9.81, start);
+            add_floor(&mut scene, size, 1.0);
+            let hull = cuboid(DVec3::splat(half * size)).friction(1.0);
+            scene.add(awake(DVec3::Y * (half * size)), [(hull, mass)]);
+            let held = ClimberInput {
+                jump: true,
+                jump_held: true,
+                ..IDLE
+            };
+            let (mut jumps, mut top) = (0, 0.0f64);
+            for _ in 0..(1.2 * rate) as u32 {
+                let input = ClimberInput {
+                    jump: jumps == 0,
+                    ..held
+                };
+                let report = scene.tick(&input);
+                let jumped = |event: &&ClimberEvent| matches!(event, ClimberEvent::Jumped);
+                jumps += report.events.iter().filter(jumped).count();
+                if jumps > 0 {
+                    top = top.max(scene.climber.state().position.y / size);
+                }
+            }
+            let high = top - 2.0 * half - 0.4;
+            let told = format!("size {size}, {rate} Hz, {mass} kg, from {drop} m: {high} m");
+            assert!(jumps == 1 && (1.15..1.33).contains(&high), "{told}");
+        }
+    }
+}
+
 /// Nobody jumps off a crate that falls with it as off the ground: both get the same momentum.
 #[test]
 fn a_jump_off_a_crate_that_falls_keeps_the_momentum_of_both() {
