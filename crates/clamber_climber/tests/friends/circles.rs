@@ -46,7 +46,7 @@ fn climbers_that_hold_each_other_fall_together() {
                     let reports = crowd.step(DVec3::ZERO, |_| grip);
                     let time = f64::from(tick) / rate;
                     let fell = 20.0 - 0.5 * 9.81 * time * time;
-                    for who in 0..places.len() {
+                    for (who, report) in reports.iter().enumerate() {
                         let state = crowd.state(who);
                         let at = state.position.y / size;
                         let told = format!("{told}, {who} at {time} s: {at} m, {state:?}");
@@ -56,7 +56,7 @@ fn climbers_that_hold_each_other_fall_together() {
                         let jumps = |event: &ClimberEvent| {
                             matches!(event, ClimberEvent::MovedRepeatedly { .. })
                         };
-                        let jumped = reports[who].events.iter().any(jumps);
+                        let jumped = report.events.iter().any(jumps);
                         assert!(fell < 3.0 || !jumped, "{told}");
                         // Hands draw them together, or legs swing, by up to an arm's length.
                         assert!(
