@@ -13,6 +13,7 @@ use glam::DVec3;
 use super::Tick;
 use super::flying::RESTS;
 use super::pushing::JITTER;
+use crate::ClimberMode;
 use crate::event::Push;
 
 /// Cosine of the largest angle between the normals of contacts on the same side of the body: 60 degrees.
@@ -30,8 +31,9 @@ impl Tick<'_> {
     pub(super) fn push_aside(&mut self, wanted: DVec3) {
         let body = &self.config.body;
         let dt = self.dt();
-        let strikes = !self.state.mode.is_supported();
-        let is_free = strikes && self.carried.is_none();
+        let slips = self.state.mode == ClimberMode::Standing && self.is_slippery();
+        let strikes = slips || !self.state.mode.is_supported();
+        let is_free = slips || strikes && self.carried.is_none();
         self.recoil = DVec3::ZERO;
         self.wanted = wanted;
         let most = if strikes {

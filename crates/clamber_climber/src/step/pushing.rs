@@ -96,14 +96,21 @@ impl Tick<'_> {
             return;
         };
         if !self.has_flown {
-            self.state.load = self.load_on(&attachment);
-            let weight = self.weight(self.state.load);
+            let response = self.response_of(&attachment, self.config.gravity);
+            let borne = if response > 0.0 {
+                self.mass_borne()
+            } else {
+                0.0
+            };
+            let mass = self.config.body.mass;
+            self.state.load = self.load_on(&attachment, response * (mass + borne));
+            let weight = self.weight(mass);
             match self.pull {
                 Some(pull) => self.pull_on(&attachment, pull, weight),
                 None => self.recoil(&attachment),
             }
             if self.state.load > 0.0 {
-                self.add_to_support(&attachment, weight);
+                self.add_to_support(&attachment, weight + self.weight(borne));
             }
             return;
         }
@@ -116,21 +123,31 @@ impl Tick<'_> {
         }
     }
 
-    /// The impulse of a share of its weight over the tick.
-    fn weight(&self, share: f64) -> DVec3 {
-        self.config.gravity * (self.config.body.mass * self.dt() * share)
+    /// The impulse over the tick of the weight of a mass, as far as its support gets it.
+    fn weight(&self, mass: f64) -> DVec3 {
+        self.config.gravity * (mass * self.dt() * self.state.load)
+    }
+
+    /// The mass of all climbers that stand on it or hold it, or stand on those, kg.
+    fn mass_borne(&self) -> f64 {
+        let characters = self.obstacles.iter();
+        characters
+            .filter_map(|(_, obstacle)| obstacle.character())
+            .filter(|other| other.carried_by.is_some() && other.carried_by == self.rules.id)
+            .map(|other| other.mass)
+            .sum()
     }
 
     /// The share of its weight that its support gets in this tick: mass times gravity, less the support's acceleration.
-    /// Zero for a support that cannot be pushed.
+    /// `relative` is the mass, with that of those it bears, as a multiple of the support's. Zero for a support that
+    /// cannot be pushed.
     ///
     /// The support's acceleration includes what the weight gave to it in the last tick, as far as nothing held it. So
     /// the share is that of two bodies which move on together, of any masses: a light one is neither pulled down faster
     /// than gravity nor weighed down by turns.
-    fn load_on(&self, attachment: &Attachment) -> f64 {
+    fn load_on(&self, attachment: &Attachment, relative: f64) -> f64 {
         let gravity = self.config.gravity;
-        let response = self.response_of(attachment, gravity);
-        if response == 0.0 {
+        if relative == 0.0 {
             return 0.0;
         }
         let key = |attachment: &Attachment| (attachment.obstacle, attachment.material.key);
@@ -147,7 +164,6 @@ impl Tick<'_> {
             };
         };
         let sinks = change.dot(gravity) / (gravity.length_squared() * self.dt());
-        let relative = response * self.config.body.mass;
         let share = (1.0 - without_jitter(sinks) + self.state.load * relative) / (1.0 + relative);
         share.max(0.0)
     }
@@ -157,7 +173,7 @@ impl Tick<'_> {
         let Some(attachment) = self.attachment() else {
             return DVec3::ZERO;
         };
-        let weight = self.weight(self.state.load);
+        let weight = self.weight(self.config.body.mass);
         weight * self.response_of(&attachment, weight)
     }
 

@@ -53,15 +53,16 @@ impl Tick<'_> {
             self.event(ClimberEvent::Slipped);
             return self.leave(ClimberMode::Sliding);
         }
-        let own = own - self.left_behind(normal);
-        let walk = self.walk_velocity(normal, own);
+        let kept = own - self.left_behind(normal);
+        let (walk, has_slipped) = self.walk_velocity(normal, kept);
         if self.state.jump_buffer > 0.0 {
             return self.jump(walk);
         }
         // A slide is not over within a tick, unlike a start of the feet.
         let mean = if self.is_slippery() {
-            let own = own - normal * own.dot(normal);
-            (own + walk) * 0.5
+            // Feet that do not slip follow their ground at once.
+            let begins = if has_slipped { kept } else { own };
+            (begins - normal * begins.dot(normal) + walk) * 0.5
         } else {
             walk
         };
@@ -254,8 +255,9 @@ impl Tick<'_> {
         self.mover.holding_up(up, 0.0).is_some()
     }
 
-    /// Its own velocity along the ground, accelerated towards the velocity that the input asks for.
-    fn walk_velocity(&mut self, normal: DVec3, own: DVec3) -> DVec3 {
+    /// Its own velocity along the ground, accelerated towards the velocity that the input asks for, and whether it has
+    /// not got there yet.
+    fn walk_velocity(&mut self, normal: DVec3, own: DVec3) -> (DVec3, bool) {
         let ground = &self.config.ground;
         let up = self.config.up();
         let walk = self.input.walk;
@@ -281,7 +283,7 @@ impl Tick<'_> {
         }
         let walk = towards(own, wanted, change * self.dt());
         self.state.standing.shoved &= walk != wanted;
-        walk
+        (walk, walk != wanted)
     }
 
     /// What its ground has changed its own velocity by since the last tick, along itself, if that is slippery. Feet that
@@ -299,7 +301,7 @@ impl Tick<'_> {
     }
 
     /// True if its feet slip on its ground.
-    fn is_slippery(&self) -> bool {
+    pub(super) fn is_slippery(&self) -> bool {
         self.on.usable_friction() < 1.0
     }
 

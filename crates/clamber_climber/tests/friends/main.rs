@@ -20,3 +20,4 @@ mod room;
 #[allow(dead_code, reason = "shared with other targets")]
 #[path = "../climbing/scene.rs"]
 mod scene;
+mod weight;

@@ -1,6 +1,9 @@
 //! Bodies that are light: hit in rows, stood on, jumped off, walked on and fallen on.
 
-use clamber_climber::{Blow, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, TumbleConfig};
+use clamber_climber::{
+    Blow, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, ContactQuery, StepRules,
+    TumbleConfig,
+};
 use clamber_world::rapier3d::prelude::{
     ColliderBuilder, FixedJointBuilder, RigidBodyBuilder, RigidBodyHandle, Vector,
 };
@@ -385,6 +388,33 @@ fn who_slides_down_a_free_wedge_gives_it_its_own_momentum() {
                 slid > (0.2 * rate) as u32,
                 "size {size}, {rate} Hz: {slid} ticks"
             );
+        }
+    }
+}
+
+/// Feet on ice do not brake a collision: both go on at one speed, as in the air.
+#[test]
+fn who_slides_on_ice_into_a_crate_shares_its_momentum() {
+    let ice = |query: &ContactQuery<'_>| query.usual().with_friction(0.0);
+    for (size, rate) in WORLDS {
+        for mass in [1.0, 20.0, 80.0, 400.0] {
+            let config = ClimberConfig::walker();
+            let start = DVec3::Y * 0.405;
+            let mut scene = Scene::with(config, size, 1.0 / rate, 9.81, start).with_floor();
+            let body = awake(DVec3::new(2.0, 0.4, 0.0) * size).lock_rotations();
+            let hull = (cuboid(DVec3::splat(0.4 * size)), mass);
+            let bodies = [scene.add(body, [hull])];
+            scene.throw(DVec3::X * (2.9 * size), DVec3::ZERO);
+            for tick in 0..(3.0 * rate) as u32 {
+                scene.step_by(&IDLE, &StepRules::by(&ice));
+                scene.apply();
+                let has = momentum(&scene, &bodies).x / (MASS * 2.9 * size);
+                let told = format!("size {size}, {rate} Hz, {mass} kg, tick {tick}: {has}");
+                assert!((has - 1.0).abs() < 0.05, "{told}");
+            }
+            let apart = scene.velocity(bodies[0]).x - scene.climber.state().velocity.x;
+            scene.assert_standing(&format!("size {size}, {rate} Hz, {mass} kg"));
+            assert!(apart.abs() < 0.02 * size, "{mass} kg: {apart} m/s apart");
         }
     }
 }

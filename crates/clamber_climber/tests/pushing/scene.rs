@@ -1,7 +1,8 @@
 //! A climber in a rapier world, whose bodies get its pushes.
 
 use clamber_climber::{
-    Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, ClimberState, Push, StepReport,
+    Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, ClimberState, Push,
+    StepReport, StepRules,
 };
 use clamber_world::rapier3d::prelude::{
     Collider, ColliderBuilder, ColliderHandle, PhysicsWorld, RigidBodyBuilder, RigidBodyHandle,
@@ -118,6 +119,10 @@ impl Scene {
     }
 
     pub(crate) fn step(&mut self, input: &ClimberInput) -> StepReport {
+        self.step_by(input, &StepRules::default())
+    }
+
+    pub(crate) fn step_by(&mut self, input: &ClimberInput, rules: &StepRules<'_>) -> StepReport {
         self.before.record(&self.world.bodies);
         self.world.step();
         let fur = |_: ColliderHandle, collider: &Collider| {
@@ -130,7 +135,7 @@ impl Scene {
         let terrain = RapierTerrain::of_world(&self.world, &self.before).with_tags(&fur);
         let report = self
             .climber
-            .step(input, &[(ObstacleId(0), &terrain)], self.dt)
+            .step_with(input, &[(ObstacleId(0), &terrain)], rules, self.dt)
             .unwrap();
         self.pushes.clone_from(&report.pushes);
         report
