@@ -10,6 +10,7 @@ use std::process::ExitCode;
 
 use clamber::body::{Body, BodyFrame, Figure, Humanoid, Retarget};
 use clamber::geometry::Similarity;
+use clamber::glam::DVec3;
 use clamber::gltf::Rig;
 use clamber::render::{
     Camera, Drawn, Frame, Gpu, Image, Light, Overlay, RenderMeshId, Renderer, TextSize,
@@ -17,7 +18,6 @@ use clamber::render::{
 use clamber_scenes::bodies::{self, Mount, Scene, Stage};
 use clamber_scenes::{Creature, giant, picture};
 use clap::Parser;
-use glam::DVec3;
 
 /// Draws contact sheets of a climber's body.
 #[derive(Parser)]

@@ -1,7 +1,7 @@
 //! clamber in a custom engine: slices and a palette, without glTF and rapier.
 
+use clamber::glam::{DVec3, Vec3};
 use clamber::prelude::*;
-use glam::{DVec3, Vec3};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // A raft of two triangles; its left edge follows joint 0, its right edge joint 1.

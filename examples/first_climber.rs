@@ -1,8 +1,8 @@
 //! A character on rapier's terrain falls, lands on a turning platform, is carried round, and jumps off.
 
+use clamber::glam::DVec3;
 use clamber::prelude::*;
 use clamber::world::rapier3d::prelude::*;
-use glam::DVec3;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let dt = 1.0 / 60.0;

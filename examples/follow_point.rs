@@ -1,8 +1,8 @@
 //! An arrow in a shaking creature follows a point of skin; its velocity is measured.
 
 use clamber::geometry::Ray;
+use clamber::glam::{DVec3, Vec3};
 use clamber::prelude::*;
-use glam::{DVec3, Vec3};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let dt = 1.0 / 60.0;

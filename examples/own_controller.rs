@@ -3,10 +3,10 @@
 //! Jolt and box3d have such a mover, too. Everything above it is in this file: one struct, with one function for a
 //! tick.
 
+use clamber::glam::DVec3;
 use clamber::mover::{Ground, GroundProbe, Mover, MoverBody, MoverMemory, Path, StepUp, Walking};
 use clamber::prelude::*;
 use clamber_scenes::giant::giant;
-use glam::DVec3;
 
 const DT: f64 = 1.0 / 60.0;
 const GRAVITY: f64 = 9.81;

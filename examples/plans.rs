@@ -9,13 +9,13 @@ use std::sync::Arc;
 use std::sync::mpsc::channel;
 
 use clamber::climber::ContactQuery;
+use clamber::glam::DVec3;
 use clamber::gltf::{LoadOptions, Rig, load_with};
 use clamber::navigation::{
     Bot, BotConfig, ClimbGraph, Danger, Forecast, FutureSkin, GraphConfig, GraphSource, View,
 };
 use clamber::prelude::*;
 use clamber::world::HalfSpace;
-use glam::DVec3;
 
 type Failure = Box<dyn Error + Send + Sync>;
 

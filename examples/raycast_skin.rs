@@ -1,7 +1,7 @@
 //! A ray from above at a walking creature hits the posed skin, not the bind pose.
 
+use clamber::glam::DVec3;
 use clamber::prelude::*;
-use glam::DVec3;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let creature = clamber_scenes::beast::beast(6_000);

@@ -4,6 +4,7 @@ use std::error::Error;
 use std::io::Write;
 use std::path::PathBuf;
 
+use clamber::glam::DVec3;
 use clamber::gltf::load;
 use clamber::prelude::*;
 use clamber::render::{Camera, Drawn, Frame, Gif, Gpu, Look, RenderMesh, RenderMeshId, Renderer};
@@ -11,7 +12,6 @@ use clamber::world::rapier3d::prelude::*;
 use clamber_scenes::battle::{Battle, BattleOptions, TICK};
 use clamber_scenes::picture::{Stage, add_visual, light, orbit, sharp};
 use clamber_scenes::{giant, valley};
-use glam::DVec3;
 
 use crate::chase::Chase;
 use crate::effects::{Effects, View};

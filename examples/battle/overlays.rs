@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use clamber::geometry::Ray;
+use clamber::glam::{DVec3, Vec3};
 use clamber::mesh::{Part, PartId, VertexId};
 use clamber::prelude::*;
 use clamber::render::{Camera, Color, Image, Overlay, TextSize};
@@ -12,7 +13,6 @@ use clamber::world::rapier3d::prelude::*;
 use clamber_colossus::Sense;
 use clamber_scenes::battle::{Battle, CREATURE, TICK};
 use clamber_scenes::part_bounds::{JointMaps, PartBounds};
-use glam::{DVec3, Vec3};
 
 use crate::colors::{MAGENTA, ORANGE, SKY_BLUE, VERMILION, WHITE, YELLOW, opaque, seen_through};
 use crate::{OverlayKind, plans};

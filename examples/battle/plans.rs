@@ -1,12 +1,12 @@
 //! Overlays of what the bot means to do.
 
+use clamber::glam::DVec3;
 use clamber::mesh::TriangleId;
 use clamber::render::Overlay;
 use clamber::world::MaterialPoint;
 use clamber::world::Obstacle;
 use clamber_navigation::{Footing, Patch, PlanStep};
 use clamber_scenes::battle::{Battle, TICK};
-use glam::DVec3;
 
 use crate::colors::{MAGENTA, SKY_BLUE, VERMILION, WHITE, YELLOW, opaque, seen_through};
 use crate::overlays::{dot, nearer, posed};

@@ -8,10 +8,10 @@ mod vault;
 mod wall_run;
 
 use clamber::climber::CustomMode;
+use clamber::glam::DVec3;
 use clamber::prelude::*;
 use clamber::world::rapier3d::prelude::*;
 use dash::Dash;
-use glam::DVec3;
 use swim::Swim;
 use vault::Vault;
 use wall_run::WallRun;

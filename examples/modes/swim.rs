@@ -1,7 +1,7 @@
 //! Swimming in a box of water, which may flow or move. Y is up.
 
 use clamber::climber::{ClimberMode, CustomMode, ModeContext, NextMode};
-use glam::DVec3;
+use clamber::glam::DVec3;
 
 /// Depths below the floating position, metres: swimming begins below the first, and the climber stands up on the shore
 /// above the second. The gap between them avoids flicker.

@@ -1,8 +1,8 @@
 //! A vault over a wall of up to 1.2 m: up along the wall, then over it, and down onto it or behind it.
 
 use clamber::climber::{ClimberMode, CustomMode, ModeContext, NextMode};
+use clamber::glam::DVec3;
 use clamber::mover::LedgeProbe;
-use glam::DVec3;
 
 /// Index into [`ModeContext::memory`]: seconds since the vault began.
 const TAKEN: usize = 2;

@@ -1,8 +1,8 @@
 //! A wall run from the air: up to 1.5 s along walls in all, until the climber has stood on its feet again.
 
 use clamber::climber::{ClimberMode, CustomMode, ModeContext, NextMode};
+use clamber::glam::DVec3;
 use clamber::mover::Touch;
-use glam::DVec3;
 
 /// Index into [`ModeContext::memory`]: seconds of wall runs since the climber last stood.
 const RAN: usize = 3;

@@ -19,7 +19,8 @@ pub struct StepRules<'a> {
     pub modes: &'a [&'a dyn CustomMode],
     /// Velocity of the air, in world space, metres a second, such as the wind's. A climber that has touched nothing for
     /// a second takes it as its frame ([`ClimberState::base_velocity`]): steering in the air is measured against it.
-    /// By default zero.
+    /// The fastest fall is always measured against it. It moves no climber that does not steer: a wind that pushes is a
+    /// [`Blow`](crate::Blow) in each tick, as in the [guide](crate::guide#ground-that-moves). By default zero.
     pub air_velocity: DVec3,
     /// Id of this climber among the obstacles of others ([`ClimberGroup`](crate::ClimberGroup)). Of two climbers at one
     /// place, the ids decide who parts to which side; without them they stay there. `contact` gets it with each query,

@@ -23,7 +23,8 @@ pub enum ClimberError {
     ModeInUse(ClimberMode),
     /// The body of a new configuration has no room where the climber is.
     #[error(
-        "the new body would be {lacks} m deep in what is around the climber; try again elsewhere, or with a smaller one"
+        "the new body would be {} m deep in what is around the climber; try again elsewhere, or with a smaller one",
+        to_three_digits(*lacks)
     )]
     NoRoom {
         /// How deep the body would be in what is around it, metres.
@@ -52,6 +53,31 @@ impl From<clamber_mover::MoverError> for ClimberError {
             }
             clamber_mover::MoverError::NotFinite(name) => Self::NotFinite(name),
             _ => Self::NotFinite("body"),
+        }
+    }
+}
+
+/// The number to three digits, so that messages are short for bodies of any size.
+fn to_three_digits(x: f64) -> f64 {
+    format!("{x:.2e}").parse().unwrap_or(x)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_lack_of_room_is_told_to_three_digits_at_any_size() {
+        for (size, told) in [
+            (0.02, " 0.005 m "),
+            (1.0, " 0.25 m "),
+            (3.0, " 0.75 m "),
+            (100.0, " 25 m "),
+            (512.345, " 128 m "),
+        ] {
+            let lacks = 0.249_999_976_470_642_12 * size;
+            let found = ClimberError::NoRoom { lacks }.to_string();
+            assert!(found.contains(told), "size {size}: {found}");
         }
     }
 }

@@ -179,7 +179,8 @@ impl<'a> ContactQuery<'a> {
         }
     }
 
-    /// The rule of a one-way platform: [`ContactQuery::usual`] from above, and [`ContactRule::PASS`] otherwise.
+    /// The rule of a one-way platform: [`ContactQuery::usual`] from above, and [`ContactRule::PASS`] otherwise. To a
+    /// climber that jumps or falls past its edge, the platform is not there, so that hands do not catch it.
     pub fn one_way(&self) -> ContactRule {
         if self.is_from_above() {
             self.usual()

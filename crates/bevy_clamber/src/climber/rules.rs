@@ -70,8 +70,9 @@ pub struct ClimberModes(pub Vec<Box<dyn CustomMode + Send + Sync>>);
 
 /// A resource with the velocity of the air, in world space, metres a second: a wind. A climber that has touched nothing
 /// for a second steers against it; its greatest speed of fall is relative to it
-/// ([`StepRules::air_velocity`](clamber_climber::StepRules::air_velocity)). Zero by default. While it is not finite,
-/// climbers stand still.
+/// ([`StepRules::air_velocity`](clamber_climber::StepRules::air_velocity)). It moves no climber that does not steer.
+/// For a wind that pushes, [strike](super::ClimberInput::strike) the climber in each tick with a small blow. Zero by
+/// default. While it is not finite, climbers stand still.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Reflect)]
 #[reflect(Resource, Default, Clone, Debug, PartialEq)]
 pub struct AirVelocity(pub DVec3);

@@ -101,8 +101,10 @@ impl ClimberConfig {
     /// configuration does not change with the size: for 0.3 s a climber that let go grips nothing, and arms draw it
     /// into place below a ledge at 7.5 radii a second.
     ///
-    /// `size` is positive and finite. [`Climber::new`](crate::Climber::new) and
-    /// [`set_config`](crate::Climber::set_config) refuse the result of any other.
+    /// `size` is positive and finite. `scaled` itself refuses nothing: of any other size it makes a configuration that
+    /// [`Climber::new`](crate::Climber::new), [`set_config`](crate::Climber::set_config) and
+    /// [`try_resize`](crate::Climber::try_resize) refuse. Their
+    /// [`ClimberError::OutOfRange`](crate::ClimberError::OutOfRange) names `shake_time`, which they check first.
     ///
     /// ```
     /// use clamber_climber::ClimberConfig;
