@@ -219,7 +219,7 @@ impl<'a> ContactQuery<'a> {
     /// True if the climber comes from above, as a one-way platform asks: the contact's face is level enough to be stood
     /// on, and at the tick's beginning the climber's lowest point was not below the face's plane. Down to a
     /// [margin](crate::BodyConfig::margin) below, it counts as above unless it rises relative to the material. A
-    /// climber that stands on the same body, or hangs from its edge, is above it.
+    /// climber that stands on the same body, or hangs from its edge, is above it, and beside its walls below the feet.
     ///
     /// To drop through a platform, let the rule return [`ContactRule::PASS`] until the climber has fallen by a margin:
     /// for as long as a key is held, 0.05 s at least.
@@ -227,17 +227,21 @@ impl<'a> ContactQuery<'a> {
         let (state, contact) = (self.state, self.contact);
         let body = &self.config.body;
         let normal = contact.normal;
-        let rises = normal.dot(self.config.up()) > GRAZING;
+        let up = self.config.up();
+        let rises = normal.dot(up) > GRAZING;
+        let is_wall = normal.dot(up).abs() <= GRAZING;
         let (place, velocity) = match self.path() {
             Some(path) => (path.previous_position, path.velocity),
             None => (contact.point, DVec3::ZERO),
         };
         let height = (state.position - place).dot(normal) - body.radius;
         if self.is_supported_by_it(ClimberMode::Standing) {
-            return rises && height >= -SUNK * body.radius;
+            let feet = (state.position - place).dot(up) - body.radius;
+            let sunk = -SUNK * body.radius;
+            return rises && height >= sunk || is_wall && feet >= sunk;
         }
         if self.is_supported_by_it(ClimberMode::LedgeHanging) {
-            return rises;
+            return rises || is_wall;
         }
         let is_level = self.config.slope(normal) <= self.config.ground.stays_on_slope();
         let on = ON * body.margin;

@@ -92,7 +92,7 @@ impl Tick<'_> {
         let asked = before - self.was.dot(normal);
         let stays = asked <= self.jitter() || before - now < HELD * asked;
         let (wanted, air) = (self.wanted.dot(normal), self.rules.air_velocity.dot(normal));
-        let rests = now - wanted <= RESTS * self.config.gravity.length() * self.dt();
+        let rests = now - wanted <= self.rests_at();
         stays && (rests || now - air <= air - wanted)
     }
 
@@ -102,10 +102,16 @@ impl Tick<'_> {
         let normal = touch.normal;
         let is_known = self.presses_on(normal) && self.was_touched(touch);
         let blow = self.input.blow.map_or(DVec3::ZERO, |blow| blow.velocity);
+        let is_struck = -blow.dot(normal) > self.rests_at();
         let now = self.mover.velocity_of(touch).dot(normal);
         let before = self.base_was.dot(normal);
-        let is_same = is_known && blow == DVec3::ZERO && now <= before + self.jitter();
+        let is_same = is_known && !is_struck && now <= before + self.jitter();
         is_same.then_some((before, now))
+    }
+
+    /// The fastest contact of a body at rest.
+    fn rests_at(&self) -> f64 {
+        RESTS * self.config.gravity.length() * self.dt()
     }
 
     fn jitter(&self) -> f64 {

@@ -3,7 +3,8 @@
 use clamber_climber::{
     Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, ClimberState, StepRules,
 };
-use clamber_world::{HalfSpace, Obstacle, ObstacleId};
+use clamber_world::rapier3d::prelude::{ColliderBuilder, PhysicsWorld, RigidBodyBuilder, Vector};
+use clamber_world::{BodyPoses, HalfSpace, Obstacle, ObstacleId, RapierTerrain};
 use glam::{DQuat, DVec3};
 
 use crate::moving::MovingHalfSpace;
@@ -105,27 +106,39 @@ fn who_hangs_and_is_resized_hangs_on() {
 
 #[test]
 fn who_leaves_a_one_way_platform_with_the_grip_held_hangs_from_its_edge() {
+    let one_way = StepRules::by(&|query| query.one_way());
     for size in [0.05, 1.0, 20.0] {
         for rate in [30.0, 60.0, 240.0] {
             let half = DVec3::new(2.0, 0.3, 2.0) * size;
-            let mut platform = cuboid(half.as_vec3(), STONE);
-            placed(&mut platform, DVec3::NEG_Y * half.y, DQuat::IDENTITY);
-            let config = ClimberConfig::colossus_climber().scaled(size);
-            let at = DVec3::new(1.0, 0.4, 0.0) * size;
-            let mut climber = Climber::new(config, at).unwrap();
-            let dt = f64::sqrt(size) / rate;
-            for _ in 0..(1.5 * rate) as u32 {
-                moved(&mut platform, DVec3::NEG_Y * half.y, DQuat::IDENTITY);
-                let around: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(0), &platform)];
-                let input = ClimberInput {
-                    walk: DVec3::X,
-                    ..HOLD
-                };
-                let one_way = StepRules::by(&|query| query.one_way());
-                climber.step_with(&input, &around, &one_way, dt).unwrap();
+            let mut skin = cuboid(half.as_vec3(), STONE);
+            placed(&mut skin, DVec3::NEG_Y * half.y, DQuat::IDENTITY);
+            let mut world = PhysicsWorld::default();
+            let body = world.insert_body(RigidBodyBuilder::fixed());
+            let [x, y, z] = half.as_vec3().to_array();
+            let collider = ColliderBuilder::cuboid(x, y, z).translation(Vector::new(0.0, -y, 0.0));
+            world.insert_collider(collider, Some(body));
+            world.detect_collisions(&(), &());
+            let before = BodyPoses::new();
+            for is_skin in [true, false] {
+                let config = ClimberConfig::colossus_climber().scaled(size);
+                let at = DVec3::new(1.0, 0.4, 0.0) * size;
+                let mut climber = Climber::new(config, at).unwrap();
+                let dt = f64::sqrt(size) / rate;
+                for _ in 0..(1.5 * rate) as u32 {
+                    moved(&mut skin, DVec3::NEG_Y * half.y, DQuat::IDENTITY);
+                    let terrain = RapierTerrain::of_world(&world, &before);
+                    let platform: &dyn Obstacle = if is_skin { &skin } else { &terrain };
+                    let input = ClimberInput {
+                        walk: DVec3::X,
+                        ..HOLD
+                    };
+                    let around = [(ObstacleId(0), platform)];
+                    climber.step_with(&input, &around, &one_way, dt).unwrap();
+                }
+                let mode = climber.state().mode;
+                let told = format!("size {size}, {rate} Hz, skin {is_skin}");
+                assert_eq!(mode, ClimberMode::LedgeHanging, "{told}");
             }
-            let mode = climber.state().mode;
-            assert_eq!(mode, ClimberMode::LedgeHanging, "size {size}, {rate} Hz");
         }
     }
 }
