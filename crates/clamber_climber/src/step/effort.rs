@@ -91,13 +91,12 @@ impl Tick<'_> {
     /// not known, adds no acceleration.
     pub(super) fn feel(&mut self, motion: &PointMotion, was_placed: bool) {
         let before = self.state.support_velocity.filter(|_| !was_placed);
-        self.support_change = before.map(|before| motion.velocity - before);
         // Its own push has moved a free support as it was to, one that something holds not at all, and others in between.
-        let shaken = before.map(|before| {
+        self.support_change = before.map(|before| {
             let expected = nearest_between(before, self.base_was, motion.velocity);
             motion.velocity - expected
         });
-        self.shake_by(shaken.unwrap_or(DVec3::ZERO));
+        self.shake_by(self.support_change.unwrap_or(DVec3::ZERO));
         self.state.support_velocity = (!was_placed).then_some(motion.velocity);
     }
 

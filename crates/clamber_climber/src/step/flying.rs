@@ -9,7 +9,7 @@ use super::{LEVEL, NextMode, Tick};
 use crate::{ClimberConfig, ClimberEvent, ClimberMode};
 
 /// A contact at no more than this multiple of the speed that gravity adds in a tick is no impact.
-pub(super) const RESTS: f64 = 1.5;
+const RESTS: f64 = 1.5;
 
 /// How long a tumbling body that does not come to rest stays down after it has first touched ground, beyond the time in
 /// which it gets up, seconds. Without friction it would slide on for ever.
@@ -229,7 +229,7 @@ impl Tick<'_> {
         }
     }
 
-    fn friction_of(&self, touch: &Touch) -> f64 {
+    pub(super) fn friction_of(&self, touch: &Touch) -> f64 {
         if self.rules.contact.is_none() {
             return 1.0;
         }

@@ -11,7 +11,6 @@ use clamber_mover::Touch;
 use glam::DVec3;
 
 use super::Tick;
-use super::flying::RESTS;
 use super::pushing::JITTER;
 use crate::ClimberMode;
 use crate::event::Push;
@@ -20,7 +19,14 @@ use crate::event::Push;
 const SAME_SIDE: f64 = 0.5;
 
 /// What gives way by less than this share of what its own mass would is held.
-const HELD: f64 = 0.02;
+const HELD: f64 = 0.1;
+
+/// Who slides on ice was stopped if it went on by less than this share of its way.
+const STOPPED: f64 = 0.5;
+
+/// A contact at no more than this multiple of the speed that gravity adds in a tick is that of a body at rest on
+/// something, also in a lift that speeds up by as much as gravity.
+const LIES: f64 = 4.0;
 
 /// What was nearer than this multiple of the margin at the start of the tick was touched then.
 const TOUCHED: f64 = 2.0;
@@ -31,10 +37,9 @@ impl Tick<'_> {
     pub(super) fn push_aside(&mut self, wanted: DVec3) {
         let body = &self.config.body;
         let dt = self.dt();
-        let slips = self.state.mode == ClimberMode::Standing && self.is_slippery();
+        let slips = self.slips();
         let strikes = slips || !self.state.mode.is_supported();
         let is_free = slips || strikes && self.carried.is_none();
-        self.recoil = DVec3::ZERO;
         self.wanted = wanted;
         let most = if strikes {
             f64::INFINITY
@@ -71,7 +76,7 @@ impl Tick<'_> {
         let share = 1.0 / pushes.len().max(1) as f64;
         pushes.iter_mut().for_each(|push| push.impulse *= share);
         if is_free {
-            self.recoil = -taken * share / self.config.body.mass;
+            self.recoil -= taken * share / self.config.body.mass;
         } else {
             let given = pushes.iter().map(|push| push.impulse).sum();
             self.brace_against(given);
@@ -90,7 +95,7 @@ impl Tick<'_> {
         let normal = touch.normal;
         // The last hit was to slow it to the climber's velocity.
         let asked = before - self.was.dot(normal);
-        let stays = asked <= self.jitter() || before - now < HELD * asked;
+        let stays = self.slips() || asked <= self.jitter() || before - now < HELD * asked;
         let (wanted, air) = (self.wanted.dot(normal), self.rules.air_velocity.dot(normal));
         let rests = now - wanted <= self.rests_at();
         stays && (rests || now - air <= air - wanted)
@@ -104,22 +109,38 @@ impl Tick<'_> {
         let blow = self.input.blow.map_or(DVec3::ZERO, |blow| blow.velocity);
         let is_struck = -blow.dot(normal) > self.rests_at();
         let now = self.mover.velocity_of(touch).dot(normal);
-        let before = self.base_was.dot(normal);
-        let is_same = is_known && !is_struck && now <= before + self.jitter();
+        let before = if self.slips() {
+            now
+        } else {
+            self.base_was.dot(normal)
+        };
+        // What rests on something may be lifted with it.
+        let is_same = is_known && !is_struck && now <= before + self.rests_at();
         is_same.then_some((before, now))
     }
 
-    /// The fastest contact of a body at rest.
+    /// The fastest contact of a body at rest on something that may speed up.
     fn rests_at(&self) -> f64 {
-        RESTS * self.config.gravity.length() * self.dt()
+        LIES * self.config.gravity.length() * self.dt()
     }
 
     fn jitter(&self) -> f64 {
         JITTER * self.config.gravity.length() * self.dt()
     }
 
-    /// True if it was pressed against the same side in the last tick already.
+    /// True if it stands on ice.
+    fn slips(&self) -> bool {
+        self.state.mode == ClimberMode::Standing && self.is_slippery()
+    }
+
+    /// True if it was pressed against the same side in the last tick already: who stands, if that kept it from going
+    /// on.
     fn presses_on(&self, normal: DVec3) -> bool {
+        if self.carried.is_some() {
+            let went_on = -self.state.own_way.dot(normal);
+            let own = (self.base_was - self.was).dot(normal) * self.dt();
+            return own > 0.0 && went_on < STOPPED * own;
+        }
         let pressed = self.was_pressed.dot(normal);
         pressed > SAME_SIDE * self.was_pressed.length() * normal.length()
     }

@@ -44,20 +44,33 @@ impl Tick<'_> {
     /// The share of its jump speed that it gets from its support: all of it from what is held up by something else, and
     /// from what falls freely the share that the masses leave.
     pub(super) fn jump_share(&self) -> f64 {
-        let relative = self.attachment().map_or(0.0, |attachment| {
-            self.response_of(&attachment, self.config.up()) * self.config.body.mass
-        });
         let held = self.is_held_up();
-        held + (1.0 - held) / (1.0 + relative)
+        held + (1.0 - held) / (1.0 + self.relative(self.config.up()))
     }
 
-    /// How far something else holds up what it stands on: 1 if that has carried its weight or does not sink, 0 if it
-    /// falls as freely as the climber would. 1 if that is not known yet.
+    /// The climber's mass as a multiple of its support's, for impulses in a direction. 0 if that cannot be pushed.
+    pub(super) fn relative(&self, direction: DVec3) -> f64 {
+        self.attachment().map_or(0.0, |attachment| {
+            self.response_of(&attachment, direction) * self.config.body.mass
+        })
+    }
+
+    /// How far something else holds up what it stands on: 1 if all of its weight is carried, 0 if both fall freely. 1 in
+    /// the tick after a hit: how far what was hit gives way is not known yet.
     fn is_held_up(&self) -> f64 {
-        let stands = self.state.mode == ClimberMode::Standing;
+        if self.state.mode != ClimberMode::Standing {
+            return 0.0;
+        }
         let sinks = self.support_change.map_or(0.0, |change| self.sinks(change));
-        let held = self.state.load.max(1.0 - sinks);
-        if stands { held.clamp(0.0, 1.0) } else { 0.0 }
+        let load = self.state.load;
+        let relative = self.relative(self.config.gravity);
+        // After a landing it has not given any weight yet.
+        let held = if load == 0.0 {
+            1.0 - sinks
+        } else {
+            (1.0 - sinks + load * relative) / (1.0 + relative)
+        };
+        held.clamp(0.0, 1.0)
     }
 
     /// The acceleration of its support along gravity, in multiples of that, without what may be a solver's jitter.
@@ -196,12 +209,18 @@ impl Tick<'_> {
     }
 
     /// The reaction to starting, stopping and turning, and to being brought to the support's velocity. Both move on
-    /// together, so a light raft is not kicked away.
+    /// together, so a light raft is not kicked away. Ice does not take the climber along: it gets all of the reaction.
     fn recoil(&mut self, attachment: &Attachment) {
         let change = self.state.velocity - self.rides;
         let response = self.response_of(attachment, -change);
+        let mass = self.config.body.mass;
         if response > 0.0 {
-            let together = 1.0 / (response + 1.0 / self.config.body.mass);
+            let slips = self.state.mode == ClimberMode::Standing && self.is_slippery();
+            let together = if slips {
+                mass
+            } else {
+                1.0 / (response + 1.0 / mass)
+            };
             self.push_support(attachment, -change * together);
         }
     }

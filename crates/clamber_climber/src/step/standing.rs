@@ -51,6 +51,7 @@ impl Tick<'_> {
                 return next;
             }
             self.event(ClimberEvent::Slipped);
+            self.state.velocity += own;
             return self.leave(ClimberMode::Sliding);
         }
         let kept = own - self.left_behind(normal);
@@ -115,13 +116,35 @@ impl Tick<'_> {
             return self.lose_footing();
         }
         if is_shoved {
-            return self.find_new_ground(carried, DVec3::ZERO);
+            let struck = self.struck_on_ice();
+            return self.find_new_ground(carried, struck);
         }
         if moved.position != carried.position {
             self.keep_support(carried, moved.position);
         }
-        self.state.velocity = self.clipped(carried.velocity());
+        self.state.velocity = self.stopped(carried.velocity());
         NextMode::Stay
+    }
+
+    /// What hits have changed its velocity by, if its feet slip: nothing else brakes it, and its ground gets no reaction.
+    fn struck_on_ice(&mut self) -> DVec3 {
+        let struck = if self.is_slippery() {
+            self.recoil
+        } else {
+            DVec3::ZERO
+        };
+        self.rides += struck;
+        struck
+    }
+
+    /// Its velocity on its ground, clipped by the contacts of the last movement. Feet that slip do not brace it against
+    /// these: their impulses are no reaction for the ground.
+    fn stopped(&mut self, velocity: DVec3) -> DVec3 {
+        let clipped = self.clipped(velocity);
+        if self.is_slippery() {
+            self.rides += clipped - velocity;
+        }
+        clipped
     }
 
     /// Walks relative to its ground, and finds the ground at its new position. `mean` is its velocity over the tick.
@@ -148,9 +171,15 @@ impl Tick<'_> {
             }),
             ..self.path(target - press)
         };
-        let moved = self.slide(&path, Intent::Go);
+        let moved = if self.is_slippery() {
+            // What it strikes there gets the momentum of its slide, and not of what presses or parts it.
+            self.slide_at(&path, Intent::Go, carried.velocity() + mean)
+        } else {
+            self.slide(&path, Intent::Go)
+        };
         self.report.pushed_out -= press;
         self.state.position = moved.position;
+        let walk = walk + self.struck_on_ice();
         if let Some(position) = self.step_up(carried, target) {
             self.state.position = position;
             // It keeps its speed, but not the rise by which it rolled up the step's edge.
@@ -193,14 +222,15 @@ impl Tick<'_> {
 
     /// Stands on ground, with its own velocity clipped by the contacts of the last movement.
     fn stand_on(&mut self, ground: &Ground, own: DVec3) -> NextMode {
-        let from = self.carried.filter(|_| self.is_slippery());
+        let slips = self.friction_of(&ground.touch) < 1.0;
+        let from = self.carried.filter(|_| slips);
         self.state.position = ground.position;
         self.attach(&ground.touch, ground.position);
         let base = self.state.base_velocity;
-        // On ground that turns, the next point has another velocity, to which only friction takes it.
+        // On ice each point has its own velocity, to which only friction takes it.
         let change = from.map_or(DVec3::ZERO, |from| from.velocity() - base);
         let kept = change - ground.touch.normal * change.dot(ground.touch.normal);
-        self.state.velocity = self.clipped(base + own + kept);
+        self.state.velocity = self.stopped(base + own + kept);
         NextMode::Stay
     }
 
@@ -211,7 +241,8 @@ impl Tick<'_> {
             && !self.is_far_onto_another(carried, &ground)
             && self.is_corrected_clear(carried, ground.position)
         {
-            let moved = self.slide(&Path::placed(self.body(), ground.position), Intent::Go);
+            let path = Path::placed(self.body(), ground.position);
+            let moved = self.slide_at(&path, Intent::Go, carried.velocity() + walk);
             let ground = Ground {
                 position: moved.position,
                 ..ground
@@ -282,7 +313,13 @@ impl Tick<'_> {
             let gravity = self.config.gravity;
             own += (gravity - normal * gravity.dot(normal)) * self.dt();
         }
-        let walk = towards(own, wanted, change * self.dt());
+        let mut most = change * self.dt();
+        if friction < 1.0 {
+            // Friction brings a light body and the climber to one speed, and no farther.
+            let way = wanted - own;
+            most = most.min(way.length() / (1.0 + self.relative(way)));
+        }
+        let walk = towards(own, wanted, most);
         self.state.standing.shoved &= walk != wanted;
         (walk, walk != wanted)
     }

@@ -12,6 +12,7 @@ mod feet;
 mod gripping;
 mod hanging;
 mod ledges;
+mod lying;
 #[path = "../sizes/moving.rs"]
 mod moving;
 #[allow(dead_code, reason = "shared with other targets")]

@@ -8,6 +8,7 @@
 mod carts;
 mod hanging;
 mod hitting;
+mod ice;
 mod light;
 #[allow(dead_code, reason = "shared with other targets")]
 #[path = "../sizes/numbers.rs"]

@@ -1,0 +1,87 @@
+//! Who lies on something light that something else moves.
+
+use clamber_climber::{Blow, Climber, ClimberConfig, ClimberInput, ClimberMode};
+use clamber_world::{
+    Contact, HalfSpace, MaterialPoint, Obstacle, ObstacleId, PointMotion, SweepContact,
+    TargetMotion, WorldCapsule,
+};
+use glam::DVec3;
+
+use crate::moving::MovingHalfSpace;
+use crate::numbers::in_world_of_size;
+
+/// Ground that takes pushes as a body of 5 kg would, and does not give way.
+struct Held(MovingHalfSpace);
+
+impl Obstacle for Held {
+    fn overlap_capsule(&self, capsule: &WorldCapsule, contacts: &mut Vec<Contact>) {
+        self.0.overlap_capsule(capsule, contacts);
+    }
+
+    fn cast_capsule(
+        &self,
+        capsule: &WorldCapsule,
+        displacements: [DVec3; 2],
+        target: TargetMotion,
+    ) -> Option<SweepContact> {
+        self.0.cast_capsule(capsule, displacements, target)
+    }
+
+    fn motion(&self, point: &MaterialPoint, dt: f64) -> Option<PointMotion> {
+        self.0.motion(point, dt)
+    }
+
+    fn push_response(&self, _: &MaterialPoint, _: DVec3) -> f64 {
+        0.2
+    }
+}
+
+#[test]
+fn who_lies_on_a_plank_in_a_lift_that_speeds_up_goes_with_it() {
+    for (size, rate) in [
+        (1.0, 60.0),
+        (1.0, 30.0),
+        (1.0, 240.0),
+        (0.02, 60.0),
+        (100.0, 60.0),
+    ] {
+        for speeds_up in [0.0, 1.0, -1.0, 4.0] {
+            let config = ClimberConfig {
+                tumble: ClimberConfig::colossus_climber().tumble,
+                ..ClimberConfig::walker()
+            };
+            let config = in_world_of_size(config, size);
+            let mut climber = Climber::new(config, DVec3::Y * (0.4 * size)).unwrap();
+            let (dt, mut lay, mut most) = (1.0 / rate, 0.0, 0.0f64);
+            let height = |tick: u32| {
+                let time = f64::from(tick) * dt;
+                DVec3::Y * (0.5 * speeds_up * time * time * size)
+            };
+            for tick in 0..(3.0 * rate) as u32 {
+                let plank = Held(MovingHalfSpace {
+                    at_rest: HalfSpace::below(0.0),
+                    shifts: [height(tick), height(tick + 1)],
+                });
+                let blow = Blow {
+                    velocity: DVec3::X * (5.0 * size),
+                    ..Blow::default()
+                };
+                let input = ClimberInput {
+                    blow: (tick == 5).then_some(blow),
+                    ..ClimberInput::IDLE
+                };
+                let around: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(0), &plank)];
+                climber.step(&input, &around, dt).unwrap();
+                let state = climber.state();
+                if state.mode == ClimberMode::Tumbling {
+                    lay += dt;
+                    let rises = (height(tick + 1) - height(tick)) / dt;
+                    most = most.max((state.velocity - rises).y.abs() / size);
+                }
+            }
+            let told = format!("size {size}, {rate} Hz, {speeds_up} m/s²: {most} m/s off");
+            assert_eq!(climber.state().mode, ClimberMode::Standing, "{told}");
+            assert!(lay > 0.3 && most < 1.2, "{told} in {lay} s");
+        }
+    }
+}
