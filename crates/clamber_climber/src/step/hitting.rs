@@ -40,6 +40,7 @@ impl Tick<'_> {
         let slips = self.slips();
         let strikes = slips || !self.state.mode.is_supported();
         let is_free = slips || strikes && self.carried.is_none();
+        self.recoil = DVec3::ZERO;
         self.wanted = wanted;
         let most = if strikes {
             f64::INFINITY
@@ -76,7 +77,7 @@ impl Tick<'_> {
         let share = 1.0 / pushes.len().max(1) as f64;
         pushes.iter_mut().for_each(|push| push.impulse *= share);
         if is_free {
-            self.recoil -= taken * share / self.config.body.mass;
+            self.recoil = -taken * share / self.config.body.mass;
         } else {
             let given = pushes.iter().map(|push| push.impulse).sum();
             self.brace_against(given);

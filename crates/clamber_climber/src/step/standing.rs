@@ -242,7 +242,10 @@ impl Tick<'_> {
             && self.is_corrected_clear(carried, ground.position)
         {
             let path = Path::placed(self.body(), ground.position);
-            let moved = self.slide_at(&path, Intent::Go, carried.velocity() + walk);
+            // A correction of the same movement: what that hit stays hit.
+            let (wanted, recoil) = (self.wanted, self.recoil);
+            let moved = self.slide_at(&path, Intent::Go, wanted);
+            self.recoil += recoil;
             let ground = Ground {
                 position: moved.position,
                 ..ground
