@@ -219,7 +219,7 @@ impl Climber {
         };
         // A copy, so that nothing is changed if the tick is refused, or if an obstacle panics.
         let mut state = self.state;
-        let tick = Tick::new(&self.config, &mut state, asked, &mut self.scratch)?;
+        let mut tick = Tick::new(&self.config, &mut state, asked, &mut self.scratch)?;
         let Some(report) = tick.run() else {
             // A game's own obstacle may return numbers that are not finite. The climber waits where it is.
             self.scratch.contacts.clear();

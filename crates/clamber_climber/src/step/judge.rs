@@ -77,9 +77,11 @@ impl Judge<'_> {
 
     /// The rule for a support whose material is at `place`. Without a rule of the game's own, nothing ends a support.
     pub(super) fn rule_of_support(&self, support: &Support, place: DVec3) -> ContactRule {
+        if self.rules.contact.is_none() {
+            return ContactRule::GRIP;
+        }
         let on = &support.attachment;
-        let is_ruled = self.rules.contact.is_some();
-        let Some(obstacle) = self.obstacle(on.obstacle).filter(|_| is_ruled) else {
+        let Some(obstacle) = self.obstacle(on.obstacle) else {
             return ContactRule::GRIP;
         };
         let contact = Contact {

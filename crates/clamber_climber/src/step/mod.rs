@@ -142,6 +142,8 @@ pub(crate) fn body(config: &ClimberConfig, state: &ClimberState) -> MoverBody {
 }
 
 impl<'a> Tick<'a> {
+    // A tick is large, and would be copied.
+    #[inline]
     pub(crate) fn new(
         config: &'a ClimberConfig,
         state: &'a mut ClimberState,
@@ -204,7 +206,7 @@ impl<'a> Tick<'a> {
     }
 
     /// Brings the state to the end of the tick. `None` if it is not finite then.
-    pub(crate) fn run(mut self) -> Option<StepReport> {
+    pub(crate) fn run(&mut self) -> Option<StepReport> {
         let shake = self.state.shake;
         self.be_struck();
         self.count_down();
@@ -221,7 +223,7 @@ impl<'a> Tick<'a> {
         self.list_support();
         self.state.own_way = self.state.position - self.expected;
         let is_sound = !self.is_lost && self.state.is_finite();
-        is_sound.then_some(self.report)
+        is_sound.then(|| std::mem::take(&mut self.report))
     }
 
     /// Counts down the timers of late jumps, early jumps and open hands.

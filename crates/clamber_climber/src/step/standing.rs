@@ -223,12 +223,13 @@ impl Tick<'_> {
     /// Stands on ground, with its own velocity clipped by the contacts of the last movement.
     fn stand_on(&mut self, ground: &Ground, own: DVec3) -> NextMode {
         let slips = self.friction_of(&ground.touch) < 1.0;
-        let from = self.carried.filter(|_| slips);
+        let from = self.carried.as_ref().filter(|_| slips);
+        let from = from.map(Carried::velocity);
         self.state.position = ground.position;
         self.attach(&ground.touch, ground.position);
         let base = self.state.base_velocity;
         // On ice each point has its own velocity, to which only friction takes it.
-        let change = from.map_or(DVec3::ZERO, |from| from.velocity() - base);
+        let change = from.map_or(DVec3::ZERO, |from| from - base);
         let kept = change - ground.touch.normal * change.dot(ground.touch.normal);
         self.state.velocity = self.stopped(base + own + kept);
         NextMode::Stay
@@ -330,10 +331,13 @@ impl Tick<'_> {
     /// What its ground has changed its own velocity by since the last tick, along itself, if that is slippery. Feet that
     /// slip do not follow it by themselves: only friction takes them along.
     fn left_behind(&mut self, normal: DVec3) -> DVec3 {
-        let carried = self.carried.filter(|_| self.is_slippery());
-        let Some(carried) = carried.filter(|carried| carried.velocity_before.is_some()) else {
+        let known = |carried: &&Carried| carried.velocity_before.is_some();
+        let Some(carried) = self.carried.as_ref().filter(known) else {
             return DVec3::ZERO;
         };
+        if !self.is_slippery() {
+            return DVec3::ZERO;
+        }
         let kept = self.was - carried.velocity();
         let change = self.own_velocity() - kept;
         let along = change - normal * change.dot(normal);
