@@ -1,3 +1,5 @@
+use std::cell::OnceCell;
+
 use clamber_mover::ContactFilters;
 use clamber_world::{Contact, Obstacle, ObstacleId, WorldCapsule};
 use glam::DVec3;
@@ -198,9 +200,11 @@ impl Climber {
         let is_solid = |id: ObstacleId, of: &dyn Obstacle, at: &Contact| rule(id, of, at).solid;
         let is_ground = |id: ObstacleId, of: &dyn Obstacle, at: &Contact| rule(id, of, at).stand;
         let has_rule = rules.contact.is_some();
-        let keeps_off = has_rule && judge.keeps_off_curbs();
-        let is_step =
-            |id: ObstacleId, of: &dyn Obstacle, at: &Contact| !keeps_off || rule(id, of, at).step;
+        // Few ticks ask for steps.
+        let keeps_off = OnceCell::new();
+        let is_step = |id: ObstacleId, of: &dyn Obstacle, at: &Contact| {
+            !*keeps_off.get_or_init(|| judge.keeps_off_curbs()) || rule(id, of, at).step
+        };
         let filters = if has_rule {
             ContactFilters {
                 solid: Some(&is_solid),
