@@ -90,15 +90,15 @@ impl Tick<'_> {
 
     /// Its position before its own movement in this tick.
     pub(super) fn place(&self) -> DVec3 {
-        self.carried
-            .map_or(self.state.position, |carried| carried.position)
+        let carried = self.carried.as_ref();
+        carried.map_or(self.state.position, |carried| carried.position)
     }
 
     /// Its own velocity at the tick's beginning: relative to its support, and rotated with it.
     pub(super) fn own_velocity(&self) -> DVec3 {
         let own = self.was - self.base_was;
-        self.carried
-            .map_or(own, |carried| carried.motion.turn * own)
+        let carried = self.carried.as_ref();
+        carried.map_or(own, |carried| carried.motion.turn * own)
     }
 
     /// Its velocity if it does nothing in this tick: its own at the tick's beginning, on top of its support's.

@@ -91,7 +91,7 @@ impl Tick<'_> {
         }
         let body = self.body();
         // Who stands on the head of one that stands up is placed there.
-        let placed = self.carried.filter(|carried| !carried.swept);
+        let placed = self.carried.as_ref().filter(|carried| !carried.swept);
         let capsule = body.at(placed.map_or(self.began, |carried| carried.position));
         let apart = between(&other.capsule, &capsule);
         let up = self.config.up();

@@ -211,9 +211,9 @@ impl<'a> Tick<'a> {
         self.be_struck();
         self.count_down();
         self.be_carried();
-        self.expected = self
-            .carried
-            .map_or(self.expected, |carried| carried.position);
+        if let Some(carried) = &self.carried {
+            self.expected = carried.position;
+        }
         self.parting = self.parting();
         self.rides = self.carried_velocity();
         self.run_modes();

@@ -23,6 +23,9 @@ impl Tick<'_> {
     /// Gives the reaction to an impulse to what the climber stands on or holds, if that can be pushed. Without it a
     /// passenger would drive its cart by pushing against the cart's wall.
     pub(super) fn brace_against(&mut self, impulse: DVec3) {
+        if impulse == DVec3::ZERO {
+            return;
+        }
         if let Some(carried) = self.carried {
             self.push_support(&carried.support.attachment, -impulse);
         }
