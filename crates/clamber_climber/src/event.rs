@@ -141,7 +141,7 @@ pub enum ClimberEvent {
 ///   the same speed.
 /// - An obstacle that it runs into gets the same, but at most
 ///   [`BodyConfig::push_force`](crate::BodyConfig::push_force) times the tick. Who slides on ice hits it as in the air.
-/// - What brakes it while it slides or tumbles, or what it bounces off, gets the reaction.
+/// - While it slides or tumbles, the contact that brakes it gets the reaction. So does what it bounces off.
 /// - The support gets the reaction to all of this that the climber does while it stands or holds on: to running into
 ///   something, to starting, stopping and turning, and to a jump off it. So a passenger does not drive its cart by
 ///   pushing. A jump gives a light body that something holds up no more speed than the climber gets, and off a body that

@@ -95,7 +95,7 @@ impl ClimberGroup {
     }
 
     /// Finds a circle of climbers of whom each carries the next, and lets the one with the lowest id fall: it lets go in
-    /// its step. There is a circle if nobody who is not carried yet has a carrier who is.
+    /// its step. Call it when the carrier of everybody left is left as well: then there is a circle among them.
     fn break_circle<'a>(
         &mut self,
         climbers: impl Iterator<Item = (ObstacleId, &'a Climber)> + Clone,

@@ -35,8 +35,9 @@ pub struct ContactRule {
     ///
     /// - Below 1, as on ice: feet accelerate and brake by no more than this times
     ///   [`GroundConfig::friction`](crate::GroundConfig::friction), gravity pulls the climber down slopes that it stands
-    ///   on, and ground that speeds up or turns takes it along by no more than that. Hands that climb slip down along the hold at (1 - friction) times the
-    ///   [climbing speed](crate::GripConfig::climb_speed), times the sine of the hold's slope, but not off its end.
+    ///   on, and ground that speeds up or turns takes it along by no more than that. Hands that climb slip down along
+    ///   the hold at (1 - friction) times the [climbing speed](crate::GripConfig::climb_speed), times the sine of the
+    ///   hold's slope, but not off its end.
     /// - Above 1, as in mud: walking and climbing are this many times slower, and feet brake this many times harder down
     ///   from more than the walking speed.
     /// - Always: a factor on [`GroundConfig::slide_friction`](crate::GroundConfig::slide_friction) and

@@ -3,8 +3,8 @@
 //! - A giant of 6,258 vertices walks. One climber stands on it, another climbs from its foot to its head. They skin
 //!   what they touch. rapier's `KinematicCharacterController` stands on the same mesh in the giant's first pose. That
 //!   mesh is never posed again, so rapier sees no motion, and nothing is skinned for it. All take turns, tick by tick,
-//!   on one thread. Times are medians. What is gripped a rule for contacts says, which the climber that stands can do
-//!   without.
+//!   on one thread. Times are medians. A rule for contacts lets the climber grip everything. The one that stands
+//!   needs no rule, and is measured without and with it.
 //! - A thousand climbers are on ten giants of 10,000 vertices in a valley: of five climbers two stand, one walks, two
 //!   climb. Measured is the share of two cores that they take, and the time of as many of rapier's controllers on the
 //!   same giants as meshes that never move. None of those can climb, so they stand and walk.

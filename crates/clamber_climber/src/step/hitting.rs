@@ -24,8 +24,8 @@ const HELD: f64 = 0.1;
 /// Who slides on ice was stopped if it went on by less than this share of its way.
 const STOPPED: f64 = 0.5;
 
-/// A contact at no more than this multiple of the speed that gravity adds in a tick is that of a body at rest on
-/// something, also in a lift that speeds up by as much as gravity.
+/// A body that rests on something meets it at no more than this multiple of the speed that gravity adds in a tick, also
+/// in a lift that speeds up by as much as gravity.
 const LIES: f64 = 4.0;
 
 /// What was nearer than this multiple of the margin at the start of the tick was touched then.
@@ -102,8 +102,8 @@ impl Tick<'_> {
         stays && (rests || now - air <= air - wanted)
     }
 
-    /// The velocities, along its normal, in the last tick and in this one, of something that the climber touches still.
-    /// `None` for what it hits now, or what was itself hit by something else.
+    /// The velocities of a contact along its normal, in the last tick and in this one. `None` if the climber did not
+    /// touch it in the last tick, or if something else has hit it since.
     fn met_again(&self, touch: &Touch) -> Option<(f64, f64)> {
         let normal = touch.normal;
         let is_known = self.presses_on(normal) && self.was_touched(touch);
@@ -130,12 +130,12 @@ impl Tick<'_> {
     }
 
     /// True if it stands on ice.
-    fn slips(&self) -> bool {
+    pub(super) fn slips(&self) -> bool {
         self.state.mode == ClimberMode::Standing && self.is_slippery()
     }
 
-    /// True if it was pressed against the same side in the last tick already: who stands, if that kept it from going
-    /// on.
+    /// True if it was pressed against the same side in the last tick already. A climber that stands was, if it did not
+    /// get on in that direction.
     fn presses_on(&self, normal: DVec3) -> bool {
         if self.carried.is_some() {
             let went_on = -self.state.own_way.dot(normal);

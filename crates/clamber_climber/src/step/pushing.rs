@@ -218,8 +218,7 @@ impl Tick<'_> {
         let response = self.response_of(attachment, -change);
         let mass = self.config.body.mass;
         if response > 0.0 {
-            let slips = self.state.mode == ClimberMode::Standing && self.is_slippery();
-            let together = if slips {
+            let together = if self.slips() {
                 mass
             } else {
                 1.0 / (response + 1.0 / mass)

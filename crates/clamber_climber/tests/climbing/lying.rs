@@ -1,40 +1,12 @@
 //! Who lies on something light that something else moves.
 
 use clamber_climber::{Blow, Climber, ClimberConfig, ClimberInput, ClimberMode};
-use clamber_world::{
-    Contact, HalfSpace, MaterialPoint, Obstacle, ObstacleId, PointMotion, SweepContact,
-    TargetMotion, WorldCapsule,
-};
+use clamber_world::{HalfSpace, Obstacle, ObstacleId};
 use glam::DVec3;
 
+use crate::held::Held;
 use crate::moving::MovingHalfSpace;
 use crate::numbers::in_world_of_size;
-
-/// Ground that takes pushes as a body of 5 kg would, and does not give way.
-struct Held(MovingHalfSpace);
-
-impl Obstacle for Held {
-    fn overlap_capsule(&self, capsule: &WorldCapsule, contacts: &mut Vec<Contact>) {
-        self.0.overlap_capsule(capsule, contacts);
-    }
-
-    fn cast_capsule(
-        &self,
-        capsule: &WorldCapsule,
-        displacements: [DVec3; 2],
-        target: TargetMotion,
-    ) -> Option<SweepContact> {
-        self.0.cast_capsule(capsule, displacements, target)
-    }
-
-    fn motion(&self, point: &MaterialPoint, dt: f64) -> Option<PointMotion> {
-        self.0.motion(point, dt)
-    }
-
-    fn push_response(&self, _: &MaterialPoint, _: DVec3) -> f64 {
-        0.2
-    }
-}
 
 #[test]
 fn who_lies_on_a_plank_in_a_lift_that_speeds_up_goes_with_it() {
@@ -58,10 +30,11 @@ fn who_lies_on_a_plank_in_a_lift_that_speeds_up_goes_with_it() {
                 DVec3::Y * (0.5 * speeds_up * time * time * size)
             };
             for tick in 0..(3.0 * rate) as u32 {
-                let plank = Held(MovingHalfSpace {
+                let lift = MovingHalfSpace {
                     at_rest: HalfSpace::below(0.0),
                     shifts: [height(tick), height(tick + 1)],
-                });
+                };
+                let plank = Held(lift, 5.0);
                 let blow = Blow {
                     velocity: DVec3::X * (5.0 * size),
                     ..Blow::default()

@@ -11,6 +11,7 @@ mod crushing;
 mod feet;
 mod gripping;
 mod hanging;
+mod held;
 mod ledges;
 mod lying;
 #[path = "../sizes/moving.rs"]

@@ -9,6 +9,8 @@
 mod carrying;
 mod circles;
 mod crowd;
+#[path = "../climbing/held.rs"]
+mod held;
 mod landing;
 #[allow(dead_code, reason = "shared with other targets")]
 #[path = "../sizes/numbers.rs"]

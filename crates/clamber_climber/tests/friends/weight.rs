@@ -3,40 +3,12 @@
 use clamber_climber::{
     Climber, ClimberConfig, ClimberGroup, ClimberInput, ContactQuery, ContactRule, StepRules,
 };
-use clamber_world::{
-    Contact, HalfSpace, MaterialPoint, Obstacle, ObstacleId, PointMotion, SurfaceKind, SurfaceTag,
-    SweepContact, TargetMotion, WorldCapsule,
-};
+use clamber_world::{HalfSpace, Obstacle, ObstacleId, SurfaceKind, SurfaceTag};
 use glam::DVec3;
 
 use crate::crowd::{IDLE, RATES, SIZES};
+use crate::held::Held;
 use crate::numbers::in_world_of_size;
-
-/// Scales: a half space that takes pushes as a body of a mass would, and does not move.
-struct Scales(HalfSpace, f64);
-
-impl Obstacle for Scales {
-    fn overlap_capsule(&self, capsule: &WorldCapsule, contacts: &mut Vec<Contact>) {
-        self.0.overlap_capsule(capsule, contacts);
-    }
-
-    fn cast_capsule(
-        &self,
-        capsule: &WorldCapsule,
-        displacements: [DVec3; 2],
-        target: TargetMotion,
-    ) -> Option<SweepContact> {
-        self.0.cast_capsule(capsule, displacements, target)
-    }
-
-    fn motion(&self, point: &MaterialPoint, dt: f64) -> Option<PointMotion> {
-        self.0.motion(point, dt)
-    }
-
-    fn push_response(&self, _: &MaterialPoint, _: DVec3) -> f64 {
-        1.0 / self.1
-    }
-}
 
 fn grips_friends(query: &ContactQuery<'_>) -> ContactRule {
     query.usual().with_grip(true)
@@ -44,7 +16,7 @@ fn grips_friends(query: &ContactQuery<'_>) -> ContactRule {
 
 /// The force on the scales, as a multiple of one climber's weight, after all have come to rest.
 fn weighed(
-    scales: &Scales,
+    scales: &Held<HalfSpace>,
     config: ClimberConfig,
     places: &[DVec3],
     input: &ClimberInput,
@@ -86,7 +58,7 @@ fn a_tower_weighs_as_much_as_all_of_its_climbers() {
         for rate in RATES {
             for count in 1..=4 {
                 let config = in_world_of_size(ClimberConfig::walker(), size);
-                let scales = Scales(HalfSpace::below(0.0), 5.0);
+                let scales = Held(HalfSpace::below(0.0), 5.0);
                 let places: Vec<_> = (0..count)
                     .map(|index| DVec3::Y * ((0.4 + 0.8 * f64::from(index)) * size))
                     .collect();
@@ -110,7 +82,7 @@ fn who_hangs_from_a_climber_that_hangs_weighs_on_its_hold() {
             let mut config = in_world_of_size(config, size);
             config.grip.as_mut().unwrap().max_overhang = 1.7;
             let ceiling = HalfSpace::behind(DVec3::Y * (6.0 * size), DVec3::NEG_Y).unwrap();
-            let scales = Scales(ceiling.with_tag(SurfaceTag::new(SurfaceKind::Fur)), 5_000.0);
+            let scales = Held(ceiling.with_tag(SurfaceTag::new(SurfaceKind::Fur)), 5_000.0);
             let grip = ClimberInput { grip: true, ..IDLE };
             for count in [1, 2] {
                 let places = [DVec3::Y * (5.5 * size), DVec3::Y * (4.5 * size)];
