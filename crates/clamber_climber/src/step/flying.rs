@@ -246,13 +246,13 @@ impl Tick<'_> {
         if self.state.crushed {
             return NextMode::Stay;
         }
-        let slope = self.config.ground.max_slope;
-        if let Some(ground) = self.held_up(self.state.position, slope) {
+        if let Some(ground) = self.ground_met(falling) {
             return self.land_on(&ground, falling);
         }
         let up = self.config.up();
-        let touched = self.mover.touched();
-        let is_steep = touched.iter().any(|touch| touch.normal.dot(up) > GRAZING);
+        let mut touched = self.mover.touched().iter();
+        let is_steep =
+            touched.any(|touch| touch.normal.dot(up) > GRAZING && !self.leaves(touch, falling));
         let was_sliding = self.state.mode == ClimberMode::Sliding;
         let is_sliding = is_steep || was_sliding && self.is_beside_slope(self.state.position);
         match (is_sliding, was_sliding) {
@@ -260,6 +260,20 @@ impl Tick<'_> {
             (false, true) => NextMode::Change(ClimberMode::Falling),
             _ => NextMode::Stay,
         }
+    }
+
+    /// The ground that it came down on. Not one that it leaves, as a climber does that jumps while a friend is pressed
+    /// into it from below.
+    fn ground_met(&mut self, falling: DVec3) -> Option<Ground> {
+        let slope = self.config.ground.max_slope;
+        let ground = self.held_up(self.state.position, slope)?;
+        (!self.leaves(&ground.touch, falling)).then_some(ground)
+    }
+
+    /// True if a body at a velocity moves away from what it touches.
+    fn leaves(&self, touch: &Touch, velocity: DVec3) -> bool {
+        let own = velocity - self.mover.velocity_of(touch);
+        own.dot(touch.normal) > self.slow()
     }
 
     /// Lands on ground, and keeps its speed along it.
@@ -299,8 +313,7 @@ impl Tick<'_> {
         if self.state.tumbling.down > 0.0 {
             self.state.tumbling.down += self.dt();
         }
-        let slope = self.config.ground.max_slope;
-        let held_up = self.held_up(self.state.position, slope);
+        let held_up = self.ground_met(falling);
         // A crushed climber does not get up.
         let Some(ground) = held_up.filter(|_| !self.state.crushed) else {
             self.state.tumbling.still = 0.0;

@@ -160,6 +160,41 @@ fn a_jump_off_a_friend_who_jumps_is_a_jump() {
     }
 }
 
+/// A friend, lifted by another one's jump, is pressed from below into one that stands on a shelf, and jumps.
+#[test]
+fn a_jump_is_not_over_where_a_friend_comes_up_from_below() {
+    for rate in RATES {
+        for aside in [0.1, 0.3, 0.5, 0.65] {
+            for lag in 0..(0.3 * rate) as u32 {
+                let place = |height: f64| DVec3::new(-aside, height, 0.0);
+                let above = DVec3::new(0.0, 2.0, 0.0);
+                let mut crowd = Crowd::new(
+                    ClimberConfig::walker(),
+                    &[place(0.4), place(1.2), above],
+                    rate,
+                );
+                // It stands on the edge of a shelf.
+                crowd.add_box(DVec3::new(0.5, 1.55, 0.0), DVec3::new(0.5, 0.05, 1.0));
+                crowd.rest(0.2);
+                let told = format!("{rate} Hz, {aside} m aside, {lag} ticks later");
+                let standing = crowd.state(2).mode == ClimberMode::Standing;
+                assert!(standing, "{told}: {:?}", crowd.state(2));
+                let (from, mut top) = (crowd.position(2).y, 0.0_f64);
+                for tick in 0..(1.2 * rate) as u32 {
+                    let reports = crowd.step(DVec3::ZERO, |index| ClimberInput {
+                        jump: index == 0 && tick == 0 || index == 2 && tick == lag,
+                        ..IDLE
+                    });
+                    let has_jumped = reports[2].events.contains(&ClimberEvent::Jumped);
+                    assert_eq!(has_jumped, tick == lag, "{told}, tick {tick}");
+                    top = top.max(crowd.position(2).y - from);
+                }
+                assert!((1.2..1.4).contains(&top), "{told}: {top}");
+            }
+        }
+    }
+}
+
 #[test]
 fn who_stands_on_a_friend_that_is_gone_or_put_elsewhere_falls_or_goes_along() {
     for rate in RATES {
