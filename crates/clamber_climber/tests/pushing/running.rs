@@ -104,6 +104,51 @@ fn two_contacts_share_the_push_force_on_one_body_or_two() {
     }
 }
 
+/// What a climber gives, tick by tick, to a box that hangs beside a step which it climbs. All moves along with a frame.
+fn pushes_beside_a_step(frame: DVec3, rise: f32, low: f32, beside: f32) -> Vec<DVec3> {
+    let mut scene = Scene::new(0.0, DVec3::new(0.0, 0.4, 0.0));
+    let block = |from: f32, until: f32, top: f32| {
+        let (long, middle) = ((until - from) / 2.0, (until + from) / 2.0);
+        let at = Vector::new(middle, top - 2.0, 0.0);
+        (cuboid(long, 2.0, 2.0).translation(at), 1.0)
+    };
+    let floors = [block(-5.0, 0.8, 0.0), block(0.8, 9.0, rise)];
+    let floors = scene.add(RigidBodyBuilder::kinematic_velocity_based(), floors);
+    let at = Vector::new(0.0, low + 2.0, beside + 2.0);
+    let hangs = RigidBodyBuilder::dynamic().translation(at);
+    let hangs = scene.add(hangs, [(cuboid(9.0, 2.0, 2.0), 1.0)]);
+    for body in [floors, hangs] {
+        scene.world.bodies[body].set_linvel(frame.as_vec3(), true);
+    }
+    scene.throw(DVec3::ZERO, frame);
+    let pushes = (0..40).map(|_| {
+        scene.step(&walk(DVec3::X));
+        sum(&scene.pushes)
+    });
+    pushes.collect()
+}
+
+/// Its feet are set down on the step when its movement is over: what they then come upon is pushed by that movement.
+#[test]
+fn pushes_beside_a_step_are_the_same_in_every_frame() {
+    for rise in [0.15, 0.2, 0.3] {
+        for low in 0..10 {
+            for beside in 0..10 {
+                let (low, beside) = (0.5 + 0.06 * low as f32, 0.04 * beside as f32);
+                let at_rest = pushes_beside_a_step(DVec3::ZERO, rise, low, beside);
+                for frame in [DVec3::X, DVec3::NEG_X, DVec3::Z, DVec3::NEG_Z, DVec3::Y] {
+                    let moving = pushes_beside_a_step(frame * 30.0, rise, low, beside);
+                    for (tick, (push, other)) in at_rest.iter().zip(&moving).enumerate() {
+                        let told = format!("{rise} m, {low} m, {beside} m, {frame}, tick {tick}");
+                        let off = push.distance(*other);
+                        assert!(off < 0.05, "{told}: {push}, {other}");
+                    }
+                }
+            }
+        }
+    }
+}
+
 /// Stands, walks against a wall, jumps and lands.
 fn course(tick: u32) -> ClimberInput {
     ClimberInput {
