@@ -152,6 +152,11 @@ impl<'a> Mover<'a> {
         }
     }
 
+    /// True if there is another character among the obstacles.
+    pub fn has_characters(&self) -> bool {
+        self.has_characters
+    }
+
     /// True if a contact is with another character
     /// ([`Obstacle::character`](clamber_world::Obstacle::character)).
     pub fn is_character(&self, touch: &Touch) -> bool {

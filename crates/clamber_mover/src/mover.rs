@@ -94,6 +94,7 @@ impl<'a> Mover<'a> {
     ///
     /// # Errors
     /// [`MoverError::OutOfRange`] if `dt` is not positive and finite.
+    #[inline]
     pub fn new(
         obstacles: &'a [(ObstacleId, &'a dyn Obstacle)],
         dt: f64,

@@ -64,6 +64,9 @@ impl Mover<'_> {
         limit: Option<HalfSpace>,
         velocity_of: impl Fn(&Touch, DVec3) -> DVec3,
     ) -> DVec3 {
+        if limit.is_none() && self.touched().is_empty() {
+            return velocity;
+        }
         let mut half_spaces = [HalfSpace {
             normal: DVec3::Y,
             offset: 0.0,

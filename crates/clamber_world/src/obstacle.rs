@@ -126,8 +126,9 @@ impl PointMotion {
     /// True if the positions, the velocity and the rotations are finite. The area ratio and the stretches are not
     /// checked.
     pub fn is_finite(&self) -> bool {
-        let vectors = [self.position, self.previous_position, self.velocity];
-        vectors.iter().all(|v| v.is_finite())
+        // Zero times a number is zero, unless the number is infinite or NaN: one test for all of them.
+        let vectors = self.position * 0.0 + self.previous_position * 0.0 + self.velocity * 0.0;
+        vectors == DVec3::ZERO
             && self.turn.is_finite()
             && self.frame.is_none_or(|frame| frame.is_finite())
     }

@@ -27,7 +27,7 @@ impl ClimberState {
         if let Some(velocity) = self.support_velocity {
             hash.vector(velocity);
         }
-        for (_, x) in self.numbers() {
+        for x in self.numbers() {
             hash.word(x.to_bits());
         }
         for x in self.memory {

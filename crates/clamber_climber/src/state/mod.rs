@@ -92,6 +92,23 @@ pub const MEMORY: usize = 8;
 /// How much the length of the heading may differ from 1, so that a state can be saved with rounded decimals.
 const UNIT: f64 = 1e-6;
 
+/// Names of the state's numbers.
+const NAMES: [&str; 13] = [
+    "stamina",
+    "hit_points",
+    "hanging.arm",
+    "ledge_hanging.pull_up",
+    "ledge_hanging.blocked",
+    "hanging.calm",
+    "tumbling.still",
+    "tumbling.down",
+    "coyote",
+    "jump_buffer",
+    "open_handed",
+    "untouched",
+    "load",
+];
+
 impl ClimberState {
     pub(crate) fn new(position: DVec3, up: DVec3) -> Self {
         Self {
@@ -132,7 +149,7 @@ impl ClimberState {
         if !is_consistent && !self.mode.is_custom() {
             return Err(ClimberError::Support(self.mode));
         }
-        for (name, found) in self.numbers() {
+        for (name, found) in NAMES.into_iter().zip(self.numbers()) {
             let is_share = matches!(name, "stamina" | "hit_points" | "ledge_hanging.pull_up");
             let (range, most) = if is_share {
                 ("from 0 to 1", 1.0)
@@ -181,34 +198,31 @@ impl ClimberState {
         ]
     }
 
-    /// Every number, with its name.
-    fn numbers(&self) -> [(&'static str, f64); 13] {
+    /// Every number, in the order of [`NAMES`].
+    fn numbers(&self) -> [f64; NAMES.len()] {
         [
-            ("stamina", self.stamina),
-            ("hit_points", self.hit_points),
-            ("hanging.arm", self.hanging.arm),
-            ("ledge_hanging.pull_up", self.ledge_hanging.pull_up),
-            ("ledge_hanging.blocked", self.ledge_hanging.blocked),
-            ("hanging.calm", self.hanging.calm),
-            ("tumbling.still", self.tumbling.still),
-            ("tumbling.down", self.tumbling.down),
-            ("coyote", self.coyote),
-            ("jump_buffer", self.jump_buffer),
-            ("open_handed", self.open_handed),
-            ("untouched", self.untouched),
-            ("load", self.load),
+            self.stamina,
+            self.hit_points,
+            self.hanging.arm,
+            self.ledge_hanging.pull_up,
+            self.ledge_hanging.blocked,
+            self.hanging.calm,
+            self.tumbling.still,
+            self.tumbling.down,
+            self.coyote,
+            self.jump_buffer,
+            self.open_handed,
+            self.untouched,
+            self.load,
         ]
     }
 
     pub(crate) fn is_finite(&self) -> bool {
         // Zero times a number is zero, unless the number is infinite or NaN: one test for all of them.
-        let vectors = self.vectors().into_iter();
-        let vectors = vectors.fold(DVec3::ZERO, |sum, v| sum + v * 0.0);
+        let vectors = self.vectors();
+        let vectors = vectors.iter().fold(DVec3::ZERO, |sum, v| sum + *v * 0.0);
         let numbers = self.memory.iter().fold(0.0, |sum, x| sum + x * 0.0);
-        let numbers = self
-            .numbers()
-            .iter()
-            .fold(numbers, |sum, (_, x)| sum + x * 0.0);
+        let numbers = self.numbers().iter().fold(numbers, |sum, x| sum + x * 0.0);
         vectors == DVec3::ZERO
             && numbers == 0.0
             && self.support.is_none_or(|support| support.is_finite())

@@ -37,6 +37,9 @@ impl Tick<'_> {
     /// The displacement in this tick by which it parts from the climbers that it overlaps: from each by the other's
     /// share of their mass. Walls stop it like any other movement.
     pub(super) fn parting(&self) -> DVec3 {
+        if !self.mover.has_characters() {
+            return DVec3::ZERO;
+        }
         let (mut way, mut most) = (DVec3::ZERO, 0.0_f64);
         for (id, other) in self.others() {
             let others = self.config.body.others.between(other.others);

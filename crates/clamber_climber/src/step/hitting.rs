@@ -35,13 +35,16 @@ impl Tick<'_> {
     /// Pushes the obstacles that kept the body from moving at the velocity `wanted`, except those that it stands on or
     /// holds.
     pub(super) fn push_aside(&mut self, wanted: DVec3) {
+        self.recoil = DVec3::ZERO;
+        self.wanted = wanted;
+        if self.mover.touched().is_empty() {
+            return;
+        }
         let body = &self.config.body;
         let dt = self.dt();
         let slips = self.slips();
         let strikes = slips || !self.state.mode.is_supported();
         let is_free = slips || strikes && self.carried.is_none();
-        self.recoil = DVec3::ZERO;
-        self.wanted = wanted;
         let most = if strikes {
             f64::INFINITY
         } else {

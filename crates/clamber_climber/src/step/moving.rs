@@ -170,7 +170,7 @@ impl Tick<'_> {
 
     /// Adds the support to the contacts.
     pub(super) fn list_support(&mut self) {
-        let Some(support) = self.state.support else {
+        let Some(support) = &self.state.support else {
             return;
         };
         let phase = match self.state.mode {

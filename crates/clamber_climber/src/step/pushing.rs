@@ -215,6 +215,9 @@ impl Tick<'_> {
     /// together, so a light raft is not kicked away. Ice does not take the climber along: it gets all of the reaction.
     fn recoil(&mut self, attachment: &Attachment) {
         let change = self.state.velocity - self.rides;
+        if change == DVec3::ZERO {
+            return;
+        }
         let response = self.response_of(attachment, -change);
         let mass = self.config.body.mass;
         if response > 0.0 {

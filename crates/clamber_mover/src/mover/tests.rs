@@ -113,12 +113,29 @@ fn a_path_that_is_not_finite_leaves_the_body_at_its_start() {
             arm(broken, 1.0),
             walking(DVec3::Y, bad),
             walking(broken, 0.8),
-            Path {
+        ];
+        let vectors = [0, 1, 2].map(|axis| {
+            let mut broken = DVec3::ZERO;
+            broken[axis] = bad;
+            let target = Path {
                 target: broken,
                 ..path
-            },
-        ];
-        for path in paths {
+            };
+            let frame = Path {
+                frame: broken,
+                ..path
+            };
+            let low = Path {
+                start_axis: [broken, DVec3::ZERO],
+                ..path
+            };
+            let high = Path {
+                start_axis: [DVec3::ZERO, broken],
+                ..path
+            };
+            [target, frame, low, high]
+        });
+        for path in paths.into_iter().chain(vectors.into_iter().flatten()) {
             let moved = mover.slide(&path);
             assert_eq!((moved.position, moved.is_clear), (DVec3::ZERO, false));
         }

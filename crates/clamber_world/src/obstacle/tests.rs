@@ -9,6 +9,7 @@ use clamber_surface::surface::SkinnedSurface;
 use glam::Vec3;
 
 use super::*;
+use crate::Attachment;
 
 /// A creature's skin as an obstacle with only the three required methods, and bounds if wanted.
 struct Least<'a> {
@@ -130,6 +131,48 @@ fn defaults_find_nothing_for_invalid_input() {
         assert_eq!(least.cast_ray(place, bad, 1.0), None);
     }
     assert_eq!(least.cast_ray(place, DVec3::ZERO, 1.0), None);
+}
+
+/// Every axis of every vector counts, and the largest numbers are finite.
+#[test]
+fn one_number_that_is_not_finite_is_found_wherever_it_stands() {
+    let most = DVec3::splat(f64::MAX);
+    let motion = PointMotion {
+        velocity: -most,
+        ..PointMotion::translated(most, most, 1.0)
+    };
+    assert!(motion.is_finite());
+    let attachment = Attachment {
+        obstacle: ObstacleId(0),
+        material: MaterialPoint {
+            key: 0,
+            coordinates: [-f64::MAX; 3],
+        },
+        point: most,
+        frame: DQuat::IDENTITY,
+        offset: -most,
+    };
+    assert!(attachment.is_finite());
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        for axis in 0..3 {
+            let broken = |v: &mut DVec3| v[axis] = bad;
+            let mut motions = [motion; 4];
+            broken(&mut motions[0].position);
+            broken(&mut motions[1].previous_position);
+            broken(&mut motions[2].velocity);
+            motions[3].turn = DQuat::from_xyzw(0.0, bad, 0.0, 1.0);
+            let mut attachments = [attachment; 4];
+            broken(&mut attachments[0].point);
+            broken(&mut attachments[1].offset);
+            attachments[2].material.coordinates[axis] = bad;
+            attachments[3].frame = DQuat::from_xyzw(0.0, bad, 0.0, 1.0);
+            for index in 0..4 {
+                let told = format!("{bad}, axis {axis}, vector {index}");
+                assert!(!motions[index].is_finite(), "{told}");
+                assert!(!attachments[index].is_finite(), "{told}");
+            }
+        }
+    }
 }
 
 #[test]

@@ -387,7 +387,8 @@ impl Obstacle for RapierTerrain<'_> {
         self.with_queries(|queries| {
             for (handle, collider) in queries.intersect_aabb_conservative(reach.bounds()) {
                 let pose = pose_of(collider.position());
-                let ends = local.ends.map(|end| pose.inverse_transform(end));
+                let [a, b] = local.ends;
+                let ends = [pose.inverse_transform(a), pose.inverse_transform(b)];
                 let tag = self.tag(handle, collider);
                 overlap_shape(collider.shape(), ends, radius, &mut |found| {
                     let contact = found.in_world(&pose, self.origin, key_of(handle));

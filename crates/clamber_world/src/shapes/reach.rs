@@ -34,27 +34,26 @@ pub struct Reach {
 impl Reach {
     /// Boxes around everything within `distance` of the capsule's segment.
     pub fn new(path: &MovingCapsule, distance: f64) -> Self {
-        let boxes = [path.start, path.end].map(|[a, b]| {
-            let (low, high) = (a.min(b), a.max(b));
-            let size = low.abs().max(high.abs()).max_element();
-            let around = DVec3::splat((distance + (size + distance) * LOOSE).min(ENDLESS));
-            (low - around, high + around)
-        });
+        let (start, end) = (
+            box_around(path.start, distance),
+            box_around(path.end, distance),
+        );
         Self {
-            low: boxes.map(|(low, _)| low),
-            high: boxes.map(|(_, high)| high),
+            low: [start.0, end.0],
+            high: [start.1, end.1],
         }
     }
 
     /// Box around everything within `radius` of a segment at rest. The radius may be infinite. `None` if an end is not
     /// finite or beyond 2^100, or if the radius is NaN or negative.
     pub fn around(ends: [DVec3; 2], radius: f64) -> Option<Self> {
-        let path = MovingCapsule {
-            start: ends,
-            end: ends,
-            radius: 0.0,
-        };
-        Self::is_usable(ends, radius).then(|| Self::new(&path, radius))
+        Self::is_usable(ends, radius).then(|| {
+            let (low, high) = box_around(ends, radius);
+            Self {
+                low: [low; 2],
+                high: [high; 2],
+            }
+        })
     }
 
     /// True if [`Reach::around`] returns something.
@@ -84,6 +83,14 @@ impl Reach {
         }
         from <= until
     }
+}
+
+/// Corners of a box around everything within `distance` of a segment.
+fn box_around([a, b]: [DVec3; 2], distance: f64) -> (DVec3, DVec3) {
+    let (low, high) = (a.min(b), a.max(b));
+    let size = low.abs().max(high.abs()).max_element();
+    let around = DVec3::splat((distance + (size + distance) * LOOSE).min(ENDLESS));
+    (low - around, high + around)
 }
 
 /// Narrows an interval of times to where the line from `first` at time 0 to `last` at time 1 is not negative, and
