@@ -151,29 +151,43 @@ fn a_box_that_spins_makes_no_energy_of_its_second_corner() {
     }
 }
 
-fn add_floor(scene: &mut Scene, size: f64) {
+/// Velocities of the floor with all that is on it, metres a second: at rest, a train, and a lift.
+const FRAMES: [DVec3; 4] = [
+    DVec3::ZERO,
+    DVec3::new(30.0, 0.0, -10.0),
+    DVec3::new(0.0, 10.0, 0.0),
+    DVec3::new(0.0, -10.0, 0.0),
+];
+
+/// A floor, a box on it, and a climber above that.
+fn above_a_box(world: (f64, f64), frame: DVec3, half: DVec3, mass: f64, drop: f64) -> Scene {
+    let (size, rate) = world;
+    let start = DVec3::Y * (2.0 * half.y + 0.4 + drop);
+    let mut scene = Scene::with(ClimberConfig::walker(), size, 1.0 / rate, 9.81, start);
     let floor = cuboid(DVec3::new(50.0, 0.5, 50.0) * size).friction(1.0);
     let floor = floor.translation(v32(DVec3::NEG_Y * (0.5 * size)));
-    scene.world.insert_collider(floor, None);
+    let floor = scene.add(RigidBodyBuilder::kinematic_velocity_based(), [(floor, 1.0)]);
+    let body = awake(DVec3::Y * (half.y * size));
+    let hull = cuboid(half * size).friction(1.0);
+    let body = scene.add(body, [(hull, mass)]);
+    for body in [floor, body] {
+        set_velocity(&mut scene, body, frame * size);
+    }
+    scene.throw(DVec3::ZERO, frame * size);
+    scene
 }
 
-/// A floor, a box on it, and a climber that has stood on that for half a second.
-fn on_a_box(size: f64, rate: f64, half: DVec3, mass: f64, config: ClimberConfig) -> Scene {
-    let start = DVec3::Y * (2.0 * half.y + 0.4);
-    let mut scene = Scene::with(config, size, 1.0 / rate, 9.81, start);
-    add_floor(&mut scene, size);
-    let body = awake(DVec3::Y * (half.y * size));
-    scene.add(body, [(cuboid(half * size).friction(1.0), mass)]);
-    for _ in 0..(0.5 * rate) as u32 {
-        scene.tick(&IDLE);
-    }
-    scene.assert_standing(&format!("size {size}, {rate} Hz, {mass} kg"));
-    scene
+/// The climber's height above the floor that moves along with a frame, in its own size, after `ticks`.
+fn height(scene: &Scene, (size, rate): (f64, f64), frame: DVec3, ticks: u32) -> f64 {
+    scene.climber.state().position.y / size - frame.y * f64::from(ticks) / rate
 }
 
 #[test]
 fn a_jump_off_a_light_box_on_the_floor_is_as_high_as_off_the_floor() {
-    for (size, rate) in WORLDS {
+    for (world, frame) in WORLDS
+        .into_iter()
+        .flat_map(|world| FRAMES.map(|v| (world, v)))
+    {
         for (half, mass) in [
             ([0.15, 0.15, 0.15], 1.0),
             ([0.3, 0.3, 0.3], 2.0),
@@ -182,20 +196,24 @@ fn a_jump_off_a_light_box_on_the_floor_is_as_high_as_off_the_floor() {
             ([0.5, 0.5, 0.5], 4_000.0),
         ] {
             let half = DVec3::from_array(half);
-            let mut scene = on_a_box(size, rate, half, mass, ClimberConfig::walker());
-            let start = scene.climber.state().position.y;
-            scene.tick(&ClimberInput { jump: true, ..IDLE });
-            let held = ClimberInput {
-                jump_held: true,
-                ..IDLE
-            };
-            let mut high = 0.0f64;
-            for _ in 0..(0.9 * rate) as u32 {
-                scene.tick(&held);
-                high = high.max((scene.climber.state().position.y - start) / size);
+            let mut scene = above_a_box(world, frame, half, mass, 0.0);
+            let told = format!("{world:?}, frame {frame}, {mass} kg");
+            let rests = (0.5 * world.1) as u32;
+            for _ in 0..rests {
+                scene.tick(&IDLE);
             }
-            let told = format!("size {size}, {rate} Hz, {mass} kg: {high} m");
-            assert!((1.2..1.3).contains(&high), "{told}");
+            scene.assert_standing(&told);
+            let start = height(&scene, world, frame, rests);
+            let mut high = 0.0f64;
+            for tick in 0..(0.9 * world.1) as u32 {
+                scene.tick(&ClimberInput {
+                    jump: tick == 0,
+                    jump_held: true,
+                    ..IDLE
+                });
+                high = high.max(height(&scene, world, frame, rests + tick + 1) - start);
+            }
+            assert!((1.2..1.3).contains(&high), "{told}: {high} m");
         }
     }
 }
@@ -203,39 +221,32 @@ fn a_jump_off_a_light_box_on_the_floor_is_as_high_as_off_the_floor() {
 /// A jump that was asked for shortly before the landing follows it at once.
 #[test]
 fn a_jump_right_after_a_landing_on_a_box_is_as_high_as_off_the_floor() {
-    for (size, rate) in WORLDS {
+    for (world, frame) in WORLDS
+        .into_iter()
+        .flat_map(|world| FRAMES.map(|v| (world, v)))
+    {
         for (half, mass, drop) in [
             (0.5, 10.0, 0.3),
             (0.5, 40.0, 0.02),
             (0.5, 400.0, 1.0),
             (0.5, 4_000.0, 1.0),
         ] {
-            let config = ClimberConfig::walker();
-            let start = DVec3::Y * (2.0 * half + 0.4 + drop);
-            let mut scene = Scene::with(config, size, 1.0 / rate, 9.81, start);
-            add_floor(&mut scene, size);
-            let hull = cuboid(DVec3::splat(half * size)).friction(1.0);
-            scene.add(awake(DVec3::Y * (half * size)), [(hull, mass)]);
-            let held = ClimberInput {
-                jump: true,
-                jump_held: true,
-                ..IDLE
-            };
+            let mut scene = above_a_box(world, frame, DVec3::splat(half), mass, drop);
             let (mut jumps, mut top) = (0, 0.0f64);
-            for _ in 0..(1.2 * rate) as u32 {
-                let input = ClimberInput {
+            for tick in 0..(1.2 * world.1) as u32 {
+                let report = scene.tick(&ClimberInput {
                     jump: jumps == 0,
-                    ..held
-                };
-                let report = scene.tick(&input);
+                    jump_held: true,
+                    ..IDLE
+                });
                 let jumped = |event: &&ClimberEvent| matches!(event, ClimberEvent::Jumped);
                 jumps += report.events.iter().filter(jumped).count();
                 if jumps > 0 {
-                    top = top.max(scene.climber.state().position.y / size);
+                    top = top.max(height(&scene, world, frame, tick + 1));
                 }
             }
             let high = top - 2.0 * half - 0.4;
-            let told = format!("size {size}, {rate} Hz, {mass} kg, from {drop} m: {high} m");
+            let told = format!("{world:?}, frame {frame}, {mass} kg, from {drop} m: {high} m");
             assert!(jumps == 1 && (1.15..1.33).contains(&high), "{told}");
         }
     }
