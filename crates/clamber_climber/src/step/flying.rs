@@ -262,7 +262,7 @@ impl Tick<'_> {
         }
     }
 
-    /// The ground that it came down on. Not one that it leaves, as a climber does that jumps while a friend is pressed
+    /// The ground that it came down on. Not ground that it leaves: who jumps may still touch a friend that is pressed
     /// into it from below.
     fn ground_met(&mut self, falling: DVec3) -> Option<Ground> {
         let slope = self.config.ground.max_slope;
@@ -270,10 +270,18 @@ impl Tick<'_> {
         (!self.leaves(&ground.touch, falling)).then_some(ground)
     }
 
-    /// True if a body at a velocity moves away from what it touches.
-    fn leaves(&self, touch: &Touch, velocity: DVec3) -> bool {
-        let own = velocity - self.mover.velocity_of(touch);
-        own.dot(touch.normal) > self.slow()
+    /// True if it moves away from what it touches, before and after contacts have stopped it.
+    fn leaves(&self, touch: &Touch, falling: DVec3) -> bool {
+        let up = self.config.up();
+        let obstacle = self.mover.obstacle(touch.obstacle);
+        let other = obstacle.and_then(|obstacle| obstacle.character());
+        // What another climber rises by itself is no part of its material's velocity.
+        let (rises, least) = other.map_or((0.0, self.slow()), |other| {
+            (other.own_velocity.dot(up).max(0.0), 0.0)
+        });
+        let of_material = self.mover.velocity_of(touch) + up * rises;
+        let away = |own: DVec3| (own - of_material).dot(touch.normal) > least;
+        away(falling) && away(self.state.velocity)
     }
 
     /// Lands on ground, and keeps its speed along it.

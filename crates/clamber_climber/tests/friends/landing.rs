@@ -1,9 +1,10 @@
 //! Climbers that come down on each other, in frames that move and in the air.
 
 use clamber_climber::{Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode};
+use clamber_world::ObstacleId;
 use glam::DVec3;
 
-use crate::crowd::{Crowd, IDLE, RATES};
+use crate::crowd::{Crowd, IDLE, RATES, SIZES, walker};
 
 fn is_crushed(event: &ClimberEvent) -> bool {
     matches!(event, ClimberEvent::Crushed { .. })
@@ -160,10 +161,73 @@ fn a_jump_off_a_friend_who_jumps_is_a_jump() {
     }
 }
 
+/// Who is on the head of one that jumps, or that walks and jumps, is not moved by two ticks of that at once.
+#[test]
+fn a_jump_lifts_who_stands_on_the_head_as_fast_as_it_is() {
+    for (size, rate) in SIZES
+        .into_iter()
+        .flat_map(|size| RATES.map(|rate| (size, rate)))
+    {
+        for walk in [0.0, 0.3, 1.0] {
+            let config = walker(size);
+            let places = [DVec3::Y * (0.4 * size), DVec3::Y * (1.2 * size)];
+            let mut crowd = Crowd::new(config, &places, rate);
+            crowd.rest(0.2);
+            let (mut fastest, mut last) = (0.0f64, crowd.position(1));
+            for tick in 0..(0.8 * rate) as u32 {
+                crowd.step(DVec3::ZERO, |index| ClimberInput {
+                    walk: DVec3::X * if index == 0 { walk } else { 0.0 },
+                    jump: index == 0 && tick == 5,
+                    ..IDLE
+                });
+                let at = crowd.position(1);
+                fastest = fastest.max((at - last).length() * rate);
+                last = at;
+            }
+            let jump = DVec3::new(
+                walk * config.ground.walk_speed,
+                config.ground.jump_speed,
+                0.0,
+            );
+            let told = format!("size {size}, {rate} Hz, walk {walk}: {fastest} m/s");
+            // They part by 2 m/s besides.
+            assert!(fastest < 1.3 * jump.length() + 2.0 * size, "{told}");
+            assert!(fastest > 0.9 * jump.y, "{told}");
+        }
+    }
+}
+
+/// A friend that comes up from below takes along one that rises slower, and hardly gets into it.
+#[test]
+fn who_comes_up_fast_below_another_one_takes_it_along() {
+    for rate in RATES {
+        for (aside, rises) in [0.0, 0.2, 0.4]
+            .into_iter()
+            .flat_map(|aside| [-2.0, 0.0, 1.0, 3.0, 4.0].map(|rises| (aside, rises)))
+        {
+            for comes in [5.0, 8.0, 12.0] {
+                let places = [DVec3::new(0.0, 50.0, 0.0), DVec3::new(aside, 51.2, 0.0)];
+                let mut crowd = Crowd::new(ClimberConfig::walker(), &places, rate);
+                crowd.throw(0, DVec3::Y * comes, DVec3::ZERO);
+                crowd.throw(1, DVec3::Y * rises, DVec3::ZERO);
+                let mut deepest = 0.0f64;
+                for _ in 0..rate as u32 {
+                    crowd.step(DVec3::ZERO, |_| IDLE);
+                    deepest = deepest.max(0.8 - crowd.position(0).distance(crowd.position(1)));
+                }
+                let told = format!("{rate} Hz, {aside} m aside, {comes} to {rises} m/s: {deepest}");
+                // What it does by itself is known a tick later.
+                assert!(deepest < 0.05 + 1.5 * comes / rate, "{told}");
+            }
+        }
+    }
+}
+
 /// A friend, lifted by another one's jump, is pressed from below into one that stands on a shelf, and jumps.
 #[test]
 fn a_jump_is_not_over_where_a_friend_comes_up_from_below() {
     for rate in RATES {
+        let mut pressed = 0;
         for aside in [0.1, 0.3, 0.5, 0.65] {
             for lag in 0..(0.3 * rate) as u32 {
                 let place = |height: f64| DVec3::new(-aside, height, 0.0);
@@ -187,11 +251,16 @@ fn a_jump_is_not_over_where_a_friend_comes_up_from_below() {
                     });
                     let has_jumped = reports[2].events.contains(&ClimberEvent::Jumped);
                     assert_eq!(has_jumped, tick == lag, "{told}, tick {tick}");
+                    let mut contacts = crowd.climbers[2].contacts().iter();
+                    pressed += u32::from(
+                        has_jumped && contacts.any(|contact| contact.obstacle == ObstacleId(101)),
+                    );
                     top = top.max(crowd.position(2).y - from);
                 }
                 assert!((1.2..1.4).contains(&top), "{told}: {top}");
             }
         }
+        assert!(pressed > 3, "{rate} Hz: {pressed}");
     }
 }
 

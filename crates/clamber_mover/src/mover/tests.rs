@@ -98,7 +98,7 @@ fn a_path_that_is_not_finite_leaves_the_body_at_its_start() {
     let mut mover = Mover::new(&obstacles, 0.1, &mut memory).unwrap();
     let path = Path::new(MoverBody::ball(0.4, 0.01), DVec3::ZERO, DVec3::X);
     assert_eq!(mover.slide(&path).position, DVec3::X);
-    for bad in [f64::NAN, f64::INFINITY] {
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         let arm = |pivot, length| Path {
             arm: Some(Arm { pivot, length }),
             ..path
@@ -139,6 +139,11 @@ fn a_path_that_is_not_finite_leaves_the_body_at_its_start() {
             let moved = mover.slide(&path);
             assert_eq!((moved.position, moved.is_clear), (DVec3::ZERO, false));
         }
+        let lost = Path {
+            start: DVec3::X * bad,
+            ..path
+        };
+        assert!(!mover.slide(&lost).is_clear);
     }
 }
 
