@@ -31,8 +31,8 @@ pub struct ClimberState {
     /// measured against it, so that a fall or a late jump is the same in every frame that moves steadily.
     pub base_velocity: DVec3,
     /// Displacement of the last tick beyond what others foresaw of it, which is that of its support, or of its velocity
-    /// in the air, in world space, metres. As an obstacle to others it makes this way one tick later, or within a tenth
-    /// of a second if it has left the ground.
+    /// in the air, in world space, metres. As an obstacle to others it makes this way one tick later, or within two
+    /// tenths of a second if it has left the ground.
     pub own_way: DVec3,
     /// Direction that it faces: a unit vector perpendicular to up, in world space.
     pub heading: DVec3,
