@@ -28,7 +28,7 @@ const SIDE: f64 = 0.5;
 /// Climbers stand on each other. They stop, push or pass each other ([`Others`](crate::Others)), and never crush each
 /// other. What a climber does by itself in this tick is unknown when its obstacle is made, so the obstacle moves by it
 /// one tick later, and pushes nobody by itself: with [`Others::Push`](crate::Others::Push), the two bodies overlap, and
-/// each parts from the other when it is stepped. In the air its way is known, and the delay fades.
+/// each parts from the other when it is stepped.
 ///
 /// The obstacle's velocity is that of its support; its own counts only where it moves away from the contact. So whoever
 /// follows another one keeps pace, two that fall together meet at the speed between them, and two that run into each

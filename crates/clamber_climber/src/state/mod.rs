@@ -30,9 +30,8 @@ pub struct ClimberState {
     /// ([`StepRules::air_velocity`](crate::StepRules::air_velocity)) within the next. The climber's own motion is
     /// measured against it, so that a fall or a late jump is the same in every frame that moves steadily.
     pub base_velocity: DVec3,
-    /// Displacement of the last tick beyond what others foresaw of it, which is that of its support, or of its velocity
-    /// in the air, in world space, metres. As an obstacle to others it makes this way one tick later, or within two
-    /// tenths of a second if it has left the ground.
+    /// Displacement of the last tick beyond that of its support, or beyond its velocity in the air, in world space,
+    /// metres. As an obstacle to others it makes this way one tick later.
     pub own_way: DVec3,
     /// Direction that it faces: a unit vector perpendicular to up, in world space.
     pub heading: DVec3,
@@ -92,9 +91,6 @@ pub const MEMORY: usize = 8;
 
 /// How much the length of the heading may differ from 1, so that a state can be saved with rounded decimals.
 const UNIT: f64 = 1e-6;
-
-/// How long the delay fades by which others foresee a climber that has left the ground, seconds.
-const FADES: f64 = 0.05;
 
 /// Names of the state's numbers.
 const NAMES: [&str; 13] = [
@@ -181,16 +177,9 @@ impl ClimberState {
         if falls { config.gravity } else { DVec3::ZERO }
     }
 
-    /// Its displacement over the next tick if nothing carries it and it meets nothing, as others foresee it.
-    ///
-    /// What a climber on the ground does by itself is foreseen a tick late, and what it does in the air is not. So that
-    /// those on its head are not moved by two ticks at once where it jumps, the delay fades.
+    /// Its displacement over the next tick if nothing carries it and it meets nothing.
     pub(crate) fn own_displacement(&self, config: &ClimberConfig, dt: f64) -> DVec3 {
-        let half = self.fall(config) * (0.5 * dt);
-        let own = (self.velocity - self.base_velocity + half) * dt;
-        let behind = self.own_way.dot(own) / own.length_squared().max(f64::MIN_POSITIVE);
-        let kept = FADES / (FADES + dt) * behind.clamp(0.0, 1.0);
-        (self.velocity + half) * dt - own * kept
+        (self.velocity + self.fall(config) * (0.5 * dt)) * dt
     }
 
     fn vectors(&self) -> [DVec3; 11] {

@@ -4,7 +4,7 @@ use clamber_climber::{Climber, ClimberConfig, ClimberEvent, ClimberInput, Climbe
 use clamber_world::ObstacleId;
 use glam::DVec3;
 
-use crate::crowd::{Crowd, IDLE, RATES, SIZES, walker};
+use crate::crowd::{Crowd, IDLE, RATES};
 
 fn is_crushed(event: &ClimberEvent) -> bool {
     matches!(event, ClimberEvent::Crushed { .. })
@@ -157,42 +157,6 @@ fn a_jump_off_a_friend_who_jumps_is_a_jump() {
                 (1.1..1.45 + lifted).contains(&top),
                 "{rate} Hz, {lag} ticks later: {top}"
             );
-        }
-    }
-}
-
-/// Who is on the head of one that jumps, or that walks and jumps, is not moved by two ticks of that at once.
-#[test]
-fn a_jump_lifts_who_stands_on_the_head_as_fast_as_it_is() {
-    for (size, rate) in SIZES
-        .into_iter()
-        .flat_map(|size| RATES.map(|rate| (size, rate)))
-    {
-        for walk in [0.0, 0.3, 1.0] {
-            let config = walker(size);
-            let places = [DVec3::Y * (0.4 * size), DVec3::Y * (1.2 * size)];
-            let mut crowd = Crowd::new(config, &places, rate);
-            crowd.rest(0.2);
-            let (mut fastest, mut last) = (0.0f64, crowd.position(1));
-            for tick in 0..(0.8 * rate) as u32 {
-                crowd.step(DVec3::ZERO, |index| ClimberInput {
-                    walk: DVec3::X * if index == 0 { walk } else { 0.0 },
-                    jump: index == 0 && tick == 5,
-                    ..IDLE
-                });
-                let at = crowd.position(1);
-                fastest = fastest.max((at - last).length() * rate);
-                last = at;
-            }
-            let jump = DVec3::new(
-                walk * config.ground.walk_speed,
-                config.ground.jump_speed,
-                0.0,
-            );
-            let told = format!("size {size}, {rate} Hz, walk {walk}: {fastest} m/s");
-            // They part by 2 m/s besides.
-            assert!(fastest < 1.3 * jump.length() + 2.0 * size, "{told}");
-            assert!(fastest > 0.9 * jump.y, "{told}");
         }
     }
 }
