@@ -141,12 +141,13 @@ pub enum ClimberEvent {
 ///   the same speed.
 /// - An obstacle that it runs into gets the same, but at most
 ///   [`BodyConfig::push_force`](crate::BodyConfig::push_force) times the tick. Who slides on ice hits it as in the air.
-/// - While it slides or tumbles, the contact that brakes it gets the reaction. So does what it bounces off.
+/// - While it slides or tumbles, what brakes it gets the reaction, and so does what it bounces off.
 /// - The support gets the reaction to all of this that the climber does while it stands or holds on: to running into
 ///   something, to starting, stopping and turning, and to a jump off it. So a passenger does not drive its cart by
-///   pushing. A jump gives a light body that something holds up no more speed than the climber gets, and off a body that
-///   falls with it, a climber jumps by its share of both masses. Bodies do not feel the climber's inertia while they carry it: the momentum of both together stays the
-///   same only as long as nothing else speeds them up or slows them down.
+///   pushing. A jump gives a light body that something holds up no more speed than the climber gets. Off a body that
+///   falls with it, a climber jumps by its share of both masses. Bodies do not feel the climber's inertia while they
+///   carry it: the momentum of both together stays the same only as long as nothing else speeds them up or slows them
+///   down.
 ///
 /// If it hits several obstacles at once, each of the impulses of hits is divided by their number.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -270,7 +270,8 @@ impl Tick<'_> {
         (!self.leaves(&ground.touch, falling)).then_some(ground)
     }
 
-    /// True if it moves away from what it touches, before and after contacts have stopped it.
+    /// True if it moves away from a contact, both at the velocity `falling`, which contacts have not clipped, and at
+    /// its velocity now.
     fn leaves(&self, touch: &Touch, falling: DVec3) -> bool {
         let up = self.config.up();
         let obstacle = self.mover.obstacle(touch.obstacle);

@@ -166,7 +166,12 @@ fn above_a_box(world: (f64, f64), frame: DVec3, half: DVec3, mass: f64, drop: f6
     let mut scene = Scene::with(ClimberConfig::walker(), size, 1.0 / rate, 9.81, start);
     let floor = cuboid(DVec3::new(50.0, 0.5, 50.0) * size).friction(1.0);
     let floor = floor.translation(v32(DVec3::NEG_Y * (0.5 * size)));
-    let floor = scene.add(RigidBodyBuilder::kinematic_velocity_based(), [(floor, 1.0)]);
+    let ground = if frame == DVec3::ZERO {
+        RigidBodyBuilder::fixed()
+    } else {
+        RigidBodyBuilder::kinematic_velocity_based()
+    };
+    let floor = scene.add(ground, [(floor, 1.0)]);
     let body = awake(DVec3::Y * (half.y * size));
     let hull = cuboid(half * size).friction(1.0);
     let body = scene.add(body, [(hull, mass)]);

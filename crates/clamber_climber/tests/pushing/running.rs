@@ -128,7 +128,8 @@ fn pushes_beside_a_step(frame: DVec3, rise: f32, low: f32, beside: f32) -> Vec<D
     pushes.collect()
 }
 
-/// Its feet are set down on the step when its movement is over: what they then come upon is pushed by that movement.
+/// After the movement, the climber is set down on the step, where it may touch something else. The push that this gets
+/// is one by the movement.
 #[test]
 fn pushes_beside_a_step_are_the_same_in_every_frame() {
     let mut given = 0;
