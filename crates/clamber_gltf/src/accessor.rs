@@ -7,15 +7,16 @@ use gltf::accessor::sparse::IndexType;
 use gltf::accessor::{DataType, Dimensions};
 use gltf::buffer::View;
 
-use crate::GltfErrorKind;
 use crate::buffers::Buffers;
+use crate::{GltfErrorKind, LoadOptions};
 
 /// Bytes of memory that a file may take for each byte of it and its buffers.
 ///
-/// Exporters let primitives share accessors, so real models take up to 3 times their size. A file that
-/// makes the loader read the same data many times is refused before memory runs out. Charges are
-/// estimates: a file that is made to take as much as it may takes up to 100 times its size, plus
-/// [`FREE_GROWTH`] (`tests/files/broken.rs`).
+/// Real models take up to 3 times their size. A file that makes the loader read the same data many times is refused
+/// before memory runs out. Meshes that are shown many times are read once, and what they make after the first showing is
+/// limited by [`LoadOptions::max_repeated_vertices`] instead. Charges are estimates: a file that is made to take as much
+/// as it may takes up to 100 times its size, plus [`FREE_GROWTH`], plus 512 bytes for each vertex of that limit
+/// (`tests/files/broken.rs`).
 const MAX_GROWTH: usize = 24;
 
 /// Bytes of memory that any file may take: small files may rightly grow by a larger factor.
@@ -26,16 +27,44 @@ pub(crate) struct Reader<'a> {
     buffers: &'a Buffers,
     /// Bytes that may still be decoded.
     budget: Cell<usize>,
+    /// [`LoadOptions::max_repeated_vertices`].
+    repeats: usize,
+    /// Vertices and triangles that repeated showings of meshes have made.
+    repeated: Cell<[usize; 2]>,
 }
 
 impl<'a> Reader<'a> {
     /// A reader of the buffers of a file that is itself `file` bytes long.
-    pub(crate) fn new(buffers: &'a Buffers, file: usize) -> Self {
+    pub(crate) fn new(buffers: &'a Buffers, file: usize, options: &LoadOptions) -> Self {
         let held = buffers.held().saturating_add(file);
         Self {
             buffers,
             budget: Cell::new(held.saturating_mul(MAX_GROWTH).saturating_add(FREE_GROWTH)),
+            repeats: options.max_repeated_vertices,
+            repeated: Cell::new([0; 2]),
         }
+    }
+
+    /// Counts vertices and triangles that showing `object` once more is about to make; an error if they are more than
+    /// the options allow.
+    pub(crate) fn repeat(
+        &self,
+        object: &str,
+        vertices: usize,
+        triangles: usize,
+    ) -> Result<(), GltfErrorKind> {
+        let [before, triangles_before] = self.repeated.get();
+        let repeated = [
+            before.saturating_add(vertices),
+            triangles_before.saturating_add(triangles),
+        ];
+        let limit = self.repeats;
+        if repeated[0] > limit || repeated[1] / 2 > limit {
+            let object = object.to_owned();
+            return Err(GltfErrorKind::TooManyRepeats { object, limit });
+        }
+        self.repeated.set(repeated);
+        Ok(())
     }
 
     /// Takes bytes that are about to be allocated for `object` from the budget; an error if it is spent.

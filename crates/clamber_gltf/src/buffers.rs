@@ -10,17 +10,17 @@ use gltf::buffer::Source;
 
 use crate::{GltfErrorKind, uri};
 
-/// The bytes of every buffer; a file that several buffers name is held once.
+/// The bytes of every buffer that is read; a file that several buffers name is held once.
 pub(crate) struct Buffers {
     held: Vec<Vec<u8>>,
-    /// The index of each buffer in `held`.
-    of_buffer: Vec<usize>,
+    /// The index of each buffer in `held`; `None` for a buffer that is not read.
+    of_buffer: Vec<Option<usize>>,
 }
 
 impl Buffers {
-    /// The bytes of a buffer, at least as many as it claims; `None` for an index out of range.
+    /// The bytes of a buffer, at least as many as it claims; `None` for one that is not read, or an index out of range.
     pub(crate) fn get(&self, buffer: usize) -> Option<&[u8]> {
-        let bytes = self.held.get(*self.of_buffer.get(buffer)?)?;
+        let bytes = self.held.get((*self.of_buffer.get(buffer)?)?)?;
         Some(bytes.as_slice())
     }
 
@@ -30,10 +30,11 @@ impl Buffers {
         lengths.fold(0, usize::saturating_add)
     }
 
-    /// Reads all buffers, each file once.
+    /// Reads the buffers that are marked as read, each file once.
     pub(crate) fn load(
         document: &Document,
         mut blob: Option<Vec<u8>>,
+        read: &[bool],
         mut files: Files<'_>,
     ) -> Result<Self, GltfErrorKind> {
         let mut buffers = Self {
@@ -43,6 +44,10 @@ impl Buffers {
         let claims = claims(document)?;
         let mut places: BTreeMap<&str, usize> = BTreeMap::new();
         for (buffer, path) in document.buffers().zip(&claims.path_of_buffer) {
+            if !read.get(buffer.index()).is_some_and(|read| *read) {
+                buffers.of_buffer.push(None);
+                continue;
+            }
             let object = format!("buffer {}", buffer.index());
             let invalid = |reason: String| GltfErrorKind::invalid(&object, reason);
             let known = path.as_ref().and_then(|path| places.get(path.as_str()));
@@ -68,7 +73,7 @@ impl Buffers {
                     buffers.held.len() - 1
                 }
             };
-            buffers.of_buffer.push(place);
+            buffers.of_buffer.push(Some(place));
             let (claimed, found) = (buffer.length(), buffers.held[place].len());
             if found < claimed {
                 return Err(invalid(format!(

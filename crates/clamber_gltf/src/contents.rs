@@ -6,6 +6,7 @@ use gltf::Document;
 
 use crate::accessor::Reader;
 use crate::extras::{self, NodeExtras};
+use crate::readings::Readings;
 use crate::tree::Tree;
 use crate::visual::{self, Material};
 use crate::{GltfErrorKind, ImportWarning, LoadOptions, transforms};
@@ -22,6 +23,7 @@ pub(crate) struct Contents<'a> {
     /// The tag of surfaces without a material.
     pub(crate) bare_tag: SurfaceTag,
     pub(crate) reader: Reader<'a>,
+    pub(crate) readings: Readings,
     pub(crate) options: &'a LoadOptions,
 }
 
@@ -37,10 +39,11 @@ impl<'a> Contents<'a> {
             document,
             extras: extras::of_nodes(&tree.nodes, warnings)?,
             transforms: transforms::of_nodes(&tree.nodes, warnings),
-            materials: visual::materials(document, options, warnings)?,
+            materials: visual::materials(document, options)?,
             bare_tag: options.tag(None, SurfaceTag::default()),
             tree,
             reader,
+            readings: Readings::default(),
             options,
         })
     }

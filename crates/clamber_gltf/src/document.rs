@@ -1,17 +1,21 @@
 //! Parses bytes into a validated document.
 //!
-//! The parser's own validation trusts some indices, so they are checked here before it runs. It also
-//! refuses whole files for faults that do not matter to a collider. Those are removed before it runs, or
-//! dropped from its list of errors.
+//! The parser's own validation trusts some indices, so they are checked here before it runs. It also refuses whole files
+//! for faults that do not matter to a collider. Most of them are in objects that are never read, which [`prune()`] takes
+//! out before it runs; others are dropped from its list of errors.
 
 use gltf::Document;
+use gltf::json::Root;
 use gltf::json::validation::{Checked, Error, Validate};
-use gltf::json::{Root, Value};
 
-use crate::{GltfErrorKind, ImportWarning};
+use crate::prune::prune;
+use crate::{GltfErrorKind, ImportWarning, LoadOptions};
 
 /// The first bytes of a GLB.
 const MAGIC: &[u8] = b"glTF";
+
+/// What some exporters write before JSON, against the specification.
+const BYTE_ORDER_MARK: &[u8] = b"\xEF\xBB\xBF";
 
 /// Bytes of a GLB's header.
 const GLB_HEADER: usize = 12;
@@ -23,35 +27,55 @@ const GLB_HEADERS: usize = 20;
 ///
 /// They change how the file looks, allow integers where this importer accepts them anyway, or animate
 /// properties that belong to no node. Channels of such properties are skipped and reported.
-const HARMLESS: [&str; 6] = [
-    "KHR_mesh_quantization",
-    "KHR_texture_transform",
-    "KHR_texture_basisu",
-    "KHR_lights_punctual",
-    "KHR_animation_pointer",
+const HARMLESS: [&str; 12] = [
+    "EXT_lights_ies",
+    "EXT_lights_image_based",
+    "EXT_texture_astc",
+    "EXT_texture_avif",
     "EXT_texture_webp",
+    "KHR_animation_pointer",
+    "KHR_lights_punctual",
+    "KHR_mesh_quantization",
+    "KHR_texture_basisu",
+    "KHR_texture_transform",
+    "KHR_xmp_json_ld",
+    "MSFT_texture_dds",
 ];
 
-/// Parses a file into its document and the bytes of a GLB's binary chunk.
+/// A parsed document.
+pub(crate) struct Parsed {
+    pub(crate) document: Document,
+    /// The bytes of a GLB's binary chunk.
+    pub(crate) blob: Option<Vec<u8>>,
+    /// For each buffer, whether its bytes are read.
+    pub(crate) buffers_read: Vec<bool>,
+}
+
+/// Parses a file into a document that shows one scene.
 pub(crate) fn parse(
     bytes: &[u8],
+    options: &LoadOptions,
     warnings: &mut Vec<ImportWarning>,
-) -> Result<(Document, Option<Vec<u8>>), GltfErrorKind> {
-    let (mut root, blob) = match kind(bytes)? {
+) -> Result<Parsed, GltfErrorKind> {
+    let ((mut root, buffers_read), blob) = match kind(bytes)? {
         Kind::Glb => {
             check_glb_length(bytes)?;
             let glb = gltf::Glb::from_slice(bytes).map_err(GltfErrorKind::format)?;
-            let root = parse_json(&glb.json, warnings)?;
-            (root, glb.bin.map(|bin| bin.into_owned()))
+            let parsed = parse_json(&glb.json, options, warnings)?;
+            (parsed, glb.bin.map(|bin| bin.into_owned()))
         }
-        Kind::Json => (parse_json(bytes, warnings)?, None),
+        Kind::Json => (parse_json(bytes, options, warnings)?, None),
     };
     root.extensions_required
         .retain(|name| !HARMLESS.contains(&name.as_str()) && !name.starts_with("KHR_materials_"));
     check_attributes(&root)?;
     check_channels(&mut root, warnings)?;
     validate(&root)?;
-    Ok((Document::from_json_without_validation(root), blob))
+    Ok(Parsed {
+        document: Document::from_json_without_validation(root),
+        blob,
+        buffers_read,
+    })
 }
 
 /// The two file formats.
@@ -69,7 +93,8 @@ fn kind(bytes: &[u8]) -> Result<Kind, GltfErrorKind> {
     if MAGIC.starts_with(magic) {
         return Ok(Kind::Glb);
     }
-    match bytes.trim_ascii_start().first() {
+    let text = bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(bytes);
+    match text.trim_ascii_start().first() {
         Some(b'{') => Ok(Kind::Json),
         _ => Err(GltfErrorKind::NotGltf),
     }
@@ -93,30 +118,25 @@ fn check_glb_length(bytes: &[u8]) -> Result<(), GltfErrorKind> {
     Ok(())
 }
 
-fn parse_json(json: &[u8], warnings: &mut Vec<ImportWarning>) -> Result<Root, GltfErrorKind> {
-    let refused = match Root::from_slice(json) {
-        Ok(root) => return Ok(root),
-        Err(error) => GltfErrorKind::format(error),
-    };
-    // Channels without a node are legal and must be skipped, but the parser requires a node.
-    let Ok(mut value) = gltf::json::deserialize::from_slice::<Value>(json) else {
-        return Err(refused);
-    };
-    let mut dropped = 0;
-    let animations = value.get_mut("animations").and_then(Value::as_array_mut);
-    for animation in animations.into_iter().flatten() {
-        if let Some(channels) = animation.get_mut("channels").and_then(Value::as_array_mut) {
-            let before = channels.len();
-            channels.retain(|channel| channel.pointer("/target/node").is_some());
-            dropped += before - channels.len();
-        }
-    }
-    if dropped == 0 {
-        return Err(refused);
-    }
-    warnings.push(ImportWarning::ChannelsWithoutNode { channels: dropped });
-    let patched = gltf::json::serialize::to_vec(&value).map_err(GltfErrorKind::format)?;
-    Root::from_slice(&patched).map_err(GltfErrorKind::format)
+/// Parses the JSON of a document. Also tells for each buffer whether its bytes are read.
+fn parse_json(
+    json: &[u8],
+    options: &LoadOptions,
+    warnings: &mut Vec<ImportWarning>,
+) -> Result<(Root, Vec<bool>), GltfErrorKind> {
+    let json = json.strip_prefix(BYTE_ORDER_MARK).unwrap_or(json);
+    let value = serde_json::from_slice(json).map_err(GltfErrorKind::format)?;
+    let pruned = prune(value, options, warnings)?;
+    let root = serde_json::from_value::<Root>(pruned.json).map_err(|error| {
+        // The text has lines, which the value has not: if the parser refuses it for the same reason, it tells the line.
+        let without_line = error.to_string();
+        let of_text = serde_json::from_slice::<Root>(json)
+            .err()
+            .map(|error| error.to_string());
+        let same = of_text.filter(|text| text.starts_with(&without_line));
+        GltfErrorKind::format(same.unwrap_or(without_line))
+    })?;
+    Ok((root, pruned.buffers_read))
 }
 
 /// Checks that every attribute names an existing accessor.

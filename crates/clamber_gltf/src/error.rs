@@ -89,6 +89,33 @@ pub enum GltfErrorKind {
         /// Number of skins in the file.
         found: usize,
     },
+    /// The file has no such scene.
+    #[error("scene {wanted} was asked for, but the file has {found} scenes")]
+    NoSuchScene {
+        /// The index in [`LoadOptions::scene`](crate::LoadOptions::scene).
+        wanted: usize,
+        /// Number of scenes in the file.
+        found: usize,
+    },
+    /// The loaded scene shows no mesh, although the file has some.
+    #[error("scene {scene} shows no mesh{}", other_scene(*other))]
+    EmptyScene {
+        /// Index of the scene: the one in the options, else the file's default scene, else the first.
+        scene: usize,
+        /// Index of the first scene that shows a mesh; `None` if there is none.
+        other: Option<usize>,
+    },
+    /// Meshes that are shown many times make more vertices than the options allow.
+    #[error(
+        "{object}: meshes that are shown more than once make over {limit} vertices, or twice as many triangles: \
+         raise LoadOptions::max_repeated_vertices if that is meant"
+    )]
+    TooManyRepeats {
+        /// Which object, by kind and index.
+        object: String,
+        /// [`LoadOptions::max_repeated_vertices`](crate::LoadOptions::max_repeated_vertices).
+        limit: usize,
+    },
     /// The creature or the file has no triangles for collision.
     #[error("no mesh with triangles for collision in {object}")]
     NoTriangles {
@@ -125,6 +152,14 @@ pub enum GltfErrorKind {
         /// Height of the collider in the rest pose: 0, or not finite.
         found: f64,
     },
+}
+
+/// What to do about a scene without a mesh.
+fn other_scene(other: Option<usize>) -> String {
+    other.map_or_else(
+        || ", and no other scene does: the file's meshes are in none".into(),
+        |other| format!(", but scene {other} does: choose it with LoadOptions::with_scene"),
+    )
 }
 
 impl GltfErrorKind {

@@ -13,6 +13,8 @@ mod looks;
 mod members;
 mod mesh;
 mod options;
+mod prune;
+mod readings;
 mod rig;
 mod scale;
 mod skeleton;

@@ -16,7 +16,7 @@ use crate::{
     skeleton, weak_point,
 };
 
-/// Loads the creature with the most triangles from a `.glb` or `.gltf` file.
+/// Loads the creature with the most triangles of the default scene of a `.glb` or `.gltf` file.
 ///
 /// Skins that share joints are one creature, and so are skins where a joint of one is a descendant of a joint of the
 /// other. Meshes without a skin under these joints belong to the creature too. A file without skins is one creature of
@@ -31,14 +31,14 @@ pub fn load(path: impl AsRef<Path>) -> Result<Rig, GltfError> {
 /// Loads a creature from a file like [`load`], with options.
 ///
 /// # Errors
-/// As [`load`]. Also [`GltfErrorKind::NoSuchSkin`] for a skin that the file does not have,
+/// As [`load`]. Also [`GltfErrorKind::NoSuchScene`] and [`GltfErrorKind::NoSuchSkin`] for what the file does not have,
 /// [`GltfErrorKind::BadHeight`] for a height that is not finite or not greater than 0, and
 /// [`GltfErrorKind::NoHeight`] if a height is set but the collider has none in the rest pose.
 pub fn load_with(path: impl AsRef<Path>, options: &LoadOptions) -> Result<Rig, GltfError> {
     from_path(path.as_ref(), |bytes, files| one(bytes, files, options))
 }
 
-/// Loads all creatures of a file, in the order of their first skins.
+/// Loads all creatures of a scene of a file, in the order of their first skins.
 ///
 /// [`LoadOptions::height`] scales each of them to that height. [`LoadOptions::skin`] is ignored.
 ///
@@ -64,22 +64,31 @@ pub fn load_slice(bytes: &[u8], options: &LoadOptions) -> Result<Rig, GltfError>
 ///
 /// Use it for files in an archive, from the web, or embedded in the program. `resolve` is called with a path relative
 /// to the document, percent-decoded, with `/` between its parts. It returns the contents of the whole file. It is
-/// called in the order of the buffers, once for each file even if several buffers name it, and never for images. Paths
-/// that are absolute or lead out of the document's folder are refused before the first call.
+/// called in the order of the buffers, once for each file even if several buffers name it, and only for buffers that are
+/// read. Their paths must not be absolute or lead out of the document's folder, which is checked before the first call.
 ///
 /// ```
 /// use std::io;
 ///
 /// use clamber_gltf::{LoadOptions, load_slice_with};
 ///
-/// let document = br#"{"asset": {"version": "2.0"},
-///     "buffers": [{"byteLength": 4, "uri": "my%20data.bin"}]}"#;
-/// let error = load_slice_with(document, &LoadOptions::default(), |path| match path {
-///     "my data.bin" => Ok(vec![1, 2, 3]),
-///     _ => Err(io::ErrorKind::NotFound.into()),
-/// });
-/// let error = error.map(|_| ()).unwrap_err();
-/// assert_eq!(error.to_string(), "buffer 0: claims 4 bytes, but holds 3");
+/// let document = br#"{"asset": {"version": "2.0"}, "nodes": [{"mesh": 0}],
+///     "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+///     "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+///     "bufferViews": [{"buffer": 0, "byteLength": 36}],
+///     "buffers": [{"byteLength": 36, "uri": "my%20data.bin"}]}"#;
+/// let load = |data: &[u8]| {
+///     load_slice_with(document, &LoadOptions::default(), |path| match path {
+///         "my data.bin" => Ok(data.to_vec()),
+///         _ => Err(io::ErrorKind::NotFound.into()),
+///     })
+/// };
+/// let corners: [f32; 9] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 2.0, 0.0];
+/// let data: Vec<u8> = corners.iter().flat_map(|number| number.to_le_bytes()).collect();
+/// assert_eq!(load(&data)?.collider.triangles().len(), 1);
+/// let error = load(&data[1..]).map(|_| ()).unwrap_err();
+/// assert_eq!(error.to_string(), "buffer 0: claims 36 bytes, but holds 35");
+/// # Ok::<(), clamber_gltf::GltfError>(())
 /// ```
 ///
 /// # Errors
@@ -135,10 +144,11 @@ fn from_bytes(
 ) -> Result<Vec<Rig>, GltfErrorKind> {
     scale::check(options.height)?;
     let mut warnings = Vec::new();
-    let (document, blob) = document::parse(bytes, &mut warnings)?;
-    let buffers = Buffers::load(&document, blob, files)?;
-    let reader = Reader::new(&buffers, bytes.len());
-    let contents = Contents::new(&document, reader, options, &mut warnings)?;
+    let parsed = document::parse(bytes, options, &mut warnings)?;
+    let document = &parsed.document;
+    let buffers = Buffers::load(document, parsed.blob, &parsed.buffers_read, files)?;
+    let reader = Reader::new(&buffers, bytes.len(), options);
+    let contents = Contents::new(document, reader, options, &mut warnings)?;
     let creatures = members::all(&contents.tree, &contents.extras, &mut warnings);
     if creatures.is_empty() {
         let object = "the file".into();

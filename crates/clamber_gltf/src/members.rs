@@ -39,7 +39,18 @@ pub(crate) fn all(
     extras: &[NodeExtras],
     warnings: &mut Vec<ImportWarning>,
 ) -> Vec<Members> {
-    let of_skin = creature_of_skin(tree);
+    // Skins of other scenes have no joints left.
+    let mut used = vec![false; tree.skins.len()];
+    for skin in tree.nodes.iter().filter_map(|node| node.skin()) {
+        used[skin.index()] = true;
+    }
+    let is_gone = |skin: &usize| !used[*skin] && tree.skins[*skin].joints().len() == 0;
+    let all_gone = (0..tree.skins.len()).all(|skin| is_gone(&skin));
+    let of_skin = if all_gone {
+        Vec::new()
+    } else {
+        creature_of_skin(tree)
+    };
     let mut creatures = vec![Members::default(); of_skin.len().max(1)];
     for (skin, creature) in of_skin.iter().enumerate() {
         creatures[*creature].skins.push(skin);
@@ -78,7 +89,8 @@ pub(crate) fn all(
         });
     }
     let bare = creatures.iter().filter(|c| c.meshes.is_empty());
-    let idle_skins: usize = bare.map(|creature| creature.skins.len()).sum();
+    let idle_skins = bare.flat_map(|creature| &creature.skins);
+    let idle_skins = idle_skins.filter(|skin| !is_gone(skin)).count();
     if idle_skins > 0 {
         warnings.push(ImportWarning::UnusedSkins { skins: idle_skins });
     }

@@ -3,15 +3,14 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use gltf::mesh::Semantic;
 use gltf::{Mesh, Node, Primitive};
 
-use crate::accessor::Reader;
 use crate::collision::Collision;
 use crate::contents::Contents;
 use crate::extras::Role;
 use crate::looks;
 use crate::members::Members;
+use crate::readings;
 use crate::skeleton::Joints;
 use crate::vertices::{self, Binding, PassedOver};
 use crate::visual::VisualMesh;
@@ -172,9 +171,11 @@ impl Gathered {
         object: &str,
         contents: &Contents<'_>,
     ) -> Result<(), GltfErrorKind> {
-        let reader = &contents.reader;
-        let place = self.place(instance, primitive, object, reader)?;
-        let triangles = vertices::triangles(primitive, place.vertices, object, reader)?;
+        let place = self.place(instance, primitive, object, contents)?;
+        let Contents {
+            reader, readings, ..
+        } = contents;
+        let triangles = readings.triangles(primitive, place.vertices, object, reader)?;
         let tag = contents.tag(primitive.material().index());
         if let Some(base) = place.collision {
             let collision = &mut self.collision;
@@ -185,7 +186,7 @@ impl Gathered {
             collision.tags.resize(count, tag);
         }
         if let Some(visual) = place.visual {
-            self.visual[visual].push(primitive, tag, triangles);
+            self.visual[visual].push(primitive, tag, triangles.to_vec());
         }
         Ok(())
     }
@@ -196,21 +197,25 @@ impl Gathered {
         instance: &Instance<'_>,
         primitive: &Primitive<'_>,
         object: &str,
-        reader: &Reader<'_>,
+        contents: &Contents<'_>,
     ) -> Result<Place, GltfErrorKind> {
         let key = key(instance, primitive);
         if let Some(place) = self.places.get(&key) {
             return Ok(*place);
         }
-        let weights = instance.morph_weights;
-        let vertices = vertices::vertices(primitive, &instance.binding, weights, object, reader)?;
+        let Contents {
+            reader, readings, ..
+        } = contents;
+        let (mesh, weights) = (instance.mesh.index(), instance.morph_weights);
+        let shape = readings.shape(mesh, primitive, weights, object, reader)?;
+        let vertices = vertices::vertices(&shape, primitive, &instance.binding, object, reader)?;
         let count = vertices.positions.len();
         self.unweighted += vertices.unweighted;
         self.morphed += usize::from(primitive.morph_targets().next().is_some());
         let visual = if instance.role == Role::Collision {
             None
         } else {
-            let looks = looks::looks(primitive, count, weights, object, reader)?;
+            let looks = shape.looks(primitive, weights, object, reader)?.clone();
             self.ignored.extend(looks::ignored(primitive));
             let name = instance
                 .node
@@ -240,23 +245,10 @@ impl Gathered {
 /// A key that is equal for primitives with the same vertices.
 fn key(instance: &Instance<'_>, primitive: &Primitive<'_>) -> Vec<usize> {
     let mut key = vec![instance.space as usize, instance.role as usize];
-    let mut push = |kind: usize, set: u32, accessor: usize| {
-        key.extend([kind, set as usize, accessor]);
-    };
-    for (semantic, accessor) in primitive.attributes() {
-        match semantic {
-            Semantic::Positions => push(0, 0, accessor.index()),
-            Semantic::Joints(set) => push(1, set, accessor.index()),
-            Semantic::Weights(set) => push(2, set, accessor.index()),
-            Semantic::Normals => push(3, 0, accessor.index()),
-            Semantic::TexCoords(set) => push(4, set, accessor.index()),
-            Semantic::Colors(set) => push(5, set, accessor.index()),
-            _ => {}
-        }
-    }
+    key.extend(readings::attributes(primitive));
     // Morphed vertices belong to one primitive of one node.
     if primitive.morph_targets().next().is_some() {
-        push(6, instance.node.index() as u32, primitive.index());
+        key.extend([instance.node.index(), primitive.index()]);
     }
     key
 }

@@ -5,7 +5,8 @@ use clamber_surface::mesh::{BuildOptions, SurfaceTag};
 
 /// Options for loading a creature.
 ///
-/// The default loads the creature with the most triangles, with the size and the tags that the file gives it.
+/// The default loads the creature with the most triangles of the default scene, with the size and the tags that the file
+/// gives it.
 ///
 /// ```
 /// use clamber_gltf::LoadOptions;
@@ -15,9 +16,12 @@ use clamber_surface::mesh::{BuildOptions, SurfaceTag};
 /// let options = LoadOptions::default().with_height(12.0).with_tag(fur);
 /// assert_eq!(options.height, Some(12.0));
 /// ```
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct LoadOptions {
+    /// Index of the scene to load. `None` for the file's default scene; in a file that names none, the first scene that
+    /// shows a mesh; in a file without scenes, everything. Meshes that the scene does not show are left out.
+    pub scene: Option<usize>,
     /// Index of a skin of the creature to load; `None` for the creature with the most triangles.
     /// [`load_all`](crate::load_all) ignores it.
     pub skin: Option<usize>,
@@ -27,9 +31,46 @@ pub struct LoadOptions {
     pub height: Option<f32>,
     /// Function that chooses the tags of surfaces; `None` keeps the file's tags.
     pub tagger: Option<Tagger>,
+    /// How many vertices a file may make by showing meshes more than once: each showing after the first counts all
+    /// vertices of its mesh. The limit for triangles is twice that. 2^20 by default.
+    ///
+    /// It bounds the memory that a small file can take: half a gigabyte by default. Vertices that are shown once are limited
+    /// by the size of the file instead.
+    pub max_repeated_vertices: usize,
+}
+
+impl Default for LoadOptions {
+    fn default() -> Self {
+        Self {
+            scene: None,
+            skin: None,
+            build: BuildOptions::default(),
+            height: None,
+            tagger: None,
+            max_repeated_vertices: 1 << 20,
+        }
+    }
 }
 
 impl LoadOptions {
+    /// Loads the scene with this index.
+    #[must_use]
+    pub fn with_scene(self, scene: usize) -> Self {
+        Self {
+            scene: Some(scene),
+            ..self
+        }
+    }
+
+    /// Sets [`LoadOptions::max_repeated_vertices`].
+    #[must_use]
+    pub fn with_max_repeated_vertices(self, max_repeated_vertices: usize) -> Self {
+        Self {
+            max_repeated_vertices,
+            ..self
+        }
+    }
+
     /// Loads the creature that the skin with this index belongs to.
     #[must_use]
     pub fn with_skin(self, skin: usize) -> Self {

@@ -18,8 +18,8 @@ pub(crate) fn decode_data(data: &str) -> Result<Vec<u8>, String> {
     }
 }
 
-/// The relative path that a URI names, decoded, with `/` between its parts and without `.`. Paths that are absolute
-/// or leave the folder are refused: a document from elsewhere must not name devices or files of the system.
+/// The relative path that a URI names, decoded, with `/` between its parts and without `.` and `..`. Paths that are
+/// absolute or leave the folder are refused: a document from elsewhere must not name devices or files of the system.
 pub(crate) fn relative_path(uri: &str) -> Result<String, String> {
     let name = percent_encoding::percent_decode_str(uri)
         .decode_utf8()
@@ -31,6 +31,7 @@ pub(crate) fn relative_path(uri: &str) -> Result<String, String> {
         match part {
             Component::Normal(part) => parts.push(part.to_str().ok_or_else(refused)?),
             Component::CurDir => {}
+            Component::ParentDir => drop(parts.pop().ok_or_else(refused)?),
             _ => return Err(refused()),
         }
     }
@@ -49,11 +50,22 @@ mod tests {
         for (uri, path) in [
             ("data.bin", "data.bin"),
             ("./a%20b//./data.bin", "a b/data.bin"),
+            ("./a/../b%20c.bin", "b c.bin"),
             ("%C3%A9.bin?x", "\u{e9}.bin?x"),
         ] {
             assert_eq!(relative_path(uri).as_deref(), Ok(path), "{uri}");
         }
-        for uri in ["", ".", "/a", "%2Fa", "a/../b", "%2e%2e/a", "c:a", "%FF"] {
+        for uri in [
+            "",
+            ".",
+            "/a",
+            "%2Fa",
+            "a/..",
+            "%2e%2e/a",
+            "a/../../b",
+            "c:a",
+            "%FF",
+        ] {
             assert!(relative_path(uri).is_err(), "{uri}");
         }
     }

@@ -8,6 +8,7 @@ use gltf::{Accessor, Primitive};
 
 use crate::GltfErrorKind;
 use crate::accessor::Reader;
+use crate::readings::Shape;
 
 /// The joints that move the vertices of a mesh.
 pub(crate) enum Binding<'a> {
@@ -59,30 +60,39 @@ pub(crate) fn passed_over(primitive: &Primitive<'_>, binding: &Binding<'_>) -> O
     (unskinned && matches!(binding, Binding::Skin(_))).then_some(PassedOver::NoWeights)
 }
 
-/// Reads positions, with morph targets at their rest weights, and influences.
-pub(crate) fn vertices(
+/// Reads positions, with morph targets at these weights, and charges what they make.
+pub(crate) fn positions(
     primitive: &Primitive<'_>,
-    binding: &Binding<'_>,
     morph_weights: &[f32],
     object: &str,
     reader: &Reader<'_>,
-) -> Result<Vertices, GltfErrorKind> {
+) -> Result<Vec<Vec3>, GltfErrorKind> {
     let Some(accessor) = primitive.get(&Semantic::Positions) else {
-        return Ok(Vertices::default());
+        return Ok(Vec::new());
     };
     let rest = reader.floats::<3>(&accessor)?;
-    let count = rest.len();
     let targets = primitive.morph_targets().len();
     if !morph_weights.is_empty() && targets != morph_weights.len() {
         let found = morph_weights.len();
         let reason = format!("has {targets} morph targets, but {found} weights for them");
         return Err(GltfErrorKind::invalid(object, reason));
     }
-    reader.charge(object, count.saturating_mul(BUILD_BYTES))?;
+    reader.charge(object, rest.len().saturating_mul(BUILD_BYTES))?;
     let deltas = primitive.morph_targets().map(|target| target.positions());
-    let positions = morphed(rest, deltas, morph_weights, object, reader)?;
+    morphed(rest, deltas, morph_weights, object, reader)
+}
+
+/// The vertices of a primitive, with the influences that a binding gives them.
+pub(crate) fn vertices(
+    shape: &Shape,
+    primitive: &Primitive<'_>,
+    binding: &Binding<'_>,
+    object: &str,
+    reader: &Reader<'_>,
+) -> Result<Vertices, GltfErrorKind> {
+    let count = shape.positions.len();
     let mut vertices = Vertices {
-        positions,
+        positions: shape.positions.clone(),
         ..Vertices::default()
     };
     match binding {
@@ -95,9 +105,9 @@ pub(crate) fn vertices(
             vertices.influence_ends = (1..=count as u32).collect();
         }
         Binding::Skin(joints) => {
-            let sets = weight_sets(primitive, count, object, reader)?;
+            let sets = shape.weights(primitive, object, reader)?;
             for vertex in 0..count {
-                vertices.push_influences(&sets, vertex, object, joints)?;
+                vertices.push_influences(sets, vertex, object, joints)?;
             }
         }
     }
@@ -188,10 +198,10 @@ impl Vertices {
 }
 
 /// Joints and weights of every vertex, four of each.
-type WeightSet = (Vec<[u32; 4]>, Vec<[f32; 4]>);
+pub(crate) type WeightSet = (Vec<[u32; 4]>, Vec<[f32; 4]>);
 
 /// Reads all weight sets of a primitive.
-fn weight_sets(
+pub(crate) fn weight_sets(
     primitive: &Primitive<'_>,
     vertices: usize,
     object: &str,

@@ -10,7 +10,7 @@ use gltf::{Document, Primitive};
 use crate::extras::tag_of;
 use crate::looks::Looks;
 use crate::vertices::Vertices;
-use crate::{GltfErrorKind, ImportWarning, LoadOptions};
+use crate::{GltfErrorKind, LoadOptions};
 
 /// A mesh to draw.
 ///
@@ -170,20 +170,10 @@ pub(crate) fn merged(visual: &[VisualMesh], joint_count: usize) -> Result<Collid
 pub(crate) fn materials(
     document: &Document,
     options: &LoadOptions,
-    warnings: &mut Vec<ImportWarning>,
 ) -> Result<Vec<Material>, GltfErrorKind> {
-    let mut textured = 0;
     let mut materials = Vec::new();
     for material in document.materials() {
         let pbr = material.pbr_metallic_roughness();
-        let textures = [
-            pbr.base_color_texture().is_some(),
-            pbr.metallic_roughness_texture().is_some(),
-            material.normal_texture().is_some(),
-            material.occlusion_texture().is_some(),
-            material.emissive_texture().is_some(),
-        ];
-        textured += usize::from(textures.contains(&true));
         materials.push(Material {
             name: material.name().map(str::to_owned),
             base_color: pbr.base_color_factor(),
@@ -198,11 +188,6 @@ pub(crate) fn materials(
             },
             double_sided: material.double_sided(),
             tag: options.tag(material.name(), tag_of(&material)?),
-        });
-    }
-    if textured > 0 {
-        warnings.push(ImportWarning::Textures {
-            materials: textured,
         });
     }
     Ok(materials)

@@ -28,6 +28,18 @@ pub enum ImportWarning {
         /// Largest error of a column of a matrix, as a share of the column's length.
         worst_error: f64,
     },
+    /// Nodes with a mesh that the loaded scene does not show, left out.
+    HiddenMeshes {
+        /// Index of the loaded scene.
+        scene: usize,
+        /// Number of nodes with a mesh.
+        meshes: usize,
+    },
+    /// Nodes that show their mesh at several places (`EXT_mesh_gpu_instancing`); it was loaded at the node's own.
+    Instances {
+        /// Number of nodes.
+        nodes: usize,
+    },
     /// Materials with textures: only their factors were read.
     Textures {
         /// Number of materials.
@@ -146,6 +158,14 @@ impl fmt::Display for ImportWarning {
                 f,
                 "nodes whose matrix has shear, which was dropped: {nodes}; columns are off by up to \
                  {worst_error:.1e} of their length"
+            ),
+            Self::HiddenMeshes { scene, meshes } => write!(
+                f,
+                "loaded scene {scene}; left out meshes that it does not show: {meshes}"
+            ),
+            Self::Instances { nodes } => write!(
+                f,
+                "nodes with EXT_mesh_gpu_instancing, whose mesh was loaded once, at the node: {nodes}"
             ),
             Self::Textures { materials } => write!(
                 f,

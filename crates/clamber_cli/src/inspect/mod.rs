@@ -104,7 +104,7 @@ pub fn print(options: &InspectOptions) -> Result<bool, InspectError> {
         return brain::print(options);
     }
     let mut load = LoadOptions::default();
-    load.skin = options.skin;
+    (load.scene, load.skin) = (options.scene, options.skin);
     let rig = load_with(&options.file, &load)?;
     if options.humanoid {
         return humanoid::print(&rig, options);

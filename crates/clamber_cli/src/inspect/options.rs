@@ -16,7 +16,7 @@ pub struct InspectOptions {
     pub file: PathBuf,
 
     /// The file is a creature's brain: print its states and transitions, and what can never happen.
-    #[arg(long, conflicts_with_all = ["json", "skin", "clips", "poses", "thorough", "humanoid"])]
+    #[arg(long, conflicts_with_all = ["json", "scene", "skin", "clips", "poses", "thorough", "humanoid"])]
     pub brain: bool,
 
     /// With --brain: the .glb or .gltf file of the creature, whose clips, joints and weak points the brain has to fit.
@@ -31,6 +31,10 @@ pub struct InspectOptions {
     /// Print one JSON object instead of a table.
     #[arg(long)]
     pub json: bool,
+
+    /// Index of the scene to load [default: the file's default scene, else the first that shows a mesh].
+    #[arg(long, value_name = "INDEX")]
+    pub scene: Option<usize>,
 
     /// Index of a skin of the creature to inspect [default: the creature with the most triangles].
     #[arg(long, value_name = "INDEX")]
@@ -77,6 +81,7 @@ impl InspectOptions {
             creature: None,
             rate: 60,
             json: false,
+            scene: None,
             skin: None,
             clips: Vec::new(),
             poses: None,

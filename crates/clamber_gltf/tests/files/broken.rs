@@ -38,7 +38,7 @@ fn data_that_is_read_many_times_is_refused_before_memory_runs_out() {
     let primitives = file.json["meshes"][0]["primitives"].as_array_mut().unwrap();
     primitives.extend(vec![primitive; 2_000]);
     let error = file.load().unwrap_err();
-    assert!(error.to_string().contains("more memory"), "{error}");
+    assert!(error.to_string().contains("more than once"), "{error}");
 
     // Sparse without a buffer view: a huge count without data.
     let mut file = File::square();
@@ -95,11 +95,11 @@ fn data_that_is_small_in_a_file_but_large_in_memory_is_refused() {
     refused(&file, "a long name of many joints");
 }
 
-/// Loads files that take as much memory as they may. The worst is one large mesh, shown by as many nodes
-/// as the budget allows, and by one more.
+/// Loads files that take as much memory as they may: a large mesh, shown by as many nodes as the options allow, and by one
+/// more. What is shown once takes at most a hundred times the file, each further vertex at most 512 bytes.
 #[test]
-fn the_greediest_file_stays_within_a_hundred_times_its_size() {
-    let vertices = 30_000;
+fn the_greediest_file_stays_within_its_bounds() {
+    let vertices = 9_999;
     let mut rng = fastrand::Rng::with_seed(43);
     let points: Vec<[f32; 3]> = (0..vertices)
         .map(|_| [rng.f32(), rng.f32(), rng.f32()])
@@ -113,26 +113,42 @@ fn the_greediest_file_stays_within_a_hundred_times_its_size() {
         "meshes",
         json!({"primitives": [{"attributes": {"POSITION": zeros}}]}),
     );
-    for mesh in [0, flat] {
-        let mut greedy = File {
-            json: file.json.clone(),
-            bytes: file.bytes.clone(),
-        };
-        greedy.json["nodes"][3] = json!({"mesh": mesh});
-        greedy.json.as_object_mut().unwrap().remove("skins");
-        let (mut worst, mut refused) = (0.0f64, false);
-        while !refused {
-            let glb = greedy.glb();
-            let memory = measure(|| {
-                let loaded = load_slice(&glb, &LoadOptions::default());
-                refused = loaded.is_err_and(|error| error.to_string().contains("more memory"));
-            });
-            let taken = memory.bytes_max.saturating_sub(1 << 20) as f64;
-            worst = worst.max(taken / glb.len() as f64);
-            greedy.node_under(1, json!({"mesh": mesh}));
+    // A strip makes two triangles of each vertex, which the limit allows.
+    let strip = file.push(
+        "meshes",
+        json!({"primitives": [{"attributes": {"POSITION": positions}, "mode": 5}]}),
+    );
+    for mesh in [0, flat, strip] {
+        for limit in [0, 5 * vertices] {
+            let mut greedy = File {
+                json: file.json.clone(),
+                bytes: file.bytes.clone(),
+            };
+            greedy.json["nodes"][3] = json!({"mesh": mesh});
+            greedy.json.as_object_mut().unwrap().remove("skins");
+            let options = LoadOptions::default().with_max_repeated_vertices(limit);
+            let (mut worst, mut nodes) = (0.0f64, 1);
+            let refusal = loop {
+                let glb = greedy.glb();
+                let mut refusal = None;
+                let memory = measure(|| refusal = load_slice(&glb, &options).err());
+                let bound = 100 * glb.len() + (1 << 20) + 512 * limit;
+                worst = worst.max(memory.bytes_max as f64 / bound as f64);
+                match refusal {
+                    Some(error) if error.to_string().contains("no usable triangle") => {}
+                    Some(error) => break error.to_string(),
+                    None => {}
+                }
+                greedy.node_under(1, json!({"mesh": mesh}));
+                nodes += 1;
+            };
+            println!(
+                "mesh {mesh}, limit {limit}: {nodes} nodes, {worst:.2} of the bound, {refusal}"
+            );
+            assert!(refusal.contains("max_repeated_vertices"), "{refusal}");
+            assert_eq!(nodes, limit / vertices + 2);
+            assert!(worst < 1.0, "mesh {mesh}: {worst} of the bound");
         }
-        println!("mesh {mesh}: up to {worst:.0} times the file");
-        assert!(worst < 100.0, "mesh {mesh}: {worst} times the file");
     }
 }
 

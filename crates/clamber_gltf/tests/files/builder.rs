@@ -100,6 +100,14 @@ impl File {
         items.len() - 1
     }
 
+    /// Appends a node to the first scene; gives its index.
+    pub(crate) fn node(&mut self, node: Value) -> usize {
+        let index = self.push("nodes", node);
+        let roots = self.json["scenes"][0]["nodes"].as_array_mut().unwrap();
+        roots.push(json!(index));
+        index
+    }
+
     /// Appends a node under another one; gives its index.
     pub(crate) fn node_under(&mut self, parent: usize, node: Value) -> usize {
         let index = self.push("nodes", node);

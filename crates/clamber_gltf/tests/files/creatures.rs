@@ -48,7 +48,7 @@ fn harmless_extensions_and_unused_channels_meshes_and_skins_are_skipped() {
         .as_array_mut()
         .unwrap()
         .push(json!({"mesh": 0}));
-    let bare = file.push("nodes", json!({}));
+    let bare = file.node(json!({}));
     file.push("skins", json!({"joints": [bare]}));
     let rig = file.load().unwrap();
     assert_eq!(rig.clips[0].channels().len(), 1);
@@ -124,17 +124,14 @@ fn animated_nodes_above_the_joints_move_them_at_any_scale() {
 
 /// Adds a second pair of joints, under a root of their own, and a mesh on them.
 fn with_a_stranger(file: &mut File) {
-    let root = file.push(
-        "nodes",
-        json!({"name": "stranger", "translation": [9, 0, 0]}),
-    );
+    let root = file.node(json!({"name": "stranger", "translation": [9, 0, 0]}));
     let tip = file.node_under(root, json!({"name": "its tip"}));
     let binds = file.json["skins"][0]["inverseBindMatrices"].clone();
     let skin = file.push(
         "skins",
         json!({"joints": [root, tip], "inverseBindMatrices": binds}),
     );
-    file.push("nodes", json!({"mesh": 0, "skin": skin}));
+    file.node(json!({"mesh": 0, "skin": skin}));
 }
 
 #[test]
@@ -143,13 +140,13 @@ fn skins_that_share_joints_are_one_creature_and_others_another_one() {
     // The same nodes in reverse order, without bind matrices.
     let again = file.push("skins", json!({"joints": [2, 1]}));
     let twice = json!({"mesh": 0, "skin": again});
-    file.push("nodes", twice.clone());
-    file.push("nodes", twice);
+    file.node(twice.clone());
+    file.node(twice);
     // A joint under a joint of another skin.
     let finger = file.node_under(2, json!({"name": "finger"}));
     let nail = file.node_under(finger, json!({"name": "nail"}));
     let third = file.push("skins", json!({"joints": [finger, nail]}));
-    file.push("nodes", json!({"mesh": 0, "skin": third}));
+    file.node(json!({"mesh": 0, "skin": third}));
     with_a_stranger(&mut file);
 
     let rig = file.load().unwrap();
@@ -204,7 +201,7 @@ fn load_all_gives_all_creatures_of_a_file() {
     // A second skin of the stranger.
     let joints = file.json["skins"][1]["joints"].clone();
     let second = file.push("skins", json!({"joints": joints}));
-    file.push("nodes", json!({"mesh": 0, "skin": second}));
+    file.node(json!({"mesh": 0, "skin": second}));
     let path = std::env::temp_dir().join(format!("clamber-all-{}.glb", std::process::id()));
     std::fs::write(&path, file.glb()).unwrap();
     let rigs = load_all(&path, &LoadOptions::default()).unwrap();
@@ -231,7 +228,7 @@ fn weak_points_are_on_the_joint_that_they_hang_under() {
         "extras": says(json!({"hit_points": 3.0, "major": true}))});
     file.node_under(between, eye);
     file.json["nodes"][1]["extras"] = says(json!({"hit_points": 1, "radius": 0.25}));
-    file.push("nodes", json!({"extras": says(json!({"hit_points": 1}))}));
+    file.node(json!({"extras": says(json!({"hit_points": 1}))}));
 
     let rig = file.load().unwrap();
     let [lower, eye] = rig.weak_points.as_slice() else {

@@ -14,6 +14,9 @@ mod height;
 #[cfg(unix)]
 mod links;
 mod meshes;
+mod repeated;
 mod resolver;
+mod scenes;
 mod tags;
+mod unread;
 mod weights;

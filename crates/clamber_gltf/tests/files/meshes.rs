@@ -119,10 +119,7 @@ fn two_nodes_can_give_one_mesh_different_roles() {
     let role = |role: &str| json!({"clamber": {"role": role}});
     let mut file = File::square();
     file.json["nodes"][3]["extras"] = role("visual");
-    file.push(
-        "nodes",
-        json!({"mesh": 0, "skin": 0, "extras": role("collision")}),
-    );
+    file.node(json!({"mesh": 0, "skin": 0, "extras": role("collision")}));
     let rig = file.load().unwrap();
     assert_eq!((rig.collider.triangles().len(), rig.visual.len()), (2, 1));
 }
@@ -150,7 +147,7 @@ fn roles_select_collision_and_visual_meshes() {
     seen["primitives"] = json!([{"attributes": {
         "POSITION": positions, "JOINTS_0": joints, "WEIGHTS_0": weights}}]);
     let seen = file.push("meshes", seen);
-    let node = file.push("nodes", json!({"mesh": seen, "skin": 0}));
+    let node = file.node(json!({"mesh": seen, "skin": 0}));
     let rig = file.load().unwrap();
     assert_eq!((rig.collider.triangles().len(), rig.visual.len()), (2, 1));
     file.json["nodes"][node]["extras"] = role("both");
@@ -189,7 +186,7 @@ fn a_rigid_mesh_under_a_joint_follows_it_alone() {
         json!({"name": "plate", "mesh": plate, "translation": [0, 0, 3]}),
     );
     // One under no joint.
-    file.push("nodes", json!({"mesh": plate}));
+    file.node(json!({"mesh": plate}));
 
     let rig = file.load().unwrap();
     let names = joint_names(&rig);
@@ -254,7 +251,7 @@ fn morph_targets_are_applied_at_their_rest_weights() {
     );
 
     // The same mesh with other weights is another mesh.
-    file.push("nodes", json!({"mesh": 0, "skin": 0}));
+    file.node(json!({"mesh": 0, "skin": 0}));
     assert_eq!(file.load().unwrap().collider.triangles().len(), 4);
 
     let short = file.positions(&[[0.0, 0.0, 1.0]; 3]);

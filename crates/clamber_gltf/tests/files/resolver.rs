@@ -29,16 +29,53 @@ fn the_resolver_is_called_once_per_file_with_the_decoded_path() {
         ("data:,%01%02", 2),
         ("a%20b/./data.bin", all),
     ];
-    let mut asked = Vec::new();
-    let rig = load_slice_with(&document(&file, &uris), &LoadOptions::default(), |path| {
-        asked.push(path.to_owned());
-        Ok(match path {
-            "a b/data.bin" => file.bytes.clone(),
-            _ => vec![0; 100],
-        })
+    let asked = |document: &[u8]| {
+        let mut asked = Vec::new();
+        let rig = load_slice_with(document, &LoadOptions::default(), |path| {
+            asked.push(path.to_owned());
+            Ok(match path {
+                "a b/data.bin" => file.bytes.clone(),
+                _ => vec![0; 100],
+            })
+        });
+        assert_eq!(rig.unwrap().collider.positions().len(), 4);
+        asked
+    };
+    // What is not read is not asked for: it may be missing, and its address may be anything.
+    let mut document = document(&file, &uris);
+    assert_eq!(asked(&document), ["a b/data.bin"]);
+    let text = String::from_utf8(document).unwrap();
+    document = text
+        .replace("other.bin", "https://example.org/no.bin")
+        .into_bytes();
+    assert_eq!(asked(&document), ["a b/data.bin"]);
+    // An animation has its keys in buffers 0 and 1, and moves a node that is no joint.
+    let mut json: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let push = |json: &mut serde_json::Value, list: &str, object| {
+        let list = json[list].as_array_mut().unwrap();
+        list.push(object);
+        list.len() - 1
+    };
+    let node = push(&mut json, "nodes", json!({}));
+    let [times, values] = [0, 1].map(|buffer| {
+        let view = push(
+            &mut json,
+            "bufferViews",
+            json!({"buffer": buffer, "byteLength": 2}),
+        );
+        let accessor =
+            json!({"bufferView": view, "componentType": 5121, "count": 1, "type": "SCALAR"});
+        push(&mut json, "accessors", accessor)
     });
-    assert_eq!(asked, ["a b/data.bin", "other.bin"]);
-    assert_eq!(rig.unwrap().collider.positions().len(), 4);
+    let animation = json!({
+        "channels": [{"sampler": 0, "target": {"node": node, "path": "rotation"}}],
+        "samplers": [{"input": times, "output": values}]
+    });
+    push(&mut json, "animations", animation);
+    assert_eq!(
+        asked(json.to_string().as_bytes()),
+        ["a b/data.bin", "other.bin"]
+    );
 }
 
 #[test]
@@ -70,7 +107,7 @@ fn paths_out_of_the_folder_are_refused_before_the_resolver_is_called() {
     for uri in [
         "/data.bin",
         "../data.bin",
-        "a/%2e%2e/data.bin",
+        "a/%2e%2e/../data.bin",
         "file:data.bin",
         ".",
     ] {

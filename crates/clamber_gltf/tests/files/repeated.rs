@@ -1,0 +1,121 @@
+//! Meshes that are shown many times: they are read once, and what they make has a limit of its own.
+
+use clamber_gltf::{GltfErrorKind, LoadOptions, load_all, load_slice};
+use serde_json::json;
+
+use crate::builder::File;
+
+/// Adds a sphere of 25 by 25 vertices to a file; gives its mesh.
+fn sphere(file: &mut File) -> usize {
+    let (rings, sides) = (25, 25);
+    let angle = |k: usize, of: usize| k as f32 / (of - 1) as f32 * std::f32::consts::PI;
+    let point = |(ring, side): (usize, usize)| {
+        let (up, round) = (angle(ring, rings), 2.0 * angle(side, sides));
+        [
+            libm::sinf(up) * libm::cosf(round),
+            libm::cosf(up),
+            libm::sinf(up) * libm::sinf(round),
+        ]
+    };
+    let all = (0..rings).flat_map(|ring| (0..sides).map(move |side| (ring, side)));
+    let points: Vec<[f32; 3]> = all.map(point).collect();
+    let positions = file.positions(&points);
+    let normals = file.floats("VEC3", points.as_flattened());
+    let mut indices = Vec::new();
+    for ring in 0..rings as u16 - 1 {
+        for side in 0..sides as u16 - 1 {
+            let at = ring * sides as u16 + side;
+            let below = at + sides as u16;
+            indices.extend([at, at + 1, below, at + 1, below + 1, below]);
+        }
+    }
+    let count = indices.len();
+    let bytes: Vec<u8> = indices.into_iter().flat_map(u16::to_le_bytes).collect();
+    let indices = file.accessor("SCALAR", 5123, count, &bytes);
+    let primitive =
+        json!({"attributes": {"POSITION": positions, "NORMAL": normals}, "indices": indices});
+    file.push("meshes", json!({"primitives": [primitive]}))
+}
+
+#[test]
+fn a_centipede_of_300_segments_of_one_sphere_loads() {
+    let mut file = File::square();
+    let mesh = sphere(&mut file);
+    let mut parent = 1;
+    for segment in 0..300 {
+        let name = format!("segment {segment}");
+        parent = file.node_under(
+            parent,
+            json!({"name": name, "mesh": mesh, "translation": [0, 0, 1]}),
+        );
+    }
+    // Each is counted but the first, and the limit is what it says.
+    let repeated = 299 * 625;
+    for (limit, loads) in [(1 << 20, true), (repeated, true), (repeated - 1, false)] {
+        let options = LoadOptions::default().with_max_repeated_vertices(limit);
+        match load_slice(&file.glb(), &options) {
+            Ok(rig) => {
+                assert!(loads, "limit {limit}");
+                assert_eq!(rig.visual.len(), 301);
+                let vertices: usize = rig.visual.iter().map(|mesh| mesh.positions.len()).sum();
+                assert_eq!(vertices, 300 * 625 + 4);
+                assert_eq!(rig.skeleton.joints().len(), 303);
+            }
+            Err(error) => {
+                assert!(!loads, "limit {limit}: {error}");
+                let text = "meshes that are shown more than once make over 186874 vertices";
+                assert!(error.to_string().contains(text), "{error}");
+                let kind = &error.kind;
+                assert!(matches!(
+                    kind,
+                    GltfErrorKind::TooManyRepeats { limit: 186_874, .. }
+                ));
+            }
+        }
+    }
+}
+
+#[test]
+fn a_crowd_of_100_loads_with_one_mesh() {
+    let mut file = File::square();
+    let mesh = sphere(&mut file);
+    let vertices = 625;
+    let joints = file.accessor("VEC4", 5121, vertices, &[0, 1, 2, 3].repeat(vertices));
+    let weights = file.accessor("VEC4", 5121, vertices, &[100, 100, 50, 5].repeat(vertices));
+    file.json["accessors"][weights]["normalized"] = json!(true);
+    let attributes = &mut file.json["meshes"][mesh]["primitives"][0]["attributes"];
+    attributes["JOINTS_0"] = json!(joints);
+    attributes["WEIGHTS_0"] = json!(weights);
+    for person in 0..100 {
+        let root = file.node(json!({"name": format!("person {person}")}));
+        let mut all = vec![root];
+        for limb in 0..30 {
+            let parent = all[limb];
+            all.push(file.node_under(parent, json!({"translation": [0, 1, 0]})));
+        }
+        let skin = file.push("skins", json!({"joints": all}));
+        file.node(json!({"mesh": mesh, "skin": skin}));
+    }
+    let path = std::env::temp_dir().join(format!("clamber_crowd_{}.glb", std::process::id()));
+    std::fs::write(&path, file.glb()).unwrap();
+    let rigs = load_all(&path, &LoadOptions::default());
+    std::fs::remove_file(&path).unwrap();
+    let rigs = rigs.unwrap();
+    assert_eq!(rigs.len(), 101);
+    for rig in &rigs[1..] {
+        assert_eq!(
+            (rig.collider.positions().len(), rig.visual.len()),
+            (rigs[1].collider.positions().len(), 1)
+        );
+    }
+    assert!(
+        rigs[1].collider.positions().len() >= 577,
+        "{}",
+        rigs[1].collider.positions().len()
+    );
+    // Each member alone makes nothing twice.
+    let alone = LoadOptions::default()
+        .with_skin(50)
+        .with_max_repeated_vertices(0);
+    assert!(load_slice(&file.glb(), &alone).is_ok());
+}

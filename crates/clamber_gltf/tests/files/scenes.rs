@@ -1,0 +1,159 @@
+//! Which scene of a file is loaded.
+
+use clamber_gltf::{GltfErrorKind, ImportWarning, LoadOptions, Rig, load_all, load_slice};
+use serde_json::json;
+
+use crate::builder::File;
+
+/// Two squares in scenes of their own, 1 and 2; scene 0 is empty, and a third square is in none.
+fn two_scenes() -> File {
+    let mut file = File::square();
+    let second = file.push("nodes", json!({"name": "second", "mesh": 0}));
+    file.push("nodes", json!({"name": "third", "mesh": 0}));
+    file.json["scenes"] = json!([{}, {"nodes": [0]}, {"nodes": [second], "name": "other"}]);
+    file.json.as_object_mut().unwrap().remove("scene");
+    file
+}
+
+fn names(rig: &Rig) -> Vec<&str> {
+    rig.visual.iter().map(|mesh| mesh.name.as_str()).collect()
+}
+
+fn load(file: &File, options: &LoadOptions) -> Result<Rig, GltfErrorKind> {
+    load_slice(&file.glb(), options).map_err(|error| error.kind)
+}
+
+#[test]
+fn the_default_scene_is_loaded_or_the_first_with_a_mesh_or_the_wanted_one() {
+    let mut file = two_scenes();
+    let options = LoadOptions::default();
+    let rig = load(&file, &options).unwrap();
+    assert_eq!(names(&rig), ["body"]);
+    let warning = ImportWarning::HiddenMeshes {
+        scene: 1,
+        meshes: 2,
+    };
+    assert_eq!(rig.report.warnings, [warning]);
+    let text = rig.report.warnings[0].to_string();
+    assert_eq!(
+        text,
+        "loaded scene 1; left out meshes that it does not show: 2"
+    );
+
+    // A skin that no shown mesh uses is no creature.
+    let rig = load(&file, &options.clone().with_scene(2)).unwrap();
+    assert_eq!(names(&rig), ["second"]);
+    file.json["scene"] = json!(2);
+    assert_eq!(names(&load(&file, &options).unwrap()), ["second"]);
+    assert_eq!(
+        names(&load(&file, &options.clone().with_scene(1)).unwrap()),
+        ["body"]
+    );
+
+    // Without scenes everything is shown.
+    file.json.as_object_mut().unwrap().remove("scene");
+    file.json.as_object_mut().unwrap().remove("scenes");
+    let rig = load(&file, &options).unwrap();
+    assert_eq!(names(&rig), ["body"]);
+    let warning = ImportWarning::MeshesWithoutJoint { meshes: 2 };
+    assert_eq!(rig.report.warnings, [warning]);
+}
+
+#[test]
+fn a_mesh_below_a_root_is_shown_and_its_joints_may_be_elsewhere() {
+    // Against the specification, the scene names the mesh but not the joints of its skin.
+    let mut file = File::square();
+    file.json["scenes"] = json!([{"nodes": [3]}]);
+    file.json["nodes"][0]["children"] = json!([1]);
+    let rig = file.load().unwrap();
+    assert_eq!(rig.skeleton.joints().len(), 3);
+    assert_eq!(rig.report.warnings, []);
+}
+
+#[test]
+fn empty_scenes_are_no_error_and_a_scene_without_a_mesh_says_which_has_one() {
+    let mut file = two_scenes();
+    file.json["scenes"][0] = json!({"nodes": []});
+    assert!(file.load().is_ok());
+    file.json["scene"] = json!(0);
+    let error = file.load().unwrap_err();
+    let kind = GltfErrorKind::EmptyScene {
+        scene: 0,
+        other: Some(1),
+    };
+    assert_eq!(format!("{error:?}"), format!("{kind:?}"));
+    let text = "scene 0 shows no mesh, but scene 1 does: choose it with LoadOptions::with_scene";
+    assert_eq!(error.to_string(), text);
+
+    file.json["scenes"] = json!([{}]);
+    let text = "scene 0 shows no mesh, and no other scene does: the file's meshes are in none";
+    assert_eq!(file.load().unwrap_err().to_string(), text);
+
+    // A file without any mesh is another matter.
+    for node in file.json["nodes"].as_array_mut().unwrap() {
+        node.as_object_mut().unwrap().remove("mesh");
+    }
+    let error = file.load().unwrap_err();
+    assert!(
+        matches!(error, GltfErrorKind::NoTriangles { .. }),
+        "{error}"
+    );
+}
+
+#[test]
+fn scenes_that_do_not_exist_are_refused() {
+    let file = two_scenes();
+    let options = LoadOptions::default().with_scene(3);
+    let error = load(&file, &options).unwrap_err();
+    assert!(
+        matches!(
+            error,
+            GltfErrorKind::NoSuchScene {
+                wanted: 3,
+                found: 3
+            }
+        ),
+        "{error}"
+    );
+    for scene in [json!(3), json!(-1), json!("first")] {
+        let mut file = two_scenes();
+        file.json["scene"] = scene;
+        let error = file.load().unwrap_err().to_string();
+        assert!(error.contains("the default scene: is"), "{error}");
+    }
+    // A scene that is loaded names nodes; what another one names is never read.
+    for (nodes, text) in [
+        (json!([0, 99]), "names node 99"),
+        (json!(["a"]), "is no index"),
+    ] {
+        let mut file = two_scenes();
+        file.json["scenes"][2]["nodes"] = nodes;
+        assert!(file.load().is_ok());
+        let error = load(&file, &LoadOptions::default().with_scene(2))
+            .unwrap_err()
+            .to_string();
+        assert!(error.contains(text), "{error}");
+    }
+}
+
+#[test]
+fn all_creatures_are_those_of_the_scene() {
+    let mut file = File::square();
+    let second = file.push("nodes", json!({"name": "bone"}));
+    let skin = file.push("skins", json!({"joints": [second, second]}));
+    let mesh = file.push("nodes", json!({"name": "pet", "mesh": 0, "skin": skin}));
+    let folder = std::env::temp_dir().join("clamber_scenes_of_a_file");
+    std::fs::create_dir_all(&folder).unwrap();
+    let path = folder.join(format!("{}.glb", std::process::id()));
+    let mut counts = Vec::new();
+    for scenes in [
+        json!([{"nodes": [0]}]),
+        json!([{"nodes": [0, second, mesh]}]),
+    ] {
+        file.json["scenes"] = scenes;
+        std::fs::write(&path, file.glb()).unwrap();
+        counts.push(load_all(&path, &LoadOptions::default()).unwrap().len());
+    }
+    std::fs::remove_file(&path).unwrap();
+    assert_eq!(counts, [1, 2]);
+}

@@ -1,0 +1,133 @@
+//! What is never read refuses no file.
+
+use std::io;
+
+use clamber_gltf::{ImportWarning, LoadOptions, Rig, load_slice, load_slice_with};
+use serde_json::{Value, json};
+
+use crate::builder::File;
+
+/// Loads the square after a change of its document, and checks that it is the square still.
+fn changed(what: &str, change: impl FnOnce(&mut Value)) -> Rig {
+    let mut file = File::square();
+    change(&mut file.json);
+    let rig = file.load();
+    assert!(rig.is_ok(), "{what}: {rig:?}");
+    let rig = rig.unwrap();
+    assert_eq!(
+        (rig.collider.triangles().len(), rig.clips.len()),
+        (2, 1),
+        "{what}"
+    );
+    rig
+}
+
+#[test]
+fn textures_in_any_format_and_images_that_cannot_be_read() {
+    let pbr = json!({"baseColorTexture": {"index": 0}});
+    let textured = |json: &mut Value, texture: Value, image: Value, required: &[&str]| {
+        json["textures"] = json!([texture]);
+        json["images"] = json!([image]);
+        json["materials"][0]["pbrMetallicRoughness"] = pbr.clone();
+        json["extensionsUsed"] = json!(required);
+        json["extensionsRequired"] = json!(required);
+    };
+    let warned = [ImportWarning::Textures { materials: 1 }];
+    for name in [
+        "KHR_texture_basisu",
+        "EXT_texture_webp",
+        "EXT_texture_avif",
+        "MSFT_texture_dds",
+    ] {
+        let texture = json!({"extensions": {name: {"source": 0}}});
+        let image = json!({"uri": "no/such/image"});
+        for required in [&[name][..], &[]] {
+            let rig = changed(name, |json| {
+                textured(json, texture.clone(), image.clone(), required);
+            });
+            assert_eq!(rig.report.warnings, warned, "{name}");
+        }
+    }
+    // As Blockbench writes them, then ones that are plainly wrong.
+    for (texture, image) in [
+        (json!({"name": "skin.png"}), json!({"uri": "data:,"})),
+        (json!({"source": 7, "sampler": 7}), json!({})),
+        (
+            json!({"source": -1}),
+            json!({"bufferView": 99, "mimeType": 3}),
+        ),
+        (json!(null), json!([])),
+    ] {
+        let rig = changed("a texture", |json| textured(json, texture, image, &[]));
+        assert_eq!(rig.report.warnings, warned);
+    }
+}
+
+#[test]
+fn faults_in_what_is_not_loaded() {
+    changed("cameras and samplers", |json| {
+        json["cameras"] = json!([{"type": "fisheye"}]);
+        json["samplers"] = json!([{"magFilter": 1}]);
+        json["nodes"][0]["camera"] = json!(3);
+        json["extensions"] = json!({"KHR_lights_punctual": {"lights": [{"type": "moon"}]}});
+    });
+    changed("a mesh that nothing shows", |json| {
+        let meshes = json["meshes"].as_array_mut().unwrap();
+        meshes.push(json!({"primitives": [{"attributes": {"POSITION": 999}, "mode": 42}]}));
+        meshes.push(json!({}));
+    });
+    changed(
+        "an accessor, a view and a buffer that nothing names",
+        |json| {
+            json["buffers"] =
+                json!([{"byteLength": 300}, {"byteLength": 5, "uri": "../../up"}, {}]);
+            let views = json["bufferViews"].as_array_mut().unwrap();
+            views.push(json!({"buffer": 1, "byteLength": 5_000, "byteStride": 1}));
+            let view = views.len() - 1;
+            let accessors = json["accessors"].as_array_mut().unwrap();
+            accessors
+                .push(json!({"bufferView": view, "componentType": 7, "count": 0, "type": "VEC9"}));
+            let accessor = accessors.len() - 1;
+            // Tangents are not read either, nor what an unknown property is moved by.
+            json["meshes"][0]["primitives"][0]["attributes"]["TANGENT"] = json!(accessor);
+        },
+    );
+    changed("whole numbers with a fraction", |json| {
+        let count = &mut json["accessors"][0]["count"];
+        *count = json!(count.as_u64().unwrap() as f64);
+        json["nodes"][3]["mesh"] = json!(0.0);
+    });
+    // Lines in messages are those of the text.
+    let mut file = File::square();
+    file.json["nodes"][0]["translation"] = json!("none");
+    let error = file.load().unwrap_err().to_string();
+    assert!(
+        error.contains("invalid type") && error.contains("line 1 column"),
+        "{error}"
+    );
+}
+
+#[test]
+fn a_byte_order_mark_is_no_fault() {
+    let mut file = File::square();
+    file.json["buffers"] = json!([{"byteLength": file.bytes.len(), "uri": "a.bin"}]);
+    let marked = format!("\u{feff}{}", file.json);
+    let rig = load_slice_with(marked.as_bytes(), &LoadOptions::default(), |_| {
+        Ok::<_, io::Error>(file.bytes.clone())
+    });
+    assert_eq!(rig.unwrap().collider.triangles().len(), 2);
+}
+
+#[test]
+fn instances_of_a_mesh_are_told() {
+    let mut file = File::square();
+    file.json["extensionsUsed"] = json!(["EXT_mesh_gpu_instancing"]);
+    let many = json!({"EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": 0}}});
+    file.json["nodes"][3]["extensions"] = many;
+    let rig = file.load().unwrap();
+    assert_eq!(rig.report.warnings, [ImportWarning::Instances { nodes: 1 }]);
+    // A required extension is one without which the file cannot be shown at all.
+    file.json["extensionsRequired"] = json!(["EXT_mesh_gpu_instancing"]);
+    let error = load_slice(&file.glb(), &LoadOptions::default()).unwrap_err();
+    assert!(error.to_string().contains("extensionsRequired"), "{error}");
+}
