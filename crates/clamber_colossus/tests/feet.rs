@@ -191,12 +191,13 @@ fn on_boulders_of_2_m() {
     let figures = walk(&world, config(), 120.0);
     check(&figures);
     // As uphill, where it comes down from a boulder.
-    assert!(figures.jerks <= 0.01, "{figures:?}");
+    assert!(figures.jerks <= 0.015, "{figures:?}");
 }
 
 #[test]
 fn at_other_sizes() {
-    for scale in [0.1, 2.0] {
+    // Several of each: at which phase a walk begins decides how far its feet have to go.
+    for scale in [0.1, 0.11, 1.9, 1.99, 2.0, 2.001] {
         let config = CreatureConfig { scale, ..config() };
         let figures = walk(&ground(|_, _| 0.0), config, 60.0);
         let most = 0.01 * figures.foot * scale;
@@ -210,7 +211,7 @@ fn at_other_sizes() {
             "{scale}: {figures:?}"
         );
         let felt = figures.hips.max(figures.head);
-        assert!(felt <= 1.0 && figures.toes <= 6.0, "{scale}: {figures:?}");
+        assert!(felt <= 1.0 && figures.jerks <= 0.01, "{scale}: {figures:?}");
     }
 }
 

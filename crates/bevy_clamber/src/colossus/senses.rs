@@ -45,7 +45,7 @@ pub(super) fn people<'a>(
     let is_of_it = |surface: Entity| {
         surfaces.contains(surface) && parents.iter_ancestors(surface).any(|above| above == root)
     };
-    let reach = APART * creature.kind().height() * creature.config().scale;
+    let reach = APART * creature.height();
     let skin: &SkinnedSurface = creature.surface();
     let person = |(entity, body, state): Seen<'a>| {
         let on = state.support.map(|support| support.attachment);

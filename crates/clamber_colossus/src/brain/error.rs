@@ -68,6 +68,12 @@ pub enum BrainProblem {
         /// The number.
         found: f64,
     },
+    /// A height cannot be given to a skin without one.
+    #[error("`{what}` is given, but at rest the skin has no height")]
+    NoHeight {
+        /// The number's name in the file.
+        what: &'static str,
+    },
     /// Transitions without conditions that lead from state to state in a circle.
     #[error("it leads back to itself at once, by {0}")]
     Circle(String),

@@ -10,8 +10,12 @@ pub struct CreatureConfig {
     pub position: DVec3,
     /// Its heading at first, radians about Y; 0 is +Z, positive turns to its left.
     pub yaw: f64,
-    /// Metres per unit of its file. Its clips are slowed by the square root of it, as gravity is the same at any size.
+    /// How many times as large it is as its brain's file says ([`BodyFile::height`](crate::BodyFile::height)); metres per
+    /// unit of its own file if that says nothing. 1 by default.
     pub scale: f64,
+    /// The height for which its clips were made, metres, in place of
+    /// [`BodyFile::made_for`](crate::BodyFile::made_for); `None` by default.
+    pub made_for: Option<f64>,
     /// Seed of its lots; 0 by default.
     pub seed: u64,
     /// It does not walk further from where it began, metres; 100 by default.
@@ -29,6 +33,7 @@ impl Default for CreatureConfig {
             position: DVec3::ZERO,
             yaw: 0.0,
             scale: 1.0,
+            made_for: None,
             seed: 0,
             arena: 100.0,
             most_slope: 25f64.to_radians(),
@@ -51,6 +56,15 @@ impl CreatureConfig {
         }
         within("yaw", "finite, in radians", self.yaw, f64::MIN, f64::MAX)?;
         within("scale", "from 0.000001 to 1,000,000", self.scale, 1e-6, 1e6)?;
+        if let Some(height) = self.made_for {
+            within(
+                "made_for",
+                "from 0.001 to 100,000, in metres",
+                height,
+                1e-3,
+                1e5,
+            )?;
+        }
         within("arena", "at least 0", self.arena, 0.0, f64::INFINITY)?;
         let most = core::f64::consts::FRAC_PI_2;
         within(
@@ -61,11 +75,6 @@ impl CreatureConfig {
             most,
         )?;
         within("sight", "at least 0", self.sight, 0.0, f64::INFINITY)
-    }
-
-    /// The rate at which clips are played (Froude's law).
-    pub(super) fn rate(&self) -> f64 {
-        1.0 / self.scale.sqrt()
     }
 }
 

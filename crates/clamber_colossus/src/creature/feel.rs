@@ -143,7 +143,7 @@ impl Creature {
                 continue;
             }
             // Whoever is right below it is felt rather than seen.
-            let is_near = distance < self.kind.girth() * self.config.scale;
+            let is_near = distance < self.size.girth;
             let is_ahead = self.bearing(middle).abs() < FIELD_OF_VIEW;
             // Whoever it had in view a moment ago still is.
             let is_known = self.state.unseen == 0
@@ -186,7 +186,7 @@ impl Creature {
 
     /// Looks for a wall in the next direction.
     fn look_for_wall(&mut self, around: &Surroundings<'_>) {
-        let height = self.kind.height() * self.config.scale;
+        let height = self.size.height;
         let index = (self.state.ticks / LOOKS % WALLS as u64) as usize;
         let angle = self.state.yaw + index as f64 * core::f64::consts::TAU / WALLS as f64;
         let from = self.state.position + DVec3::Y * (0.3 * height);
@@ -223,15 +223,9 @@ impl Creature {
 
     /// Where it sees from, in world space.
     pub(super) fn eye(&self) -> DVec3 {
-        let head = self
-            .kind
-            .look()
-            .and_then(|(_, head)| self.palette.model_from_joint(head));
         let world = self.surface.world_from_model();
-        let high = DVec3::Y * (0.9 * self.kind.height() * self.config.scale);
-        head.map_or(self.state.position + high, |head| {
-            world.transform_point(head.translation)
-        })
+        let frame = |joint| self.palette.model_from_joint(joint).copied();
+        world.transform_point(self.kind.eye_in(frame))
     }
 
     fn is_underfoot(&self, place: DVec3) -> bool {

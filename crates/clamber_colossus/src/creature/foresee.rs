@@ -42,7 +42,7 @@ impl Creature {
         let moved = animator.advance(kind.clips(), seconds, &mut memory.events)?;
         animator.pose_into(kind.clips(), &mut memory.pose, &mut memory.buffers)?;
         kind.skeleton().palette_into(&memory.pose, palette)?;
-        let scale = self.config.scale;
+        let scale = self.size.scale;
         let now = state.world_from_model(scale);
         let translation = now.translation
             + now.rotation * moved.translation * scale

@@ -4,6 +4,7 @@ use clamber_animation::ik::LookMemory;
 use clamber_surface::geometry::Similarity;
 use glam::DVec3;
 
+use super::size::HUMAN;
 use super::{Creature, Surroundings};
 use crate::brain::Gaze;
 
@@ -11,15 +12,16 @@ use crate::brain::Gaze;
 /// size.
 const LOOKS: f64 = 0.25;
 
-/// How long a glance lasts, seconds.
+/// How long a giant's glance lasts, seconds.
 const GLANCE: f64 = 3.5;
 
 impl Creature {
     /// Turns the head to what the creature looks at.
     pub(super) fn turn_head(&mut self, world: &Similarity, around: &Surroundings<'_>, dt: f64) {
         let kind = std::sync::Arc::clone(&self.kind);
-        let Some((look, _)) = kind.look() else { return };
-        let size = (kind.height() * self.config.scale / 1.75).max(0.1).sqrt();
+        let Some(look) = kind.look() else { return };
+        // Of human size it would be 1.
+        let size = (self.size.height / HUMAN).max(0.1).sqrt();
         let target = self.target(around);
         let weight = f64::from(u8::from(target.is_some()));
         self.state.gaze_weight.step(weight, LOOKS * size, dt);
@@ -59,9 +61,9 @@ impl Creature {
                 Some(rider.middle())
             }
             Gaze::Around => {
-                let height = self.kind.height() * self.config.scale;
+                let height = self.size.height;
                 let glance = (self.state.ticks as f64 * self.kind.brain().tick()
-                    / (GLANCE * self.config.scale.sqrt())) as u64;
+                    / (GLANCE * self.size.pace)) as u64;
                 let mut lot = fastrand::Rng::with_seed(
                     self.config.seed ^ glance.wrapping_mul(0x9e37_79b9_7f4a_7c15),
                 );

@@ -24,7 +24,7 @@ const MOST_DROP: f64 = 0.35;
 /// How low hips are on a slope before legs need it, as a share of the leg's length and the slope's tangent.
 const SLOPE_DROP: f64 = 0.32;
 
-/// Half time in which hips rise again when they need not be low any more, seconds: longer than a step.
+/// Half time in which a giant's hips rise again when they need not be low any more, seconds: longer than a step.
 const RISES: f64 = 3.0;
 
 /// How far hips go towards the feet that stand before another one steps, and from which share of that on it does.
@@ -114,7 +114,7 @@ impl Creature {
         let steep = SLOPE_DROP * self.state.steepness * length;
         let needed = (legs.iter().map(drop_of).fold(0.0, f64::max) * scale).max(steep);
         // It rises slowly, so that it does not bob with each step.
-        let risen = before * libm::exp2(-dt / (RISES * scale.sqrt()));
+        let risen = before * libm::exp2(-dt / (RISES * self.size.pace.max(1e-3)));
         self.state.hips.drop = needed.max(risen).min(MOST_DROP * length);
         let wants_step = legs.iter().any(|leg| leg.wants_step);
         let mut to = DVec3::NEG_Y * self.state.hips.drop;

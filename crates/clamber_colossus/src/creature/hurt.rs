@@ -66,7 +66,7 @@ impl Creature {
             .filter(|plate| self.state.plates[*plate].left > 0);
         let points = self.kind.weak_points().iter().enumerate();
         let mut near = points.filter(|(index, point)| {
-            let radius = f64::from(point.radius) * self.config.scale;
+            let radius = f64::from(point.radius) * self.size.scale;
             let middle = self.weak_point(*index);
             middle.is_some_and(|middle| middle.distance(place) <= radius) && self.is_open(*index)
         });

@@ -30,6 +30,9 @@ const BLOW: f64 = 40.0;
 /// How much more a foot counts that stands for a whole clip, when a clip's time is chosen.
 const STANDING: f64 = 8.0;
 
+/// Two times of a clip whose costs differ by less than this fit alike.
+const AS_GOOD: f64 = 1e-4;
+
 /// Times of a clip that are compared with the feet when it begins.
 const PHASES: u32 = 48;
 
@@ -125,10 +128,10 @@ impl Creature {
     pub fn foot_clearance(&self, leg: usize, terrain: &[&dyn Obstacle]) -> Option<f64> {
         let ground = Ground {
             terrain,
-            reach: 0.5 * self.kind.height() * self.config.scale,
+            reach: 0.5 * self.size.height,
         };
         let shape = self.kind.legs().get(leg)?;
-        let wall = WALL * shape.length * self.config.scale;
+        let wall = WALL * shape.length * self.size.scale;
         let places = self.on_sole(leg, &shape.sole.points);
         let heights = places.filter_map(|place| Some(place.y - ground.below(place)?.0));
         heights
@@ -186,6 +189,10 @@ impl Creature {
         let contacts = self.contacts(index);
         let is_idle = self.state.playing == Playing::Idle;
         let stands = is_idle || contacts.is_none_or(|contacts| contacts.stands(time));
+        let stands_for = match contacts {
+            Some(contacts) if !is_idle => contacts.stands_for(time) / speed.max(1e-3),
+            _ => f64::INFINITY,
+        };
         let settled = contacts.map_or(clip, |contacts| world.transform_point(contacts.ball(time)));
         let landing = contacts
             .filter(|_| speed > 0.0 && !stands)
@@ -232,6 +239,7 @@ impl Creature {
             aside,
             most_aside,
             stands,
+            stands_for,
             lands_in,
             lands_at: lands_at.with_y(self.state.position.y + leg.sole.ball_height * scale),
             heading: self.state.yaw + heading,
@@ -280,10 +288,14 @@ impl Creature {
             costs.sum()
         };
         let times = (0..PHASES).map(|phase| f64::from(phase) / f64::from(PHASES) * duration);
-        let costs = times.map(|time| (cost(time), time));
-        costs
-            .min_by(|a, b| a.0.total_cmp(&b.0))
-            .map_or(0.0, |(_, time)| time)
+        let costs: Vec<(f64, f64)> = times.map(|time| (cost(time), time)).collect();
+        let least = costs
+            .iter()
+            .map(|(cost, _)| *cost)
+            .fold(f64::INFINITY, f64::min);
+        // The first of those that are as good: rounding must not decide, which differs with the unit of a file.
+        let mut best = costs.iter().filter(|(cost, _)| *cost <= least + AS_GOOD);
+        best.next().map_or(0.0, |(_, time)| *time)
     }
 
     fn contacts(&self, leg: usize) -> Option<&Contacts> {

@@ -9,6 +9,7 @@ mod hurt;
 mod legs;
 mod move_on;
 mod report;
+mod size;
 mod state;
 mod step;
 mod strike;
@@ -27,6 +28,7 @@ pub use state::CreatureState;
 pub use world::{Noise, Person, Riding, Surroundings, Wound};
 
 use self::legs::PutLeg;
+use self::size::Size;
 use crate::error::ColossusError;
 use crate::kind::CreatureKind;
 
@@ -38,6 +40,7 @@ use crate::kind::CreatureKind;
 pub struct Creature {
     kind: Arc<CreatureKind>,
     config: CreatureConfig,
+    size: Size,
     state: CreatureState,
     surface: SkinnedSurface,
     palette: Palette,
@@ -60,7 +63,8 @@ impl Creature {
     /// [`ColossusError::Surface`] if its clips cannot pose the skin.
     pub fn new(kind: Arc<CreatureKind>, config: CreatureConfig) -> Result<Self, ColossusError> {
         config.check()?;
-        let state = CreatureState::new(&kind, &config);
+        let size = Size::new(&kind, &config);
+        let state = CreatureState::new(&kind, &config, size.rate);
         let mut creature = Self {
             surface: SkinnedSurface::new(Arc::clone(kind.mesh())),
             palette: Palette::default(),
@@ -72,6 +76,7 @@ impl Creature {
             shows_plate: vec![true; kind.plates().len()],
             kind,
             config,
+            size,
             state,
         };
         let clips = Arc::clone(&creature.kind);

@@ -5,6 +5,7 @@ use clamber_surface::geometry::rotation_from_axis_angle;
 use glam::DVec3;
 
 use super::hips::approach;
+use super::size::HUMAN;
 use super::state::{Detour, GROUND, NO_GROUND, NO_WALL, Playing, WALLS};
 use super::{Creature, CreatureEvent, Surroundings};
 use crate::angle::nearest_turn;
@@ -14,12 +15,18 @@ use crate::feet::Ground;
 use crate::kind::Gait;
 use crate::senses::Sense;
 
-/// How fast its speed changes, metres a second squared, and its turning, radians a second squared: 0.5 g is the most
-/// that a giant's limb may start with, and riders stand on it.
+/// How fast its speed changes, metres a second squared, and a giant's turning, radians a second squared: 0.5 g is the
+/// most that its limbs may start with, and riders stand on them. Smaller ones turn sharper, by their height.
 const SPEEDS_UP: f64 = 1.2;
 const SLOWS_DOWN: f64 = 2.0;
 const HALTS: f64 = 6.0;
 const TURNS: f64 = 0.12;
+
+/// How fast a giant steers towards a goal, radians a second for each radian that it is aside.
+const STEERS: f64 = 0.8;
+
+/// It turns to within this angle at best, radians.
+const LEAST_WITHIN: f64 = 0.0030001;
 
 /// The slowest walk, as a share of its speed.
 const SLOWEST: f64 = 0.35;
@@ -27,7 +34,7 @@ const SLOWEST: f64 = 0.35;
 /// How much shorter its steps are where it goes up and down: on a slope of 45 degrees, by one over one and this.
 const CAREFUL: f64 = 1.2;
 
-/// Time constant with which it takes the ground ahead into account, seconds.
+/// Time constant with which a giant takes the ground ahead into account, seconds.
 const LOOKS_AHEAD: f64 = 1.0;
 
 /// It looks for what is in its way in one of so many ticks.
@@ -48,7 +55,6 @@ const CLIMBS: f64 = 0.5;
 /// Seconds in which one clip of the gait fades into another, for a creature of a human's height. Larger ones take
 /// longer, by the square root of their height (Froude's law).
 const FADE: f64 = 0.35;
-const HUMAN: f64 = 1.75;
 
 /// Where to go, and how.
 struct Way {
@@ -65,10 +71,7 @@ struct Way {
 impl Creature {
     /// Begins a walk or a turn: draws a place, if it goes on patrol.
     pub(super) fn begin_way(&mut self) {
-        let reach = self
-            .config
-            .arena
-            .min(4.0 * self.kind.height() * self.config.scale);
+        let reach = self.config.arena.min(4.0 * self.size.height);
         let mut lot = || (self.state.brain.draw() >> 11) as f64 / (1u64 << 53) as f64;
         let (angle, share) = (core::f64::consts::TAU * lot(), lot().sqrt());
         let aside = DVec3::new(libm::sin(angle), 0.0, libm::cos(angle));
@@ -109,7 +112,7 @@ impl Creature {
                 self.report.events.push(CreatureEvent::Marker { name });
             }
         }
-        let scale = self.config.scale;
+        let scale = self.size.scale;
         let rotation = self.state.world_from_model(scale).rotation;
         self.state.position += rotation * moved.translation * scale;
         self.state.yaw = nearest_turn(self.state.yaw + moved.yaw + self.state.yaw_rate * dt);
@@ -148,7 +151,7 @@ impl Creature {
                         walks: true,
                     });
                 };
-                let spot = strike.spot * self.config.scale;
+                let spot = strike.spot * self.size.scale;
                 let reach = DVec3::new(spot.x, 0.0, spot.z).length();
                 Some(Way {
                     goal,
@@ -190,7 +193,7 @@ impl Creature {
         }
         let angle = self.state.yaw + index as f64 * core::f64::consts::TAU / WALLS as f64;
         let direction = DVec3::new(libm::sin(angle), 0.0, libm::cos(angle));
-        let room = self.kind.girth() * self.config.scale;
+        let room = self.size.girth;
         self.state.position + direction * (f64::from(*distance) - room).max(0.0)
     }
 
@@ -211,11 +214,14 @@ impl Creature {
         around: &Surroundings<'_>,
         dt: f64,
     ) -> Result<bool, ColossusError> {
-        let rate = self.config.rate();
-        let full = gait.speed * self.config.scale * rate;
+        let rate = self.size.rate;
+        let full = gait.speed * self.size.scale * rate;
         let stride = self.stride();
         // Steps are shorter, and take longer.
         let careful = full * stride * stride;
+        // Clips and their rates are slower in a larger creature already.
+        let steers = STEERS / (self.size.pace * rate).max(1e-3);
+        let turns = TURNS / (self.size.pace * self.size.pace).max(1e-6);
         let (mut speed, mut turn, mut arrived) = (0.0, 0.0, false);
         let mut turns_on_spot = false;
         if let Some(way) = way {
@@ -231,7 +237,8 @@ impl Creature {
                         0.0
                     },
             );
-            let is_turned = way.bearing.is_none() || aside.abs() <= way.within_angle;
+            let is_turned =
+                way.bearing.is_none() || aside.abs() <= way.within_angle.max(LEAST_WITHIN);
             if is_near {
                 arrived = is_turned;
                 turns_on_spot = !is_turned;
@@ -240,7 +247,7 @@ impl Creature {
                 turns_on_spot = aside.abs() > if turning { WALK_ON } else { TURN_FIRST };
                 let braked = (2.0 * 0.7 * SLOWS_DOWN * (distance - way.within).max(0.0)).sqrt();
                 speed = careful.min(braked).max(SLOWEST * careful);
-                turn = (aside * 0.8).clamp(-gait.steer_rate, gait.steer_rate) * rate;
+                turn = (aside * steers).clamp(-gait.steer_rate, gait.steer_rate) * rate;
                 if !turns_on_spot {
                     if self.state.ticks.is_multiple_of(LOOKS) {
                         self.state.detour = match self.free_way(around, aside) {
@@ -252,7 +259,7 @@ impl Creature {
                     match self.state.detour {
                         Detour::None => {}
                         Detour::By(way) => {
-                            turn = (way * 0.8).clamp(-gait.steer_rate, gait.steer_rate) * rate
+                            turn = (way * steers).clamp(-gait.steer_rate, gait.steer_rate) * rate
                         }
                         Detour::Blocked => (speed, turn, arrived) = (0.0, 0.0, true),
                     }
@@ -260,12 +267,12 @@ impl Creature {
             }
             if turns_on_spot {
                 speed = 0.0;
+                let within = way.within_angle.max(LEAST_WITHIN);
+                let stoppable = |angle: f64| (2.0 * 0.7 * turns * angle.max(0.0)).sqrt();
+                // It gets there in the end, and no faster than it can stop there.
                 let braked =
-                    (2.0 * 0.7 * TURNS * (aside.abs() - 0.5 * way.within_angle).max(0.0)).sqrt();
-                turn = aside.signum()
-                    * braked
-                        .min(gait.turn_rate * rate)
-                        .max(0.15 * gait.turn_rate * rate);
+                    stoppable(aside.abs() - 0.5 * within).max(0.5 * stoppable(0.5 * within));
+                turn = aside.signum() * braked.min(gait.turn_rate * rate);
                 // Not before it stands.
                 if self.state.speed > SLOWEST * full {
                     turn = 0.0;
@@ -281,7 +288,7 @@ impl Creature {
             self.state.speed = self.state.speed.max(0.02 * full);
         }
         let change = turn - self.state.yaw_rate;
-        self.state.yaw_rate += change.clamp(-TURNS * dt, TURNS * dt);
+        self.state.yaw_rate += change.clamp(-turns * dt, turns * dt);
         let moves = self.state.speed > 0.0 && !self.state.halts;
         let acts = matches!(self.state.playing, Playing::Act(_)) && way.is_none();
         let playing = if moves {
@@ -298,14 +305,15 @@ impl Creature {
             Playing::Turn(_) => (self.state.yaw_rate.abs() / (gait.turn_rate * rate)).min(1.0),
             Playing::Idle | Playing::Act(_) => 1.0,
         };
-        let size = (self.kind.height() * self.config.scale / HUMAN).sqrt();
+        let size = (self.size.height / HUMAN).max(1e-4).sqrt();
         self.play(playing, clip_speed, FADE * size)?;
         if let Some(layer) = self.state.animator.layers_mut().first_mut()
             && !matches!(playing, Playing::Act(_))
         {
             layer.speed = clip_speed;
         }
-        let stands = self.state.speed == 0.0 && self.state.yaw_rate.abs() < 0.3 * TURNS;
+        let stands =
+            self.state.speed == 0.0 && self.state.yaw_rate.abs() < 0.3 * self.size.pace * turns;
         Ok(arrived && stands)
     }
 
@@ -325,8 +333,8 @@ impl Creature {
 
     /// False if in a direction from its heading the ground is too steep, or there is none, or a wall stands there.
     fn is_free(&self, around: &Surroundings<'_>, angle: f64) -> bool {
-        let height = self.kind.height() * self.config.scale;
-        let girth = self.kind.girth() * self.config.scale;
+        let height = self.size.height;
+        let girth = self.size.girth;
         let ground = Ground {
             terrain: around.terrain,
             reach: 0.5 * height,
@@ -357,7 +365,7 @@ impl Creature {
 
     /// Lets the model's origin follow the ground below it, as softly as riders want it.
     fn follow_ground(&mut self, around: &Surroundings<'_>, dt: f64) {
-        let height = self.kind.height() * self.config.scale;
+        let height = self.size.height;
         let ground = Ground {
             terrain: around.terrain,
             reach: 0.5 * height,
@@ -395,7 +403,7 @@ impl Creature {
             steepest = steepest.max((left - right).abs() / (2.0 * spacing));
         }
         // Gradually, since a stride depends on it.
-        let share = 1.0 - libm::exp(-dt / LOOKS_AHEAD);
+        let share = 1.0 - libm::exp(-dt / (LOOKS_AHEAD * self.size.pace.max(1e-3)));
         self.state.steepness += (steepest - self.state.steepness) * share;
         if is_first {
             // It has just been put there.

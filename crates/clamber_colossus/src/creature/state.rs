@@ -140,7 +140,7 @@ pub(super) struct Felt {
 }
 
 impl CreatureState {
-    pub(super) fn new(kind: &CreatureKind, config: &CreatureConfig) -> Self {
+    pub(super) fn new(kind: &CreatureKind, config: &CreatureConfig, rate: f64) -> Self {
         let mut layers = Vec::new();
         if let Some(gait) = kind.gait() {
             layers.push(Layer::new(gait.idle));
@@ -156,7 +156,7 @@ impl CreatureState {
         }
         let mut animator = Animator::new(layers);
         // Cannot fail for a finite rate.
-        let _ = animator.set_rate(config.rate());
+        let _ = animator.set_rate(rate);
         Self {
             brain: BrainState::new(kind.brain(), config.seed),
             senses: kind.brain().no_senses(),

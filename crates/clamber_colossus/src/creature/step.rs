@@ -16,7 +16,7 @@ use crate::senses::Sense;
 /// An act of another kind begins when the creature has come to a stand: below this share of its walking speed.
 const STANDS: f64 = 0.12;
 
-/// Seconds that a creature of human size needs to come to rest when it falls asleep.
+/// Seconds that a giant needs to come to rest when it falls asleep.
 const SETTLES: f64 = 0.8;
 
 impl Creature {
@@ -42,7 +42,7 @@ impl Creature {
         self.is_still = false;
         self.act()?;
         self.move_on(around, dt)?;
-        let world_from_model = self.state.world_from_model(self.config.scale);
+        let world_from_model = self.state.world_from_model(self.size.scale);
         self.take_pose(&world_from_model, around, dt)?;
         self.surface.advance(&self.palette, world_from_model)?;
         self.strike(around, dt);
@@ -109,9 +109,9 @@ impl Creature {
         let kind = std::sync::Arc::clone(&self.kind);
         let act = kind.brain().act(state);
         let walks = matches!(act, Some(Act::Walk(_)));
-        let speed = kind.gait().map_or(0.0, |gait| {
-            gait.speed * self.config.scale * self.config.rate()
-        });
+        let speed = kind
+            .gait()
+            .map_or(0.0, |gait| gait.speed * self.size.scale * self.size.rate);
         if !walks && !self.state.halts && self.state.speed > STANDS * speed {
             return Ok(());
         }
@@ -144,8 +144,8 @@ impl Creature {
         }
         self.state.sleeps = self.state.sleeps.saturating_add(1);
         // Feet and head come to rest first.
-        let settled = self.state.sleeps as f64 * self.kind.brain().tick()
-            > SETTLES * self.config.scale.sqrt();
+        let settled =
+            self.state.sleeps as f64 * self.kind.brain().tick() > SETTLES * self.size.pace;
         if !settled {
             return Ok(false);
         }
@@ -153,7 +153,7 @@ impl Creature {
         if self.is_still {
             return Ok(true);
         }
-        let world_from_model = self.state.world_from_model(self.config.scale);
+        let world_from_model = self.state.world_from_model(self.size.scale);
         self.surface.advance(&self.palette, world_from_model)?;
         self.is_still = true;
         Ok(true)
@@ -211,7 +211,7 @@ impl Creature {
     pub(super) fn place(&mut self) -> Result<(), ColossusError> {
         let (skeleton, pose) = (self.kind.skeleton(), &self.state.pose);
         skeleton.palette_into(pose, &mut self.palette)?;
-        let world_from_model = self.state.world_from_model(self.config.scale);
+        let world_from_model = self.state.world_from_model(self.size.scale);
         self.surface.place(&self.palette, world_from_model)?;
         Ok(())
     }
@@ -229,7 +229,7 @@ impl Creature {
         )?;
         let ground = Ground {
             terrain: around.terrain,
-            reach: 0.5 * self.kind.height() * self.config.scale,
+            reach: 0.5 * self.size.height,
         };
         self.put_feet(world, &ground, dt);
         self.turn_head(world, around, dt);

@@ -91,7 +91,7 @@ impl Creature {
         let Some((_, prey)) = self.state.prey.filter(|_| self.state.unseen == 0) else {
             return;
         };
-        let world = self.state.world_from_model(self.config.scale);
+        let world = self.state.world_from_model(self.size.scale);
         let way = prey - world.transform_point(strike.spot);
         let level = DVec3::new(way.x, 0.0, way.z);
         let length = level.length();
@@ -101,7 +101,7 @@ impl Creature {
         } else {
             level
         };
-        let in_model = world.rotation.conjugate() * aim / self.config.scale;
+        let in_model = world.rotation.conjugate() * aim / self.size.scale;
         self.state.aim = aim * strike.reach(in_model);
     }
 }

@@ -84,8 +84,9 @@ pub(crate) struct FootGoal {
     pub(crate) clip: DVec3,
     /// Where it will have it once it has faded in.
     pub(crate) settled: DVec3,
-    /// Whether the clip stands on it, and seconds until it does next.
+    /// Whether the clip stands on it, for how many seconds yet, and seconds until it does next.
     pub(crate) stands: bool,
+    pub(crate) stands_for: f64,
     pub(crate) lands_in: f64,
     /// Where the clip's ball will be then.
     pub(crate) lands_at: DVec3,
@@ -141,6 +142,9 @@ const GONE: f64 = 0.003;
 
 /// A foot was left behind if it is further than this from where its clip stands, as a share of the leg's length.
 const LATE: f64 = 0.06;
+
+/// A foot that was left behind does not come down for less than this, as a share of the time of a step.
+const TOO_SHORT: f64 = 0.2;
 
 /// A foot has come down when it is as near as this to where it should, as a share of the leg's length.
 const ARRIVED: f64 = 0.01;
@@ -283,16 +287,20 @@ impl Foot {
                 self.hold = Hold::Swings;
                 self.path.left = 0.0;
             }
-            Hold::Swings if goal.stands && !self.is_late(goal) => {
+            Hold::Swings if goal.stands && !self.is_late(goal) && !goal.is_lifted_soon() => {
                 let ball = self.clip + self.offset.value;
                 if ball.y - sole.at(ball).ball.y > HIGH * goal.leg {
                     let velocity = (goal.clip - self.clip) / dt + self.offset.velocity;
+                    let to = sole.at(goal.settled);
+                    // A clip may stop its foot at once, as a kick's end does. What is left of its motion then must not
+                    // carry the foot past where it lands.
+                    let most = (MOST_UP * ball.distance(to.ball)).sqrt();
                     self.hold = Hold::Lands {
                         ball: Spring {
                             value: ball,
-                            velocity,
+                            velocity: velocity.clamp_length_max(most),
                         },
-                        to: sole.at(goal.settled),
+                        to,
                         left: goal.step_time(),
                     };
                 } else {
@@ -514,6 +522,11 @@ impl Foot {
 }
 
 impl FootGoal {
+    /// True if the clip lifts the foot so soon that it need not come down before.
+    fn is_lifted_soon(&self) -> bool {
+        self.is_gait && self.stands_for < TOO_SHORT * self.step_time()
+    }
+
     /// How long a step of its own lasts at least, seconds.
     fn step_time(&self) -> f64 {
         STEP_TIME * (self.leg / GRAVITY).sqrt()

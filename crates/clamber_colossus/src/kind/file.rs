@@ -20,6 +20,15 @@ pub struct BodyFile {
     /// Pieces of armour that break off.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub plates: Vec<PlateFile>,
+    /// How tall it is, metres, at [`CreatureConfig::scale`](crate::CreatureConfig) 1; `None` for as tall as its file
+    /// makes it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub height: Option<f64>,
+    /// The height for which its clips were made, metres: they look right at that height. A taller creature of the same
+    /// shape moves slower, by the square root of how much taller it is (Froude's law), as gravity is the same at any
+    /// size; so do its turns. `None` plays them as they are at any size.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub made_for: Option<f64>,
     /// How much the body trembles when a clip passes its marker `impact`: the largest acceleration at the hips, metres
     /// a second squared. A step gives 15 % of it.
     #[serde(default = "tremor")]
@@ -34,6 +43,8 @@ impl Default for BodyFile {
             head: None,
             breathe: None,
             plates: Vec::new(),
+            height: None,
+            made_for: None,
             tremor: tremor(),
         }
     }
@@ -76,15 +87,17 @@ pub struct GaitFile {
     pub idle: String,
     /// The clip of walking.
     pub walk: String,
-    /// Its speed over ground, in the model's units a second; `None` for the speed in the clip's extras.
+    /// Its speed over ground: how far it goes in a second of the clip, in heights of the creature, so that neither its
+    /// size nor the unit of its file matters. `None` for the speed in the clip's extras, or without one for that of the
+    /// feet while they stand in the clip.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub speed: Option<f64>,
     /// Clips of turning on the spot to the left and to the right; `None` to turn with the idle clip.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub turn: Option<[String; 2]>,
-    /// How fast it turns on the spot, degrees a second.
+    /// How fast it turns on the spot, degrees a second of the clip.
     pub turn_deg: f64,
-    /// How fast it turns while it walks, degrees a second.
+    /// How fast it turns while it walks, degrees a second of the clip.
     pub steer_deg: f64,
 }
 
@@ -109,7 +122,8 @@ pub struct HeadFile {
     /// From the head down, with the share of the turn that each one takes of what the joints above it leave, 0 to 1.
     /// The last one takes the rest.
     pub joints: Vec<(String, f64)>,
-    /// The eye, in the head joint's own space, in the model's units.
+    /// The eye at rest, as seen from the head's joint: along the model's axes (+X is its left, +Y up, +Z ahead), in
+    /// heights of the creature.
     #[serde(default)]
     pub eye: [f64; 3],
     /// How far it turns to either side, and up and down, degrees.

@@ -1,5 +1,5 @@
 use clamber_animation::ClipId;
-use clamber_animation::rig::Playback;
+use clamber_animation::rig::{Clip, Playback};
 
 use super::file::GaitFile;
 use super::{Contacts, Leg, Names, whole};
@@ -29,6 +29,7 @@ impl Gait {
         names: &Names<'_>,
         file: &GaitFile,
         legs: &[Leg],
+        height: f64,
     ) -> Result<Self, ColossusError> {
         let idle = names.clip(&file.idle).map_err(whole)?;
         let walk = names.clip(&file.walk).map_err(whole)?;
@@ -46,11 +47,16 @@ impl Gait {
             }
         }
         let clip = names.clips.clip(walk)?;
-        let speed = file.speed.or(clip.ground_speed()).unwrap_or(0.0);
+        let told = file.speed.map(|speed| speed * height);
+        let told = told.or(clip.ground_speed());
+        let speed = match told {
+            Some(speed) => speed,
+            None => pace(names, clip, legs)?,
+        };
         if !(speed > 0.0 && speed.is_finite()) {
             let (what, range) = (
                 "speed",
-                "given here or in the clip's extras, finite and more than 0",
+                "more than 0 and finite: no foot stands and moves back in the clip, so give it here, in heights a second",
             );
             return Err(whole(BrainProblem::OutOfRange {
                 what,
@@ -85,4 +91,18 @@ impl Gait {
             turn_contacts,
         })
     }
+}
+
+/// How fast the feet of a walk on the spot move back while they stand: the ground's speed below it, in the model's units
+/// a second. 0 if there are no legs.
+fn pace(names: &Names<'_>, clip: &Clip, legs: &[Leg]) -> Result<f64, ColossusError> {
+    let mut speeds = Vec::new();
+    for leg in legs {
+        speeds.extend(leg.speed(names, clip)?);
+    }
+    Ok(if speeds.is_empty() {
+        0.0
+    } else {
+        speeds.iter().sum::<f64>() / speeds.len() as f64
+    })
 }

@@ -6,7 +6,7 @@ use glam::{DAffine3, DQuat, DVec3};
 
 use super::file::{Knee, LegFile};
 use super::sole::SoleShape;
-use super::{Names, whole};
+use super::{Names, RestSkin, whole};
 use crate::error::ColossusError;
 
 /// How far above its lowest point in a clip a foot still stands, as a share of the leg's length, and how fast its ball
@@ -20,8 +20,6 @@ const LEAST_KNEE: f64 = 0.349;
 
 /// Samples a second in which a clip is searched for contacts.
 const SAMPLES: f64 = 60.0;
-
-const GRAVITY: f64 = 9.81;
 
 /// A leg of a kind of creature, in the model's units.
 #[derive(Clone, Debug)]
@@ -57,6 +55,7 @@ impl Leg {
     pub(crate) fn new(
         names: &Names<'_>,
         mesh: &ColliderMesh,
+        skin: &RestSkin,
         file: &LegFile,
     ) -> Result<Self, ColossusError> {
         let mut joints = [JointId(0); 3];
@@ -97,8 +96,50 @@ impl Leg {
             stands_at: at,
             from_ball: level.conjugate() * (place(ankle) - at),
             length,
-            sole: SoleShape::new(skeleton, mesh, ankle, at, length),
+            sole: SoleShape::new((skeleton, mesh, skin), ankle, at, length),
         })
+    }
+
+    /// Where the ball of the foot is, in model space, at times that are evenly spread from the beginning of a clip to its
+    /// end, and the time between two of them.
+    fn balls(
+        &self,
+        names: &Names<'_>,
+        clip: &Clip,
+        playback: Playback,
+    ) -> Result<(Vec<DVec3>, f64), ColossusError> {
+        let duration = clip.duration();
+        let count = (duration * SAMPLES).round().max(1.0) as usize;
+        let mut pose = Pose::default();
+        let mut at = |time: f64| -> Result<DVec3, ColossusError> {
+            pose.transforms.clone_from(&names.clips.rest().transforms);
+            clip.sample_into(time, playback, &mut pose)?;
+            let frame = joint_in_model(names.skeleton, &pose, self.ball);
+            Ok(frame.map_or(DVec3::ZERO, |frame| frame.translation))
+        };
+        let step = duration / count as f64;
+        let places: Result<Vec<DVec3>, ColossusError> =
+            (0..=count).map(|sample| at(sample as f64 * step)).collect();
+        Ok((places?, step))
+    }
+
+    /// How fast the foot moves back while it stands in a walk on the spot, in the model's units a second: its median
+    /// speed where it is as low as a foot that stands. `None` if it then does not move back.
+    pub(crate) fn speed(
+        &self,
+        names: &Names<'_>,
+        clip: &Clip,
+    ) -> Result<Option<f64>, ColossusError> {
+        let (places, step) = self.balls(names, clip, Playback::Loop)?;
+        let lowest = places.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
+        let pairs = places.iter().zip(&places[1..]);
+        let low = pairs.filter(|(a, b)| 0.5 * (a.y + b.y) < lowest + STANDS_BELOW * self.length);
+        let mut speeds: Vec<f64> = low.map(|(a, b)| (a.z - b.z) / step.max(1e-9)).collect();
+        speeds.sort_by(f64::total_cmp);
+        Ok(speeds
+            .get(speeds.len() / 2)
+            .copied()
+            .filter(|speed| *speed > 0.0))
     }
 
     /// When the foot stands in a clip. `speed` is how fast the ground passes below the model, along -Z, and `turn` how
@@ -110,23 +151,11 @@ impl Leg {
         playback: Playback,
         [speed, turn]: [f64; 2],
     ) -> Result<Contacts, ColossusError> {
-        let duration = clip.duration();
         let loops = playback == Playback::Loop;
-        let count = (duration * SAMPLES).round().max(1.0) as usize;
-        let mut pose = Pose::default();
-        let mut at = |time: f64| -> Result<DVec3, ColossusError> {
-            pose.transforms.clone_from(&names.clips.rest().transforms);
-            clip.sample_into(time, playback, &mut pose)?;
-            let frame = joint_in_model(names.skeleton, &pose, self.ball);
-            Ok(frame.map_or(DVec3::ZERO, |frame| frame.translation))
-        };
-        let step = duration / count as f64;
-        let mut places = Vec::with_capacity(count + 1);
-        for sample in 0..=count {
-            places.push(at(sample as f64 * step)?);
-        }
+        let (places, step) = self.balls(names, clip, playback)?;
+        let (duration, count) = (clip.duration(), places.len() - 1);
         let lowest = places.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
-        let most = STANDS_SLOWER * (GRAVITY * self.length).sqrt();
+        let most = STANDS_SLOWER * (names.gravity * self.length).sqrt();
         let stands = |sample: usize| {
             let (a, b) = (places[sample], places[sample + 1]);
             let way = (b - a) / step.max(1e-9);
@@ -185,6 +214,17 @@ impl Contacts {
             spans.map(|[_, to]| *to - *time)
         });
         left.max_by(f64::total_cmp)
+    }
+
+    /// For how long the foot still stands at a time, seconds: infinite if it does so when the clip ends and is held.
+    pub(crate) fn stands_for(&self, time: f64) -> f64 {
+        let is_held = !self.loops && !self.lifts_after(time);
+        let left = self.left(time).unwrap_or(0.0);
+        if is_held && self.stands(time) {
+            f64::INFINITY
+        } else {
+            left
+        }
     }
 
     /// True if the foot stands at a time, and is lifted before the clip ends, once at least.

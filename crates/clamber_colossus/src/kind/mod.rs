@@ -3,6 +3,7 @@
 mod file;
 mod gait;
 mod leg;
+mod measures;
 mod plate;
 mod sole;
 mod strikes;
@@ -11,20 +12,27 @@ use std::sync::Arc;
 
 use clamber_animation::ik::{IkError, LookAt, LookLimits};
 use clamber_animation::rig::{Channel, Clip, JointId, Keyframes, Playback, Skeleton, WeakPoint};
-use clamber_animation::{AnimationSet, ClipId};
+use clamber_animation::{AnimationSet, ClipId, joint_in_model};
 use clamber_surface::mesh::{ColliderMesh, TriangleId};
 use clamber_surface::surface::creature_fingerprint;
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 
 pub use file::{BodyFile, GaitFile, HeadFile, Knee, LegFile, PlateFile};
 pub(crate) use gait::Gait;
 pub(crate) use leg::{Contacts, Leg, rotation_of};
+pub(crate) use measures::RestSkin;
 pub use plate::Plate;
 pub(crate) use sole::SoleShape;
 pub(crate) use strikes::Strike;
 
 use crate::brain::{Act, Attack, Brain, BrainError, BrainProblem, BrainReport, StateId, list};
 use crate::error::ColossusError;
+
+const GRAVITY: f64 = 9.81;
+
+/// If nothing says for which height clips were made, they are taken for those of a creature of human height, metres, where
+/// a foot is looked for that stands. The file's unit says nothing: many are in centimetres.
+const HUMAN: f64 = 1.75;
 
 /// A kind of creature: its skeleton, clips and skin, its brain, and how its body is used. It never changes, and many
 /// creatures share it.
@@ -44,7 +52,8 @@ pub struct CreatureKind {
     hips: Option<JointId>,
     gait: Option<Gait>,
     look: Option<LookAt>,
-    head: Option<JointId>,
+    /// The head's joint, and the eye in its space.
+    head: Option<(JointId, DVec3)>,
     breathe: Option<ClipId>,
     plates: Vec<Plate>,
     /// Of each triangle of a plate, in ascending order, the plate's index.
@@ -99,23 +108,37 @@ impl CreatureKind {
             ClipId(clips.len() as u32 - 1)
         });
         let clips = AnimationSet::new(&skeleton, clips)?;
-        let names = Names {
-            skeleton: &skeleton,
-            clips: &clips,
-        };
+        let rest = RestSkin::new(&skeleton, &mesh)?;
+        let height = rest.height();
         let body = &brain.file().body;
         if !(0.0..=20.0).contains(&body.tremor) {
             let (what, range, found) = ("tremor", "from 0 to 20", body.tremor);
             return Err(whole(BrainProblem::OutOfRange { what, range, found }).into());
         }
+        for (what, found) in [("height", body.height), ("made_for", body.made_for)] {
+            let Some(found) = found else { continue };
+            let range = "from 0.001 to 100,000 m";
+            if !(1e-3..=1e5).contains(&found) {
+                return Err(whole(BrainProblem::OutOfRange { what, range, found }).into());
+            }
+            if !(height > 0.0) {
+                return Err(whole(BrainProblem::NoHeight { what }).into());
+            }
+        }
+        let known = body.made_for.or(body.height);
+        let names = Names {
+            skeleton: &skeleton,
+            clips: &clips,
+            gravity: GRAVITY * height / known.unwrap_or(HUMAN),
+        };
         let mut legs = Vec::new();
         for file in &body.legs {
-            legs.push(Leg::new(&names, &mesh, file)?);
+            legs.push(Leg::new(&names, &mesh, &rest, file)?);
         }
         let gait = body
             .gait
             .as_ref()
-            .map(|file| Gait::new(&names, file, &legs))
+            .map(|file| Gait::new(&names, file, &legs, height))
             .transpose()?;
         let mut acts = Vec::new();
         for state in brain.states() {
@@ -154,15 +177,9 @@ impl CreatureKind {
         let (look, head) = body
             .head
             .as_ref()
-            .map(|file| look(&names, file))
+            .map(|file| look(&names, file, height))
             .transpose()?
             .unzip();
-        let (mut low, mut high, mut girth) = (f64::INFINITY, f64::NEG_INFINITY, 0f64);
-        for position in mesh.positions() {
-            let p = position.as_dvec3();
-            (low, high) = (low.min(p.y), high.max(p.y));
-            girth = girth.max(p.x.abs().min(p.z.abs()));
-        }
         Ok(Self {
             acts,
             regions,
@@ -174,8 +191,8 @@ impl CreatureKind {
             breathe,
             plates,
             plate_of,
-            girth,
-            height: (high - low).max(0.0),
+            girth: rest.girth,
+            height,
             skeleton,
             clips,
             mesh,
@@ -241,9 +258,33 @@ impl CreatureKind {
         })
     }
 
-    /// Height of the skin at rest, in the model's units.
+    /// Height of the skin posed at rest, in the model's units.
     pub fn height(&self) -> f64 {
         self.height
+    }
+
+    /// Half the width, on the ground, of what is under the creature at rest, in the model's units: the largest
+    /// `min(|x|, |z|)` of its skin, so that arms that are held aside do not count.
+    pub fn girth(&self) -> f64 {
+        self.girth
+    }
+
+    /// Where its eye is at rest, in model space: that of [`BodyFile::head`], or 0.9 of its height above the origin.
+    pub fn eye(&self) -> DVec3 {
+        self.eye_in(|joint| joint_in_model(&self.skeleton, self.clips.rest(), joint))
+    }
+
+    /// Speed of its walk over ground, in the model's units a second of the clip; `None` if it does not walk.
+    pub fn walking_speed(&self) -> Option<f64> {
+        self.gait.as_ref().map(|gait| gait.speed)
+    }
+
+    /// Where its eye is when its joints are at these frames, in model space.
+    pub(crate) fn eye_in(&self, frame: impl Fn(JointId) -> Option<DAffine3>) -> DVec3 {
+        let head = self
+            .head
+            .and_then(|(joint, eye)| Some(frame(joint)?.transform_point3(eye)));
+        head.unwrap_or(DVec3::Y * (0.9 * self.height))
     }
 
     /// Its pieces of armour, in the order of the file.
@@ -285,16 +326,12 @@ impl CreatureKind {
         self.gait.as_ref()
     }
 
-    pub(crate) fn look(&self) -> Option<(&LookAt, JointId)> {
-        self.look.as_ref().zip(self.head)
+    pub(crate) fn look(&self) -> Option<&LookAt> {
+        self.look.as_ref()
     }
 
     pub(crate) fn breathe(&self) -> Option<ClipId> {
         self.breathe
-    }
-
-    pub(crate) fn girth(&self) -> f64 {
-        self.girth
     }
 
     /// True if a joint belongs to a region.
@@ -308,6 +345,8 @@ impl CreatureKind {
 pub(crate) struct Names<'a> {
     pub(crate) skeleton: &'a Skeleton,
     pub(crate) clips: &'a AnimationSet,
+    /// Gravity as the clips were made for it, in the model's units a second squared.
+    pub(crate) gravity: f64,
 }
 
 impl Names<'_> {
@@ -501,7 +540,11 @@ fn attack_with<'a>(brain: &'a Brain, clip: &str) -> Option<(StateId, &'a Attack)
 /// at any size.
 const TURNS_HEAD: f64 = 20.0;
 
-fn look(names: &Names<'_>, file: &HeadFile) -> Result<(LookAt, JointId), ColossusError> {
+fn look(
+    names: &Names<'_>,
+    file: &HeadFile,
+    height: f64,
+) -> Result<(LookAt, (JointId, DVec3)), ColossusError> {
     let mut chain = Vec::new();
     for (name, share) in &file.joints {
         chain.push((names.joint(name).map_err(whole)?, *share));
@@ -511,10 +554,12 @@ fn look(names: &Names<'_>, file: &HeadFile) -> Result<(LookAt, JointId), Colossu
         return Err(names.limb_error("head", [].into_iter(), error).into());
     };
     let rest = names.skeleton.rest_pose();
-    let model_from_head = clamber_animation::joint_in_model(names.skeleton, &rest, head);
-    let forward = model_from_head.map_or(DVec3::Z, |frame| frame.matrix3.inverse() * DVec3::Z);
+    let model_from_head = joint_in_model(names.skeleton, &rest, head);
+    let head_from_model = model_from_head.map(|frame| frame.matrix3.inverse());
+    let forward = head_from_model.map_or(DVec3::Z, |turn| turn * DVec3::Z);
     let [yaw, pitch] = file.limits_deg.map(f64::to_radians);
-    let eye = DVec3::from_array(file.eye);
+    let eye = DVec3::from_array(file.eye) * height;
+    let eye = head_from_model.map_or(eye, |turn| turn * eye);
     let look = LookAt::new(names.skeleton, &chain, eye, forward, DVec3::Y).and_then(|look| {
         look.with_limits(LookLimits {
             yaw,
@@ -524,5 +569,5 @@ fn look(names: &Names<'_>, file: &HeadFile) -> Result<(LookAt, JointId), Colossu
     });
     let joints = file.joints.iter().map(|(name, _)| name);
     let look = look.map_err(|error| names.limb_error("head", joints, error))?;
-    Ok((look, head))
+    Ok((look, (head, eye)))
 }

@@ -2,6 +2,8 @@ use clamber_animation::rig::{JointId, Skeleton};
 use clamber_surface::mesh::{ColliderMesh, VertexId};
 use glam::DVec3;
 
+use super::RestSkin;
+
 /// How far above the lowest skin of a foot its sole reaches, as a share of the leg's length.
 const THICK: f64 = 0.03;
 
@@ -30,8 +32,7 @@ pub(crate) struct SoleShape {
 impl SoleShape {
     /// The sole of the skin that moves with an ankle. `ball` is the ball's place at rest.
     pub(crate) fn new(
-        skeleton: &Skeleton,
-        mesh: &ColliderMesh,
+        (skeleton, mesh, skin): (&Skeleton, &ColliderMesh, &RestSkin),
         ankle: JointId,
         ball: DVec3,
         leg: f64,
@@ -42,7 +43,7 @@ impl SoleShape {
                 influences.filter(|(joint, _)| skeleton.is_descendant_or_self(*joint, ankle));
             ours.map(|(_, weight)| weight).sum::<f32>() > RIGID
         };
-        let places: Vec<Option<DVec3>> = (mesh.positions().iter().enumerate())
+        let places: Vec<Option<DVec3>> = (skin.positions.iter().enumerate())
             .map(|(index, place)| moves(VertexId(index as u32)).then(|| place.as_dvec3() - ball))
             .collect();
         let lowest = places

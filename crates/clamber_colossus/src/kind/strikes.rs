@@ -76,16 +76,19 @@ impl Strike {
                 let place = |joint| Some(joint_in_model(names.skeleton, &pose, joint)?.translation);
                 Some([place(leg.hip)?, place(leg.ankle)?])
             };
-            let steps = ((clip.duration() - to) * LOOKS).max(0.0) as u32;
-            let times = (0..=steps).map(|step| to + f64::from(step) / LOOKS);
-            let mut down = None;
-            for [hip, ankle] in times.map_while(at) {
-                let down = *down.get_or_insert(ankle);
-                if ankle.distance(down) > LEFT * length {
-                    break;
-                }
-                reaches.push(down - hip);
-            }
+            // It stands since shortly before it stops to hurt.
+            let step = |steps: f64, way: f64| {
+                let steps = (steps * LOOKS).max(0.0) as u32;
+                (0..=steps).map(move |step| to + way * f64::from(step) / LOOKS)
+            };
+            let down = at(to).map(|[_, ankle]| ankle);
+            let stands = |[hip, ankle]: [DVec3; 2]| {
+                let down = down.filter(|down| ankle.distance(*down) <= LEFT * length)?;
+                Some(down - hip)
+            };
+            let before = step(to - from, -1.0).map_while(|time| stands(at(time)?));
+            let after = step(clip.duration() - to, 1.0).map_while(|time| stands(at(time)?));
+            reaches.extend(before.chain(after));
         }
         Ok(Self {
             reaches,

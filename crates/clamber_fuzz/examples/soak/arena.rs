@@ -101,7 +101,7 @@ fn make(giant: &Creature, rng: &mut Rng) -> (Arena, DVec3) {
         }
         for _ in 0..rng.u32(1..5) {
             let creature = &arena.creatures()[rng.usize(0..arena.creatures().len())];
-            let (size, at) = (creature.config().scale, creature.config().position);
+            let (size, at) = (creature.scale(), creature.config().position);
             let place = if rng.bool() {
                 at + DVec3::new(lot(rng) * 3.0, 36.0, lot(rng) * 3.0) * size
             } else {

@@ -296,7 +296,7 @@ fn targets(performer: &Performer<'_>, graph: &ClimbGraph) -> Vec<Target> {
     let Some(life) = performer.life() else {
         return Vec::new();
     };
-    let (kind, scale) = (life.kind(), life.config().scale);
+    let (kind, scale) = (life.kind(), life.scale());
     let mut targets = Vec::new();
     for (index, point) in kind.weak_points().iter().enumerate() {
         let place = place(performer, index) * scale;
