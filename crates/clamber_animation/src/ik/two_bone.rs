@@ -100,10 +100,24 @@ impl TwoBone {
         point: DVec3,
         bends_towards: DVec3,
     ) -> Result<Self, IkError> {
+        Self::to_point_of(skeleton, [upper, lower, lower], point, bends_towards)
+    }
+
+    /// [`TwoBone::to_point`] for a limb with more joints, which ends at a point in the space of the last one, `end`: the
+    /// lower joint, or one below it.
+    ///
+    /// # Errors
+    /// As [`TwoBone::to_point`].
+    pub fn to_point_of(
+        skeleton: &Skeleton,
+        [upper, lower, end]: [JointId; 3],
+        point: DVec3,
+        bends_towards: DVec3,
+    ) -> Result<Self, IkError> {
         if !point.is_finite() {
             return Err(IkError::BadSetUp("where the limb ends is not finite"));
         }
-        Self::with_tip(skeleton, [upper, lower, lower], point, bends_towards)
+        Self::with_tip(skeleton, [upper, lower, end], point, bends_towards)
     }
 
     fn with_tip(

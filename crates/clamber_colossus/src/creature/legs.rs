@@ -1,6 +1,6 @@
 //! The feet of the pose.
 
-use clamber_animation::ik::{TwoBoneGoal, orient};
+use clamber_animation::ik::orient;
 use clamber_animation::joints_in_model;
 use clamber_surface::geometry::{Similarity, rotation_from_axis_angle, slerp};
 use clamber_world::Obstacle;
@@ -38,6 +38,8 @@ const PHASES: u32 = 48;
 
 /// A leg as its clip has it.
 struct ClipLeg {
+    /// Length of its bones together.
+    reach: f64,
     /// In model space.
     hip: DVec3,
     /// The ball of the foot, in world space.
@@ -56,7 +58,7 @@ pub(super) struct PutLeg {
     /// Where it goes, together with the ball of the foot.
     pub(super) ankle: DVec3,
     pub(super) ball: DVec3,
-    /// Length of thigh and shin together.
+    /// Length of its bones together.
     pub(super) reach: f64,
     /// Of the ankle.
     rotation: DQuat,
@@ -76,12 +78,15 @@ impl Creature {
         let mut legs = std::mem::take(&mut self.legs);
         legs.clear();
         for (index, leg) in kind.legs().iter().enumerate() {
-            let joints = [leg.hip, leg.ankle, leg.ball];
+            let joints = [leg.hip, leg.limb.knee, leg.limb.end.0, leg.ankle, leg.ball];
             let frames = joints_in_model(kind.skeleton(), &self.state.pose, joints);
-            let [hip, ankle, ball] = frames.unwrap_or_default();
+            let [hip, knee, end, ankle, ball] = frames.unwrap_or_default();
+            let end = end.transform_point3(leg.limb.end.1);
+            let reach = leg.limb.length([hip.translation, knee.translation, end]);
             let rotation = rotation_of(&ankle);
             let turn = turn_about_up(rotation * leg.level.conjugate());
             let clip = ClipLeg {
+                reach,
                 hip: hip.translation,
                 ball: world.transform_point(ball.translation),
                 rotation,
@@ -322,13 +327,10 @@ impl Creature {
     fn bend_leg(&mut self, leg: &Leg, put: &PutLeg) {
         let skeleton = self.kind.skeleton();
         // A leg in flight is not stretched to its end, so that its knee does not snap.
-        let goal = TwoBoneGoal {
-            soft: SOFT + (1.0 - SOFT) * put.firm,
-            ..TwoBoneGoal::reach(put.ankle)
-        };
+        let soft = SOFT + (1.0 - SOFT) * put.firm;
         let pose = &mut self.state.pose;
         // A leg that cannot be bent stays as its clip has it.
-        if leg.ik.solve(skeleton, pose, &goal, None).is_ok() {
+        if leg.limb.bend(skeleton, pose, put.ankle, soft) {
             let _ = orient(skeleton, pose, leg.ankle, put.rotation);
             if leg.ball != leg.ankle && put.flat > 0.0 {
                 let rest = self.kind.clips().rest().transforms[leg.ball.index()].rotation;
@@ -355,7 +357,7 @@ fn put(world: &Similarity, leg: &Leg, foot: &Foot, clip: &ClipLeg) -> PutLeg {
     PutLeg {
         hip: clip.hip,
         ankle: ball + rotation * leg.from_ball,
-        reach: leg.length,
+        reach: clip.reach,
         rotation,
         ball,
         flat,

@@ -58,22 +58,24 @@ fn tremor() -> f64 {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LegFile {
-    /// Joints at hip, knee and ankle.
-    pub joints: [String; 3],
+    /// From two to five joints from the hip down, the last of which is the foot: hip, knee and ankle, or those of an
+    /// animal's hind leg. Each is below the one before it, but for the foot: it may hang elsewhere, as a control that was
+    /// baked into the file does, and is carried along then. The joint that divides the leg most evenly is its knee; others
+    /// keep their pose.
+    pub joints: Vec<String>,
     /// The joint at the ball of the foot; `None` if the foot is one piece.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub toe: Option<String>,
-    /// To which side the knee points.
-    #[serde(default)]
-    pub knee: Knee,
+    /// To which side the knee points; `None` for the side to which it is bent at rest, or forward if it is straight.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub knee: Option<Knee>,
 }
 
 /// To which side a knee points.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Knee {
     /// Forward, as a human's.
-    #[default]
     Forward,
     /// Backward, as a bird's ankle that is used as a knee.
     Backward,

@@ -1,10 +1,10 @@
-use clamber_animation::ik::TwoBone;
 use clamber_animation::joint_in_model;
 use clamber_animation::rig::{Clip, JointId, Playback, Pose};
 use clamber_surface::mesh::ColliderMesh;
 use glam::{DAffine3, DQuat, DVec3};
 
-use super::file::{Knee, LegFile};
+use super::file::LegFile;
+use super::limb::Limb;
 use super::sole::SoleShape;
 use super::{Names, RestSkin, whole};
 use crate::error::ColossusError;
@@ -15,23 +15,20 @@ use crate::error::ColossusError;
 const STANDS_BELOW: f64 = 0.012;
 const STANDS_SLOWER: f64 = 0.2;
 
-/// A leg does not fold further than to this angle between thigh and shin, radians: 20 degrees, a deep squat.
-const LEAST_KNEE: f64 = 0.349;
-
 /// Samples a second in which a clip is searched for contacts.
 const SAMPLES: f64 = 60.0;
 
 /// A leg of a kind of creature, in the model's units.
 #[derive(Clone, Debug)]
 pub(crate) struct Leg {
-    pub(crate) ik: TwoBone,
+    pub(crate) limb: Limb,
     pub(crate) hip: JointId,
     pub(crate) ankle: JointId,
     /// The ball of the foot: the toe joint, or the ankle.
     pub(crate) ball: JointId,
     /// Where the ball is at rest, in model space.
     pub(crate) stands_at: DVec3,
-    /// Length of thigh and shin together.
+    /// Length of its bones together, at rest.
     pub(crate) length: f64,
     /// Rotation of the ankle at rest, in model space, when the sole is level; and from the ball to the ankle, in the
     /// ankle's space.
@@ -58,45 +55,39 @@ impl Leg {
         skin: &RestSkin,
         file: &LegFile,
     ) -> Result<Self, ColossusError> {
-        let mut joints = [JointId(0); 3];
-        for (joint, name) in joints.iter_mut().zip(&file.joints) {
-            *joint = names.joint(name).map_err(whole)?;
-        }
-        let ankle = joints[2];
+        let limb = Limb::new(names, file)?;
+        let ankle = limb.foot;
         let toe = file
             .toe
             .as_ref()
             .map(|name| names.joint(name).map_err(whole))
             .transpose()?;
         let ball = toe.unwrap_or(ankle);
-        let knee = match file.knee {
-            Knee::Forward => DVec3::Z,
-            Knee::Backward => -DVec3::Z,
-        };
         let skeleton = names.skeleton;
         let rest = skeleton.rest_pose();
-        let solved = TwoBone::new(skeleton, joints, knee)
-            .and_then(|ik| ik.with_least_angle(LEAST_KNEE))
-            .and_then(|ik| Ok((ik, ik.lengths(skeleton, &rest)?)));
-        let limb = |error| names.limb_error("leg", file.joints.iter(), error);
-        let (ik, lengths) = solved.map_err(limb)?;
         let place = |joint| {
             joint_in_model(skeleton, &rest, joint).map_or(DVec3::ZERO, |frame| frame.translation)
         };
         let at = place(ball);
-        let length: f64 = lengths.iter().sum();
+        let length = limb.length([limb.hip, limb.knee, ankle].map(place));
         let level = joint_in_model(skeleton, &rest, ankle)
             .map_or(DQuat::IDENTITY, |frame| rotation_of(&frame));
+        let sole = SoleShape::new((skeleton, mesh, skin), ankle, at, length);
+        let Some(sole) = sole else {
+            let name = &skeleton.joints()[ankle.index()].name;
+            let fault = format!("no skin moves with its foot `{name}`");
+            return Err(names.limb_fault("leg", file.joints.iter(), fault).into());
+        };
         Ok(Self {
-            ik,
-            hip: joints[0],
+            hip: limb.hip,
+            limb,
             ankle,
             ball,
             level,
             stands_at: at,
             from_ball: level.conjugate() * (place(ankle) - at),
             length,
-            sole: SoleShape::new((skeleton, mesh, skin), ankle, at, length),
+            sole,
         })
     }
 

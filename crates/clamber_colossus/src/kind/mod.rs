@@ -3,6 +3,7 @@
 mod file;
 mod gait;
 mod leg;
+mod limb;
 mod measures;
 mod plate;
 mod sole;
@@ -379,6 +380,16 @@ impl Names<'_> {
             ),
             other => other.to_string(),
         };
+        self.limb_fault(limb, joints, fault)
+    }
+
+    /// An error of a limb that is told in words.
+    pub(crate) fn limb_fault<'n>(
+        &self,
+        limb: &'static str,
+        joints: impl Iterator<Item = &'n String>,
+        fault: String,
+    ) -> BrainError {
         let joints: Vec<String> = joints.map(|name| format!("`{name}`")).collect();
         let joints = joints.join(", ");
         whole(BrainProblem::Limb {

@@ -8,8 +8,8 @@ use super::RestSkin;
 const THICK: f64 = 0.03;
 
 /// Skin of the sole moves with the foot by at least this share: what follows the shin as well leaves the ground with
-/// it.
-const RIGID: f32 = 0.99;
+/// it. In coarse meshes all of it may do so; the first share that any skin has is taken.
+const RIGID: [f32; 3] = [0.99, 0.9, 0.5];
 
 /// Rows and columns of points on a sole, of which those at the edge lie within it by a share of its size.
 const POINTS: [usize; 2] = [17, 25];
@@ -30,21 +30,26 @@ pub(crate) struct SoleShape {
 }
 
 impl SoleShape {
-    /// The sole of the skin that moves with an ankle. `ball` is the ball's place at rest.
+    /// The sole of the skin that moves with an ankle; `None` if none does. `ball` is the ball's place at rest.
     pub(crate) fn new(
         (skeleton, mesh, skin): (&Skeleton, &ColliderMesh, &RestSkin),
         ankle: JointId,
         ball: DVec3,
         leg: f64,
-    ) -> Self {
-        let moves = |vertex: VertexId| {
+    ) -> Option<Self> {
+        let share = |vertex: VertexId| {
             let influences = mesh.influences(vertex);
             let ours =
                 influences.filter(|(joint, _)| skeleton.is_descendant_or_self(*joint, ankle));
-            ours.map(|(_, weight)| weight).sum::<f32>() > RIGID
+            ours.map(|(_, weight)| weight).sum::<f32>()
         };
-        let places: Vec<Option<DVec3>> = (skin.positions.iter().enumerate())
-            .map(|(index, place)| moves(VertexId(index as u32)).then(|| place.as_dvec3() - ball))
+        let shares: Vec<f32> = (0..skin.positions.len() as u32)
+            .map(|index| share(VertexId(index)))
+            .collect();
+        let most = shares.iter().copied().fold(0.0, f32::max);
+        let rigid = RIGID.into_iter().find(|rigid| most > *rigid)?;
+        let places: Vec<Option<DVec3>> = (skin.positions.iter().zip(&shares))
+            .map(|(place, share)| (*share > rigid).then(|| place.as_dvec3() - ball))
             .collect();
         let lowest = places
             .iter()
@@ -66,7 +71,7 @@ impl SoleShape {
             })
             .collect();
         let corner = |x: f64, z: f64| DVec3::new(x, 0.0, z);
-        Self {
+        Some(Self {
             corners: [
                 corner(low.x, low.z),
                 corner(high.x, low.z),
@@ -75,7 +80,7 @@ impl SoleShape {
             ],
             points: spread(&triangles, low, high),
             ball_height: -low.y,
-        }
+        })
     }
 
     /// Width and length.

@@ -1,0 +1,161 @@
+//! The bones of a leg, and how they are bent.
+
+use clamber_animation::ik::{Chain, IkError, TwoBone, TwoBoneGoal};
+use clamber_animation::joint_in_model;
+use clamber_animation::rig::{JointId, Pose, Skeleton};
+use glam::{DAffine3, DVec3};
+
+use super::file::{Knee, LegFile};
+use super::{Names, whole};
+use crate::brain::BrainProblem;
+use crate::error::ColossusError;
+
+/// A leg does not fold further than to this angle between its bones, radians: 20 degrees, a deep squat.
+const LEAST_KNEE: f64 = 0.349;
+
+/// A knee is bent at rest if it is this far from the line between hip and foot, as a share of the leg's length.
+const BENT: f64 = 0.02;
+
+/// The bones of a leg, from its hip to its foot.
+#[derive(Clone, Debug)]
+pub(crate) struct Limb {
+    pub(crate) hip: JointId,
+    /// The joint that bends; the foot in a leg of one bone.
+    pub(crate) knee: JointId,
+    pub(crate) foot: JointId,
+    /// Where the leg ends: a point in the space of a joint.
+    pub(crate) end: (JointId, DVec3),
+    bones: Bones,
+}
+
+#[derive(Clone, Debug)]
+enum Bones {
+    /// They bend at the knee. Joints between keep their pose.
+    Two(TwoBone),
+    /// There is only one, which can be turned.
+    One(Chain),
+}
+
+impl Limb {
+    pub(crate) fn new(names: &Names<'_>, file: &LegFile) -> Result<Self, ColossusError> {
+        if !(2..=5).contains(&file.joints.len()) {
+            let (what, range) = ("joints", "from 2 to 5 joints of a leg");
+            let found = file.joints.len() as f64;
+            return Err(whole(BrainProblem::OutOfRange { what, range, found }).into());
+        }
+        let mut joints = Vec::with_capacity(file.joints.len());
+        for name in &file.joints {
+            joints.push(names.joint(name).map_err(whole)?);
+        }
+        let limb = Self::of_joints(names.skeleton, &joints, file.knee);
+        let error = |error| names.limb_error("leg", file.joints.iter(), error);
+        Ok(limb.map_err(error)?)
+    }
+
+    fn of_joints(
+        skeleton: &Skeleton,
+        joints: &[JointId],
+        knee: Option<Knee>,
+    ) -> Result<Self, IkError> {
+        let (hip, foot) = (joints[0], joints[joints.len() - 1]);
+        let above = joints[joints.len() - 2];
+        let is_beside = joints.len() > 2 && !skeleton.is_descendant_or_self(foot, above);
+        let chain = if is_beside {
+            &joints[..joints.len() - 1]
+        } else {
+            joints
+        };
+        for pair in chain.windows(2) {
+            let [ancestor, joint] = [pair[0], pair[1]];
+            if joint == ancestor || !skeleton.is_descendant_or_self(joint, ancestor) {
+                return Err(IkError::NotAChain { joint, ancestor });
+            }
+        }
+        if joints.len() == 2 {
+            return Ok(Self {
+                hip,
+                knee: foot,
+                foot,
+                end: (foot, DVec3::ZERO),
+                bones: Bones::One(Chain::new(skeleton, hip, foot)?),
+            });
+        }
+        let rest = skeleton.rest_pose();
+        let frame = |joint| joint_in_model(skeleton, &rest, joint).unwrap_or_default();
+        let place = |joint| frame(joint).translation;
+        let [from, to] = [hip, foot].map(place);
+        let evenly = |joint: &JointId| {
+            let at = place(*joint);
+            at.distance(from).min(at.distance(to))
+        };
+        let between = joints[1..joints.len() - 1].iter().copied();
+        let middle = between.max_by(|a, b| evenly(a).total_cmp(&evenly(b)));
+        let middle = middle.unwrap_or(above);
+        let line = (to - from).normalize_or(DVec3::NEG_Y);
+        let out = (place(middle) - from).reject_from_normalized(line);
+        let length = place(middle).distance(from) + place(middle).distance(to);
+        let side = match knee {
+            Some(Knee::Forward) => DVec3::Z,
+            Some(Knee::Backward) => DVec3::NEG_Z,
+            None if out.length() > BENT * length => out,
+            None => DVec3::Z,
+        };
+        let end = if is_beside {
+            (above, frame(above).inverse().transform_point3(to))
+        } else {
+            (foot, DVec3::ZERO)
+        };
+        let bones = if is_beside {
+            TwoBone::to_point_of(skeleton, [hip, middle, above], end.1, side)?
+        } else {
+            TwoBone::new(skeleton, [hip, middle, foot], side)?
+        };
+        Ok(Self {
+            hip,
+            knee: middle,
+            foot,
+            end,
+            bones: Bones::Two(bones.with_least_angle(LEAST_KNEE)?),
+        })
+    }
+
+    /// True if the foot does not hang below the leg.
+    fn is_beside(&self) -> bool {
+        self.end.0 != self.foot
+    }
+
+    /// Length of both bones, when hip, knee and end are at these places.
+    pub(crate) fn length(&self, [hip, knee, end]: [DVec3; 3]) -> f64 {
+        hip.distance(knee) + knee.distance(end)
+    }
+
+    /// Bends the leg of a pose so that it ends at a place in model space. Returns false if it cannot be bent, and stays
+    /// as it is then.
+    pub(crate) fn bend(&self, skeleton: &Skeleton, pose: &mut Pose, to: DVec3, soft: f64) -> bool {
+        let goal = TwoBoneGoal {
+            soft,
+            ..TwoBoneGoal::reach(to)
+        };
+        let bent = match &self.bones {
+            Bones::Two(bones) => bones.solve(skeleton, pose, &goal, None).is_ok(),
+            Bones::One(bone) => bone.solve(skeleton, pose, to).is_ok(),
+        };
+        if bent && self.is_beside() {
+            self.carry_foot(skeleton, pose);
+        }
+        bent
+    }
+
+    /// Puts a foot that hangs elsewhere to where the leg ends.
+    fn carry_foot(&self, skeleton: &Skeleton, pose: &mut Pose) {
+        let (joint, point) = self.end;
+        let parent = skeleton.joints()[self.foot.index()].parent;
+        let frames = joint_in_model(skeleton, pose, joint);
+        let parent = parent.and_then(|parent| joint_in_model(skeleton, pose, parent));
+        let inverse = parent.unwrap_or(DAffine3::IDENTITY).inverse();
+        let at = frames.map(|frame| inverse.transform_point3(frame.transform_point3(point)));
+        if let Some(at) = at.filter(|at| at.is_finite()) {
+            pose.transforms[self.foot.index()].translation = at.as_vec3();
+        }
+    }
+}
