@@ -234,7 +234,7 @@ impl Creature {
             let Some(ball) = self.palette.model_from_joint(leg.ball) else {
                 return false;
             };
-            let at = world.inverse_transform_point(place) - ball.translation;
+            let at = world.inverse_transform_point(place) - leg.ball_in(ball);
             let [low, high] = [leg.sole.corners[0] * UNDER, leg.sole.corners[3] * UNDER];
             at.y < 0.2 * leg.length
                 && (low.x..=high.x).contains(&at.x)

@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Creature;
 use super::legs::PutLeg;
+use super::state::Playing;
 
 /// The most acceleration of the hips, up and down and to the sides, metres a second squared. Riders feel it, together
 /// with that of following the ground.
@@ -113,10 +114,18 @@ impl Creature {
         let before = self.state.hips.drop;
         let steep = SLOPE_DROP * self.state.steepness * length;
         let needed = (legs.iter().map(drop_of).fold(0.0, f64::max) * scale).max(steep);
-        // It rises slowly, so that it does not bob with each step.
-        let risen = before * libm::exp2(-dt / (RISES * self.size.pace.max(1e-3)));
+        // It rises slowly, so that it does not bob with each step; and not while it stands, since a clip that made its
+        // legs too short once does so again in each round.
+        let moves = matches!(self.state.playing, Playing::Walk | Playing::Turn(_));
+        let rises = if moves {
+            RISES * self.size.pace.max(1e-3)
+        } else {
+            f64::INFINITY
+        };
+        let risen = before * libm::exp2(-dt / rises);
         self.state.hips.drop = needed.max(risen).min(MOST_DROP * length);
-        let wants_step = legs.iter().any(|leg| leg.wants_step);
+        // On more than two legs it stands between the others when one steps.
+        let wants_step = legs.len() == 2 && legs.iter().any(|leg| leg.wants_step);
         let mut to = DVec3::NEG_Y * self.state.hips.drop;
         let mut shift = DVec3::ZERO;
         if wants_step {

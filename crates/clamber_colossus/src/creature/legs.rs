@@ -62,8 +62,9 @@ pub(super) struct PutLeg {
     pub(super) reach: f64,
     /// Of the ankle.
     rotation: DQuat,
-    /// How flat its foot is, from 0 to 1.
-    flat: f64,
+    /// How flat its foot is, from 0 to 1, and the normal of what it stands on, in world space.
+    pub(super) flat: f64,
+    pub(super) normal: DVec3,
     /// How firmly it stands, from 0 to 1.
     firm: f64,
     pub(super) wants_step: bool,
@@ -88,13 +89,14 @@ impl Creature {
             let clip = ClipLeg {
                 reach,
                 hip: hip.translation,
-                ball: world.transform_point(ball.translation),
+                ball: world.transform_point(leg.ball_in(&ball)),
                 rotation,
                 turn,
                 heading: 2.0 * libm::atan2(turn.y, turn.w),
             };
-            let others_stand = (self.state.feet.iter().enumerate())
-                .all(|(other, foot)| other == index || foot.is_planted());
+            let others = self.state.feet.iter().enumerate();
+            let lifted = others.filter(|(other, foot)| *other != index && !foot.is_planted());
+            let others_stand = lifted.count() < at_once(kind.legs().len());
             let goal = self.foot_goal(world, index, &clip, others_stand, aims);
             let foot = &self.state.feet[index];
             let sole = Sole {
@@ -119,6 +121,7 @@ impl Creature {
         let moved = self.shift_hips(world, &legs, dt);
         for (index, (leg, put)) in kind.legs().iter().zip(&legs).enumerate() {
             self.bend_leg(leg, put);
+            self.press_foot(world, leg, put);
             // All legs hang below the hips.
             let distance = (put.hip + moved).distance(put.ankle);
             let is_stretched = distance > STRETCHED * put.reach;
@@ -137,11 +140,20 @@ impl Creature {
         };
         let shape = self.kind.legs().get(leg)?;
         let wall = WALL * shape.length * self.size.scale;
-        let places = self.on_sole(leg, &shape.sole.points);
-        let heights = places.filter_map(|place| Some(place.y - ground.below(place)?.0));
-        heights
-            .filter(|height| *height > -wall)
-            .min_by(f64::total_cmp)
+        let above = |place: DVec3| {
+            let height = place.y - ground.below(place)?.0;
+            (height > -wall).then_some(height)
+        };
+        let blended = &shape.sole.blended;
+        if blended.is_empty() {
+            let places = self.on_sole(leg, &shape.sole.points);
+            return places.filter_map(above).min_by(f64::total_cmp);
+        }
+        let mut places = Vec::new();
+        blended.skin(self.kind.skeleton(), &self.state.pose, &mut places);
+        let world = self.surface.world_from_model();
+        let places = places.iter().map(|place| world.transform_point(*place));
+        places.filter_map(above).min_by(f64::total_cmp)
     }
 
     /// The corners of a rectangle around a foot's sole, in world space, one after the other around it. `None` if there
@@ -165,7 +177,10 @@ impl Creature {
         let frame = self.kind.legs().get(leg).and_then(|leg| {
             let ankle = self.palette.model_from_joint(leg.ankle)?;
             let ball = self.palette.model_from_joint(leg.ball)?;
-            Some((rotation_of(ankle) * leg.level.conjugate(), ball.translation))
+            Some((
+                rotation_of(ankle) * leg.level.conjugate(),
+                leg.ball_in(ball),
+            ))
         });
         points.iter().filter_map(move |point| {
             let (turn, ball) = frame?;
@@ -282,7 +297,7 @@ impl Creature {
                 let (Some(contacts), Some(at)) = (self.contacts(index), at) else {
                     return 0.0;
                 };
-                let way = (contacts.ball(time) - at.translation) / leg.length;
+                let way = (contacts.ball(time) - leg.ball_in(at)) / leg.length;
                 let is_other = contacts.stands(time) != self.state.feet[index].is_planted();
                 // What stands for long has to fit best.
                 let left = contacts
@@ -324,7 +339,7 @@ impl Creature {
     }
 
     /// Bends a leg so that its ankle is where the foot wants it.
-    fn bend_leg(&mut self, leg: &Leg, put: &PutLeg) {
+    pub(super) fn bend_leg(&mut self, leg: &Leg, put: &PutLeg) {
         let skeleton = self.kind.skeleton();
         // A leg in flight is not stretched to its end, so that its knee does not snap.
         let soft = SOFT + (1.0 - SOFT) * put.firm;
@@ -339,6 +354,11 @@ impl Creature {
             }
         }
     }
+}
+
+/// How many of some legs may be in the air at once: half of them.
+pub(super) fn at_once(legs: usize) -> usize {
+    (legs / 2).max(1)
 }
 
 /// Where a leg's ankle goes.
@@ -361,6 +381,7 @@ fn put(world: &Similarity, leg: &Leg, foot: &Foot, clip: &ClipLeg) -> PutLeg {
         rotation,
         ball,
         flat,
+        normal: foot.normal(),
         firm: foot.firm(),
         wants_step: foot.wants_step(),
         is_planted: foot.is_planted(),

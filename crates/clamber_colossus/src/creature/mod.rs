@@ -8,6 +8,7 @@ mod hips;
 mod hurt;
 mod legs;
 mod move_on;
+mod press;
 mod report;
 mod size;
 mod state;
@@ -20,6 +21,7 @@ use std::sync::Arc;
 use clamber_animation::PoseBuffers;
 use clamber_animation::rig::{Palette, Pose};
 use clamber_surface::surface::SkinnedSurface;
+use glam::DVec3;
 
 pub use config::CreatureConfig;
 pub use foresee::Foresight;
@@ -49,6 +51,7 @@ pub struct Creature {
     events: Vec<clamber_animation::AnimationEvent>,
     /// Kept from tick to tick, so that a step does not allocate.
     legs: Vec<PutLeg>,
+    sole: Vec<DVec3>,
     /// True while the skin is known to be without motion.
     is_still: bool,
     /// Of each plate, whether the skin shows it: as its state says.
@@ -72,6 +75,7 @@ impl Creature {
             report: CreatureReport::default(),
             events: Vec::new(),
             legs: Vec::new(),
+            sole: Vec::new(),
             is_still: false,
             shows_plate: vec![true; kind.plates().len()],
             kind,

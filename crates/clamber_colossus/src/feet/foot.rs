@@ -115,9 +115,13 @@ pub(crate) struct FootGoal {
 const STEPS_BEYOND: f64 = 0.12;
 const STEPS_TURNED: f64 = 0.45;
 
+/// A leg that is too short for its foot takes no step if that would bring it less far than this share of its length: its
+/// hips come down instead.
+const NO_STEP: f64 = 0.02;
+
 /// The least time of a step of its own, as a share of `sqrt(leg / g)`, and how high it goes at least, as a share of the
 /// leg's length.
-const STEP_TIME: f64 = 1.5;
+pub(crate) const STEP_TIME: f64 = 1.5;
 const STEP_HEIGHT: f64 = 0.04;
 
 /// The most acceleration of an offset up and down, and to the sides, metres a second squared, and of a foot's turn,
@@ -140,6 +144,10 @@ const LEANS: f64 = 0.1;
 const HIGH: f64 = 0.03;
 const GONE: f64 = 0.003;
 
+/// A foot that its clip does not lift is lifted while it walks or turns if it is further than this from where its clip
+/// stands, as a share of the leg's length.
+const LEFT_BEHIND: f64 = 0.3;
+
 /// A foot was left behind if it is further than this from where its clip stands, as a share of the leg's length.
 const LATE: f64 = 0.06;
 
@@ -161,7 +169,7 @@ const SETTLES: f64 = 0.08;
 /// Half time in which a foot that was lifted loses its hold, as a share of the time of a step.
 const LETS_GO: f64 = 0.25;
 
-const GRAVITY: f64 = 9.81;
+pub(crate) const GRAVITY: f64 = 9.81;
 
 impl Foot {
     /// A foot that is where its clip has it.
@@ -275,10 +283,12 @@ impl Foot {
                         to: sole.at(goal.settled),
                         left: goal.step_time(),
                     };
-                } else if self.is_stretched && goal.is_gait {
+                } else if goal.is_gait && (self.is_stretched || level > LEFT_BEHIND * goal.leg) {
                     self.hold = Hold::Swings;
                     self.path.left = 0.0;
-                } else if self.wants_step && goal.may_step || self.is_stretched {
+                } else if self.wants_step && goal.may_step
+                    || self.is_stretched && level > NO_STEP * goal.leg
+                {
                     self.hold =
                         Hold::Steps(self.step_from(at.ball + self.settling.value, goal, sole));
                 }

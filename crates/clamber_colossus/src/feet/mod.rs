@@ -9,6 +9,6 @@ mod foot;
 mod ground;
 mod sole;
 
-pub(crate) use foot::{Foot, FootGoal, MOST_ASIDE, SHARES};
+pub(crate) use foot::{Foot, FootGoal, GRAVITY, MOST_ASIDE, SHARES, STEP_TIME};
 pub(crate) use ground::Ground;
 pub(crate) use sole::{Footing, Sole};

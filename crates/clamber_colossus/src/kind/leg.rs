@@ -15,6 +15,9 @@ use crate::error::ColossusError;
 const STANDS_BELOW: f64 = 0.012;
 const STANDS_SLOWER: f64 = 0.2;
 
+/// A foot's joint that is further above the lowest skin than this share of the leg's length is not its ball.
+const HIGH: f64 = 0.2;
+
 /// Samples a second in which a clip is searched for contacts.
 const SAMPLES: f64 = 60.0;
 
@@ -24,8 +27,10 @@ pub(crate) struct Leg {
     pub(crate) limb: Limb,
     pub(crate) hip: JointId,
     pub(crate) ankle: JointId,
-    /// The ball of the foot: the toe joint, or the ankle.
+    /// The ball of the foot: the toe joint, or the ankle; and where it is in the joint's space. It is the joint itself,
+    /// unless that is far above the ground, as in a leg that ends in its last bone.
     pub(crate) ball: JointId,
+    ball_at: DVec3,
     /// Where the ball is at rest, in model space.
     pub(crate) stands_at: DVec3,
     /// Length of its bones together, at rest.
@@ -68,12 +73,23 @@ impl Leg {
         let place = |joint| {
             joint_in_model(skeleton, &rest, joint).map_or(DVec3::ZERO, |frame| frame.translation)
         };
-        let at = place(ball);
+        let mut at = place(ball);
         let length = limb.length([limb.hip, limb.knee, ankle].map(place));
         let level = joint_in_model(skeleton, &rest, ankle)
             .map_or(DQuat::IDENTITY, |frame| rotation_of(&frame));
-        let sole = SoleShape::new((skeleton, mesh, skin), ankle, at, length);
-        let Some(sole) = sole else {
+        let sole = |at| SoleShape::new((skeleton, mesh, skin), ankle, at, length);
+        let mut found = sole(at);
+        let mut ball_at = DVec3::ZERO;
+        if let Some(high) = found
+            .as_ref()
+            .filter(|sole| sole.ball_height > HIGH * length)
+        {
+            at += high.middle();
+            let frame = joint_in_model(skeleton, &rest, ball).unwrap_or_default();
+            ball_at = frame.inverse().transform_point3(at);
+            found = sole(at);
+        }
+        let Some(sole) = found else {
             let name = &skeleton.joints()[ankle.index()].name;
             let fault = format!("no skin moves with its foot `{name}`");
             return Err(names.limb_fault("leg", file.joints.iter(), fault).into());
@@ -83,12 +99,18 @@ impl Leg {
             limb,
             ankle,
             ball,
+            ball_at,
             level,
             stands_at: at,
             from_ball: level.conjugate() * (place(ankle) - at),
             length,
             sole,
         })
+    }
+
+    /// Where the ball of the foot is, for the frame of its joint in model space.
+    pub(crate) fn ball_in(&self, frame: &DAffine3) -> DVec3 {
+        frame.transform_point3(self.ball_at)
     }
 
     /// Where the ball of the foot is, in model space, at times that are evenly spread from the beginning of a clip to its
@@ -106,7 +128,7 @@ impl Leg {
             pose.transforms.clone_from(&names.clips.rest().transforms);
             clip.sample_into(time, playback, &mut pose)?;
             let frame = joint_in_model(names.skeleton, &pose, self.ball);
-            Ok(frame.map_or(DVec3::ZERO, |frame| frame.translation))
+            Ok(frame.map_or(DVec3::ZERO, |frame| self.ball_in(&frame)))
         };
         let step = duration / count as f64;
         let places: Result<Vec<DVec3>, ColossusError> =

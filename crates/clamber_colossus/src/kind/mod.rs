@@ -1,5 +1,6 @@
 //! What all creatures of one kind share.
 
+mod blended;
 mod file;
 mod gait;
 mod leg;
@@ -18,6 +19,7 @@ use clamber_surface::mesh::{ColliderMesh, TriangleId};
 use clamber_surface::surface::creature_fingerprint;
 use glam::{DAffine3, DVec3};
 
+pub(crate) use blended::BlendedSole;
 pub use file::{BodyFile, GaitFile, HeadFile, Knee, LegFile, PlateFile};
 pub(crate) use gait::Gait;
 pub(crate) use leg::{Contacts, Leg, rotation_of};

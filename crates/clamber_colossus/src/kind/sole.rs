@@ -2,14 +2,23 @@ use clamber_animation::rig::{JointId, Skeleton};
 use clamber_surface::mesh::{ColliderMesh, VertexId};
 use glam::DVec3;
 
-use super::RestSkin;
+use super::{BlendedSole, RestSkin};
 
 /// How far above the lowest skin of a foot its sole reaches, as a share of the leg's length.
 const THICK: f64 = 0.03;
 
+/// A sole is skinned in each tick, unless this share of its vertices follows the foot alone.
+const MOST: f64 = 0.6;
+
+/// Skin that follows the shin too may be the lowest one in another pose if it is no further above the lowest skin at rest
+/// than this share of the leg's length.
+const FOOT: f64 = 0.15;
+
 /// Skin of the sole moves with the foot by at least this share: what follows the shin as well leaves the ground with
-/// it. In coarse meshes all of it may do so; the first share that any skin has is taken.
+/// it. In coarse meshes most of it may do so: the first share is taken whose lowest skin is no further above that of the
+/// last one than this share of the leg's length.
 const RIGID: [f32; 3] = [0.99, 0.9, 0.5];
+const AS_LOW: f64 = 0.01;
 
 /// Rows and columns of points on a sole, of which those at the edge lie within it by a share of its size.
 const POINTS: [usize; 2] = [17, 25];
@@ -27,6 +36,8 @@ pub(crate) struct SoleShape {
     pub(crate) points: Vec<DVec3>,
     /// Height of the ball above the lowest skin.
     pub(crate) ball_height: f64,
+    /// Its vertices, if some of them follow the shin too.
+    pub(crate) blended: BlendedSole,
 }
 
 impl SoleShape {
@@ -46,8 +57,16 @@ impl SoleShape {
         let shares: Vec<f32> = (0..skin.positions.len() as u32)
             .map(|index| share(VertexId(index)))
             .collect();
-        let most = shares.iter().copied().fold(0.0, f32::max);
-        let rigid = RIGID.into_iter().find(|rigid| most > *rigid)?;
+        let low_of = |rigid: f32| {
+            let ours = skin.positions.iter().zip(&shares);
+            let heights = ours.filter(|(_, share)| **share > rigid);
+            heights
+                .map(|(place, _)| f64::from(place.y))
+                .fold(f64::INFINITY, f64::min)
+        };
+        let least = low_of(RIGID[2]);
+        let is_as_low = |rigid: &f32| least.is_finite() && low_of(*rigid) <= least + AS_LOW * leg;
+        let rigid = RIGID.into_iter().find(is_as_low)?;
         let places: Vec<Option<DVec3>> = (skin.positions.iter().zip(&shares))
             .map(|(place, share)| (*share > rigid).then(|| place.as_dvec3() - ball))
             .collect();
@@ -64,6 +83,23 @@ impl SoleShape {
         if !low.is_finite() {
             (low, high) = (DVec3::ZERO, DVec3::ZERO);
         }
+        let half = (0..skin.positions.len()).filter(|index| {
+            let height = f64::from(skin.positions[*index].y);
+            shares[*index] > RIGID[2] && height < least + FOOT * leg
+        });
+        let half: Vec<VertexId> = half.map(|index| VertexId(index as u32)).collect();
+        let low_half = half.iter().map(|vertex| vertex.index());
+        let low_half =
+            low_half.filter(|index| f64::from(skin.positions[*index].y) < least + THICK * leg);
+        let (all, alone) = low_half.fold((0.0, 0.0), |(all, alone), index| {
+            (
+                all + 1.0,
+                alone + f64::from(u8::from(shares[index] > RIGID[0])),
+            )
+        });
+        let is_blended = alone < MOST * all;
+        let ours = half.into_iter().filter(|_| is_blended);
+        let blended = BlendedSole::new(skeleton, mesh, ours);
         let triangles: Vec<[DVec3; 3]> = (mesh.triangles().iter())
             .filter_map(|triangle| {
                 let corners = triangle.map(|vertex| places[vertex.0 as usize].filter(is_low));
@@ -78,9 +114,19 @@ impl SoleShape {
                 corner(low.x, high.z),
                 corner(high.x, high.z),
             ],
-            points: spread(&triangles, low, high),
+            points: spread(
+                &triangles,
+                places.iter().flatten().copied().filter(is_low),
+                [low, high],
+            ),
             ball_height: -low.y,
+            blended,
         })
+    }
+
+    /// The middle of a rectangle around it, on the ground.
+    pub(crate) fn middle(&self) -> DVec3 {
+        0.5 * (self.corners[0] + self.corners[3]) - DVec3::Y * self.ball_height
     }
 
     /// Width and length.
@@ -90,8 +136,13 @@ impl SoleShape {
     }
 }
 
-/// Points on triangles, in rows and columns over X and Z; of several triangles there, on the lowest one.
-fn spread(triangles: &[[DVec3; 3]], low: DVec3, high: DVec3) -> Vec<DVec3> {
+/// The vertices of a sole, and points on its triangles, in rows and columns over X and Z; of several triangles there, on
+/// the lowest one.
+fn spread(
+    triangles: &[[DVec3; 3]],
+    vertices: impl Iterator<Item = DVec3>,
+    [low, high]: [DVec3; 2],
+) -> Vec<DVec3> {
     let share =
         |index: usize, count: usize| EDGE + (1.0 - 2.0 * EDGE) * index as f64 / (count - 1) as f64;
     let mut points = Vec::new();
@@ -109,7 +160,7 @@ fn spread(triangles: &[[DVec3; 3]], low: DVec3, high: DVec3) -> Vec<DVec3> {
         }
     }
     // Corners of triangles stand out between the rows, and the sole's rim beside them.
-    points.extend(triangles.iter().flatten());
+    points.extend(vertices);
     let gap = (high - low).with_y(0.0).length() / RIM;
     for [from, to] in rim(triangles) {
         let cuts = (from.distance(to) / gap.max(1e-9)).ceil().min(RIM);
