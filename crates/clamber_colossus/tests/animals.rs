@@ -164,6 +164,15 @@ fn animals() -> Vec<Animal> {
 }
 
 fn kind(animal: &Animal, height: f64) -> Option<Arc<CreatureKind>> {
+    kind_with(animal, height, |clips, _| clips)
+}
+
+/// The kind of an animal whose clips were changed.
+fn kind_with(
+    animal: &Animal,
+    height: f64,
+    change: impl Fn(Vec<Clip>, &Skeleton) -> Vec<Clip>,
+) -> Option<Arc<CreatureKind>> {
     let Some(root) = std::env::var_os("CLAMBER_TEST_DATA") else {
         eprintln!(
             "SKIPPED animals: set CLAMBER_TEST_DATA to the folder that holds models/Trex.glb"
@@ -187,7 +196,7 @@ fn kind(animal: &Animal, height: f64) -> Option<Arc<CreatureKind>> {
                 { "to": "stands", "when": ["done"] }] }
         }
     });
-    let mut clips = rig.clips;
+    let mut clips = change(rig.clips, &rig.skeleton);
     if animal.walk == "stands" {
         // It has one clip, which shows all that it can do but walk; from 2.3 to 3.4 s it stands still.
         clips.push(still(&clips[0], &rig.skeleton, 3.0));
@@ -363,4 +372,106 @@ fn feet_stand_on_the_ground() {
         }
     }
     assert!(worst.is_empty(), "{worst:?}");
+}
+
+/// Exporters bake legs that were stretched along their bones: they stand as others do.
+#[test]
+fn stretched_legs_stand_too() {
+    for file in ["Fox.glb", "Bull.glb"] {
+        let all = animals();
+        let animal = all.iter().find(|animal| animal.file == file).unwrap();
+        let stretched = |mut clips: Vec<Clip>, skeleton: &Skeleton| {
+            let legs = animal
+                .legs
+                .iter()
+                .flat_map(|leg| leg["joints"].as_array().unwrap());
+            let joints: Vec<JointId> = legs
+                .map(|name| skeleton.find(name.as_str().unwrap()).unwrap())
+                .collect();
+            for clip in &mut clips {
+                let mut channels = clip.channels().to_vec();
+                channels.extend(joints.iter().map(|joint| {
+                    let rest = skeleton.joints()[joint.index()].rest.scale;
+                    let values = vec![rest * Vec3::new(0.99, 1.03, 1.0); 2];
+                    let values = Keyframes::Scale(values);
+                    Channel::new(*joint, Interpolation::Linear, vec![0.0, 1.0], values).unwrap()
+                }));
+                let speed = clip.ground_speed();
+                *clip = Clip::new(clip.name.clone(), channels)
+                    .with_ground_speed(speed)
+                    .unwrap();
+            }
+            clips
+        };
+        let Some(kind) = kind_with(animal, 4.0, stretched) else {
+            return;
+        };
+        let figures = live(&kind, 4.0);
+        println!("{file}: {figures:.2?}");
+        let worst = figures.gap.max(figures.depth).max(figures.slide);
+        assert!(
+            worst <= 1.0 && figures.standing > 0.95,
+            "{file}: {figures:?}"
+        );
+    }
+}
+
+/// Legs that cannot be are refused, with the names of their joints.
+#[test]
+fn legs_that_cannot_be_are_refused_by_name() {
+    let leg = |joints: &[&str]| {
+        let brain = json!({
+            "body": { "legs": [{ "joints": joints }] }, "start": "rests", "states": { "rests": {} }
+        });
+        support::try_kind(&brain.to_string())
+            .map(|_| ())
+            .unwrap_err()
+            .to_string()
+    };
+    // The giant's soles are skin of its feet; nothing hangs from a joint that is no more than a helper.
+    for (joints, text) in [
+        (
+            &["thigh.L"][..],
+            "`joints` is 1, which is not from 2 to 5 joints of a leg",
+        ),
+        (
+            &["pelvis", "thigh.L", "shin.L", "foot.L", "toe.L", "toe.L"],
+            "`joints` is 6",
+        ),
+        (
+            &["shin.L", "thigh.L", "foot.L"],
+            "`thigh.L` is not below `shin.L`",
+        ),
+        (
+            &["thigh.L", "shin.L", "shin.L"],
+            "`shin.L` is not below `shin.L`",
+        ),
+        (&["thigh.L", "shin.L", "nose"], "there is no joint `nose`"),
+    ] {
+        let error = leg(joints);
+        assert!(error.contains(text), "{joints:?}: {error}");
+    }
+    let Some(root) = std::env::var_os("CLAMBER_TEST_DATA") else {
+        return;
+    };
+    // A pole target moves no skin.
+    let rig = load(PathBuf::from(root).join("models/Stag.glb")).unwrap();
+    let joints = ["BackLeg.L", "BackUpperLeg.L", "PoleTarget.L"];
+    let brain = json!({
+        "body": { "legs": [{ "joints": joints }] }, "start": "rests", "states": { "rests": {} }
+    });
+    let parts = CreatureParts {
+        skeleton: rig.skeleton,
+        clips: rig.clips,
+        mesh: rig.collider,
+        weak_points: Vec::new(),
+    };
+    let brain = Brain::from_json(&brain.to_string(), TICK).unwrap();
+    let error = CreatureKind::new(parts, brain)
+        .map(|_| ())
+        .unwrap_err()
+        .to_string();
+    let text = "the leg of `BackLeg.L`, `BackUpperLeg.L`, `PoleTarget.L` cannot be moved: no skin moves with its \
+                foot `PoleTarget.L`";
+    assert_eq!(error, text);
 }

@@ -79,9 +79,13 @@ impl Creature {
         let mut legs = std::mem::take(&mut self.legs);
         legs.clear();
         for (index, leg) in kind.legs().iter().enumerate() {
-            let joints = [leg.hip, leg.limb.knee, leg.limb.end.0, leg.ankle, leg.ball];
+            let joints = [leg.hip, leg.ankle, leg.ball];
             let frames = joints_in_model(kind.skeleton(), &self.state.pose, joints);
-            let [hip, knee, end, ankle, ball] = frames.unwrap_or_default();
+            let [hip, ankle, ball] = frames.unwrap_or_default();
+            leg.limb.make_rigid(kind.skeleton(), &mut self.state.pose);
+            let joints = [leg.limb.knee, leg.limb.end.0];
+            let frames = joints_in_model(kind.skeleton(), &self.state.pose, joints);
+            let [knee, end] = frames.unwrap_or_default();
             let end = end.transform_point3(leg.limb.end.1);
             let reach = leg.limb.length([hip.translation, knee.translation, end]);
             let rotation = rotation_of(&ankle);

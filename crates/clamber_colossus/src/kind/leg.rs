@@ -60,13 +60,13 @@ impl Leg {
         skin: &RestSkin,
         file: &LegFile,
     ) -> Result<Self, ColossusError> {
-        let limb = Limb::new(names, file)?;
-        let ankle = limb.foot;
         let toe = file
             .toe
             .as_ref()
             .map(|name| names.joint(name).map_err(whole))
             .transpose()?;
+        let limb = Limb::new(names, file, toe)?;
+        let ankle = limb.foot;
         let ball = toe.unwrap_or(ankle);
         let skeleton = names.skeleton;
         let rest = skeleton.rest_pose();

@@ -3,7 +3,7 @@
 use clamber_animation::ik::{Chain, IkError, TwoBone, TwoBoneGoal};
 use clamber_animation::joint_in_model;
 use clamber_animation::rig::{JointId, Pose, Skeleton};
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DVec3, Vec3};
 
 use super::file::{Knee, LegFile};
 use super::{Names, whole};
@@ -12,6 +12,9 @@ use crate::error::ColossusError;
 
 /// A leg does not fold further than to this angle between its bones, radians: 20 degrees, a deep squat.
 const LEAST_KNEE: f64 = 0.349;
+
+/// Scales that differ by more than this share are uneven.
+const UNEVEN: f32 = 1e-5;
 
 /// A knee is bent at rest if it is this far from the line between hip and foot, as a share of the leg's length.
 const BENT: f64 = 0.02;
@@ -25,6 +28,8 @@ pub(crate) struct Limb {
     pub(crate) foot: JointId,
     /// Where the leg ends: a point in the space of a joint.
     pub(crate) end: (JointId, DVec3),
+    /// All joints from the hip down to where it ends, foot and toe.
+    path: Vec<JointId>,
     bones: Bones,
 }
 
@@ -37,7 +42,12 @@ enum Bones {
 }
 
 impl Limb {
-    pub(crate) fn new(names: &Names<'_>, file: &LegFile) -> Result<Self, ColossusError> {
+    /// The limb of a leg's file; `toe` is the joint at the ball of its foot, if it has one.
+    pub(crate) fn new(
+        names: &Names<'_>,
+        file: &LegFile,
+        toe: Option<JointId>,
+    ) -> Result<Self, ColossusError> {
         if !(2..=5).contains(&file.joints.len()) {
             let (what, range) = ("joints", "from 2 to 5 joints of a leg");
             let found = file.joints.len() as f64;
@@ -49,7 +59,9 @@ impl Limb {
         }
         let limb = Self::of_joints(names.skeleton, &joints, file.knee);
         let error = |error| names.limb_error("leg", file.joints.iter(), error);
-        Ok(limb.map_err(error)?)
+        let mut limb = limb.map_err(error)?;
+        limb.path.extend(toe);
+        Ok(limb)
     }
 
     fn of_joints(
@@ -71,8 +83,15 @@ impl Limb {
                 return Err(IkError::NotAChain { joint, ancestor });
             }
         }
+        let parent = |joint: &JointId| skeleton.joints()[joint.index()].parent;
+        let last = chain[chain.len() - 1];
+        let up = core::iter::successors(Some(last), parent);
+        let mut path: Vec<JointId> = up.take_while(|joint| *joint != hip).collect();
+        path.extend(is_beside.then_some(foot));
+        path.push(hip);
         if joints.len() == 2 {
             return Ok(Self {
+                path,
                 hip,
                 knee: foot,
                 foot,
@@ -111,6 +130,7 @@ impl Limb {
             TwoBone::new(skeleton, [hip, middle, foot], side)?
         };
         Ok(Self {
+            path,
             hip,
             knee: middle,
             foot,
@@ -122,6 +142,22 @@ impl Limb {
     /// True if the foot does not hang below the leg.
     fn is_beside(&self) -> bool {
         self.end.0 != self.foot
+    }
+
+    /// Takes uneven scales from the leg's joints in a pose: exporters bake a leg that was stretched along its bones, which
+    /// cannot be turned as a rigid one can. Such a joint is as large as at rest.
+    pub(crate) fn make_rigid(&self, skeleton: &Skeleton, pose: &mut Pose) {
+        let is_even = |scale: &Vec3| {
+            scale.max_element() - scale.min_element() <= UNEVEN * scale.max_element()
+        };
+        for joint in &self.path {
+            let scale = &mut pose.transforms[joint.index()].scale;
+            if !is_even(scale) {
+                let rest = skeleton.joints()[joint.index()].rest.scale;
+                let volume = rest.as_dvec3().element_product();
+                *scale = Vec3::splat(libm::cbrt(volume) as f32);
+            }
+        }
     }
 
     /// Length of both bones, when hip, knee and end are at these places.

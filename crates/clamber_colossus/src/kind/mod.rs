@@ -124,7 +124,7 @@ impl CreatureKind {
             if !(1e-3..=1e5).contains(&found) {
                 return Err(whole(BrainProblem::OutOfRange { what, range, found }).into());
             }
-            if !(height > 0.0) {
+            if height <= 0.0 {
                 return Err(whole(BrainProblem::NoHeight { what }).into());
             }
         }
