@@ -170,17 +170,29 @@ fn a_restored_plate_is_whole_again() {
 #[test]
 fn weak_points_open_in_their_order() {
     let mut slab = slab();
+    // A blow at the skin that is nearest to a place.
+    let at = |slab: &Creature, place: DVec3, damage: f64| {
+        let hit = slab.surface().in_world().closest_point(place, 1.0).unwrap();
+        Wound {
+            at: MaterialPoint::on_triangle(hit.triangle, hit.barycentric),
+            ..blow(0, place, damage)
+        }
+    };
     let [first, second] = [-3.0, 3.0].map(|x| DVec3::new(x, 0.0, 0.0));
+    let hurt = |slab: &mut Creature, place: DVec3, damage: f64| {
+        let wound = at(slab, place, damage);
+        slab.hurt(&wound)
+    };
     assert!(slab.is_open(0) && !slab.is_open(1));
-    assert_eq!(slab.hurt(&blow(0, second, 1.0)), 0.0);
+    assert_eq!(hurt(&mut slab, second, 1.0), 0.0);
     // What is too much for one is not passed on to the next.
-    assert_eq!(slab.hurt(&blow(0, first, 5.0)), 2.0);
+    assert_eq!(hurt(&mut slab, first, 5.0), 2.0);
     assert!(!slab.is_open(0) && slab.is_open(1));
-    assert_eq!(slab.hurt(&blow(0, second, 1.0)), 1.0);
+    assert_eq!(hurt(&mut slab, second, 1.0), 1.0);
     assert_eq!(slab.state().hit_points(), [0.0, 1.0]);
     // Numbers that are none change nothing.
     for damage in [f64::NAN, f64::INFINITY, -1.0] {
-        assert_eq!(slab.hurt(&blow(0, second, damage)), 0.0);
+        assert_eq!(hurt(&mut slab, second, damage), 0.0);
     }
     assert_eq!(slab.hurt(&blow(u32::MAX, second, 1.0)), 0.0);
     assert_eq!(slab.state().hit_points(), [0.0, 1.0]);

@@ -145,17 +145,19 @@ fn fought(scale: f64, origin: DVec3) -> Vec<(u64, f64)> {
         weak_points: vec![weak_point("heart", Vec3::ZERO, 50.0, 0)],
         keys: vec![
             (0.0, Vec3::ZERO, Vec3::ONE),
-            (60.0, Vec3::X * 60.0, Vec3::ONE),
+            // A skin without height has no size by which its clips could be slowed.
+            (60.0 * scale.sqrt() as f32, Vec3::X * 60.0, Vec3::ONE),
         ],
         ..Slab::default()
     };
     let mut arena = Arena::new(ArenaConfig::default()).unwrap();
+    let kind = slab.kind();
     let config = CreatureConfig {
         position: origin,
         scale,
         ..CreatureConfig::default()
     };
-    arena.add_creature(slab.kind(), config).unwrap();
+    arena.add_creature(kind, config).unwrap();
     arena
         .add_fighter(FighterConfig::hero(), origin + DVec3::Y)
         .unwrap();

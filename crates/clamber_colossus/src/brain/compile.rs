@@ -1,13 +1,15 @@
 //! From a file to a brain: names become indices, seconds become ticks, and everything is checked.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::condition::Condition;
-use super::locate::{Step, line_of, state_on};
+use super::locate::{Lines, state_on};
 use super::{
     After, Brain, BrainError, BrainFile, BrainProblem, FADE, Gaze, MOST_DEPTH, MOST_MOODS,
-    MOST_STATES, MOST_TRANSITIONS, Mood, State, StateFile, StateId, Transition, TransitionFile,
+    MOST_REGIONS, MOST_STATES, MOST_TRANSITIONS, MOST_WEIGHT, Mood, State, StateFile, StateId,
+    Transition, TransitionFile,
 };
+use crate::senses::Sense;
 
 impl Brain {
     /// Reads a brain from its file, for ticks of `tick` seconds.
@@ -23,7 +25,7 @@ impl Brain {
                 problem: Box::new(BrainProblem::Text(without_place(&error.to_string()))),
             }
         })?;
-        Compiler::new(&file, tick, Some(text)).compile()
+        Compiler::new(&file, tick, Lines::of(text)).compile()
     }
 
     /// A brain that was put together in code, for ticks of `tick` seconds.
@@ -31,25 +33,25 @@ impl Brain {
     /// # Errors
     /// [`BrainError`], without a line.
     pub fn new(file: BrainFile, tick: f64) -> Result<Self, BrainError> {
-        Compiler::new(&file, tick, None).compile()
+        Compiler::new(&file, tick, Lines::default()).compile()
     }
 }
 
 struct Compiler<'a> {
     file: &'a BrainFile,
     tick: f64,
-    text: Option<&'a str>,
+    lines: Lines,
     states: Vec<State>,
     files: Vec<&'a StateFile>,
     ids: BTreeMap<&'a str, StateId>,
 }
 
 impl<'a> Compiler<'a> {
-    fn new(file: &'a BrainFile, tick: f64, text: Option<&'a str>) -> Self {
+    fn new(file: &'a BrainFile, tick: f64, lines: Lines) -> Self {
         Self {
             file,
             tick,
-            text,
+            lines,
             states: Vec::new(),
             files: Vec::new(),
             ids: BTreeMap::new(),
@@ -61,21 +63,23 @@ impl<'a> Compiler<'a> {
         if !(tick > 0.0 && tick.is_finite()) {
             return Err(self.whole(out_of_range("tick", "finite and more than 0", tick)));
         }
+        for (what, found, most) in [
+            ("states", count(&self.file.states), MOST_STATES),
+            ("moods", self.file.moods.len(), MOST_MOODS),
+            ("regions", self.file.regions.len(), MOST_REGIONS),
+        ] {
+            if found > most {
+                return Err(self.whole(too_many(what, found, most)));
+            }
+        }
+        self.check_names()?;
         self.gather(&self.file.states, None)?;
-        let found = self.states.len();
-        if found > MOST_STATES {
-            return Err(self.whole(too_many("states", found, MOST_STATES)));
-        }
-        let found = self.file.moods.len();
-        if found > MOST_MOODS {
-            return Err(self.whole(too_many("moods", found, MOST_MOODS)));
-        }
         let moods = self.moods()?;
         for index in 0..self.states.len() {
             self.start_of(index)?;
         }
         let start = self.find(&self.file.start);
-        let start = start.map_err(|problem| self.at(&[Step::Key("start")], None, problem))?;
+        let start = start.map_err(|problem| self.at(self.lines.start(), problem))?;
         let transitions = self.transitions()?;
         let mut brain = Brain {
             file: self.file.clone(),
@@ -84,7 +88,9 @@ impl<'a> Compiler<'a> {
             transitions,
             moods,
             start,
+            mark: 0,
         };
+        brain.mark = brain.own_mark();
         brain.start = brain.innermost(start);
         self.check_instants(&brain)?;
         Ok(brain)
@@ -101,9 +107,7 @@ impl<'a> Compiler<'a> {
             let (path, depth) = outer.map_or((name.clone(), 0), |outer| {
                 (format!("{}/{name}", outer.path), outer.depth + 1)
             });
-            let line = self
-                .text
-                .map_or(0, |text| line_of(text, &state_steps(&path)));
+            let line = self.lines.state(&path);
             let here = |problem| BrainError {
                 line: (line > 0).then_some(line),
                 state: Some(path.clone()),
@@ -166,8 +170,7 @@ impl<'a> Compiler<'a> {
     fn moods(&self) -> Result<Vec<Mood>, BrainError> {
         let mut moods = Vec::new();
         for (name, file) in &self.file.moods {
-            let steps = [Step::Key("moods"), Step::Key(name)];
-            let here = |problem| self.at(&steps, None, problem);
+            let here = |problem| self.at(self.lines.mood(name), problem);
             check_seconds("fades", file.fades).map_err(here)?;
             let fades = Brain::ticks(file.fades, self.tick).max(1);
             let mut raised = Vec::new();
@@ -205,9 +208,7 @@ impl<'a> Compiler<'a> {
             let first = all.len();
             for (number, file) in self.files[index].transitions.iter().enumerate() {
                 let path = self.states[index].path.clone();
-                let mut steps = state_steps(&path);
-                steps.extend([Step::Key("transitions"), Step::Index(number)]);
-                let line = self.text.map_or(0, |text| line_of(text, &steps));
+                let line = self.lines.transition(&path, number);
                 let transition = self.transition(StateId(index as u16), file, line);
                 let transition = transition.map_err(|problem| BrainError {
                     line: (line > 0).then_some(line),
@@ -232,8 +233,12 @@ impl<'a> Compiler<'a> {
         line: usize,
     ) -> Result<Transition, BrainProblem> {
         let weight = file.weight.unwrap_or(1.0);
-        if !(weight > 0.0 && weight.is_finite()) {
-            return Err(out_of_range("weight", "finite and more than 0", weight));
+        if !(weight > 0.0 && weight <= MOST_WEIGHT) {
+            return Err(out_of_range(
+                "weight",
+                "more than 0 and at most 1e9",
+                weight,
+            ));
         }
         let after = match file.after {
             None => [0.0; 2],
@@ -322,13 +327,25 @@ impl<'a> Compiler<'a> {
         }
     }
 
-    fn at(&self, steps: &[Step<'_>], state: Option<&str>, problem: BrainProblem) -> BrainError {
-        let line = self.text.map_or(0, |text| line_of(text, steps));
+    /// An error that is on a line, and in no state.
+    fn at(&self, line: usize, problem: BrainProblem) -> BrainError {
         BrainError {
             line: (line > 0).then_some(line),
-            state: state.map(str::to_owned),
+            state: None,
             problem: Box::new(problem),
         }
+    }
+
+    /// Refuses moods and senses of the game's own that have the name of another one: it would never be read.
+    fn check_names(&self) -> Result<(), BrainError> {
+        let mut known: BTreeSet<&str> = Sense::all().map(Sense::name).collect();
+        for name in self.file.moods.keys().chain(&self.file.senses) {
+            if !known.insert(name) {
+                let (what, name) = ("senses or moods", name.clone());
+                return Err(self.whole(BrainProblem::Twice { what, name }));
+            }
+        }
+        Ok(())
     }
 }
 
@@ -349,12 +366,10 @@ impl Brain {
     }
 }
 
-/// The place of a state in the file's JSON.
-fn state_steps(path: &str) -> Vec<Step<'_>> {
-    let names = path.split('/');
-    names
-        .flat_map(|name| [Step::Key("states"), Step::Key(name)])
-        .collect()
+/// How many states there are, those inside others included.
+fn count(states: &BTreeMap<String, StateFile>) -> usize {
+    let inside = states.values().map(|state| count(&state.states));
+    states.len() + inside.sum::<usize>()
 }
 
 fn check_act(file: &StateFile) -> Result<(), BrainProblem> {

@@ -5,26 +5,82 @@ use std::collections::BTreeMap;
 
 use serde_json::value::RawValue;
 
-/// A step from a JSON value into it.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Step<'a> {
-    Key(&'a str),
-    Index(usize),
+/// The lines of a file, found in one pass over it.
+#[derive(Debug, Default)]
+pub(super) struct Lines {
+    /// Of each state, by its path such as `calm/idle`: its line, and those of its transitions.
+    states: BTreeMap<String, (usize, Vec<usize>)>,
+    moods: BTreeMap<String, usize>,
+    start: usize,
 }
 
-/// The line, from 1, on which the value at a path begins; 0 if there is none.
-pub(super) fn line_of(text: &str, path: &[Step<'_>]) -> usize {
-    value_at(text, path).map_or(0, |raw| line_at(text, offset_of(text, raw)))
+impl Lines {
+    pub(super) fn of(text: &str) -> Self {
+        let mut lines = Self::default();
+        let text = Text::new(text);
+        let Some(mut root) = text.raw().and_then(entries) else {
+            return lines;
+        };
+        lines.start = root.get("start").map_or(0, |raw| text.line(raw));
+        let moods = root.get("moods").and_then(|raw| entries(raw));
+        let moods = moods.into_iter().flatten();
+        lines.moods = moods.map(|(name, raw)| (name, text.line(raw))).collect();
+        if let Some(states) = root.remove("states") {
+            lines.gather(&text, states, "");
+        }
+        lines
+    }
+
+    fn gather(&mut self, text: &Text<'_>, states: &RawValue, around: &str) {
+        for (name, raw) in entries(states).into_iter().flatten() {
+            let path = format!("{around}{name}");
+            let mut members = entries(raw).unwrap_or_default();
+            let transitions = members.get("transitions");
+            let transitions = transitions.and_then(|raw| serde_json::from_str(raw.get()).ok());
+            let transitions: Vec<&RawValue> = transitions.unwrap_or_default();
+            let transitions = transitions.iter().map(|raw| text.line(raw)).collect();
+            let inner = members.remove("states");
+            if let Some(inner) = inner {
+                self.gather(text, inner, &format!("{path}/"));
+            }
+            self.states.insert(path, (text.line(raw), transitions));
+        }
+    }
+
+    /// The line of a state; 0 if there is none.
+    pub(super) fn state(&self, path: &str) -> usize {
+        self.states.get(path).map_or(0, |(line, _)| *line)
+    }
+
+    /// The line of a state's transition; 0 if there is none.
+    pub(super) fn transition(&self, path: &str, number: usize) -> usize {
+        let found = self
+            .states
+            .get(path)
+            .and_then(|(_, lines)| lines.get(number));
+        found.copied().unwrap_or(0)
+    }
+
+    /// The line of a mood; 0 if there is none.
+    pub(super) fn mood(&self, name: &str) -> usize {
+        self.moods.get(name).copied().unwrap_or(0)
+    }
+
+    /// The line of the state in which the brain begins; 0 if there is none.
+    pub(super) fn start(&self) -> usize {
+        self.start
+    }
 }
 
 /// The path of the innermost state that has a line, such as `calm/idle`.
 pub(super) fn state_on(text: &str, line: usize) -> Option<String> {
+    let text = Text::new(text);
     let mut path: Vec<String> = Vec::new();
-    let mut raw: &RawValue = serde_json::from_str(text).ok()?;
+    let mut raw = text.raw()?;
     while let Some(states) = entries(raw).and_then(|mut entries| entries.remove("states")) {
         let around = entries(states)?.into_iter().find(|(_, state)| {
-            let start = offset_of(text, state);
-            (line_at(text, start)..=line_at(text, start + state.get().len())).contains(&line)
+            let start = text.offset(state);
+            (text.line_at(start)..=text.line_at(start + state.get().len())).contains(&line)
         });
         let Some((name, state)) = around else { break };
         path.push(name);
@@ -33,33 +89,42 @@ pub(super) fn state_on(text: &str, line: usize) -> Option<String> {
     (!path.is_empty()).then(|| path.join("/"))
 }
 
-fn value_at<'a>(text: &'a str, path: &[Step<'_>]) -> Option<&'a RawValue> {
-    let mut raw: &RawValue = serde_json::from_str(text).ok()?;
-    for step in path {
-        raw = match step {
-            Step::Key(key) => entries(raw)?.remove(*key)?,
-            Step::Index(index) => {
-                let items: Vec<&RawValue> = serde_json::from_str(raw.get()).ok()?;
-                items.get(*index).copied()?
-            }
-        };
+/// A text that knows where its lines end.
+struct Text<'a> {
+    text: &'a str,
+    ends: Vec<usize>,
+}
+
+impl<'a> Text<'a> {
+    fn new(text: &'a str) -> Self {
+        let bytes = text.bytes().enumerate();
+        let ends = bytes.filter(|(_, byte)| *byte == b'\n').map(|(at, _)| at);
+        let ends = ends.collect();
+        Self { text, ends }
     }
-    Some(raw)
+
+    fn raw(&self) -> Option<&'a RawValue> {
+        serde_json::from_str(self.text).ok()
+    }
+
+    /// Where a part of the text begins in it.
+    fn offset(&self, part: &RawValue) -> usize {
+        // Borrowed from the text, so its address lies within.
+        (part.get().as_ptr() as usize).saturating_sub(self.text.as_ptr() as usize)
+    }
+
+    /// The line, from 1, of a part of the text.
+    fn line(&self, part: &RawValue) -> usize {
+        self.line_at(self.offset(part))
+    }
+
+    fn line_at(&self, offset: usize) -> usize {
+        self.ends.partition_point(|end| *end < offset) + 1
+    }
 }
 
 fn entries(raw: &RawValue) -> Option<BTreeMap<String, &RawValue>> {
     serde_json::from_str(raw.get()).ok()
-}
-
-/// Where a part of a text begins in it.
-fn offset_of(text: &str, part: &RawValue) -> usize {
-    // Borrowed from the text, so its address lies within.
-    (part.get().as_ptr() as usize).saturating_sub(text.as_ptr() as usize)
-}
-
-fn line_at(text: &str, offset: usize) -> usize {
-    let before = text.as_bytes().get(..offset).unwrap_or_default();
-    before.iter().filter(|byte| **byte == b'\n').count() + 1
 }
 
 #[cfg(test)]
@@ -70,15 +135,16 @@ mod tests {
 
     #[test]
     fn places_are_found() {
-        let path = [
-            Step::Key("states"),
-            Step::Key("a"),
-            Step::Key("transitions"),
-            Step::Index(1),
-        ];
-        assert_eq!(line_of(TEXT, &path), 7);
-        assert_eq!(line_of(TEXT, &[Step::Key("states"), Step::Key("b")]), 8);
-        assert_eq!(line_of(TEXT, &[Step::Key("nothing")]), 0);
+        let lines = Lines::of(TEXT);
+        assert_eq!(lines.transition("a", 1), 7);
+        assert_eq!(
+            (lines.state("a"), lines.state("b"), lines.start()),
+            (4, 8, 2)
+        );
+        assert_eq!(
+            (lines.state("c"), lines.transition("a", 2), lines.mood("m")),
+            (0, 0, 0)
+        );
         assert_eq!(state_on(TEXT, 6).as_deref(), Some("a"));
         assert_eq!(state_on(TEXT, 2), None);
     }

@@ -41,6 +41,10 @@ pub const MOST_TRANSITIONS: usize = 8;
 const MOST_DEPTH: usize = 4;
 const MOST_STATES: usize = 160;
 const MOST_MOODS: usize = 16;
+const MOST_REGIONS: usize = 64;
+
+/// The largest weight of a transition: sums of them stay finite.
+const MOST_WEIGHT: f64 = 1e9;
 
 /// Seconds in which an act fades in, unless its state says otherwise.
 const FADE: f64 = 0.6;
@@ -56,6 +60,8 @@ pub struct Brain {
     moods: Vec<Mood>,
     /// The state in which it begins: one without others inside it.
     start: StateId,
+    /// A hash of what a [`BrainState`] refers to: the names of states and moods, in their order.
+    mark: u64,
 }
 
 #[derive(Clone, Debug, PartialEq)]

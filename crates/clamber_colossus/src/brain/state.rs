@@ -7,6 +7,8 @@ use crate::senses::Senses;
 /// saved.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct BrainState {
+    /// The mark of its brain.
+    brain: u64,
     current: StateId,
     /// Ticks so far.
     now: u32,
@@ -37,6 +39,7 @@ impl BrainState {
     /// The start of a brain, with a seed for its lots.
     pub fn new(brain: &Brain, seed: u64) -> Self {
         let mut state = Self {
+            brain: brain.mark,
             current: brain.start,
             now: 0,
             entered: [0; MOST_DEPTH],
@@ -83,13 +86,13 @@ impl BrainState {
         size_of::<Self>() + size_of_val(&self.ready[..]) + size_of_val(&self.moods[..])
     }
 
-    /// True if it is a state of this brain.
+    /// True if it is a state of this brain, or of one with the same states and moods.
     pub(crate) fn fits(&self, brain: &Brain) -> bool {
         let is_innermost = brain
             .state(self.current)
             .is_some_and(|state| state.start.is_none());
-        is_innermost
-            && (self.ready.len(), self.moods.len()) == (brain.states.len(), brain.moods.len())
+        let is_ours = self.brain == brain.mark && is_innermost;
+        is_ours && (self.ready.len(), self.moods.len()) == (brain.states.len(), brain.moods.len())
     }
 }
 
@@ -124,6 +127,61 @@ impl Brain {
                 interrupts,
             });
         }
+    }
+
+    /// The state of another brain, for this one: states and moods go on by their names, as a game wants that reads a
+    /// brain's file again while a creature lives. If this brain does not have the current state, it begins anew in its
+    /// start. A state that is not of `from` gives `None`.
+    pub fn carry_over(&self, from: &Brain, state: &BrainState) -> Option<BrainState> {
+        if !state.fits(from) {
+            return None;
+        }
+        let mut carried = BrainState {
+            brain: self.mark,
+            ready: vec![0; self.states.len()],
+            moods: vec![0; self.moods.len()],
+            ..state.clone()
+        };
+        let before = |path: &str| from.states.iter().position(|known| known.path == path);
+        for (index, known) in self.states.iter().enumerate() {
+            carried.ready[index] = before(&known.path).map_or(0, |before| state.ready[before]);
+        }
+        for (index, name) in self.file.moods.keys().enumerate() {
+            let Some(before) = from.file.moods.keys().position(|known| known == name) else {
+                continue;
+            };
+            let share = state.mood(from, before);
+            carried.moods[index] = (share * f64::from(self.moods[index].fades)).round() as u32;
+        }
+        let path = &from.states[state.current.index()].path;
+        let current = self.states.iter().position(|known| known.path == *path);
+        match current.filter(|current| self.states[*current].start.is_none()) {
+            Some(current) => carried.current = StateId(current as u16),
+            None => {
+                carried.current = self.start;
+                carried.entered = [state.now; MOST_DEPTH];
+            }
+        }
+        Some(carried)
+    }
+
+    /// A hash of the names of its states and moods, in their order, and of how long moods last.
+    pub(crate) fn own_mark(&self) -> u64 {
+        let mut hash = 0xcbf2_9ce4_8422_2325u64;
+        let mut add = |bytes: &[u8]| {
+            for byte in bytes {
+                hash = (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
+            }
+        };
+        for state in &self.states {
+            add(state.path.as_bytes());
+            add(&[0]);
+        }
+        for (name, mood) in self.file.moods.keys().zip(&self.moods) {
+            add(name.as_bytes());
+            add(&mood.fades.to_le_bytes());
+        }
+        hash
     }
 
     /// Goes to a state at once, as a game may want for a scene of its own. Does nothing for a state of another brain.

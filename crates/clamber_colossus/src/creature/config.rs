@@ -24,10 +24,13 @@ pub struct CreatureConfig {
     pub most_slope: f64,
     /// It does not see further, metres; 150 by default.
     pub sight: f64,
+    /// Noises that are no further away than this are heard as loud as they are, metres; 50 by default.
+    pub hearing: f64,
 }
 
 impl Default for CreatureConfig {
-    /// At the origin, of its file's size, with an arena of 100 m, slopes to 25 degrees, and sight to 150 m.
+    /// At the origin, of its file's size, with an arena of 100 m, slopes to 25 degrees, sight to 150 m and
+    /// hearing to 50 m.
     fn default() -> Self {
         Self {
             position: DVec3::ZERO,
@@ -38,6 +41,7 @@ impl Default for CreatureConfig {
             arena: 100.0,
             most_slope: 25f64.to_radians(),
             sight: 150.0,
+            hearing: 50.0,
         }
     }
 }
@@ -74,7 +78,8 @@ impl CreatureConfig {
             0.0,
             most,
         )?;
-        within("sight", "at least 0", self.sight, 0.0, f64::INFINITY)
+        within("sight", "at least 0", self.sight, 0.0, f64::INFINITY)?;
+        within("hearing", "at least 0", self.hearing, 0.0, f64::INFINITY)
     }
 }
 

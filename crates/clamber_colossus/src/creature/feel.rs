@@ -5,7 +5,7 @@ use clamber_surface::mesh::TriangleId;
 use glam::DVec3;
 
 use super::state::{Felt, NO_WALL, Ride, WALLS};
-use super::{Creature, Person, Surroundings};
+use super::{Creature, Noise, Person, Surroundings};
 use crate::angle::nearest_turn;
 use crate::senses::{RegionSense, Sense, Senses};
 
@@ -200,15 +200,24 @@ impl Creature {
     }
 
     fn hear(&mut self, around: &Surroundings<'_>, senses: &mut Senses) {
-        let loudest = around
-            .noises
-            .iter()
-            .max_by(|a, b| a.loudness.total_cmp(&b.loudness));
-        let Some(noise) = loudest.filter(|noise| noise.place.is_finite()) else {
+        let heard = |noise: &Noise| {
+            let distance = self.eye().distance(noise.place);
+            let near = self.config.hearing;
+            let share = if distance > near {
+                near / distance
+            } else {
+                1.0
+            };
+            noise.loudness * share * share
+        };
+        let known = around.noises.iter().filter(|noise| noise.place.is_finite());
+        let loudest = known.map(|noise| (heard(noise), noise));
+        let loudest = loudest.max_by(|a, b| a.0.total_cmp(&b.0));
+        let Some((loudness, noise)) = loudest else {
             return;
         };
         self.state.noise = noise.place;
-        senses.set(Sense::Noise, noise.loudness);
+        senses.set(Sense::Noise, loudness);
         senses.set(
             Sense::NoiseBearingDeg,
             self.bearing(noise.place).to_degrees(),

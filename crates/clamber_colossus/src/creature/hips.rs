@@ -52,6 +52,14 @@ pub(crate) struct Hips {
 }
 
 impl Hips {
+    /// True if none of its numbers is further from 0.
+    pub(super) fn is_within(&self, most: f64) -> bool {
+        let vectors = [self.offset, self.velocity];
+        let numbers = vectors.iter().flat_map(|vector| vector.to_array());
+        let numbers = numbers.chain(self.tremor).chain([self.drop]);
+        numbers.into_iter().all(|number| number.abs() <= most)
+    }
+
     /// True if a foot may step.
     pub(super) fn has_shifted(&self) -> bool {
         !self.waits

@@ -64,6 +64,8 @@ impl Creature {
         let plate = triangle
             .and_then(|triangle| self.kind.plate_of(triangle))
             .filter(|plate| self.state.plates[*plate].left > 0);
+        // What was struck within the tick is compared where it is at the end, as the weak points are.
+        let place = self.skin_at(at).unwrap_or(place);
         let points = self.kind.weak_points().iter().enumerate();
         let mut near = points.filter(|(index, point)| {
             let radius = f64::from(point.radius) * self.size.scale;
@@ -71,6 +73,14 @@ impl Creature {
             middle.is_some_and(|middle| middle.distance(place) <= radius) && self.is_open(*index)
         });
         (near.next().map(|(index, _)| index), plate)
+    }
+
+    /// Where a point of the skin is after the last step, in world space.
+    fn skin_at(&self, at: &MaterialPoint) -> Option<DVec3> {
+        let anchor = at.anchor_on(&self.surface)?;
+        let tick = self.kind.brain().tick();
+        let motion = self.surface.in_world().motion(&anchor, tick).ok()?;
+        Some(motion.position)
     }
 
     /// The damage that a weak point takes. What is too much for it is not passed on.

@@ -1,6 +1,6 @@
 use clamber_animation::ik::LookMemory;
 use clamber_animation::rig::{Playback, Pose};
-use clamber_animation::{Animator, Layer, LayerKind, Spring};
+use clamber_animation::{Animator, Layer, LayerKind, PoseBuffers, Spring};
 use clamber_surface::geometry::{Similarity, rotation_from_axis_angle};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -76,6 +76,11 @@ pub struct CreatureState {
     pub(super) sleeps: u32,
     pub(super) ticks: u64,
 }
+
+/// A creature is no further from the origin than this, metres, and nothing of it moves faster than this, metres a second,
+/// in a state that is restored: what was changed to more could not be stepped.
+const FARTHEST: f64 = 1e12;
+const FASTEST: f64 = 1e6;
 
 /// Stands for no wall in reach: JSON has no infinity.
 pub(super) const NO_WALL: f32 = f32::MAX;
@@ -325,11 +330,28 @@ impl CreatureState {
             self.climb,
             self.steepness,
         ];
-        if !self.position.is_finite() || !numbers.iter().all(|number| number.is_finite()) {
+        let places = [self.position, self.home, self.patrol, self.noise];
+        let coordinates = places.iter().flat_map(|place| place.to_array());
+        if coordinates
+            .chain([self.yaw])
+            .any(|number| !(number.abs() <= FARTHEST))
+            || numbers.iter().any(|number| !(number.abs() <= FASTEST))
+            || !(self.aim.length() <= FARTHEST)
+            || !self.hips.is_within(FASTEST)
+            || !self.feet.iter().all(|foot| foot.is_within(FARTHEST))
+        {
             return Err(ColossusError::OtherKind(
-                "its place or its motion is not finite",
+                "its place or its motion is no number that a creature reaches",
             ));
         }
+        // Clips that cannot pose it now never can.
+        let mut pose = Pose::default();
+        let mut buffers = PoseBuffers::default();
+        self.animator
+            .pose_into(kind.clips(), &mut pose, &mut buffers)?;
+        let mut animator = self.animator.clone();
+        animator.advance(kind.clips(), kind.brain().tick(), &mut Vec::new())?;
+        kind.skeleton().palette(&self.pose)?;
         Ok(())
     }
 }

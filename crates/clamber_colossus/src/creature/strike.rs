@@ -21,6 +21,10 @@ impl Creature {
         let Playing::Act(state) = self.state.playing else {
             return None;
         };
+        // Its clip may still be seen when the creature does something else by now.
+        if self.state.acting != Some(state) {
+            return None;
+        }
         let strike = self.kind.act(state).strike.as_ref()?;
         let layer = self.state.animator.layers().first();
         let time = layer.map_or(0.0, |layer| layer.time);

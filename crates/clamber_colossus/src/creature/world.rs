@@ -39,7 +39,8 @@ pub struct Riding {
 pub struct Noise {
     /// Where it comes from, in world space.
     pub place: DVec3,
-    /// How loud it is at the creature, as the game counts it.
+    /// How loud it is where it comes from, as the game counts it. A creature hears it as loud as that within
+    /// [`CreatureConfig::hearing`](crate::CreatureConfig); farther away it falls off with the square of the distance.
     pub loudness: f64,
 }
 

@@ -190,6 +190,27 @@ impl Foot {
         }
     }
 
+    /// True if none of its places is further from the origin.
+    pub(crate) fn is_within(&self, most: f64) -> bool {
+        let held = match self.hold {
+            Hold::Planted { at, heading, below } => {
+                at.ball.length().max(heading.abs()).max(below.abs())
+            }
+            Hold::Swings => 0.0,
+            Hold::Lands { ball, to, left } => {
+                let motion = ball.value.length() + ball.velocity.length();
+                motion.max(to.ball.length()).max(left.abs())
+            }
+            Hold::Steps(step) => {
+                let times = step.lift.abs().max(step.passed.abs()).max(step.lasts.abs());
+                step.from.length().max(step.to.ball.length()).max(times)
+            }
+        };
+        let offset = self.offset.value.length() + self.offset.velocity.length();
+        let yaw = self.yaw.value.abs() + self.yaw.velocity.abs();
+        held <= most && offset <= most && yaw <= most && self.clip.length() <= most
+    }
+
     /// True if it stands.
     pub(crate) fn is_planted(&self) -> bool {
         matches!(self.hold, Hold::Planted { .. })

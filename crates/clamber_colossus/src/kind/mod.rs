@@ -158,7 +158,7 @@ impl CreatureKind {
         for (bit, (_, patterns)) in brain.regions().enumerate() {
             for pattern in patterns {
                 for joint in names.joints(pattern).map_err(whole)? {
-                    regions[joint.index()] |= 1u64 << bit.min(63);
+                    regions[joint.index()] |= 1u64 << bit;
                 }
             }
         }

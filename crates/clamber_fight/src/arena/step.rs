@@ -181,7 +181,7 @@ impl Arena {
             };
             let fighter = &mut self.fighters[index];
             let is_held = fighter.be_held(dt);
-            let input = fighter.begin(player, is_held);
+            let (input, throws) = fighter.begin(player, is_held);
             let before = BodyFrame::of(fighter.climber());
             fighter.step(&input, &obstacles, &rules, dt)?;
             let id = fighter.id();
@@ -199,6 +199,7 @@ impl Arena {
                     dt,
                     is_held,
                     is_struck: input.blow.is_some(),
+                    throws,
                 };
                 fighter.wield(&wielding, &mut scratch.outcome);
             }
@@ -238,13 +239,15 @@ impl Arena {
                 continue;
             };
             let was_alive = creature.health() > 0.0;
+            let id = CreatureId(hit.creature as u32);
             let (weak_point, plate) = creature.struck_at(&hit.at, hit.place);
+            let by = self.fighters.get_mut(hit.by.0 as usize);
+            let is_new = by.is_none_or(|by| by.hurts_anew(hit.weapon, id, [weak_point, plate]));
             let damage = creature.hurt(&Wound {
                 place: hit.place,
                 at: hit.at,
-                damage: hit.damage,
+                damage: if is_new { hit.damage } else { 0.0 },
             });
-            let id = CreatureId(hit.creature as u32);
             self.events.push(ArenaEvent::Hit {
                 by: hit.by,
                 weapon: hit.weapon,

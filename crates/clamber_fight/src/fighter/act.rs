@@ -5,6 +5,7 @@ use clamber_surface::surface::SkinnedSurface;
 use clamber_world::{Attachment, MaterialPoint, ObstacleId};
 use glam::DVec3;
 
+use super::state::HARMED_PLATES;
 use super::{Act, BodyFrame, Fighter, Target, arrows};
 use crate::actions::{BOW, CUT, STAB, THROW};
 use crate::arena::{
@@ -26,23 +27,25 @@ pub(crate) struct Wielding<'a> {
     pub(crate) is_held: bool,
     /// True if a blow struck it in this tick.
     pub(crate) is_struck: bool,
+    /// True if it throws a stone at the end of this tick.
+    pub(crate) throws: bool,
 }
 
 impl Fighter {
-    /// Lets the buttons begin what they begin, and gives the climber's input.
-    pub(crate) fn begin(&mut self, input: &ClimberInput, is_held: bool) -> ClimberInput {
+    /// Lets the buttons begin what they begin, and gives the climber's input, and whether a stone is thrown at the end of
+    /// this tick.
+    pub(crate) fn begin(&mut self, input: &ClimberInput, is_held: bool) -> (ClimberInput, bool) {
         let pressed = input.actions & !self.state.actions;
         self.state.actions = input.actions;
         let blow = self.state.blow.take();
         if self.is_dead() {
-            return ClimberInput {
+            let lies = ClimberInput {
                 blow,
                 ..ClimberInput::IDLE
             };
+            return (lies, false);
         }
-        if !is_held {
-            self.press(input.actions, pressed);
-        }
+        let throws = !is_held && self.press(input.actions, pressed);
         let mut input = ClimberInput { blow, ..*input };
         let mode = self.climber.state().mode;
         let stands_still = match self.state.act {
@@ -57,10 +60,11 @@ impl Fighter {
         if matches!(self.state.act, Act::Draw { .. }) {
             input.walk *= DRAWN_WALK;
         }
-        input
+        (input, throws)
     }
 
-    fn press(&mut self, actions: u32, pressed: u32) {
+    /// Begins what the buttons begin. Returns true if that is to throw a stone.
+    fn press(&mut self, actions: u32, pressed: u32) -> bool {
         use ClimberMode::{Falling, Holding, Sliding, Standing};
         let mode = self.climber.state().mode;
         let is_free = matches!(mode, Standing | Sliding | Falling);
@@ -76,10 +80,10 @@ impl Fighter {
                 }
             }
             Act::Ready if has_sword && pressed & CUT != 0 && is_free => {
-                let struck = Vec::new();
                 self.state.act = Act::Cut {
                     seconds: 0.0,
-                    struck,
+                    struck: Vec::new(),
+                    harmed: Vec::new(),
                 };
             }
             Act::Ready if config.bow.is_some() && actions & BOW != 0 && is_free => {
@@ -90,11 +94,10 @@ impl Fighter {
             }
             Act::Ready if pressed & THROW != 0 && is_free => {
                 if let Some(stones) = config.stones {
-                    // The stone is thrown at the end of this tick.
                     self.state.act = Act::Throw {
                         seconds: stones.again,
                     };
-                    self.throws = true;
+                    return true;
                 }
             }
             Act::Charge { charge, falls } if pressed & STAB != 0 => {
@@ -110,6 +113,7 @@ impl Fighter {
             }
             _ => {}
         }
+        false
     }
 
     /// Takes damage without a blow that was waiting for this tick, and lies if it is dead.
@@ -213,7 +217,7 @@ impl Fighter {
 
     /// Goes on with what it does with its weapons, after the climber's step.
     pub(crate) fn wield(&mut self, tick: &Wielding<'_>, out: &mut Outcome) {
-        if std::mem::take(&mut self.throws)
+        if tick.throws
             && let Some(stone) = self.throw(tick.input.aim, out.next_projectile())
         {
             out.shoot(stone);
@@ -230,7 +234,11 @@ impl Fighter {
         let act = std::mem::take(&mut self.state.act);
         self.state.act = match act {
             Act::Ready => Act::Ready,
-            Act::Cut { seconds, struck } => self.go_on_cutting(seconds, struck, tick, out),
+            Act::Cut {
+                seconds,
+                struck,
+                harmed,
+            } => self.go_on_cutting(seconds, [struck, harmed], tick, out),
             Act::Raise { seconds, falls } => self.go_on_raising(seconds + dt, falls),
             Act::Charge { charge, falls } => self.go_on_charging(charge, falls, dt),
             Act::Strike {
@@ -261,7 +269,7 @@ impl Fighter {
     fn go_on_cutting(
         &mut self,
         seconds: f64,
-        mut struck: Vec<(ObstacleId, u32)>,
+        [mut struck, harmed]: [Vec<(ObstacleId, u32)>; 2],
         tick: &Wielding<'_>,
         out: &mut Outcome,
     ) -> Act {
@@ -293,10 +301,33 @@ impl Fighter {
             Act::Cut {
                 seconds: until,
                 struck,
+                harmed,
             }
         } else {
             Act::Ready
         }
+    }
+
+    /// False for a cut that has hurt that weak point or plate before: one cut does its damage once, however many joints
+    /// move the skin there.
+    pub(crate) fn hurts_anew(
+        &mut self,
+        weapon: Weapon,
+        creature: CreatureId,
+        [weak_point, plate]: [Option<usize>; 2],
+    ) -> bool {
+        let Act::Cut { harmed, .. } = &mut self.state.act else {
+            return true;
+        };
+        let plate = plate.map(|plate| HARMED_PLATES | plate as u32);
+        let what = plate.or(weak_point.map(|weak_point| weak_point as u32));
+        let Some(what) = what.filter(|_| weapon == Weapon::Cut) else {
+            return true;
+        };
+        let what = (creature_obstacle(creature), what);
+        let is_new = !harmed.contains(&what);
+        harmed.extend(is_new.then_some(what));
+        is_new
     }
 
     fn go_on_raising(&self, seconds: f64, falls: bool) -> Act {
@@ -318,9 +349,12 @@ impl Fighter {
         };
         let is_pressed = self.state.actions & STAB != 0;
         let rate = if is_pressed { sword.pressed } else { 1.0 } / sword.charge;
+        let still_falls = falls && self.climber.state().mode == ClimberMode::Falling;
+        // The strength of a fall is gone with the fall.
+        let charge = if falls && !still_falls { 0.0 } else { charge };
         Act::Charge {
             charge: (charge + rate * dt).min(1.0),
-            falls: falls && self.climber.state().mode == ClimberMode::Falling,
+            falls: still_falls,
         }
     }
 

@@ -37,8 +37,6 @@ pub struct Fighter {
     /// All that changes beside the climber; its `climber` is out of date between ticks.
     state: FighterState,
     report: StepReport,
-    /// True in the tick in which it throws a stone, between its two halves.
-    throws: bool,
 }
 
 impl Fighter {
@@ -68,7 +66,6 @@ impl Fighter {
             climber,
             state,
             report: StepReport::default(),
-            throws: false,
         })
     }
 

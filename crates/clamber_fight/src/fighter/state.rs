@@ -25,6 +25,9 @@ pub struct FighterState {
     pub random: u64,
 }
 
+/// Where the numbers of plates begin in [`Act::Cut`].
+pub(super) const HARMED_PLATES: u32 = 1 << 31;
+
 /// What a fighter does with its weapons.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub enum Act {
@@ -37,6 +40,8 @@ pub enum Act {
         seconds: f64,
         /// What this cut has struck: creatures, and parts of them.
         struck: Vec<(ObstacleId, u32)>,
+        /// What this cut has hurt: creatures, and the numbers of their weak points, or 2^31 more than those of plates.
+        harmed: Vec<(ObstacleId, u32)>,
     },
     /// Raises the sword for a stab.
     Raise {

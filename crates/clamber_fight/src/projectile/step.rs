@@ -150,7 +150,9 @@ impl Projectile {
             return Flown::There;
         };
         let at_contact = velocity + (faster - velocity) * hit.time;
-        self.hit(shooter, id, &hit, at_contact, out);
+        let motion = obstacle.motion(&hit.contact.material, air.dt);
+        let relative = at_contact - motion.map_or(DVec3::ZERO, |motion| motion.velocity);
+        self.hit(shooter, id, &hit, relative, out);
         if self.kind == ProjectileKind::Stone {
             return Flown::Gone;
         }
@@ -169,7 +171,7 @@ impl Projectile {
         Flown::There
     }
 
-    /// Tells whom it struck, and who hears it.
+    /// Tells whom it struck, at a velocity relative to what it struck, and who hears it.
     fn hit(
         &self,
         shooter: &FighterConfig,

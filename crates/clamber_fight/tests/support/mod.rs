@@ -154,6 +154,55 @@ impl Slab {
     }
 }
 
+/// A wall at z = 0 that faces +Z, 3.2 m wide and high, of this many joints side by side, with a weak point over all of it.
+pub(crate) fn wall(joints: u32) -> Arc<CreatureKind> {
+    const CELLS: u32 = 32;
+    let place = |index: u32| 3.2 * (index as f32 / CELLS as f32 - 0.5);
+    let (mut positions, mut influences) = (Vec::new(), Vec::new());
+    for row in 0..=CELLS {
+        for column in 0..=CELLS {
+            positions.push(Vec3::new(place(column), place(row), 0.0));
+            let joint = JointId(column * joints / (CELLS + 1));
+            influences.push(Influence { joint, weight: 1.0 });
+        }
+    }
+    let mut triangles = Vec::new();
+    for row in 0..CELLS {
+        for column in 0..CELLS {
+            let a = row * (CELLS + 1) + column;
+            let (b, c, d) = (a + 1, a + CELLS + 1, a + CELLS + 2);
+            triangles.extend([[a, b, d], [a, d, c]]);
+        }
+    }
+    let source = MeshSource {
+        positions: &positions,
+        triangles: &triangles,
+        influences: &influences,
+        joint_count: joints as usize,
+        ..MeshSource::default()
+    };
+    let mesh = ColliderMesh::build(&source, &BuildOptions::default())
+        .unwrap()
+        .0;
+    let all = (0..joints).map(|index| Joint {
+        name: format!("strip {index}"),
+        parent: (index > 0).then_some(JointId(0)),
+        rest: Transform::IDENTITY,
+        inverse_bind: Affine::IDENTITY,
+    });
+    let mut heart = weak_point("heart", Vec3::ZERO, 100.0, 0);
+    heart.radius = 3.0;
+    let parts = CreatureParts {
+        skeleton: Skeleton::new(all.collect()).unwrap(),
+        clips: Vec::new(),
+        mesh: Arc::new(mesh),
+        weak_points: vec![heart],
+    };
+    let brain = r#"{ "start": "stands", "states": { "stands": {} } }"#;
+    let brain = Brain::from_json(brain, 1.0 / 60.0).unwrap();
+    Arc::new(CreatureKind::new(parts, brain).unwrap())
+}
+
 pub(crate) fn sword() -> SwordConfig {
     SwordConfig::default()
 }
