@@ -285,3 +285,53 @@ fn a_stomp_stands_where_it_came_down() {
     // It does aim.
     assert!(furthest > 9.5, "{furthest}");
 }
+
+/// An attack that is left for another act hurts nobody any more, whatever its clip's pose still is.
+#[test]
+fn an_attack_ends_with_its_act() {
+    let ground = HalfSpace::below(0.0);
+    let terrain: [&dyn Obstacle; 1] = [&ground];
+    for (name, act) in attacks() {
+        for next in [r#""act": "sleep""#, r#""final": true"#] {
+            let states = format!(
+                r#"{{
+                "waits": {{ "transitions": [{{ "to": "attacks", "after": 0.5 }}] }},
+                "attacks": {{ "act": {act}, "transitions": [
+                    {{ "to": "ends", "on": "active", "interrupts": true }}] }},
+                "ends": {{ {next} }} }}"#
+            );
+            let mut giant = creature(
+                &kind(&brain_with("waits", &states)),
+                CreatureConfig::default(),
+            );
+            let ends = giant.kind().brain().find("ends").unwrap();
+            let (mut blows, mut left) = (0, 0);
+            for _ in 0..600 {
+                // People stand everywhere about it.
+                let place = |index: u64| {
+                    let (x, z) = (index % 13, index / 13);
+                    let at = DVec3::new(x as f64 * 3.0 - 18.0, 0.0, z as f64 * 3.0 - 10.0);
+                    clamber_colossus::Person {
+                        id: index,
+                        ..person(at)
+                    }
+                };
+                let people: Vec<_> = (0..169).map(place).collect();
+                let around = Surroundings {
+                    terrain: &terrain,
+                    people: &people,
+                    ..Surroundings::default()
+                };
+                let report = giant.step(&around).unwrap();
+                let dealt = report.blows.len();
+                if giant.state().current() == ends {
+                    left += 1;
+                    blows += dealt;
+                    assert_eq!(giant.attack(), None, "{name}");
+                }
+            }
+            assert!(left > 100, "{name}");
+            assert_eq!(blows, 0, "{name}, then {next}");
+        }
+    }
+}

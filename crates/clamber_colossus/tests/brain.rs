@@ -262,3 +262,145 @@ fn a_report_tells_what_can_never_happen() {
         assert_eq!(never, is_told, "{done}: {report}");
     }
 }
+
+/// Every region has senses of its own, and more than there can be are refused.
+#[test]
+fn more_regions_than_can_be_told_apart_are_refused() {
+    let file = |count: usize| {
+        let names = (0..count).map(|index| format!(r#""r{index}": ["head"]"#));
+        let regions: Vec<String> = names.collect();
+        format!(
+            r#"{{ "start": "a", "regions": {{ {} }}, "states": {{ "a": {{}} }} }}"#,
+            regions.join(", ")
+        )
+    };
+    assert!(Brain::from_json(&file(64), TICK).is_ok());
+    let error = Brain::from_json(&file(65), TICK).unwrap_err().to_string();
+    assert_eq!(error, "there are 65 regions; a brain has at most 64");
+}
+
+/// A mood or a sense of the game's own that has the name of another one would never be read.
+#[test]
+fn names_that_hide_each_other_are_refused() {
+    let refused = |moods: &str, senses: &str| {
+        let file = format!(
+            r#"{{ "start": "a", "moods": {{ {moods} }}, "senses": [{senses}], "states": {{ "a": {{}} }} }}"#
+        );
+        Brain::from_json(&file, TICK)
+            .map(|_| ())
+            .unwrap_err()
+            .to_string()
+    };
+    let mood = |name: &str| format!(r#""{name}": {{ "fades": 1, "raised": [] }}"#);
+    for (moods, senses, name) in [
+        (mood("noise"), "", "noise"),
+        (String::new(), r#""hurt""#, "hurt"),
+        (mood("storm"), r#""storm""#, "storm"),
+        (String::new(), r#""storm", "storm""#, "storm"),
+    ] {
+        let text = format!("there are two senses or moods `{name}`");
+        assert_eq!(refused(&moods, senses), text);
+    }
+}
+
+/// Weights whose sum would be infinite are refused; large ones decide as they should.
+#[test]
+fn weights_add_up() {
+    let file = |weight: &str| {
+        format!(
+            r#"{{ "start": "a", "states": {{ "a": {{ "transitions": [
+                {{ "to": "b", "after": 0.1, "weight": {weight} }}, {{ "to": "c", "after": 0.1, "weight": {weight} }}] }},
+                "b": {{ "final": true }}, "c": {{ "final": true }} }} }}"#
+        )
+    };
+    let error = Brain::from_json(&file("1e308"), TICK)
+        .unwrap_err()
+        .to_string();
+    assert!(
+        error.contains("`weight` is 1") && error.contains("at most 1e9"),
+        "{error}"
+    );
+    let brain = Brain::from_json(&file("1e9"), TICK).unwrap();
+    let mut seen = [0; 2];
+    for seed in 0..200 {
+        let mut state = BrainState::new(&brain, seed);
+        let end = after(&brain, &mut state, &brain.no_senses(), 20);
+        seen[usize::from(end == "c")] += 1;
+    }
+    assert!(seen.iter().all(|count| *count > 60), "{seen:?}");
+}
+
+/// Long files are read or refused in a time that grows with their length: nothing here takes seconds.
+#[test]
+fn long_files_are_read_or_refused_at_once() {
+    let states = |count: usize, transitions: usize| {
+        let transition = r#"{ "to": "s0", "when": ["struck"], "after": 1 }"#;
+        let transitions = vec![transition; transitions].join(",\n");
+        let state = |index: usize| format!(r#""s{index}": {{ "transitions": [{transitions}] }}"#);
+        let states: Vec<String> = (0..count).map(state).collect();
+        format!(
+            r#"{{ "start": "s0", "states": {{ {} }} }}"#,
+            states.join(",\n")
+        )
+    };
+    let begin = std::time::Instant::now();
+    let error = Brain::from_json(&states(8_000, 1), TICK)
+        .unwrap_err()
+        .to_string();
+    assert_eq!(error, "there are 8000 states; a brain has at most 160");
+    let brain = Brain::from_json(&states(2, 16_000), TICK).unwrap();
+    assert_eq!(brain.len(), 2);
+    let brain = Brain::from_json(&states(160, 100), TICK).unwrap();
+    assert_eq!(brain.len(), 160);
+    // The old way took more than a minute for each.
+    assert!(begin.elapsed().as_secs() < 20, "{:?}", begin.elapsed());
+    // Lines are right in long files too.
+    let text = states(100, 50).replacen(r#""to": "s0""#, r#""to": "nowhere""#, 2);
+    let error = Brain::from_json(&text, TICK).unwrap_err();
+    assert_eq!(error.line, Some(1), "{error}");
+}
+
+/// A brain's file that was read again goes on by names: a state of the old one is refused as it is.
+#[test]
+fn a_changed_brain_goes_on_by_names() {
+    let old = brain();
+    let mut senses = old.no_senses();
+    let mut state = BrainState::new(&old, 5);
+    // It gets angry, roars, and shakes no more for a while.
+    senses.set(Sense::Struck, 1.0);
+    assert_eq!(after(&old, &mut state, &senses, 2), "angry");
+    let text = FILE
+        .replace(
+            r#""calm": {"#,
+            r#""before": { "transitions": [{ "to": "calm" }] }, "calm": {"#,
+        )
+        .replace(
+            r#""moods": {"#,
+            r#""moods": { "alarm": { "fades": 3, "raised": [] },"#,
+        );
+    let new = Brain::from_json(&text, TICK).unwrap();
+    assert_eq!(new.len(), old.len() + 1);
+    // As it is, it would be in another state.
+    let mut raw = state.clone();
+    let before = raw.clone();
+    new.step(&mut raw, &new.no_senses(), &[], |_| {});
+    assert_eq!(raw, before, "a state of another brain changes nothing");
+    let mut carried = new.carry_over(&old, &state).unwrap();
+    assert_eq!(new.path(carried.current()), "angry");
+    let anger = |brain: &Brain, state: &BrainState| {
+        let index = brain.moods().position(|mood| mood == "anger").unwrap();
+        state.mood(brain, index)
+    };
+    assert_eq!(anger(&new, &carried), anger(&old, &state));
+    assert_eq!(carried.ticks_in_state(&new), state.ticks_in_state(&old));
+    let mut senses = new.no_senses();
+    senses.set(Sense::Done, 1.0);
+    after(&new, &mut carried, &senses, 100);
+    // Without the state that it was in, it begins anew.
+    let text = FILE.replace("angry", "furious");
+    let other = Brain::from_json(&text, TICK).unwrap();
+    let carried = other.carry_over(&old, &state).unwrap();
+    assert_eq!(other.path(carried.current()), "calm/idle");
+    assert_eq!(carried.ticks_in_state(&other), 0);
+    assert_eq!(other.carry_over(&other, &state), None);
+}

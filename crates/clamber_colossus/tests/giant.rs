@@ -15,7 +15,7 @@ use clamber_colossus::{
 };
 use clamber_surface::mesh::TriangleId;
 use clamber_world::rapier3d::prelude::PhysicsWorld;
-use clamber_world::{BodyPoses, MaterialPoint, Obstacle, RapierTerrain, WorldCapsule};
+use clamber_world::{BodyPoses, HalfSpace, MaterialPoint, Obstacle, RapierTerrain, WorldCapsule};
 use glam::DVec3;
 use support::{TICK, brain_file, creature, ground, kind};
 
@@ -280,4 +280,75 @@ fn a_state_of_another_kind_is_refused_and_changes_nothing() {
     let before = giant.state().clone();
     assert!(giant.restore(foreign).is_err());
     assert_eq!(giant.state(), &before);
+}
+
+/// Numbers of a saved state that somebody changed: what is restored can be stepped, and all else is refused.
+#[test]
+fn a_forged_state_is_refused_or_steps() {
+    let kind = support::kind(&support::brain_file());
+    let ground = HalfSpace::below(0.0);
+    let terrain: [&dyn Obstacle; 1] = [&ground];
+    let around = Surroundings {
+        terrain: &terrain,
+        ..Surroundings::default()
+    };
+    let mut giant = support::creature(&kind, CreatureConfig::default());
+    for _ in 0..200 {
+        giant.step(&around).unwrap();
+    }
+    let saved = serde_json::to_value(giant.state()).unwrap();
+    let mut places = Vec::new();
+    numbers(&saved, String::new(), &mut places);
+    let (mut refused, mut stepped) = (0, 0);
+    for (index, place) in places.iter().enumerate() {
+        // Of a pose's many numbers, some.
+        if place.starts_with("/pose") && index % 50 != 0 {
+            continue;
+        }
+        for value in [-1.0, 0.0, 1e3, 1e9, 1e30, 1e300, f64::MAX, f64::MIN] {
+            let mut forged = saved.clone();
+            *forged.pointer_mut(place).unwrap() = match value {
+                value if value.abs() < 1e10 => serde_json::json!(value as i64),
+                value => serde_json::json!(value),
+            };
+            let Ok(state) = serde_json::from_value::<CreatureState>(forged) else {
+                continue;
+            };
+            let mut other = giant.clone();
+            if other.restore(state).is_err() {
+                refused += 1;
+                assert_eq!(
+                    other.state(),
+                    giant.state(),
+                    "{place} {value}: it was changed"
+                );
+                continue;
+            }
+            for tick in 0..3 {
+                let report = other.step(&around);
+                assert!(report.is_ok(), "{place} {value}, tick {tick}: {report:?}");
+            }
+            stepped += 1;
+        }
+    }
+    println!("{refused} refused, {stepped} stepped");
+    assert!(refused > 100 && stepped > 500);
+}
+
+/// The places of all numbers in a value.
+fn numbers(value: &serde_json::Value, at: String, places: &mut Vec<String>) {
+    match value {
+        serde_json::Value::Array(items) => {
+            for (index, item) in items.iter().enumerate() {
+                numbers(item, format!("{at}/{index}"), places);
+            }
+        }
+        serde_json::Value::Object(members) => {
+            for (name, member) in members {
+                numbers(member, format!("{at}/{name}"), places);
+            }
+        }
+        serde_json::Value::Number(_) => places.push(at),
+        _ => {}
+    }
 }

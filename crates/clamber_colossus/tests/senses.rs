@@ -7,8 +7,8 @@ mod support;
 use std::sync::Arc;
 
 use clamber_colossus::{
-    Creature, CreatureConfig, CreatureEvent, CreatureKind, Person, Riding, Sense, Surroundings,
-    Wound,
+    Creature, CreatureConfig, CreatureEvent, CreatureKind, Noise, Person, Riding, Sense,
+    Surroundings, Wound,
 };
 use clamber_surface::mesh::TriangleId;
 use clamber_world::rapier3d::prelude::{ColliderBuilder, Pose};
@@ -185,4 +185,57 @@ fn a_rider_is_noticed_and_shaken_with_rests() {
     firsts.sort_unstable();
     firsts.dedup();
     assert!(firsts.len() > 10, "{firsts:?}");
+}
+
+/// A noise is heard as loud as it is up to the creature's hearing, and falls off with the square of the distance beyond.
+#[test]
+fn noises_fall_off_with_distance() {
+    let states = r#"{ "waits": {} }"#;
+    let kind = support::kind(&support::brain_with("waits", states));
+    let ground = HalfSpace::below(0.0);
+    let terrain: [&dyn Obstacle; 1] = [&ground];
+    let heard = |hearing: f64, noises: &[Noise]| {
+        let config = CreatureConfig {
+            hearing,
+            ..CreatureConfig::default()
+        };
+        let mut giant = support::creature(&kind, config);
+        let around = Surroundings {
+            terrain: &terrain,
+            noises,
+            ..Surroundings::default()
+        };
+        giant.step(&around).unwrap();
+        giant.state().senses().get(Sense::Noise)
+    };
+    let eye = support::creature(&kind, CreatureConfig::default());
+    let head = kind.eye();
+    let at = |distance: f64| Noise {
+        place: eye.state().position() + head + DVec3::X * distance,
+        loudness: 2.0,
+    };
+    for (distance, loudness) in [(10.0, 2.0), (49.0, 2.0), (100.0, 0.5), (1e5, 2.0 * 0.25e-6)] {
+        let found = heard(50.0, &[at(distance)]);
+        let off = (found / loudness - 1.0).abs();
+        assert!(off < 0.05, "{distance} m: {found}");
+    }
+    assert_eq!(heard(f64::INFINITY, &[at(1e5)]), 2.0);
+    assert_eq!(heard(0.0, &[at(20.0)]), 0.0);
+    // What is heard loudest counts, not what is loudest.
+    let far = Noise {
+        loudness: 5.0,
+        ..at(500.0)
+    };
+    let found = heard(50.0, &[far, at(20.0)]);
+    assert_eq!(found, 2.0);
+    assert_eq!(
+        heard(
+            50.0,
+            &[Noise {
+                place: DVec3::NAN,
+                loudness: 9.0
+            }]
+        ),
+        0.0
+    );
 }
