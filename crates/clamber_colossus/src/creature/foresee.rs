@@ -1,12 +1,19 @@
 //! How a creature will stand, as far as its clips tell.
 
 use clamber_animation::rig::{Palette, Pose};
-use clamber_animation::{AnimationEvent, Animator, PoseBuffers};
+use clamber_animation::{AnimationEvent, Animator, PoseBuffers, RootDelta};
 use clamber_surface::geometry::{Similarity, rotation_from_axis_angle};
 use glam::DVec3;
 
 use super::Creature;
+use super::move_on::Course;
+use super::state::Playing;
 use crate::error::ColossusError;
+
+/// Seconds at a time for which a giant's course is foreseen, and the most of these: steps are longer for what is further
+/// away.
+const STEP: f64 = 0.1;
+const MOST_STEPS: f64 = 100.0;
 
 /// Memory that [`Creature::foresee`] reuses.
 #[derive(Clone, Debug, Default)]
@@ -19,8 +26,8 @@ pub struct Foresight {
 
 impl Creature {
     /// How the creature will stand after some seconds, not negative, if its brain does not decide on anything else
-    /// until then: its clips and fades go on, and so does its way at the speed that it has. Fills in the palette, and
-    /// gives its place in the world.
+    /// until then: its clips and fades go on, and so does its way: it walks on, turns, and slows down to where it goes.
+    /// Fills in the palette, and gives its place in the world.
     ///
     /// Feet are not put on the ground and the head is not turned: what rides on those is carried elsewhere by as much
     /// as they are corrected now.
@@ -39,18 +46,50 @@ impl Creature {
             .get_or_insert_with(|| state.animator.clone());
         animator.clone_from(&state.animator);
         memory.events.clear();
-        let moved = animator.advance(kind.clips(), seconds, &mut memory.events)?;
+        let mut course = Course::of(state);
+        let current = state.brain.current();
+        let way = self.way(current).filter(|_| state.acting == Some(current));
+        let mut moved = RootDelta::default();
+        let steps = if seconds.is_finite() {
+            let step = STEP * self.size.pace.max(1e-3);
+            (seconds / step).ceil().clamp(1.0, MOST_STEPS)
+        } else {
+            1.0
+        };
+        // Refused by the animator if it is no time.
+        let dt = seconds / steps;
+        for _ in 0..steps as u32 {
+            if let Some(gait) = kind.gait() {
+                let wanted = self.wanted(gait, way.as_ref(), &course);
+                let next = self.moved(gait, &wanted, course, dt);
+                // Half of the way at each speed.
+                let [speed, turn] = [
+                    0.5 * (course.speed + next.speed),
+                    0.5 * (course.yaw_rate + next.yaw_rate),
+                ];
+                let (sin, cos) = libm::sincos(course.yaw + 0.5 * turn * dt);
+                let position = course.position + DVec3::new(sin, 0.0, cos) * (speed * dt);
+                let yaw = course.yaw + turn * dt;
+                course = next;
+                (course.position, course.yaw) = (position, yaw);
+                let plays = !matches!(state.playing, Playing::Act(_));
+                if let Some(layer) = animator.layers_mut().first_mut().filter(|_| plays) {
+                    layer.speed = self.clip_speed(gait, &course);
+                }
+            }
+            let step = animator.advance(kind.clips(), dt, &mut memory.events)?;
+            moved = moved.then(&step);
+        }
         animator.pose_into(kind.clips(), &mut memory.pose, &mut memory.buffers)?;
         kind.skeleton().palette_into(&memory.pose, palette)?;
         let scale = self.size.scale;
         let now = state.world_from_model(scale);
-        let translation = now.translation
-            + now.rotation * moved.translation * scale
-            + state.heading() * (state.speed() * seconds);
-        let turn = rotation_from_axis_angle(DVec3::Y, moved.yaw);
+        let by_clips = (now.rotation * moved.translation) * scale;
+        let translation = course.position + by_clips;
+        let turn = rotation_from_axis_angle(DVec3::Y, course.yaw + moved.yaw);
         Ok(Similarity {
             translation,
-            rotation: turn * now.rotation,
+            rotation: turn,
             ..now
         })
     }

@@ -8,7 +8,7 @@ use super::hips::approach;
 use super::legs::at_once;
 use super::size::HUMAN;
 use super::state::{Detour, GROUND, NO_GROUND, NO_WALL, Playing, WALLS};
-use super::{Creature, CreatureEvent, Surroundings};
+use super::{Creature, CreatureEvent, CreatureState, Surroundings};
 use crate::angle::nearest_turn;
 use crate::brain::{Act, Place, Walk};
 use crate::error::ColossusError;
@@ -62,7 +62,7 @@ const CLIMBS: f64 = 0.5;
 const FADE: f64 = 0.35;
 
 /// Where to go, and how.
-struct Way {
+pub(super) struct Way {
     goal: DVec3,
     /// Bearing that the goal should have in the end, radians; `None` if any will do.
     bearing: Option<f64>,
@@ -71,6 +71,45 @@ struct Way {
     /// Angle within which it has turned, radians.
     within_angle: f64,
     walks: bool,
+}
+
+/// Where a creature is, and how it moves.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Course {
+    pub(super) position: DVec3,
+    pub(super) yaw: f64,
+    /// Along its heading, metres a second, and radians a second to the left.
+    pub(super) speed: f64,
+    pub(super) yaw_rate: f64,
+    /// True while it turns on the spot, and while it stops abruptly.
+    turning: bool,
+    halts: bool,
+}
+
+impl Course {
+    pub(super) fn of(state: &CreatureState) -> Self {
+        Self {
+            position: state.position,
+            yaw: state.yaw,
+            speed: state.speed,
+            yaw_rate: state.yaw_rate,
+            turning: matches!(state.playing, Playing::Turn(_)),
+            halts: state.halts,
+        }
+    }
+}
+
+/// What a creature wants of its course.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Wanted {
+    speed: f64,
+    turn: f64,
+    /// How far its goal is aside of its heading, radians.
+    aside: f64,
+    arrived: bool,
+    turns_on_spot: bool,
+    /// True if it walks, and looks whether its way is free.
+    is_free: bool,
 }
 
 impl Creature {
@@ -143,7 +182,7 @@ impl Creature {
         })
     }
 
-    fn way(&self, state: crate::brain::StateId) -> Option<Way> {
+    pub(super) fn way(&self, state: crate::brain::StateId) -> Option<Way> {
         match self.kind.brain().act(state)? {
             Act::Walk(Walk { to, within, .. }) => {
                 let goal = self.within_arena(self.place_of(*to));
@@ -219,81 +258,29 @@ impl Creature {
         around: &Surroundings<'_>,
         dt: f64,
     ) -> Result<bool, ColossusError> {
-        let rate = self.size.rate;
-        let full = gait.speed * self.size.scale * rate;
-        let stride = self.stride();
-        // Steps are shorter, and take longer.
-        let careful = full * stride * stride;
-        // Clips and their rates are slower in a larger creature already.
-        let steers = STEERS / (self.size.pace * rate).max(1e-3);
-        let turns = TURNS / (self.size.pace * self.size.pace).max(1e-6);
-        let (mut speed, mut turn, mut arrived) = (0.0, 0.0, false);
-        let mut turns_on_spot = false;
-        if let Some(way) = way {
-            let to = way.goal - self.state.position;
-            let distance = DVec3::new(to.x, 0.0, to.z).length();
-            let ahead = self.bearing(way.goal);
-            let is_near = !way.walks || distance <= way.within;
-            let aside = nearest_turn(
-                ahead
-                    - if is_near {
-                        way.bearing.unwrap_or(0.0)
-                    } else {
-                        0.0
-                    },
-            );
-            let is_turned =
-                way.bearing.is_none() || aside.abs() <= way.within_angle.max(LEAST_WITHIN);
-            if is_near {
-                arrived = is_turned;
-                turns_on_spot = !is_turned;
-            } else {
-                let turning = matches!(self.state.playing, Playing::Turn(_));
-                turns_on_spot = aside.abs() > if turning { WALK_ON } else { TURN_FIRST };
-                let braked = (2.0 * 0.7 * SLOWS_DOWN * (distance - way.within).max(0.0)).sqrt();
-                speed = careful.min(braked).max(SLOWEST * careful);
-                turn = (aside * steers).clamp(-gait.steer_rate, gait.steer_rate) * rate;
-                if !turns_on_spot {
-                    if self.state.ticks.is_multiple_of(LOOKS) {
-                        self.state.detour = match self.free_way(around, aside) {
-                            Some(way) if way == aside => Detour::None,
-                            Some(way) => Detour::By(way),
-                            None => Detour::Blocked,
-                        };
-                    }
-                    match self.state.detour {
-                        Detour::None => {}
-                        Detour::By(way) => {
-                            turn = (way * steers).clamp(-gait.steer_rate, gait.steer_rate) * rate
-                        }
-                        Detour::Blocked => (speed, turn, arrived) = (0.0, 0.0, true),
-                    }
-                }
+        let course = Course::of(&self.state);
+        let mut wanted = self.wanted(gait, way, &course);
+        if wanted.is_free {
+            if self.state.ticks.is_multiple_of(LOOKS) {
+                self.state.detour = match self.free_way(around, wanted.aside) {
+                    Some(way) if way == wanted.aside => Detour::None,
+                    Some(way) => Detour::By(way),
+                    None => Detour::Blocked,
+                };
             }
-            if turns_on_spot {
-                speed = 0.0;
-                let within = way.within_angle.max(LEAST_WITHIN);
-                let stoppable = |angle: f64| (2.0 * 0.7 * turns * angle.max(0.0)).sqrt();
-                // It gets there in the end, and no faster than it can stop there.
-                let braked =
-                    stoppable(aside.abs() - 0.5 * within).max(0.5 * stoppable(0.5 * within));
-                turn = aside.signum() * braked.min(self.most_turn(gait));
-                // Not before it stands.
-                if self.state.speed > SLOWEST * full {
-                    turn = 0.0;
-                }
-            }
+            wanted = self.wanted(gait, way, &course);
         }
-        let change = speed - self.state.speed;
-        let slows_down = if self.state.halts { HALTS } else { SLOWS_DOWN };
-        self.state.speed += change.clamp(-slows_down * dt, SPEEDS_UP * dt);
-        self.state.halts &= self.state.speed > 0.0;
-        if speed > 0.0 {
-            // A foot that hardly moves is no walk: the first step already has some speed.
-            self.state.speed = self.state.speed.max(0.02 * full);
-        }
-        let change = turn - self.state.yaw_rate;
-        self.state.yaw_rate += change.clamp(-turns * dt, turns * dt);
+        let Wanted {
+            turn,
+            arrived,
+            turns_on_spot,
+            ..
+        } = wanted;
+        let moved = self.moved(gait, &wanted, course, dt);
+        (self.state.speed, self.state.yaw_rate) = (moved.speed, moved.yaw_rate);
+        self.state.halts = moved.halts;
+        let (rate, stride) = (self.size.rate, self.stride());
+        let full = self.full_speed(gait);
         let moves = self.state.speed > 0.0 && !self.state.halts;
         let acts = matches!(self.state.playing, Playing::Act(_)) && way.is_none();
         let playing = if moves {
@@ -317,9 +304,100 @@ impl Creature {
         {
             layer.speed = clip_speed;
         }
-        let stands =
-            self.state.speed == 0.0 && self.state.yaw_rate.abs() < 0.3 * self.size.pace * turns;
+        let slow = 0.3 * self.size.pace * self.turns();
+        let stands = self.state.speed == 0.0 && self.state.yaw_rate.abs() < slow;
         Ok(arrived && stands)
+    }
+
+    /// Its walking speed, metres a second.
+    pub(super) fn full_speed(&self, gait: &Gait) -> f64 {
+        gait.speed * self.size.scale * self.size.rate
+    }
+
+    /// How fast its turning changes, radians a second squared.
+    fn turns(&self) -> f64 {
+        TURNS / (self.size.pace * self.size.pace).max(1e-6)
+    }
+
+    /// How fast it wants to walk and turn, as far as it knows its way.
+    pub(super) fn wanted(&self, gait: &Gait, way: Option<&Way>, course: &Course) -> Wanted {
+        let mut wanted = Wanted::default();
+        let Some(way) = way else { return wanted };
+        let rate = self.size.rate;
+        let full = self.full_speed(gait);
+        let stride = self.stride();
+        // Steps are shorter, and take longer.
+        let careful = full * stride * stride;
+        // Clips and their rates are slower in a larger creature already.
+        let steers = STEERS / (self.size.pace * rate).max(1e-3);
+        let to = (way.goal - course.position).with_y(0.0);
+        let distance = to.length();
+        let ahead = nearest_turn(libm::atan2(to.x, to.z) - course.yaw);
+        let is_near = !way.walks || distance <= way.within;
+        let bearing = way.bearing.filter(|_| is_near).unwrap_or(0.0);
+        let aside = nearest_turn(ahead - bearing);
+        wanted.aside = aside;
+        let within = way.within_angle.max(LEAST_WITHIN);
+        let is_turned = way.bearing.is_none() || aside.abs() <= within;
+        if is_near {
+            wanted.arrived = is_turned;
+            wanted.turns_on_spot = !is_turned;
+        } else {
+            wanted.turns_on_spot = aside.abs() > if course.turning { WALK_ON } else { TURN_FIRST };
+            wanted.is_free = !wanted.turns_on_spot;
+        }
+        if wanted.is_free {
+            let braked = (2.0 * 0.7 * SLOWS_DOWN * (distance - way.within).max(0.0)).sqrt();
+            wanted.speed = careful.min(braked).max(SLOWEST * careful);
+            let steer =
+                |aside: f64| (aside * steers).clamp(-gait.steer_rate, gait.steer_rate) * rate;
+            wanted.turn = match self.state.detour {
+                Detour::None => steer(aside),
+                Detour::By(way) => steer(way),
+                Detour::Blocked => 0.0,
+            };
+            if self.state.detour == Detour::Blocked {
+                (wanted.speed, wanted.arrived) = (0.0, true);
+            }
+        }
+        if wanted.turns_on_spot {
+            let stoppable = |angle: f64| (2.0 * 0.7 * self.turns() * angle.max(0.0)).sqrt();
+            // It gets there in the end, and no faster than it can stop there.
+            let braked = stoppable(aside.abs() - 0.5 * within).max(0.5 * stoppable(0.5 * within));
+            wanted.turn = aside.signum() * braked.min(self.most_turn(gait));
+            // Not before it stands.
+            if course.speed > SLOWEST * full {
+                wanted.turn = 0.0;
+            }
+        }
+        wanted
+    }
+
+    /// Its course after some seconds of trying to do what it wants: its speed and its turning, not its place.
+    pub(super) fn moved(&self, gait: &Gait, wanted: &Wanted, course: Course, dt: f64) -> Course {
+        let mut moved = course;
+        let change = wanted.speed - course.speed;
+        let slows_down = if course.halts { HALTS } else { SLOWS_DOWN };
+        moved.speed += change.clamp(-slows_down * dt, SPEEDS_UP * dt);
+        moved.halts &= moved.speed > 0.0;
+        if wanted.speed > 0.0 {
+            // A foot that hardly moves is no walk: the first step already has some speed.
+            moved.speed = moved.speed.max(0.02 * self.full_speed(gait));
+        }
+        let change = wanted.turn - course.yaw_rate;
+        moved.yaw_rate += change.clamp(-self.turns() * dt, self.turns() * dt);
+        moved
+    }
+
+    /// How fast the clip of its gait is played at a course.
+    pub(super) fn clip_speed(&self, gait: &Gait, course: &Course) -> f64 {
+        match self.state.playing {
+            Playing::Walk => course.speed / (self.full_speed(gait) * self.stride()),
+            Playing::Turn(_) => {
+                (course.yaw_rate.abs() / (gait.turn_rate * self.size.rate)).min(1.0)
+            }
+            Playing::Idle | Playing::Act(_) => 1.0,
+        }
     }
 
     /// How fast it turns on the spot, radians a second: as its file says, but without a clip for it no faster than its

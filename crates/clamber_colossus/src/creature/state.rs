@@ -330,13 +330,14 @@ impl CreatureState {
             self.climb,
             self.steepness,
         ];
+        let far = |number: f64| number.is_nan() || number.abs() > FARTHEST;
+        let fast = |number: &f64| number.is_nan() || number.abs() > FASTEST;
         let places = [self.position, self.home, self.patrol, self.noise];
-        let coordinates = places.iter().flat_map(|place| place.to_array());
-        if coordinates
-            .chain([self.yaw])
-            .any(|number| !(number.abs() <= FARTHEST))
-            || numbers.iter().any(|number| !(number.abs() <= FASTEST))
-            || !(self.aim.length() <= FARTHEST)
+        let mut coordinates = places.iter().flat_map(|place| place.to_array());
+        if coordinates.any(far)
+            || far(self.yaw)
+            || far(self.aim.length())
+            || numbers.iter().any(fast)
             || !self.hips.is_within(FASTEST)
             || !self.feet.iter().all(|foot| foot.is_within(FARTHEST))
         {
