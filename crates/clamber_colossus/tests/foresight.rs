@@ -86,8 +86,8 @@ fn a_hand_is_foreseen_walking_and_turning() {
             worst[0], worst[1]
         );
         assert!(judged.iter().all(|count| *count > 15), "{judged:?}");
-        // In metres, and more only for who is larger.
-        let most = 0.3 * scale.max(1.0);
+        // In metres, and 1 % of its height for who is larger.
+        let most = if scale > 1.0 { 0.01 * giant.height() } else { 0.3 };
         assert!(worst.iter().all(|off| *off <= most), "{scale}: {worst:?}");
     }
     // Times that are none are refused.
