@@ -87,7 +87,11 @@ fn a_hand_is_foreseen_walking_and_turning() {
         );
         assert!(judged.iter().all(|count| *count > 15), "{judged:?}");
         // In metres, and 1 % of its height for who is larger.
-        let most = if scale > 1.0 { 0.01 * giant.height() } else { 0.3 };
+        let most = if scale > 1.0 {
+            0.01 * giant.height()
+        } else {
+            0.3
+        };
         assert!(worst.iter().all(|off| *off <= most), "{scale}: {worst:?}");
     }
     // Times that are none are refused.
