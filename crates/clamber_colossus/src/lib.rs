@@ -15,6 +15,7 @@ pub use creature::{
 };
 pub use error::ColossusError;
 pub use kind::{
-    BodyFile, CreatureKind, CreatureParts, GaitFile, HeadFile, Knee, LegFile, Plate, PlateFile,
+    BodyFile, ClipFile, CreatureKind, CreatureParts, Facing, GaitFile, HeadFile, Knee, LegFile,
+    Plate, PlateFile, Times, WeakPointFile,
 };
 pub use senses::{RegionSense, Sense, Senses};

@@ -104,6 +104,7 @@ fn make(
         arena: colossus.arena,
         most_slope: colossus.most_slope,
         sight: colossus.sight,
+        ..CreatureConfig::default()
     };
     let Some(before) = before else {
         return Creature::new(kind, config);
@@ -114,21 +115,11 @@ fn make(
         ..config
     };
     let mut creature = Creature::new(Arc::clone(&kind), config)?;
-    if has_same_states(before.kind().brain(), kind.brain()) {
+    if let Some(carried) = before.state().carry_over(before.kind(), &kind) {
         // If it is of another kind after all, it begins anew where it stands.
-        let _ = creature.restore(before.state().clone());
+        let _ = creature.restore(carried);
     }
     Ok(creature)
-}
-
-fn has_same_states(one: &Brain, other: &Brain) -> bool {
-    let paths = |brain: &Brain| -> Vec<String> {
-        let states = brain.states();
-        states.map(|state| brain.path(state).to_owned()).collect()
-    };
-    paths(one) == paths(other)
-        && one.moods().eq(other.moods())
-        && one.own_senses() == other.own_senses()
 }
 
 /// What creatures sense, and whom they strike.

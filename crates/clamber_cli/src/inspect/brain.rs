@@ -33,6 +33,7 @@ pub(super) fn print(options: &InspectOptions) -> Result<bool, InspectError> {
                 file: file(),
                 error,
             })?;
+            print_body(&kind);
             kind.report()
         }
         None => brain.report(),
@@ -44,4 +45,40 @@ pub(super) fn print(options: &InspectOptions) -> Result<bool, InspectError> {
         );
     }
     Ok(report.never.is_empty())
+}
+
+/// How far aside of where a model looks its feet may walk without a warning, degrees.
+const ASIDE: f64 = 45.0;
+
+/// Prints what sizes, speeds and directions follow from the creature's file and the brain's.
+fn print_body(kind: &CreatureKind) {
+    let body = &kind.brain().file().body;
+    let height = kind.height();
+    print!("{height:.3} units tall, posed at rest");
+    match body.height {
+        Some(metres) => println!(", and {metres} m as `height` says"),
+        None => println!(", which are metres, since `height` is not given"),
+    }
+    match body.made_for {
+        Some(metres) => println!("clips made for {metres} m"),
+        None => println!("`made_for` is not given, so clips keep their speed at any size"),
+    }
+    if let Some(speed) = kind.walking_speed() {
+        let source = if kind.is_speed_measured() {
+            "measured by its feet"
+        } else {
+            "as told"
+        };
+        println!(
+            "walks {:.3} heights in a second of the clip, {source}",
+            speed / height
+        );
+    }
+    if let Some(aside) = kind.walks_aside().filter(|aside| aside.abs() > ASIDE) {
+        println!(
+            "WARNING: its feet walk {aside:.0} degrees aside of where the model looks (+Z): if it looks another way in its \
+             file, set `facing`"
+        );
+    }
+    println!();
 }

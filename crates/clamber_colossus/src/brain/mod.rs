@@ -7,7 +7,7 @@ mod file;
 mod locate;
 mod report;
 mod state;
-mod unique;
+pub(crate) mod unique;
 
 pub(crate) use compile::list;
 

@@ -214,6 +214,35 @@ impl CreatureState {
         }
     }
 
+    /// The state of another kind of creature, for one with the same skeleton and another brain: what it does, its moods
+    /// and all else go on, states and moods by their names. `None` if the state is not of `from`.
+    pub fn carry_over(&self, from: &CreatureKind, to: &CreatureKind) -> Option<Self> {
+        let brain = to.brain().carry_over(from.brain(), &self.brain)?;
+        let same = |state: StateId| {
+            let path = from.brain().path(state);
+            to.brain()
+                .states()
+                .find(|known| to.brain().path(*known) == path)
+        };
+        let (regions, own) = (to.brain().regions().len(), to.brain().own_senses().len());
+        let has_senses =
+            from.brain().own_senses() == to.brain().own_senses() && self.senses.fits(regions, own);
+        Some(Self {
+            brain,
+            acting: self.acting.and_then(same),
+            playing: match self.playing {
+                Playing::Act(state) => same(state).map_or(Playing::Idle, Playing::Act),
+                other => other,
+            },
+            senses: if has_senses {
+                self.senses.clone()
+            } else {
+                to.brain().no_senses()
+            },
+            ..self.clone()
+        })
+    }
+
     /// The brain's state.
     pub fn brain(&self) -> &BrainState {
         &self.brain

@@ -1,10 +1,24 @@
+use std::collections::BTreeMap;
+
 use serde::{Deserialize, Serialize};
+
+use crate::brain::unique;
 
 /// What a brain file says about the body: which joints are legs and head, and which clips walk. All names are those of
 /// the creature's file. A body without legs keeps its feet where its clips have them, one without a gait does not walk.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BodyFile {
+    /// Where the model looks in its file; `+z` by default. Everything else is about the model as it is then turned, so
+    /// that it looks along +Z.
+    #[serde(default, skip_serializing_if = "Facing::is_forward")]
+    pub facing: Facing,
+    /// What the file does not say about its clips, by their names.
+    #[serde(default, with = "unique", skip_serializing_if = "BTreeMap::is_empty")]
+    pub clips: BTreeMap<String, ClipFile>,
+    /// Weak points, after those of the creature's own file.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub weak_points: Vec<WeakPointFile>,
     /// The legs.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub legs: Vec<LegFile>,
@@ -38,6 +52,9 @@ pub struct BodyFile {
 impl Default for BodyFile {
     fn default() -> Self {
         Self {
+            facing: Facing::PlusZ,
+            clips: BTreeMap::new(),
+            weak_points: Vec::new(),
             legs: Vec::new(),
             gait: None,
             head: None,
@@ -52,6 +69,87 @@ impl Default for BodyFile {
 
 fn tremor() -> f64 {
     2.5
+}
+
+/// Where a model looks in its file.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Facing {
+    /// Along +Z, as glTF wants it.
+    #[default]
+    #[serde(rename = "+z")]
+    PlusZ,
+    /// Along -Z.
+    #[serde(rename = "-z")]
+    MinusZ,
+    /// Along +X.
+    #[serde(rename = "+x")]
+    PlusX,
+    /// Along -X.
+    #[serde(rename = "-x")]
+    MinusX,
+}
+
+impl Facing {
+    fn is_forward(&self) -> bool {
+        *self == Self::PlusZ
+    }
+}
+
+/// What a creature's own file does not say about one of its clips.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ClipFile {
+    /// Markers by name, with their times, seconds after the clip's first key frame: `active` and `recovery` of an
+    /// attack, `impact`, and those that transitions wait for. They replace those of the same name in the file.
+    #[serde(default, with = "unique", skip_serializing_if = "BTreeMap::is_empty")]
+    pub markers: BTreeMap<String, Times>,
+}
+
+/// One time, or several.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Times {
+    /// One.
+    One(f64),
+    /// Several.
+    Several(Vec<f64>),
+}
+
+impl Times {
+    /// All of them.
+    pub fn all(&self) -> &[f64] {
+        match self {
+            Self::One(time) => core::slice::from_ref(time),
+            Self::Several(times) => times,
+        }
+    }
+}
+
+/// A weak point that a creature's own file does not have. Lengths are in heights of the creature.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct WeakPointFile {
+    /// Its name.
+    pub name: String,
+    /// The joint that moves it.
+    pub joint: String,
+    /// Its place at rest, as seen from the joint: along the model's axes (+X is its left, +Y up, +Z ahead).
+    #[serde(default)]
+    pub at: [f64; 3],
+    /// Its radius.
+    pub radius: f64,
+    /// Damage that it takes, more than 0.
+    pub hit_points: f64,
+    /// True if the creature dies when it is used up.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub major: bool,
+    /// It is hidden until all of lower order are used up: 0 without one, and 1 for a major one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub order: Option<u32>,
+}
+
+fn is_false(value: &bool) -> bool {
+    !value
 }
 
 /// A leg.

@@ -1,18 +1,25 @@
 use clamber_animation::ClipId;
 use clamber_animation::rig::{Clip, Playback};
+use glam::DVec3;
 
 use super::file::GaitFile;
 use super::{Contacts, Leg, Names, whole};
 use crate::brain::BrainProblem;
 use crate::error::ColossusError;
 
+/// Feet that move less than this many heights a second do not walk.
+const STILL: f64 = 0.02;
+
 /// How a kind of creature walks.
 #[derive(Clone, Debug)]
 pub(crate) struct Gait {
     pub(crate) idle: ClipId,
     pub(crate) walk: ClipId,
-    /// Speed of the walk, the model's units a second.
+    /// Speed of the walk, the model's units a second, and whether it was measured.
     pub(crate) speed: f64,
+    pub(crate) is_measured: bool,
+    /// How far aside of +Z the feet walk in the clip, degrees; `None` if they do not.
+    pub(crate) walks_aside: Option<f64>,
     /// To the left, to the right.
     pub(crate) turn: Option<[ClipId; 2]>,
     /// Radians a second.
@@ -49,10 +56,9 @@ impl Gait {
         let clip = names.clips.clip(walk)?;
         let told = file.speed.map(|speed| speed * height);
         let told = told.or(clip.ground_speed());
-        let speed = match told {
-            Some(speed) => speed,
-            None => pace(names, clip, legs)?,
-        };
+        let ground = ground(names, clip, legs)?;
+        let measured = ground.map_or(0.0, |ground| -ground.z);
+        let speed = told.unwrap_or(measured);
         if !(speed > 0.0 && speed.is_finite()) {
             let (what, range) = (
                 "speed",
@@ -83,6 +89,10 @@ impl Gait {
             idle,
             walk,
             speed,
+            is_measured: told.is_none(),
+            walks_aside: ground
+                .filter(|ground| ground.length() > STILL * height)
+                .map(|ground| libm::atan2(-ground.x, -ground.z).to_degrees()),
             turn,
             turn_rate,
             steer_rate: file.steer_deg.to_radians(),
@@ -93,16 +103,12 @@ impl Gait {
     }
 }
 
-/// How fast the feet of a walk on the spot move back while they stand: the ground's speed below it, in the model's units
-/// a second. 0 if there are no legs.
-fn pace(names: &Names<'_>, clip: &Clip, legs: &[Leg]) -> Result<f64, ColossusError> {
-    let mut speeds = Vec::new();
+/// How fast the ground passes below a walk on the spot, by the feet that stand: the mean of all legs, in the model's
+/// units a second; `None` without legs.
+fn ground(names: &Names<'_>, clip: &Clip, legs: &[Leg]) -> Result<Option<DVec3>, ColossusError> {
+    let mut sum = DVec3::ZERO;
     for leg in legs {
-        speeds.extend(leg.speed(names, clip)?);
+        sum += leg.ground(names, clip)?;
     }
-    Ok(if speeds.is_empty() {
-        0.0
-    } else {
-        speeds.iter().sum::<f64>() / speeds.len() as f64
-    })
+    Ok((!legs.is_empty()).then(|| sum / legs.len() as f64))
 }

@@ -136,23 +136,20 @@ impl Leg {
         Ok((places?, step))
     }
 
-    /// How fast the foot moves back while it stands in a walk on the spot, in the model's units a second: its median
-    /// speed where it is as low as a foot that stands. `None` if it then does not move back.
-    pub(crate) fn speed(
-        &self,
-        names: &Names<'_>,
-        clip: &Clip,
-    ) -> Result<Option<f64>, ColossusError> {
+    /// How fast the ground passes below a walk on the spot, level, in the model's units a second: the median motion of
+    /// the foot where it is as low as one that stands.
+    pub(crate) fn ground(&self, names: &Names<'_>, clip: &Clip) -> Result<DVec3, ColossusError> {
         let (places, step) = self.balls(names, clip, Playback::Loop)?;
         let lowest = places.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
         let pairs = places.iter().zip(&places[1..]);
         let low = pairs.filter(|(a, b)| 0.5 * (a.y + b.y) < lowest + STANDS_BELOW * self.length);
-        let mut speeds: Vec<f64> = low.map(|(a, b)| (a.z - b.z) / step.max(1e-9)).collect();
-        speeds.sort_by(f64::total_cmp);
-        Ok(speeds
-            .get(speeds.len() / 2)
-            .copied()
-            .filter(|speed| *speed > 0.0))
+        let ways: Vec<DVec3> = low.map(|(a, b)| (*b - *a) / step.max(1e-9)).collect();
+        let median = |axis: fn(&DVec3) -> f64| {
+            let mut all: Vec<f64> = ways.iter().map(axis).collect();
+            all.sort_by(f64::total_cmp);
+            all.get(all.len() / 2).copied().unwrap_or(0.0)
+        };
+        Ok(DVec3::new(median(|way| way.x), 0.0, median(|way| way.z)))
     }
 
     /// When the foot stands in a clip. `speed` is how fast the ground passes below the model, along -Z, and `turn` how

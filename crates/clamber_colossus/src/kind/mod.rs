@@ -1,6 +1,8 @@
 //! What all creatures of one kind share.
 
+mod additions;
 mod blended;
+mod facing;
 mod file;
 mod gait;
 mod leg;
@@ -20,7 +22,9 @@ use clamber_surface::surface::creature_fingerprint;
 use glam::{DAffine3, DVec3};
 
 pub(crate) use blended::BlendedSole;
-pub use file::{BodyFile, GaitFile, HeadFile, Knee, LegFile, PlateFile};
+pub use file::{
+    BodyFile, ClipFile, Facing, GaitFile, HeadFile, Knee, LegFile, PlateFile, Times, WeakPointFile,
+};
 pub(crate) use gait::Gait;
 pub(crate) use leg::{Contacts, Leg, rotation_of};
 pub(crate) use measures::RestSkin;
@@ -102,7 +106,10 @@ impl CreatureKind {
             mesh,
             weak_points,
         } = parts;
-        let mut clips = clips;
+        let body = &brain.file().body;
+        let (skeleton, clips) = facing::turned(skeleton, clips, body.facing)?;
+        let mut clips = additions::mark(clips, body)?;
+        let mut weak_points = weak_points;
         // A copy: the clip itself may be played as well.
         let breath = brain.file().body.breathe.as_ref();
         let breath = breath.and_then(|name| clips.iter().find(|clip| clip.name == *name));
@@ -134,6 +141,9 @@ impl CreatureKind {
             clips: &clips,
             gravity: GRAVITY * height / known.unwrap_or(HUMAN),
         };
+        for file in &body.weak_points {
+            weak_points.push(additions::weak_point(&names, file, height)?);
+        }
         let mut legs = Vec::new();
         for file in &body.legs {
             legs.push(Leg::new(&names, &mesh, &rest, file)?);
@@ -280,6 +290,18 @@ impl CreatureKind {
     /// Speed of its walk over ground, in the model's units a second of the clip; `None` if it does not walk.
     pub fn walking_speed(&self) -> Option<f64> {
         self.gait.as_ref().map(|gait| gait.speed)
+    }
+
+    /// True if the speed of its walk was measured, since neither its file nor its brain's says it.
+    pub fn is_speed_measured(&self) -> bool {
+        self.gait.as_ref().is_some_and(|gait| gait.is_measured)
+    }
+
+    /// How far aside of where the model looks (+Z) its feet walk in the walk's clip, degrees to the left: around 0 as it
+    /// should be, around 180 for a model that looks backward, which [`BodyFile::facing`] mends. `None` if it has no legs,
+    /// does not walk, or its feet hardly move.
+    pub fn walks_aside(&self) -> Option<f64> {
+        self.gait.as_ref()?.walks_aside
     }
 
     /// Where its eye is when its joints are at these frames, in model space.

@@ -1,0 +1,59 @@
+//! Turns a creature whose file looks another way than along +Z.
+
+use clamber_animation::rig::{Channel, Clip, Joint, Keyframes, RigError, Skeleton};
+use glam::DQuat;
+
+use super::file::Facing;
+
+/// The same creature, looking along +Z: its root joints are turned about Y, at rest and in all clips.
+pub(crate) fn turned(
+    skeleton: Skeleton,
+    clips: Vec<Clip>,
+    facing: Facing,
+) -> Result<(Skeleton, Vec<Clip>), RigError> {
+    let half = core::f64::consts::FRAC_1_SQRT_2;
+    let turn = match facing {
+        Facing::PlusZ => return Ok((skeleton, clips)),
+        Facing::MinusZ => DQuat::from_xyzw(0.0, 1.0, 0.0, 0.0),
+        Facing::PlusX => DQuat::from_xyzw(0.0, -half, 0.0, half),
+        Facing::MinusX => DQuat::from_xyzw(0.0, half, 0.0, half),
+    };
+    let mut joints: Vec<Joint> = skeleton.joints().to_vec();
+    let roots: Vec<bool> = joints.iter().map(|joint| joint.parent.is_none()).collect();
+    for joint in joints.iter_mut().filter(|joint| joint.parent.is_none()) {
+        let rest = &mut joint.rest;
+        rest.rotation = (turn * rest.rotation.as_dquat()).as_quat();
+        rest.translation = (turn * rest.translation.as_dvec3()).as_vec3();
+    }
+    let clip = |clip: &Clip| -> Result<Clip, RigError> {
+        let channels = clip.channels().iter().map(|channel| {
+            let is_root = roots.get(channel.joint().index()) == Some(&true);
+            if !is_root {
+                return Ok(channel.clone());
+            }
+            let mut values = channel.values().clone();
+            // Tangents of splines are turned as their values are.
+            match &mut values {
+                Keyframes::Translation(values) => {
+                    for value in values {
+                        *value = (turn * value.as_dvec3()).as_vec3();
+                    }
+                }
+                Keyframes::Rotation(values) => {
+                    for value in values {
+                        *value = (turn * value.as_dquat()).as_quat();
+                    }
+                }
+                Keyframes::Scale(_) => {}
+            }
+            let times = channel.times().to_vec();
+            Channel::new(channel.joint(), channel.interpolation(), times, values)
+        });
+        let channels: Result<Vec<Channel>, RigError> = channels.collect();
+        Clip::new(clip.name.clone(), channels?)
+            .with_markers(clip.markers().to_vec())?
+            .with_ground_speed(clip.ground_speed())
+    };
+    let clips: Result<Vec<Clip>, RigError> = clips.iter().map(clip).collect();
+    Ok((Skeleton::new(joints)?, clips?))
+}
