@@ -77,8 +77,10 @@ fn add_fighter(hash: &mut Hasher, state: &FighterState) {
         dead,
         arrows,
         random,
+        has_begun,
     } = state;
     hash.take(&(act, actions, blow, harm, hit_stop, dead, arrows, random));
+    hash.take(has_begun);
 }
 
 /// Hash of a value, as it is serialised.

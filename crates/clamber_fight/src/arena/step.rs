@@ -9,7 +9,7 @@ use super::{
     Arena, ArenaEvent, CREATURES, CreatureId, Outcome, creature_obstacle, fighter_obstacle,
 };
 use crate::error::ArenaError;
-use crate::fighter::{BodyFrame, Fighter, Wielding};
+use crate::fighter::{BodyFrame, Fighter, Room, Wielding};
 use crate::projectile::{Air, Flown};
 
 /// Memory that is used again in each step.
@@ -160,6 +160,23 @@ impl Arena {
         for (index, creature) in (0..).map(CreatureId).zip(&self.creatures) {
             obstacles.push((creature_obstacle(index), creature.surface()));
         }
+        // Those that have begun keep their places; of others the first in order do.
+        for index in 0..self.fighters.len() {
+            if self.fighters[index].rest().has_begun {
+                continue;
+            }
+            let all = self.fighters.iter().enumerate();
+            let others = all.filter(|(other, fighter)| {
+                let is_before = *other < index || fighter.rest().has_begun;
+                *other != index && is_before && !fighter.is_dead()
+            });
+            let bodies: Vec<_> = others.map(|(_, other)| other.climber().body()).collect();
+            let room = Room {
+                obstacles: &obstacles,
+                bodies: &bodies,
+            };
+            self.fighters[index].begin_with_room(&room)?;
+        }
         // Before any of them moves, so that their order does not matter.
         let living = self.fighters.iter().filter(|fighter| !fighter.is_dead());
         let climbers = living.map(|fighter| (fighter_obstacle(fighter.id()), fighter.climber()));
@@ -190,7 +207,19 @@ impl Arena {
                 fighter: id,
                 event: *event,
             }));
-            fighter.live(dt, self.config.floor, &mut self.events)?;
+            let floor = self.config.floor;
+            let is_dead = fighter.is_dead();
+            let others = self.fighters.iter().enumerate();
+            let others = others.filter(|(other, fighter)| *other != index && !fighter.is_dead());
+            let bodies = others.map(|(_, other)| other.climber().body());
+            // Only the dead look for room.
+            let bodies: Vec<_> = bodies.filter(|_| is_dead).collect();
+            let room = Room {
+                obstacles: &obstacles[..fixed],
+                bodies: &bodies,
+            };
+            let fighter = &mut self.fighters[index];
+            fighter.live([dt, floor], &room, &mut self.events)?;
             if !fighter.is_dead() {
                 let wielding = Wielding {
                     before,

@@ -2,11 +2,11 @@
 
 use clamber_climber::{Climber, ClimberError, ClimberEvent, ClimberInput, ClimberMode};
 use clamber_surface::surface::SkinnedSurface;
-use clamber_world::{Attachment, MaterialPoint, ObstacleId};
+use clamber_world::{Attachment, MaterialPoint, Obstacle, ObstacleId};
 use glam::DVec3;
 
 use super::state::HARMED_PLATES;
-use super::{Act, BodyFrame, Fighter, Target, arrows};
+use super::{Act, BodyFrame, Fighter, Room, Target, arrows};
 use crate::actions::{BOW, CUT, STAB, THROW};
 use crate::arena::{
     ArenaEvent, CreatureId, Hit, Outcome, Weapon, creature_index, creature_obstacle,
@@ -14,6 +14,15 @@ use crate::arena::{
 
 /// Walking speed with a drawn bow, as a share.
 const DRAWN_WALK: f64 = 0.5;
+
+/// Who finds no room to rise looks again after so many seconds.
+const LOOKS: f64 = 0.5;
+
+/// True in the tick in which somebody looks for room who has waited for it so long.
+fn looks(waited: f64, dt: f64) -> bool {
+    let round = |seconds: f64| (seconds / LOOKS).floor();
+    waited < dt || round(waited) > round(waited - dt)
+}
 
 /// What a fighter's weapons need of a tick.
 #[derive(Clone, Copy)]
@@ -145,8 +154,8 @@ impl Fighter {
     /// After the climber's step: being crushed, death, also below the world's floor, and standing up again.
     pub(crate) fn live(
         &mut self,
-        dt: f64,
-        floor: f64,
+        [dt, floor]: [f64; 2],
+        room: &Room<'_>,
         events: &mut Vec<ArenaEvent>,
     ) -> Result<(), ClimberError> {
         if let Some(crush) = &self.config.crush {
@@ -169,8 +178,11 @@ impl Fighter {
             Some(seconds) => {
                 let seconds = seconds + dt;
                 self.state.dead = Some(seconds);
-                if self.config.respawn.is_some_and(|after| seconds >= after) {
-                    self.stand_up_again()?;
+                if let Some(after) = self.config.respawn.filter(|after| seconds >= *after)
+                    && looks(seconds - after, dt)
+                    && let Some(place) = self.free_place(room)
+                {
+                    self.stand_up_again(place)?;
                     events.push(ArenaEvent::Rose { fighter });
                 }
             }
@@ -178,8 +190,30 @@ impl Fighter {
         Ok(())
     }
 
-    fn stand_up_again(&mut self) -> Result<(), ClimberError> {
-        let fresh = Climber::new(self.config.climber, self.spawn)?;
+    /// In its first step: goes aside if somebody is where it begins, or a creature. It stays if there is no room.
+    pub(crate) fn begin_with_room(&mut self, room: &Room<'_>) -> Result<(), ClimberError> {
+        if std::mem::replace(&mut self.state.has_begun, true) {
+            return Ok(());
+        }
+        // Terrain pushes out what is put into it a little; skin and people do not, if they are deep in each other.
+        let is_creature = |(id, _): &&(ObstacleId, &dyn Obstacle)| creature_index(*id).is_some();
+        let creatures = room.obstacles.iter().filter(is_creature);
+        let creatures: Vec<(ObstacleId, &dyn Obstacle)> = creatures.copied().collect();
+        let living = Room {
+            obstacles: &creatures,
+            bodies: room.bodies,
+        };
+        if !living.is_free(&self.climber.body())
+            && let Some(place) = self.free_place(room)
+        {
+            let fresh = Climber::new(self.config.climber, place)?;
+            self.climber.restore(*fresh.state())?;
+        }
+        Ok(())
+    }
+
+    fn stand_up_again(&mut self, place: DVec3) -> Result<(), ClimberError> {
+        let fresh = Climber::new(self.config.climber, place)?;
         self.climber.restore(*fresh.state())?;
         self.state.dead = None;
         self.state.blow = None;

@@ -5,6 +5,7 @@ mod blade;
 mod config;
 mod cut;
 mod frame;
+mod room;
 mod shoot;
 mod stab;
 mod state;
@@ -18,6 +19,7 @@ pub(crate) use act::Wielding;
 pub use blade::Blade;
 pub use config::{BowConfig, CrushConfig, FighterConfig, StoneConfig, SwordConfig};
 pub use frame::BodyFrame;
+pub(crate) use room::Room;
 pub use state::{Act, FighterState, Target};
 
 use crate::error::ArenaError;
@@ -58,6 +60,7 @@ impl Fighter {
             dead: None,
             arrows: arrows(&config),
             random: seed,
+            has_begun: false,
         };
         Ok(Self {
             id,

@@ -23,6 +23,8 @@ pub struct FighterState {
     pub arrows: u32,
     /// State of its random stream, of which its arrows stray.
     pub random: u64,
+    /// False until its first step, in which it finds room.
+    pub has_begun: bool,
 }
 
 /// Where the numbers of plates begin in [`Act::Cut`].

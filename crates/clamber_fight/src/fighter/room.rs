@@ -1,0 +1,104 @@
+//! Where a fighter finds room: at its spawn, or as near to it as there is some.
+
+use clamber_climber::Climber;
+use clamber_surface::geometry::WorldCapsule;
+use clamber_world::{Contact, Obstacle, ObstacleId};
+use glam::DVec3;
+
+use super::Fighter;
+use crate::arena::creature_index;
+
+/// Rings of places about a spawn, as many places on each more than on the one before it, and the distance between rings,
+/// in radii of the body.
+const RINGS: u32 = 16;
+const MORE: u32 = 6;
+const APART: f64 = 2.5;
+
+/// A body has room where nothing is nearer than this share of its radius: it may stand on the ground.
+const SHARE: f64 = 0.8;
+
+/// How far below a spawn its ground may be, as a share of the body's height: a place without any is none, if the spawn has
+/// some.
+const GROUND: f64 = 2.0;
+
+/// What a fighter must not rise in.
+pub(crate) struct Room<'a> {
+    /// Terrain and creatures.
+    pub(crate) obstacles: &'a [(ObstacleId, &'a dyn Obstacle)],
+    /// The bodies of the others.
+    pub(crate) bodies: &'a [WorldCapsule],
+}
+
+impl Fighter {
+    /// The place nearest to the spawn where this fighter has room; `None` if there is none within some 40 radii.
+    pub(crate) fn free_place(&self, room: &Room<'_>) -> Option<DVec3> {
+        let (spawn, size) = (self.spawn, self.config.climber.body.radius);
+        let body = |place: DVec3| Climber::new(self.config.climber, place).map(|new| new.body());
+        let has_ground = |place: DVec3| {
+            let depth = GROUND * self.config.climber.body.height;
+            let from = place + DVec3::Y * size;
+            let mut all = room.obstacles.iter();
+            all.any(|(_, obstacle)| obstacle.cast_ray(from, DVec3::NEG_Y, depth).is_some())
+        };
+        let needs_ground = has_ground(spawn);
+        let is_free = |place: &DVec3| {
+            let is_clear = body(*place).is_ok_and(|body| room.is_free(&body));
+            is_clear && (!needs_ground || has_ground(*place))
+        };
+        places(spawn, APART * size).find(is_free)
+    }
+}
+
+impl Room<'_> {
+    /// True if a body overlaps nothing, and is in no creature.
+    pub(crate) fn is_free(&self, body: &WorldCapsule) -> bool {
+        let middle = 0.5 * (body.ends[0] + body.ends[1]);
+        let mut contacts: Vec<Contact> = Vec::new();
+        let clear = self.obstacles.iter().all(|(id, obstacle)| {
+            contacts.clear();
+            let slim = WorldCapsule {
+                radius: SHARE * body.radius,
+                ..*body
+            };
+            obstacle.overlap_capsule(&slim, &mut contacts);
+            contacts.is_empty() && (creature_index(*id).is_none() || !is_inside(*obstacle, middle))
+        });
+        clear && self.bodies.iter().all(|other| !overlap(body, other))
+    }
+}
+
+/// True if a place may be inside a skin: at least two of six rays from there leave it through its back. Inside not all do,
+/// since skins have holes and pieces that overlap; outside one may, through a hole.
+fn is_inside(skin: &dyn Obstacle, place: DVec3) -> bool {
+    let ways = [DVec3::X, DVec3::Y, DVec3::Z].map(|way| [way, -way]);
+    let leaves = ways.as_flattened().iter().filter(|way| {
+        let hit = skin.cast_ray(place, **way, f64::INFINITY);
+        hit.is_some_and(|hit| hit.normal.dot(**way) > 0.0)
+    });
+    leaves.count() >= 2
+}
+
+/// True if two upright bodies overlap.
+fn overlap(one: &WorldCapsule, other: &WorldCapsule) -> bool {
+    let span = |body: &WorldCapsule| {
+        let [a, b] = body.ends.map(|end| end.y);
+        [a.min(b) - body.radius, a.max(b) + body.radius]
+    };
+    let ([low, high], [other_low, other_high]) = (span(one), span(other));
+    let [a, b] = [one, other].map(|body| 0.5 * (body.ends[0] + body.ends[1]));
+    let level = (a - b).with_y(0.0).length();
+    low < other_high && other_low < high && level < SHARE * (one.radius + other.radius)
+}
+
+/// A place, and places on rings about it, from the inside out.
+fn places(middle: DVec3, apart: f64) -> impl Iterator<Item = DVec3> {
+    let rings = (1..=RINGS).flat_map(move |ring| {
+        let count = MORE * ring;
+        (0..count).map(move |index| {
+            let angle = core::f64::consts::TAU * f64::from(index) / f64::from(count);
+            let (sin, cos) = libm::sincos(angle);
+            middle + DVec3::new(sin, 0.0, cos) * (apart * f64::from(ring))
+        })
+    });
+    core::iter::once(middle).chain(rings)
+}
