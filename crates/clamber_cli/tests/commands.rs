@@ -259,6 +259,42 @@ fn a_body_is_printed_and_drawn_and_a_file_without_one_is_told() {
     );
 }
 
+#[test]
+fn joints_are_printed_as_a_tree_and_a_brain_with_its_sizes() {
+    let giant = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/colossus.glb");
+    let brain = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../assets/colossus.brain.json"
+    );
+    let found = clamber(&["inspect", "--joints", giant]);
+    let said = String::from_utf8(found.stdout).unwrap();
+    assert!(found.status.success(), "{said}");
+    assert!(said.contains("40.991 units tall, posed at rest"), "{said}");
+    // The foot is below the shin, and hangs from it.
+    let line = |name: &str| {
+        let named = |line: &&str| line.split_whitespace().next() == Some(name);
+        said.lines().find(named).unwrap().to_owned()
+    };
+    let indent = |line: &str| line.len() - line.trim_start().len();
+    let height = |line: &str| -> f64 { line.split_whitespace().nth(2).unwrap().parse().unwrap() };
+    let (shin, foot) = (line("shin.L"), line("foot.L"));
+    assert_eq!(indent(&foot), indent(&shin) + 2, "{shin}{foot}");
+    assert!(
+        height(&foot) < height(&shin) && height(&foot) < 0.1,
+        "{foot}"
+    );
+
+    let found = clamber(&["inspect", "--brain", brain, "--creature", giant]);
+    let said = String::from_utf8(found.stdout).unwrap();
+    assert!(found.status.success(), "{said}");
+    assert!(said.contains("clips made for 41 m"), "{said}");
+    assert!(
+        said.contains("heights in a second of the clip, as told"),
+        "{said}"
+    );
+    assert!(!said.contains("WARNING"), "{said}");
+}
+
 /// CI holds what can be climbed on the giant: who changes it or the graph sees it here.
 #[test]
 fn the_giant_can_be_climbed() {

@@ -5,6 +5,7 @@ mod bounds;
 mod brain;
 mod deviation;
 mod humanoid;
+mod joints;
 mod options;
 mod report;
 
@@ -106,6 +107,11 @@ pub fn print(options: &InspectOptions) -> Result<bool, InspectError> {
     let mut load = LoadOptions::default();
     (load.scene, load.skin) = (options.scene, options.skin);
     let rig = load_with(&options.file, &load)?;
+    if options.joints {
+        println!("{}", options.file.display());
+        print!("{}", joints::tree(&rig));
+        return Ok(true);
+    }
     if options.humanoid {
         return humanoid::print(&rig, options);
     }

@@ -53,6 +53,10 @@ pub struct InspectOptions {
     #[arg(long)]
     pub thorough: bool,
 
+    /// Print the joints as a tree, with their places at rest and how much skin they move, and measure nothing.
+    #[arg(long, conflicts_with_all = ["json", "clips", "poses", "thorough", "humanoid", "brain"])]
+    pub joints: bool,
+
     /// Print which joints make a human body, and measure nothing. Exits with 1 if there is none.
     #[arg(long, conflicts_with_all = ["json", "clips", "poses", "thorough"])]
     pub humanoid: bool,
@@ -86,6 +90,7 @@ impl InspectOptions {
             clips: Vec::new(),
             poses: None,
             thorough: false,
+            joints: false,
             humanoid: false,
             draw: None,
             seed: 1,
