@@ -50,13 +50,12 @@ impl Creature {
         let current = state.brain.current();
         let way = self.way(current).filter(|_| state.acting == Some(current));
         let mut moved = RootDelta::default();
-        let steps = if seconds.is_finite() {
-            let step = STEP * self.size.pace.max(1e-3);
-            (seconds / step).ceil().clamp(1.0, MOST_STEPS)
-        } else {
-            1.0
-        };
-        // Refused by the animator if it is no time.
+        if !(0.0..=f64::MAX).contains(&seconds) {
+            // Refuses it.
+            animator.advance(kind.clips(), seconds, &mut memory.events)?;
+        }
+        let step = STEP * self.size.pace.max(1e-3);
+        let steps = (seconds / step).ceil().clamp(1.0, MOST_STEPS);
         let dt = seconds / steps;
         for _ in 0..steps as u32 {
             if let Some(gait) = kind.gait() {
