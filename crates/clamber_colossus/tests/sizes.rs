@@ -7,9 +7,7 @@ mod support;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use clamber_colossus::{
-    Brain, Creature, CreatureConfig, CreatureKind, CreatureParts, Noise, Surroundings,
-};
+use clamber_colossus::{Creature, CreatureConfig, CreatureKind, Noise, Surroundings};
 use clamber_gltf::{LoadOptions, Rig, load_with};
 use clamber_surface::measure::skin_vertex_reference;
 use clamber_surface::mesh::VertexId;
@@ -44,14 +42,7 @@ fn rig(path: &PathBuf, height: Option<f64>) -> Option<Rig> {
 }
 
 fn kind_of(rig: Rig, brain: &str) -> Arc<CreatureKind> {
-    let parts = CreatureParts {
-        skeleton: rig.skeleton,
-        clips: rig.clips,
-        mesh: rig.collider,
-        weak_points: rig.weak_points,
-    };
-    let brain = Brain::from_json(brain, TICK).unwrap();
-    Arc::new(CreatureKind::new(parts, brain).unwrap())
+    Arc::new(support::kind_of(rig, brain).unwrap())
 }
 
 fn giant(height: Option<f64>, brain: &str) -> Arc<CreatureKind> {

@@ -235,44 +235,54 @@ fn arrows_hurt_by_their_relative_speed() {
 /// One cut does its damage once, however many joints move the skin that it passes.
 #[test]
 fn a_cut_hurts_once() {
-    let sword = FighterConfig::hero().sword.unwrap();
     let mut parts = Vec::new();
-    for joints in [1, 2, 4, 8, 16] {
-        let mut arena = arena(1.0 / 60.0);
-        arena
-            .add_creature(support::wall(joints), CreatureConfig::default())
-            .unwrap();
-        let place = DVec3::new(0.0, -0.2, 3.0);
-        arena.add_fighter(FighterConfig::hero(), place).unwrap();
-        let ground = HalfSpace::below(-1.0);
-        let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &ground)];
-        let (mut hits, mut damage) = (0, 0.0);
-        for tick in 0..420u32 {
-            let walk = if tick < 180 {
-                DVec3::NEG_Z
-            } else {
-                DVec3::ZERO
-            };
-            // Two cuts, one after the other.
-            let actions = if tick == 200 || tick == 300 { CUT } else { 0 };
-            let input = ClimberInput {
-                walk,
-                ..pressed(actions)
-            };
-            for event in arena.step(&[input], &terrain).unwrap() {
-                if let ArenaEvent::Hit { damage: done, .. } = event {
-                    hits += 1;
-                    damage += done;
-                }
-            }
+    // A narrow cut ends in the wall. Without time after it, it hurts in its last tick too.
+    for (recover, degrees) in [(0.25, 200f64), (0.25, 90.0), (0.0, 90.0), (0.0, 120.0)] {
+        for joints in [1, 2, 4, 8, 16] {
+            let mut hero = FighterConfig::hero();
+            let sword = hero.sword.as_mut().unwrap();
+            (sword.recover, sword.angle) = (recover, degrees.to_radians());
+            let wanted = 2.0 * sword.cut_damage;
+            let [hits, damage] = two_cuts(hero, joints);
+            parts.push(hits);
+            assert!(
+                (damage - wanted).abs() < 1e-9,
+                "{joints} joints, {recover} s, {degrees}°: {damage} in {hits}"
+            );
         }
-        parts.push(hits);
-        let wanted = 2.0 * sword.cut_damage;
-        assert!(
-            (damage - wanted).abs() < 1e-9,
-            "{joints} joints: {damage} in {hits}"
-        );
     }
     println!("parts struck: {parts:?}");
-    assert!(parts[0] == 2 && parts[4] > 8, "{parts:?}");
+    assert!(parts[0] == 2.0 && parts[4] > 8.0, "{parts:?}");
+}
+
+/// The number of hits and the damage of two cuts, one after the other, at a wall of so many joints.
+fn two_cuts(hero: FighterConfig, joints: u32) -> [f64; 2] {
+    let mut arena = arena(1.0 / 60.0);
+    arena
+        .add_creature(support::wall(joints), CreatureConfig::default())
+        .unwrap();
+    let place = DVec3::new(0.0, -0.2, 3.0);
+    arena.add_fighter(hero, place).unwrap();
+    let ground = HalfSpace::below(-1.0);
+    let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &ground)];
+    let (mut hits, mut damage) = (0.0, 0.0);
+    for tick in 0..420u32 {
+        let walk = if tick < 180 {
+            DVec3::NEG_Z
+        } else {
+            DVec3::ZERO
+        };
+        let actions = if tick == 200 || tick == 300 { CUT } else { 0 };
+        let input = ClimberInput {
+            walk,
+            ..pressed(actions)
+        };
+        for event in arena.step(&[input], &terrain).unwrap() {
+            if let ArenaEvent::Hit { damage: done, .. } = event {
+                hits += 1.0;
+                damage += done;
+            }
+        }
+    }
+    [hits, damage]
 }

@@ -165,10 +165,12 @@ fn choose_scene(
     warnings: &mut Vec<ImportWarning>,
 ) -> Result<(), GltfErrorKind> {
     let (nodes, scenes) = (list(root, "nodes"), list(root, "scenes"));
-    let Some(scene) = scene(scenes, root.get("scene"), options.scene, |scene| {
-        mesh_count(nodes, &shown(nodes, scene)) > 0
-    })?
-    else {
+    let leads = lead_to_mesh(nodes);
+    let shows_a_mesh = |scene: &Value| {
+        let mut roots = roots(scene).flatten();
+        roots.any(|node| leads.get(node) == Some(&true))
+    };
+    let Some(scene) = scene(scenes, root.get("scene"), options.scene, shows_a_mesh)? else {
         return Ok(());
     };
     let strange = |node: &Option<usize>| node.is_none_or(|node| node >= nodes.len());
@@ -181,9 +183,7 @@ fn choose_scene(
     let meshes = mesh_count(nodes, &visible);
     let hidden = nodes.iter().filter(|node| has_mesh(node)).count() - meshes;
     if meshes == 0 && hidden > 0 {
-        let other = scenes
-            .iter()
-            .position(|other| mesh_count(nodes, &shown(nodes, other)) > 0);
+        let other = scenes.iter().position(shows_a_mesh);
         return Err(GltfErrorKind::EmptyScene { scene, other });
     }
     if hidden > 0 {
@@ -251,6 +251,26 @@ fn mesh_count(nodes: &[Value], shown: &[bool]) -> usize {
 /// The nodes that a scene names; `None` for what is no index.
 fn roots(scene: &Value) -> impl Iterator<Item = Option<usize>> {
     items(scene.get("nodes")).map(index)
+}
+
+/// For each node, whether it or a node below it has a mesh. In one pass for all scenes: a file may have many.
+fn lead_to_mesh(nodes: &[Value]) -> Vec<bool> {
+    let mut parents = vec![Vec::new(); nodes.len()];
+    for (parent, node) in nodes.iter().enumerate() {
+        for child in items(node.get("children")).filter_map(index) {
+            if let Some(parents) = parents.get_mut(child) {
+                parents.push(parent);
+            }
+        }
+    }
+    let mut leads = vec![false; nodes.len()];
+    let mut open: Vec<usize> = (0..nodes.len()).filter(|n| has_mesh(&nodes[*n])).collect();
+    while let Some(node) = open.pop() {
+        if !std::mem::replace(&mut leads[node], true) {
+            open.append(&mut parents[node]);
+        }
+    }
+    leads
 }
 
 /// For each node, whether a scene shows it.

@@ -4,9 +4,9 @@ use clamber_animation::ik::LookMemory;
 use clamber_surface::geometry::Similarity;
 use glam::DVec3;
 
-use super::size::HUMAN;
 use super::{Creature, Surroundings};
 use crate::brain::Gaze;
+use crate::kind::HUMAN;
 
 /// Half time of a gaze that goes to something else, and of its beginning and end, seconds, for a creature of human
 /// size.

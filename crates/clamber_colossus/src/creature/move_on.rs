@@ -6,14 +6,13 @@ use glam::DVec3;
 
 use super::hips::approach;
 use super::legs::at_once;
-use super::size::HUMAN;
 use super::state::{Detour, GROUND, NO_GROUND, NO_WALL, Playing, WALLS};
 use super::{Creature, CreatureEvent, CreatureState, Surroundings};
 use crate::angle::nearest_turn;
 use crate::brain::{Act, Place, Walk};
 use crate::error::ColossusError;
 use crate::feet::{GRAVITY, Ground, STEP_TIME};
-use crate::kind::Gait;
+use crate::kind::{Gait, HUMAN};
 use crate::senses::Sense;
 
 /// How fast its speed changes, metres a second squared, and a giant's turning, radians a second squared: 0.5 g is the
@@ -27,7 +26,7 @@ const TURNS: f64 = 0.12;
 const STEERS: f64 = 0.8;
 
 /// It turns to within this angle at best, radians.
-const LEAST_WITHIN: f64 = 0.0030001;
+const LEAST_WITHIN: f64 = 0.003;
 
 /// How far the body turns away from a foot before that steps, as a share of the leg's length, when it turns on the spot
 /// by steps alone.
@@ -260,14 +259,12 @@ impl Creature {
     ) -> Result<bool, ColossusError> {
         let course = Course::of(&self.state);
         let mut wanted = self.wanted(gait, way, &course);
-        if wanted.is_free {
-            if self.state.ticks.is_multiple_of(LOOKS) {
-                self.state.detour = match self.free_way(around, wanted.aside) {
-                    Some(way) if way == wanted.aside => Detour::None,
-                    Some(way) => Detour::By(way),
-                    None => Detour::Blocked,
-                };
-            }
+        if wanted.is_free && self.state.ticks.is_multiple_of(LOOKS) {
+            self.state.detour = match self.free_way(around, wanted.aside) {
+                Some(way) if way == wanted.aside => Detour::None,
+                Some(way) => Detour::By(way),
+                None => Detour::Blocked,
+            };
             wanted = self.wanted(gait, way, &course);
         }
         let Wanted {

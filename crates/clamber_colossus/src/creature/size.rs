@@ -7,9 +7,6 @@ use crate::kind::CreatureKind;
 /// were tuned.
 pub(super) const GIANT: f64 = 41.0;
 
-/// Some are those of a creature of human height, metres.
-pub(super) const HUMAN: f64 = 1.75;
-
 /// How large a creature is, and how fast.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Size {

@@ -3,6 +3,7 @@ use serde::{Deserialize, Serialize};
 
 use clamber_animation::Spring;
 
+use super::arrive::{arrive, pull, unhurried};
 use super::{Footing, Sole};
 use crate::angle::nearest_turn;
 
@@ -190,25 +191,36 @@ impl Foot {
         }
     }
 
-    /// True if none of its places is further from the origin.
+    /// True if no number of it is larger than this, or none at all.
     pub(crate) fn is_within(&self, most: f64) -> bool {
-        let held = match self.hold {
-            Hold::Planted { at, heading, below } => {
-                at.ball.length().max(heading.abs()).max(below.abs())
-            }
+        let spring = |spring: &Spring<f64>| spring.value.abs() + spring.velocity.abs();
+        let moving = |spring: &Spring<DVec3>| spring.value.length() + spring.velocity.length();
+        let footing = |at: &Footing| at.ball.length() + at.normal.length();
+        let held = match &self.hold {
+            Hold::Planted { at, heading, below } => footing(at) + heading.abs() + below.abs(),
             Hold::Swings => 0.0,
-            Hold::Lands { ball, to, left } => {
-                let motion = ball.value.length() + ball.velocity.length();
-                motion.max(to.ball.length()).max(left.abs())
-            }
+            Hold::Lands { ball, to, left } => moving(ball) + footing(to) + left.abs(),
             Hold::Steps(step) => {
-                let times = step.lift.abs().max(step.passed.abs()).max(step.lasts.abs());
-                step.from.length().max(step.to.ball.length()).max(times)
+                let times = step.lift.abs() + step.passed.abs() + step.lasts.abs();
+                step.from.length() + footing(&step.to) + times
             }
         };
-        let offset = self.offset.value.length() + self.offset.velocity.length();
-        let yaw = self.yaw.value.abs() + self.yaw.velocity.abs();
-        held <= most && offset <= most && yaw <= most && self.clip.length() <= most
+        // A clip may never land, and below it may be no ground.
+        let is_path = self.path.offset.abs() <= most && self.path.left > -most;
+        let is_floor = self.path.floor == NO_GROUND || self.path.floor.abs() <= most;
+        let all = [
+            held,
+            self.clip.length(),
+            moving(&self.offset),
+            spring(&self.yaw),
+            spring(&self.flat),
+            spring(&self.firm),
+            self.normal.length(),
+            moving(&self.settling),
+            self.landing.as_ref().map_or(0.0, footing),
+        ];
+        // No comparison with what is no number is true.
+        is_path && is_floor && all.iter().all(|size| *size <= most)
     }
 
     /// True if it stands.
@@ -564,51 +576,5 @@ impl FootGoal {
     }
 }
 
-/// The acceleration with which [`arrive`] begins.
-fn pull([value, velocity]: [f64; 2], goal: f64, left: f64) -> f64 {
-    (goal - value) * (6.0 / (left * left)) - velocity * (4.0 / left)
-}
-
-/// The least time of at least `left` seconds in which [`arrive`] needs no more than an acceleration, at its beginning
-/// and its end.
-fn unhurried(spring: &Spring<DVec3>, goal: DVec3, left: f64, most: f64) -> f64 {
-    let (away, velocity) = (goal - spring.value, spring.velocity);
-    let mut left = left;
-    for _ in 0..24 {
-        let way = away * (6.0 / (left * left));
-        let (begins, ends) = (way - velocity * (4.0 / left), velocity * (2.0 / left) - way);
-        if begins.length().max(ends.length()) <= most {
-            break;
-        }
-        left *= 1.2;
-    }
-    left
-}
-
-/// Moves a value so that it is at its goal, at rest, in `left` seconds, by a cubic in time; or as far as an
-/// acceleration allows.
-fn arrive<T: Bounded>(spring: &mut Spring<T>, goal: T, left: f64, most: f64, dt: f64) {
-    let away = goal - spring.value;
-    let acceleration = away * (6.0 / (left * left)) - spring.velocity * (4.0 / left);
-    let acceleration = acceleration.within(most);
-    let dt = dt.min(left);
-    spring.value = spring.value + spring.velocity * dt + acceleration * (0.5 * dt * dt);
-    spring.velocity = spring.velocity + acceleration * dt;
-}
-
-/// What has a length that can be bounded.
-trait Bounded: clamber_animation::Springy {
-    fn within(self, most: f64) -> Self;
-}
-
-impl Bounded for f64 {
-    fn within(self, most: f64) -> Self {
-        self.clamp(-most, most)
-    }
-}
-
-impl Bounded for DVec3 {
-    fn within(self, most: f64) -> Self {
-        self.clamp_length_max(most)
-    }
-}
+#[cfg(test)]
+mod tests;

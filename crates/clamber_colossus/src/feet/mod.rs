@@ -5,6 +5,7 @@
 //! which takes the least acceleration for given ends. When the clip stands elsewhere than the foot, it takes a step of
 //! its own. Speeds that decide scale with the square root of the leg's length (Froude's law).
 
+mod arrive;
 mod foot;
 mod ground;
 mod sole;

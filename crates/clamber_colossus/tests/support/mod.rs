@@ -11,6 +11,7 @@ use std::sync::Arc;
 use clamber_colossus::{
     Brain, ColossusError, Creature, CreatureConfig, CreatureKind, CreatureParts, Person,
 };
+use clamber_gltf::Rig;
 use clamber_surface::geometry::WorldCapsule;
 use clamber_surface::mesh::VertexId;
 use clamber_world::rapier3d::parry::utils::Array2;
@@ -46,7 +47,11 @@ pub(crate) fn kind(brain: &str) -> Arc<CreatureKind> {
 /// The giant with this brain, which may not fit it.
 pub(crate) fn try_kind(brain: &str) -> Result<CreatureKind, ColossusError> {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/colossus.glb");
-    let rig = clamber_gltf::load(path).unwrap();
+    kind_of(clamber_gltf::load(path).unwrap(), brain)
+}
+
+/// A creature of an imported file with this brain, which may not fit it.
+pub(crate) fn kind_of(rig: Rig, brain: &str) -> Result<CreatureKind, ColossusError> {
     let parts = CreatureParts {
         skeleton: rig.skeleton,
         clips: rig.clips,

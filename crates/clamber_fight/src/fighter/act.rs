@@ -331,7 +331,8 @@ impl Fighter {
                 damage: sword.cut_damage,
             });
         }
-        if until < sword.wind_up + sword.cut + sword.recover {
+        // Its damage is done after this: what was hit in its last tick needs it for one tick more.
+        if until < sword.wind_up + sword.cut + sword.recover || !hits.is_empty() {
             Act::Cut {
                 seconds: until,
                 struck,

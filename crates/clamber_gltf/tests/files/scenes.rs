@@ -100,6 +100,33 @@ fn empty_scenes_are_no_error_and_a_scene_without_a_mesh_says_which_has_one() {
     );
 }
 
+/// Looking for a scene with a mesh takes one pass through a file, not one for each scene.
+#[test]
+fn many_scenes_of_many_nodes_load_in_one_pass() {
+    const MANY: usize = 100_000;
+    let mut file = two_scenes();
+    let nodes = file.json["nodes"].as_array_mut().unwrap();
+    nodes.extend((0..MANY).map(|_| json!({})));
+    // The last scene shows a mesh through a node above it.
+    let above = file.push("nodes", json!({"children": [0]}));
+    let mut scenes = vec![json!({"nodes": [above - 1, above - 2]}); MANY];
+    scenes.push(json!({"nodes": [above]}));
+    file.json["scenes"] = scenes.into();
+    let rig = file.load().unwrap();
+    assert_eq!(rig.visual.len(), 1);
+
+    file.json["scene"] = json!(0);
+    let error = file.load().unwrap_err();
+    let named = matches!(
+        error,
+        GltfErrorKind::EmptyScene {
+            scene: 0,
+            other: Some(MANY)
+        }
+    );
+    assert!(named, "{error}");
+}
+
 #[test]
 fn scenes_that_do_not_exist_are_refused() {
     let file = two_scenes();
