@@ -10,8 +10,8 @@ use super::move_on::Course;
 use super::state::Playing;
 use crate::error::ColossusError;
 
-/// Seconds at a time for which a giant's course is foreseen, and the most of these: steps are longer for what is further
-/// away.
+/// A course is foreseen in steps of so many seconds for a giant, and in at most so many steps. Steps are longer for times
+/// that are further away.
 const STEP: f64 = 0.1;
 const MOST_STEPS: f64 = 100.0;
 

@@ -62,7 +62,7 @@ pub(super) struct PutLeg {
     pub(super) reach: f64,
     /// Of the ankle.
     rotation: DQuat,
-    /// How flat its foot is, from 0 to 1, and the normal of what it stands on, in world space.
+    /// How flat its foot is on the ground, from 0 to 1. The ground has this normal, in world space.
     pub(super) flat: f64,
     pub(super) normal: DVec3,
     /// How firmly it stands, from 0 to 1.

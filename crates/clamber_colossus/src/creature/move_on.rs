@@ -370,7 +370,7 @@ impl Creature {
         wanted
     }
 
-    /// Its course after some seconds of trying to do what it wants: its speed and its turning, not its place.
+    /// Its course `dt` seconds later, if it tries to do what is wanted. Speeds change; its place does not.
     pub(super) fn moved(&self, gait: &Gait, wanted: &Wanted, course: Course, dt: f64) -> Course {
         let mut moved = course;
         let change = wanted.speed - course.speed;

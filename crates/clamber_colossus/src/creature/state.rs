@@ -214,8 +214,8 @@ impl CreatureState {
         }
     }
 
-    /// The state of another kind of creature, for one with the same skeleton and another brain: what it does, its moods
-    /// and all else go on, states and moods by their names. `None` if the state is not of `from`.
+    /// This state of a creature of the kind `from`, for one of the kind `to`, which has the same skeleton and another
+    /// brain. All that it does goes on. States and moods are found by their names. `None` if this state is not of `from`.
     pub fn carry_over(&self, from: &CreatureKind, to: &CreatureKind) -> Option<Self> {
         let brain = to.brain().carry_over(from.brain(), &self.brain)?;
         let same = |state: StateId| {

@@ -335,8 +335,8 @@ impl Foot {
                 if ball.y - sole.at(ball).ball.y > HIGH * goal.leg {
                     let velocity = (goal.clip - self.clip) / dt + self.offset.velocity;
                     let to = sole.at(goal.settled);
-                    // A clip may stop its foot at once, as a kick's end does. What is left of its motion then must not
-                    // carry the foot past where it lands.
+                    // The end of a kick stops the clip's foot at once. The speed that is left must not carry this foot
+                    // past where it lands.
                     let most = (MOST_UP * ball.distance(to.ball)).sqrt();
                     self.hold = Hold::Lands {
                         ball: Spring {

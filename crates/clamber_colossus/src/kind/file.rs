@@ -156,8 +156,8 @@ fn is_false(value: &bool) -> bool {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LegFile {
-    /// From two to five joints from the hip down, the last of which is the foot: hip, knee and ankle, or those of an
-    /// animal's hind leg. Each is below the one before it, but for the foot: it may hang elsewhere, as a control that was
+    /// Two to five joints from the hip down. The last is the foot. A person's are hip, knee and ankle; an animal's hind
+    /// leg has more. Each is below the one before it, but for the foot: it may hang elsewhere, as a control that was
     /// baked into the file does, and is carried along then. The joint that divides the leg most evenly is its knee; others
     /// keep their pose.
     pub joints: Vec<String>,
