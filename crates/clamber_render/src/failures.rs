@@ -14,7 +14,7 @@ use crate::{
     SkinSource,
 };
 
-#[path = "../tests/common/mod.rs"]
+#[path = "../tests/all/common/mod.rs"]
 mod common;
 
 /// Adds a mesh of `vertices` vertices on one joint.

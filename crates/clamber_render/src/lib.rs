@@ -4,7 +4,7 @@
     reason = "pictures need not have the same bits everywhere"
 )]
 
-// `failures` includes `tests/common`, which names this crate `clamber_render`.
+// `failures` includes `tests/all/common`, which names this crate `clamber_render`.
 #[cfg(test)]
 extern crate self as clamber_render;
 

@@ -162,6 +162,7 @@ pub(super) fn step(
         let stepped = touchable.terrain(|terrain| {
             let around = Surroundings {
                 terrain,
+                creatures: &[],
                 people: &people,
                 noises: &noises,
             };

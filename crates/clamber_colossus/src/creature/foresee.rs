@@ -6,7 +6,7 @@ use clamber_surface::geometry::{Similarity, rotation_from_axis_angle};
 use glam::DVec3;
 
 use super::Creature;
-use super::move_on::Course;
+use super::course::Course;
 use super::state::Playing;
 use crate::error::ColossusError;
 
@@ -71,6 +71,7 @@ impl Creature {
                 let yaw = course.yaw + turn * dt;
                 course = next;
                 (course.position, course.yaw) = (position, yaw);
+                course.ahead -= speed * dt;
                 let plays = !matches!(state.playing, Playing::Act(_));
                 if let Some(layer) = animator.layers_mut().first_mut().filter(|_| plays) {
                     layer.speed = self.clip_speed(gait, &course);

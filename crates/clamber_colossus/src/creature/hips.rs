@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::Creature;
 use super::legs::PutLeg;
 use super::state::Playing;
+use crate::feet::Carried;
 
 /// The most acceleration of the hips, up and down and to the sides, metres a second squared. Riders feel it, together
 /// with that of following the ground.
@@ -58,6 +59,12 @@ impl Hips {
         let numbers = vectors.iter().flat_map(|vector| vector.to_array());
         let numbers = numbers.chain(self.tremor).chain([self.drop]);
         numbers.into_iter().all(|number| number.abs() <= most)
+    }
+
+    /// Turns with ground that has moved.
+    pub(super) fn turn(&mut self, carried: &Carried) {
+        self.offset = carried.vector(self.offset);
+        self.velocity = carried.vector(self.velocity);
     }
 
     /// True if a foot may step.

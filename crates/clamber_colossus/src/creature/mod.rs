@@ -1,8 +1,12 @@
 //! A creature: a value that is stepped once a tick.
 
+mod carry;
 mod config;
+mod corners;
+mod course;
 mod feel;
 mod foresee;
+mod ground;
 mod head;
 mod hips;
 mod hurt;
@@ -10,10 +14,12 @@ mod legs;
 mod move_on;
 mod press;
 mod report;
+mod room;
 mod size;
 mod state;
 mod step;
 mod strike;
+mod way;
 mod world;
 
 use std::sync::Arc;

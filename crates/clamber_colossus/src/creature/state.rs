@@ -31,8 +31,8 @@ pub struct CreatureState {
     /// Heights of the ground along its heading, from behind to ahead, and to the left and right; one is looked for in
     /// each tick.
     pub(super) ground: [f64; GROUND],
-    /// How it goes round what is in its way.
-    pub(super) detour: Detour,
+    /// What it knows of the way that it is on.
+    pub(super) walked: Walked,
     /// How steep the ground ahead is, as a tangent.
     pub(super) steepness: f64,
     pub(super) yaw: f64,
@@ -107,15 +107,32 @@ pub(super) enum Playing {
     Act(StateId),
 }
 
-/// How a creature goes round what is in its way.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) enum Detour {
-    /// Nothing is.
-    None,
-    /// In this direction from its heading, radians.
-    By(f64),
-    /// Not at all.
-    Blocked,
+/// What a creature knows of the way that it is on.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Walked {
+    /// Places on the way to its goal, the next one first; none if it goes straight there.
+    pub(super) corners: Vec<DVec3>,
+    /// Ticks until it looks for them anew.
+    pub(super) ticks_left: u32,
+    /// True if the following was looked for.
+    pub(super) is_known: bool,
+    /// How far ahead its way is free, metres.
+    pub(super) ahead: f64,
+    /// How far it may turn to the side to which it turns, radians.
+    pub(super) turn: f64,
+    /// To which side it turns the long way round, since the short one is blocked: -1 to the right, 1 to the left, or 0.
+    pub(super) round: i8,
+    /// True if it does not get on.
+    pub(super) is_blocked: bool,
+}
+
+impl Walked {
+    /// True if all its numbers are some that a creature reaches.
+    fn is_within(&self, most: f64) -> bool {
+        let places = self.corners.iter().flat_map(|corner| corner.to_array());
+        let mut numbers = places.chain([self.ahead, self.turn]);
+        numbers.all(|number| number.abs() <= most)
+    }
 }
 
 /// Somebody's time on the creature.
@@ -172,7 +189,7 @@ impl CreatureState {
             position: config.position,
             climb: 0.0,
             ground: [NO_GROUND; GROUND],
-            detour: Detour::None,
+            walked: Walked::default(),
             steepness: 0.0,
             yaw: config.yaw,
             speed: 0.0,
@@ -368,6 +385,7 @@ impl CreatureState {
             || far(self.aim.length())
             || numbers.iter().any(fast)
             || !self.hips.is_within(FASTEST)
+            || !self.walked.is_within(FARTHEST)
             || !self.feet.iter().all(|foot| foot.is_within(FARTHEST))
         {
             return Err(ColossusError::OtherKind(

@@ -36,11 +36,12 @@ impl Creature {
         self.state.ticks = self.state.ticks.wrapping_add(1);
         self.feel(around);
         self.think();
-        if self.sleeps()? {
+        let is_carried = self.be_carried(around, dt);
+        if self.sleeps(is_carried)? {
             return Ok(&self.report);
         }
         self.is_still = false;
-        self.act()?;
+        self.act(around)?;
         self.move_on(around, dt)?;
         let world_from_model = self.state.world_from_model(self.size.scale);
         self.take_pose(&world_from_model, around, dt)?;
@@ -101,7 +102,7 @@ impl Creature {
 
     /// Begins the current state's act, as soon as the creature stands, or goes on with it. An act that interrupts
     /// another one begins at once: giants may stop abruptly.
-    fn act(&mut self) -> Result<(), ColossusError> {
+    fn act(&mut self, around: &Surroundings<'_>) -> Result<(), ColossusError> {
         let state = self.state.brain.current();
         if self.state.acting == Some(state) {
             return Ok(());
@@ -120,21 +121,37 @@ impl Creature {
         self.state.halts = !walks && self.state.speed > 0.0;
         self.state.struck.clear();
         self.state.aim = DVec3::ZERO;
+        self.state.walked.is_blocked = false;
         match act {
             Some(Act::Walk(_) | Act::Turn(_)) => self.begin_way(),
             Some(Act::Play(_)) => self.begin(state, Playback::Loop)?,
-            Some(Act::Once(_) | Act::Attack(_)) => self.begin(state, Playback::Clamp)?,
+            Some(Act::Once(_)) => self.begin(state, Playback::Clamp)?,
+            Some(Act::Attack(_)) => self.begin_attack(state, around)?,
             Some(Act::Sleep) => self.fall_asleep(),
             None => self.play(Playing::Idle, 1.0, kind.brain().fade(state))?,
-        }
-        if let (Some(Act::Attack(_)), Some(strike)) = (act, &kind.act(state).strike) {
-            self.aim(strike);
         }
         Ok(())
     }
 
+    /// Begins an attack, unless its limb would go through rock.
+    fn begin_attack(
+        &mut self,
+        state: StateId,
+        around: &Surroundings<'_>,
+    ) -> Result<(), ColossusError> {
+        let kind = std::sync::Arc::clone(&self.kind);
+        if let Some(strike) = &kind.act(state).strike {
+            self.aim(strike);
+            if !self.may_strike(strike, around) {
+                self.state.walked.is_blocked = true;
+                return self.play(Playing::Idle, 1.0, kind.brain().fade(state));
+            }
+        }
+        self.begin(state, Playback::Clamp)
+    }
+
     /// True if it is asleep, and so still that nothing of it has to be posed.
-    fn sleeps(&mut self) -> Result<bool, ColossusError> {
+    fn sleeps(&mut self, is_carried: bool) -> Result<bool, ColossusError> {
         let state = self.state.brain.current();
         let sleeps = matches!(self.kind.brain().act(state), Some(Act::Sleep))
             && self.state.acting == Some(state);
@@ -150,12 +167,12 @@ impl Creature {
             return Ok(false);
         }
         // From the second still tick on it is known to be still.
-        if self.is_still {
+        if self.is_still && !is_carried {
             return Ok(true);
         }
         let world_from_model = self.state.world_from_model(self.size.scale);
         self.surface.advance(&self.palette, world_from_model)?;
-        self.is_still = true;
+        self.is_still = !is_carried;
         Ok(true)
     }
 

@@ -8,6 +8,8 @@ use serde::{Deserialize, Serialize};
 pub struct Surroundings<'a> {
     /// What it walks on, and cannot see through.
     pub terrain: &'a [&'a dyn Obstacle],
+    /// What else stands in its way, without being ground: the skins of other creatures.
+    pub creatures: &'a [&'a dyn Obstacle],
     /// Everybody who may be seen, felt or struck, as they were at the end of the last tick.
     pub people: &'a [Person],
     /// What is to be heard in this tick.

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use clamber_animation::Spring;
 
 use super::arrive::{arrive, pull, unhurried};
-use super::{Footing, Sole};
+use super::{Carried, Footing, Sole};
 use crate::angle::nearest_turn;
 
 /// How a foot is held.
@@ -271,6 +271,48 @@ impl Foot {
         if let Hold::Planted { at, .. } = self.hold {
             self.normal = at.normal;
             self.offset = Spring::at(at.ball - goal.clip);
+        }
+    }
+
+    /// Goes with ground that has moved.
+    pub(crate) fn be_carried(&mut self, carried: &Carried) {
+        let footing = |at: &mut Footing| {
+            at.ball = carried.place(at.ball);
+            at.normal = carried.vector(at.normal);
+        };
+        let spring = |spring: &mut Spring<DVec3>| {
+            spring.value = carried.vector(spring.value);
+            spring.velocity = carried.vector(spring.velocity);
+        };
+        let rise =
+            carried.place(self.clip + self.offset.value).y - (self.clip + self.offset.value).y;
+        match &mut self.hold {
+            Hold::Planted { at, heading, below } => {
+                let before = at.ball.y;
+                footing(at);
+                *heading = nearest_turn(*heading + carried.yaw);
+                *below += at.ball.y - before;
+            }
+            Hold::Swings => {}
+            Hold::Lands { ball, to, .. } => {
+                ball.value = carried.place(ball.value);
+                ball.velocity = carried.vector(ball.velocity);
+                footing(to);
+            }
+            Hold::Steps(step) => {
+                step.from = carried.place(step.from);
+                footing(&mut step.to);
+            }
+        }
+        self.clip = carried.place(self.clip);
+        self.normal = carried.vector(self.normal);
+        spring(&mut self.offset);
+        spring(&mut self.settling);
+        if self.path.floor != NO_GROUND {
+            self.path.floor += rise;
+        }
+        if let Some(landing) = &mut self.landing {
+            footing(landing);
         }
     }
 

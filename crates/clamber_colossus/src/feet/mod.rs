@@ -13,3 +13,29 @@ mod sole;
 pub(crate) use foot::{Foot, FootGoal, GRAVITY, MOST_ASIDE, SHARES, STEP_TIME};
 pub(crate) use ground::Ground;
 pub(crate) use sole::{Footing, Sole};
+
+use clamber_surface::geometry::rotation_from_axis_angle;
+use glam::{DQuat, DVec3};
+
+/// How ground below a creature has moved in a tick.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Carried {
+    /// Where a point of it was, and is now.
+    pub(crate) from: DVec3,
+    pub(crate) to: DVec3,
+    /// How it has turned, and how far about up, radians.
+    pub(crate) turn: DQuat,
+    pub(crate) yaw: f64,
+}
+
+impl Carried {
+    /// Where a place is that goes with the ground.
+    pub(crate) fn place(&self, place: DVec3) -> DVec3 {
+        self.to + self.turn * (place - self.from)
+    }
+
+    /// A vector of the creature, turned with its heading: what stands upright stays so.
+    pub(crate) fn vector(&self, vector: DVec3) -> DVec3 {
+        rotation_from_axis_angle(DVec3::Y, self.yaw) * vector
+    }
+}

@@ -103,6 +103,15 @@ impl Gait {
     }
 }
 
+impl Gait {
+    /// All clips that it plays.
+    pub(crate) fn clips(&self) -> impl Iterator<Item = ClipId> {
+        [self.idle, self.walk]
+            .into_iter()
+            .chain(self.turn.into_iter().flatten())
+    }
+}
+
 /// How fast the ground passes below a walk on the spot, by the feet that stand: the mean of all legs, in the model's
 /// units a second; `None` without legs.
 fn ground(names: &Names<'_>, clip: &Clip, legs: &[Leg]) -> Result<Option<DVec3>, ColossusError> {

@@ -2,6 +2,7 @@
 
 mod additions;
 mod blended;
+mod extent;
 mod facing;
 mod file;
 mod gait;
@@ -23,6 +24,7 @@ use clamber_surface::surface::creature_fingerprint;
 use glam::{DAffine3, DVec3};
 
 pub(crate) use blended::BlendedSole;
+pub(crate) use extent::{BANDS, Band, EDGES, Extent};
 pub use file::{
     BodyFile, ClipFile, Facing, GaitFile, HeadFile, Knee, LegFile, PlateFile, Times, WeakPointFile,
 };
@@ -60,6 +62,8 @@ pub struct CreatureKind {
     /// The joint that all legs hang from.
     hips: Option<JointId>,
     gait: Option<Gait>,
+    /// The room that it takes up while it stands, walks and turns; `None` without a gait, as it goes nowhere.
+    extent: Option<Extent>,
     look: Option<LookAt>,
     /// The head's joint, and the eye in its space.
     head: Option<(JointId, DVec3)>,
@@ -155,6 +159,10 @@ impl CreatureKind {
             .as_ref()
             .map(|file| Gait::new(&names, file, &legs, height))
             .transpose()?;
+        let extent = gait
+            .as_ref()
+            .map(|gait| Extent::new(&skeleton, &clips, &mesh, &rest, gait.clips()))
+            .transpose()?;
         let mut acts = Vec::new();
         for state in brain.states() {
             acts.push(compile(
@@ -164,6 +172,7 @@ impl CreatureKind {
                 &legs,
                 gait.as_ref(),
                 &weak_points,
+                (&mesh, &rest),
             )?);
         }
         let mut regions = vec![0; skeleton.joints().len()];
@@ -201,6 +210,7 @@ impl CreatureKind {
             hips: common_parent(&skeleton, &legs),
             legs,
             gait,
+            extent,
             look,
             head,
             breathe,
@@ -353,6 +363,10 @@ impl CreatureKind {
         self.gait.as_ref()
     }
 
+    pub(crate) fn extent(&self) -> Option<&Extent> {
+        self.extent.as_ref()
+    }
+
     pub(crate) fn look(&self) -> Option<&LookAt> {
         self.look.as_ref()
     }
@@ -406,6 +420,7 @@ fn compile(
     legs: &[Leg],
     gait: Option<&Gait>,
     weak_points: &[WeakPoint],
+    skin: (&ColliderMesh, &RestSkin),
 ) -> Result<CompiledAct, ColossusError> {
     let here = |problem| brain.error_in(state, problem);
     for name in brain.exposes(state) {
@@ -427,13 +442,13 @@ fn compile(
         .transpose()
         .map_err(here)?;
     let strike = match act {
-        Act::Attack(attack) => Some(strike(names, attack, legs).map_err(here)?),
+        Act::Attack(attack) => Some(strike(names, attack, legs, skin).map_err(here)?),
         Act::Walk(walk) => match &walk.strike {
             Some(clip) => {
                 let (owner, attack) = attack_with(brain, clip)
                     .ok_or_else(|| here(BrainProblem::NoAttack { clip: clip.clone() }))?;
                 let there = |problem| brain.error_in(owner, problem);
-                Some(strike(names, attack, legs).map_err(there)?)
+                Some(strike(names, attack, legs, skin).map_err(there)?)
             }
             None => None,
         },
@@ -459,12 +474,17 @@ fn compile(
     })
 }
 
-fn strike(names: &Names<'_>, attack: &Attack, legs: &[Leg]) -> Result<Strike, BrainProblem> {
+fn strike(
+    names: &Names<'_>,
+    attack: &Attack,
+    legs: &[Leg],
+    skin: (&ColliderMesh, &RestSkin),
+) -> Result<Strike, BrainProblem> {
     let mut limb = Vec::new();
     for pattern in &attack.limb {
         limb.extend(names.joints(pattern)?);
     }
-    Strike::new(names, attack, limb, legs)
+    Strike::new(names, attack, limb, legs, skin)
 }
 
 fn attack_with<'a>(brain: &'a Brain, clip: &str) -> Option<(StateId, &'a Attack)> {

@@ -42,12 +42,16 @@ pub enum Sense {
     WallDistance,
     /// Level distance to where the creature was placed first, metres.
     HomeDistance,
-    /// 1 if the current act is over: the clip at its end, the place reached; else 0.
+    /// 1 if the current act is over: the clip at its end, the place reached; else 0. A walk or a turn that is blocked is
+    /// over as well.
     Done,
+    /// 1 if the creature cannot do its current act: it does not get on in a walk or a turn, or a blow would go through
+    /// rock and is not begun; else 0.
+    Blocked,
 }
 
 /// All senses, with their names in brain files.
-const NAMES: [(Sense, &str); 20] = [
+const NAMES: [(Sense, &str); 21] = [
     (Sense::Riders, "riders"),
     (Sense::RiderSeconds, "rider_seconds"),
     (Sense::RiderHeight, "rider_height"),
@@ -68,6 +72,7 @@ const NAMES: [(Sense, &str); 20] = [
     (Sense::WallDistance, "wall_distance"),
     (Sense::HomeDistance, "home_distance"),
     (Sense::Done, "done"),
+    (Sense::Blocked, "blocked"),
 ];
 
 impl Sense {

@@ -124,13 +124,21 @@ impl Arena {
         people: &mut Vec<Person>,
     ) -> Result<(), ArenaError> {
         let ground: Vec<&dyn Obstacle> = terrain.iter().map(|(_, obstacle)| *obstacle).collect();
-        for (index, creature) in (0..).map(CreatureId).zip(&mut self.creatures) {
+        for index in 0..self.creatures.len() {
+            let (before, rest) = self.creatures.split_at_mut(index);
+            let Some((creature, after)) = rest.split_first_mut() else {
+                break;
+            };
+            let index = CreatureId(index as u32);
+            let others = before.iter().chain(after.iter()).map(Creature::surface);
+            let others: Vec<&dyn Obstacle> = others.map(|skin| skin as &dyn Obstacle).collect();
             people.clear();
             // The dead are of no interest.
             let living = self.fighters.iter().filter(|fighter| !fighter.is_dead());
             people.extend(living.map(|fighter| person(fighter, creature_obstacle(index))));
             let around = Surroundings {
                 terrain: &ground,
+                creatures: &others,
                 people,
                 noises: &self.noises,
             };

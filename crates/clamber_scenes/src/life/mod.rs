@@ -165,6 +165,7 @@ impl Life {
             .collect();
         let around = Surroundings {
             terrain: &all,
+            creatures: &[],
             people: &people,
             noises: &noises,
         };

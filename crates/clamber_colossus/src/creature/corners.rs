@@ -1,0 +1,222 @@
+//! Ways round what stands between a creature and its goal: the corners of a path over a grid, found by A*.
+
+use std::collections::BTreeMap;
+
+use glam::DVec3;
+use pathfinding::directed::astar::astar;
+
+use super::way::Way;
+use super::{Creature, Surroundings};
+use crate::kind::Extent;
+
+/// Width of the grid's cells, as a share of the creature's height.
+const CELL: f64 = 0.35;
+
+/// So many steps from cell to cell are tried before it gives up.
+const MOST_STEPS: usize = 500;
+
+/// Straight lines are looked along in pieces of this share of its height.
+const PIECE: f64 = 1.0;
+
+/// A corner is passed when it is this near, as a share of the creature's height.
+pub(super) const PASSED: f64 = 0.12;
+
+/// A way is looked for anew after so many seconds, for a giant; and after so many if there was none.
+const ANEW: f64 = 1.0;
+const AGAIN: f64 = 4.0;
+
+/// A place on the grid: steps from where the creature is along X and Z, and how high above it the ground is there, in
+/// thousandths of its height, since there may be several storeys.
+type Cell = [i32; 3];
+
+/// The four neighbours of a cell, around it. A step between two of them leads to the corner that both have in common.
+const SIDES: [[i32; 2]; 4] = [[1, 0], [0, 1], [-1, 0], [0, -1]];
+
+/// What steps to a neighbour and across a corner cost.
+const STEP: u32 = 10;
+const ACROSS: u32 = 14;
+
+/// A step across a corner leads to the same storey on both ways, to so many thousandths of the height.
+const SAME_STOREY: i32 = 100;
+
+impl Creature {
+    /// Finds the corners of the way to a goal, if it is time for that.
+    pub(super) fn find_corners(&mut self, around: &Surroundings<'_>, extent: &Extent, way: &Way) {
+        let passed = PASSED * self.size.height;
+        let position = self.state.position;
+        let is_there = |corner: &DVec3| (*corner - position).with_y(0.0).length() < passed;
+        while self.state.walked.corners.first().is_some_and(is_there) {
+            self.state.walked.corners.remove(0);
+        }
+        if self.state.walked.ticks_left > 0 {
+            return;
+        }
+        let slim = extent.slim();
+        let at = std::time::Instant::now();
+        let found = self.corners(around, &slim, way);
+        eprintln!(
+            "PLAN {:?} {} us",
+            found.as_ref().map(|f| f.len()),
+            at.elapsed().as_micros()
+        );
+        let seconds = if found.is_some() { ANEW } else { AGAIN };
+        let ticks = seconds * self.size.pace / self.kind.brain().tick();
+        self.state.walked.ticks_left = ticks.clamp(1.0, 1e6) as u32;
+        self.state.walked.corners = found.unwrap_or_default();
+    }
+
+    /// The corners of a way; `None` if there is none, or it is too long.
+    fn corners(&self, around: &Surroundings<'_>, slim: &Extent, way: &Way) -> Option<Vec<DVec3>> {
+        let start = self.state.position;
+        let end = |from: DVec3| {
+            let to = (way.goal - from).with_y(0.0);
+            let left = (to.length() - way.within).max(0.0);
+            from + to.normalize_or_zero() * left
+        };
+        if self.passes(around, slim, start, end(start)).is_some() {
+            return Some(Vec::new());
+        }
+        // Those that it has are as good as new ones, as long as they lead there.
+        let known = &self.state.walked.corners;
+        if let Some(last) = known.last() {
+            let from = core::iter::once(start).chain(known.iter().copied());
+            let to = known.iter().copied().chain([end(*last)]);
+            let mut pieces = from.zip(to);
+            if pieces.all(|(from, to)| self.passes(around, slim, from, to).is_some()) {
+                return Some(known.clone());
+            }
+        }
+        let grid = Grid {
+            creature: self,
+            around,
+            slim,
+            start,
+            cell: CELL * self.size.height,
+        };
+        let places = grid.search(way)?;
+        // Straight on wherever nothing stands in between.
+        let mut corners = Vec::new();
+        let mut index = 0;
+        while index + 1 < places.len() {
+            let passes = |next: &usize| {
+                let [from, to] = [places[index], places[*next]];
+                self.passes(around, slim, from, to).is_some()
+            };
+            let far = (index + 2..places.len()).rev().find(passes);
+            index = far.unwrap_or(index + 1);
+            corners.push(places[index]);
+        }
+        Some(corners)
+    }
+
+    /// The height of the ground at a place, if it can walk there straight from another one.
+    fn passes(
+        &self,
+        around: &Surroundings<'_>,
+        slim: &Extent,
+        from: DVec3,
+        to: DVec3,
+    ) -> Option<f64> {
+        let way = (to - from).with_y(0.0);
+        let pieces = (way.length() / (PIECE * self.size.height)).ceil().max(1.0);
+        let step = way / pieces;
+        let mut room = self.room_towards(around, slim, step);
+        room.origin = from;
+        for _ in 0..pieces as u32 {
+            room.origin = room.walked(step.length())?;
+        }
+        Some(room.origin.y)
+    }
+}
+
+/// A grid around a creature.
+struct Grid<'a> {
+    creature: &'a Creature,
+    around: &'a Surroundings<'a>,
+    slim: &'a Extent,
+    start: DVec3,
+    /// Width of its cells, metres.
+    cell: f64,
+}
+
+impl Grid<'_> {
+    /// Places on the shortest way to a goal, from the start on.
+    fn search(&self, way: &Way) -> Option<Vec<DVec3>> {
+        let to_goal = |at: &Cell| (way.goal - self.place(*at)).with_y(0.0).length();
+        let is_there = |at: &Cell| to_goal(at) <= way.within.max(0.75 * self.cell);
+        let guess = |at: &Cell| {
+            let left = (to_goal(at) - way.within).max(0.0) / self.cell;
+            (f64::from(STEP) * left) as u32
+        };
+        let mut known = Known::default();
+        let next = |at: &Cell| {
+            let mut reached = Vec::new();
+            let sides: [Option<Cell>; 4] =
+                core::array::from_fn(|side| self.beside(*at, side, &mut known));
+            for side in 0..4 {
+                reached.extend(sides[side].map(|to| (to, STEP)));
+                let other = (side + 1) % 4;
+                if let (Some(a), Some(b)) = (sides[side], sides[other])
+                    && let Some(to) = self.beside(a, other, &mut known)
+                    && let Some(same) = self.beside(b, side, &mut known)
+                    && (to[2] - same[2]).abs() <= SAME_STOREY
+                {
+                    reached.push((to, ACROSS));
+                }
+            }
+            reached
+        };
+        let found = astar(&[0; 3], next, guess, is_there);
+        eprintln!("TRIED {}", known.tried);
+        let (cells, _) = found?;
+        Some(cells.into_iter().map(|at| self.place(at)).collect())
+    }
+
+    /// The neighbour of a cell, if it can walk there.
+    fn beside(&self, at: Cell, side: usize, known: &mut Known) -> Option<Cell> {
+        if let Some(known) = known.steps.get(&(at, side)) {
+            return *known;
+        }
+        if known.tried >= MOST_STEPS {
+            return None;
+        }
+        known.tried += 1;
+        let [x, z] = SIDES[side];
+        let to = self.place([at[0] + x, at[1] + z, 0]);
+        let home = self.creature.state.home;
+        let far = |place: DVec3| (place - home).with_y(0.0).length();
+        let is_inside = far(to) <= self.creature.config.arena.max(far(self.start));
+        let passes = || {
+            let from = self.place(at);
+            self.creature.passes(self.around, self.slim, from, to)
+        };
+        let level = is_inside.then(passes).flatten();
+        let to = level.map(|level| {
+            let storey = (level - self.start.y) / self.unit();
+            [at[0] + x, at[1] + z, storey.round() as i32]
+        });
+        known.steps.insert((at, side), to);
+        if let Some(to) = to {
+            // What it can walk, it can walk back.
+            known.steps.insert((to, (side + 2) % 4), Some(at));
+        }
+        to
+    }
+
+    fn place(&self, [x, z, storey]: Cell) -> DVec3 {
+        let level = DVec3::new(f64::from(x), 0.0, f64::from(z)) * self.cell;
+        self.start + level + DVec3::Y * (f64::from(storey) * self.unit())
+    }
+
+    fn unit(&self) -> f64 {
+        1e-3 * self.creature.size.height
+    }
+}
+
+/// Steps of a grid that were tried.
+#[derive(Default)]
+struct Known {
+    /// From a cell to a side: where that leads.
+    steps: BTreeMap<(Cell, usize), Option<Cell>>,
+    tried: usize,
+}

@@ -1,0 +1,234 @@
+//! How a creature moves along its way: its speed and its turning, and how they change.
+
+use core::f64::consts::TAU;
+
+use glam::DVec3;
+
+use super::legs::at_once;
+use super::move_on::LOOKS;
+use super::state::Playing;
+use super::way::Way;
+use super::{Creature, CreatureState};
+use crate::angle::nearest_turn;
+use crate::feet::{GRAVITY, STEP_TIME};
+use crate::kind::Gait;
+
+/// How fast its speed changes, metres a second squared, and a giant's turning, radians a second squared: 0.5 g is the
+/// most that its limbs may start with, and riders stand on them. Smaller ones turn sharper, by their height.
+const SPEEDS_UP: f64 = 1.2;
+const SLOWS_DOWN: f64 = 2.0;
+const HALTS: f64 = 6.0;
+const TURNS: f64 = 0.12;
+
+/// How fast a giant steers towards a goal, radians a second for each radian that it is aside.
+const STEERS: f64 = 0.8;
+
+/// It turns to within this angle at best, radians.
+const LEAST_WITHIN: f64 = 0.003;
+
+/// How far the body turns away from a foot before that steps, as a share of the leg's length, when it turns on the spot
+/// by steps alone.
+const TURNS_BY_STEP: f64 = 0.4;
+
+/// The slowest walk, as a share of its speed.
+const SLOWEST: f64 = 0.35;
+
+/// It turns on the spot first if its goal is further aside than this, radians; and walks on if it is nearer. At the
+/// corners of a way it turns sooner, and until it looks straight ahead.
+const TURN_FIRST: f64 = 1.2;
+const WALK_ON: f64 = 0.5;
+
+/// A goal that is no further aside than this is straight ahead, radians.
+pub(super) const STRAIGHT: f64 = 0.15;
+
+/// Where a creature is, and how it moves.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Course {
+    pub(super) position: DVec3,
+    pub(super) yaw: f64,
+    /// Along its heading, metres a second, and radians a second to the left.
+    pub(super) speed: f64,
+    pub(super) yaw_rate: f64,
+    /// How far its way is free, metres.
+    pub(super) ahead: f64,
+    /// True while it turns on the spot, and while it stops abruptly.
+    turning: bool,
+    pub(super) halts: bool,
+}
+
+impl Course {
+    pub(super) fn of(state: &CreatureState) -> Self {
+        Self {
+            position: state.position,
+            yaw: state.yaw,
+            speed: state.speed,
+            yaw_rate: state.yaw_rate,
+            ahead: state.walked.ahead,
+            turning: matches!(state.playing, Playing::Turn(_)),
+            halts: state.halts,
+        }
+    }
+}
+
+/// What a creature wants of its course.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Wanted {
+    speed: f64,
+    pub(super) turn: f64,
+    /// How far its next goal is aside of its heading, radians, the way round on which it turns; and how far away,
+    /// metres.
+    pub(super) aside: f64,
+    pub(super) distance: f64,
+    pub(super) arrived: bool,
+    pub(super) turns_on_spot: bool,
+    /// True if it walks.
+    pub(super) walks: bool,
+    /// True if it stands before something.
+    pub(super) is_stopped: bool,
+}
+
+impl Creature {
+    /// Its walking speed, metres a second.
+    pub(super) fn full_speed(&self, gait: &Gait) -> f64 {
+        gait.speed * self.size.scale * self.size.rate
+    }
+
+    /// How far it has to see: as far as it takes to come to a stand, at its walking speed, and some ticks longer.
+    pub(super) fn sight(&self, gait: &Gait) -> f64 {
+        let speed = self.full_speed(gait);
+        let looks = 2.0 * LOOKS as f64 * self.kind.brain().tick();
+        speed * speed / (2.0 * 0.7 * SLOWS_DOWN) + speed * looks
+    }
+
+    /// How far it has to be able to turn, radians, before it begins to do so as fast as it can.
+    pub(super) fn turning_room(&self, gait: &Gait) -> f64 {
+        let rate = self.most_turn(gait);
+        let looks = 2.0 * LOOKS as f64 * self.kind.brain().tick();
+        rate * rate / (2.0 * 0.7 * self.turns()) + rate * looks
+    }
+
+    /// How fast its turning changes, radians a second squared.
+    pub(super) fn turns(&self) -> f64 {
+        TURNS / (self.size.pace * self.size.pace).max(1e-6)
+    }
+
+    /// How fast it wants to walk and turn, as far as it knows its way.
+    pub(super) fn wanted(&self, gait: &Gait, way: Option<&Way>, course: &Course) -> Wanted {
+        let mut wanted = Wanted::default();
+        let Some(way) = way else { return wanted };
+        let rate = self.size.rate;
+        let full = self.full_speed(gait);
+        let stride = self.stride();
+        // Steps are shorter, and take longer.
+        let careful = full * stride * stride;
+        // Clips and their rates are slower in a larger creature already.
+        let steers = STEERS / (self.size.pace * rate).max(1e-3);
+        let walked = &self.state.walked;
+        let is_near = !way.walks || level(way.goal - course.position).0 <= way.within;
+        let corner = walked.corners.first().filter(|_| !is_near);
+        let (goal, goal_within) = corner.map_or((way.goal, way.within), |corner| (*corner, 0.0));
+        let (distance, direction) = level(goal - course.position);
+        let ahead = nearest_turn(direction - course.yaw);
+        let bearing = way.bearing.filter(|_| is_near).unwrap_or(0.0);
+        let aside = nearest_turn(ahead - bearing);
+        // The other way round if this one is blocked.
+        let is_round = f64::from(walked.round) * aside < 0.0;
+        let aside = if is_round {
+            aside + TAU * f64::from(walked.round)
+        } else {
+            aside
+        };
+        (wanted.aside, wanted.distance) = (aside, distance);
+        let within = way.within_angle.max(LEAST_WITHIN);
+        let is_turned = way.bearing.is_none() || aside.abs() <= within;
+        let braked = |distance: f64| (2.0 * 0.7 * SLOWS_DOWN * distance.max(0.0)).sqrt();
+        let slowest = SLOWEST * careful;
+        let free = braked(course.ahead);
+        wanted.is_stopped = !is_near && walked.is_known && free < slowest;
+        if is_near {
+            wanted.arrived = is_turned;
+            wanted.turns_on_spot = !is_turned;
+        } else {
+            let most = match (corner.is_some(), course.turning) {
+                (true, true) => STRAIGHT,
+                (true, false) | (false, true) => WALK_ON,
+                (false, false) => TURN_FIRST,
+            };
+            let stops = wanted.is_stopped && aside.abs() > STRAIGHT;
+            wanted.turns_on_spot = aside.abs() > most || stops;
+            wanted.walks = !wanted.turns_on_spot;
+        }
+        if wanted.walks {
+            let speed = careful.min(braked(distance - goal_within)).max(slowest);
+            wanted.speed = if wanted.is_stopped {
+                0.0
+            } else {
+                speed.min(free)
+            };
+            wanted.turn = (aside * steers).clamp(-gait.steer_rate, gait.steer_rate) * rate;
+        }
+        // It has got as far as it gets.
+        wanted.arrived |= walked.is_blocked;
+        if wanted.turns_on_spot {
+            let stoppable = |angle: f64| (2.0 * 0.7 * self.turns() * angle.max(0.0)).sqrt();
+            // It gets there in the end, and no faster than it can stop there.
+            let braked = stoppable(aside.abs() - 0.5 * within).max(0.5 * stoppable(0.5 * within));
+            let free = stoppable(walked.turn);
+            wanted.turn = aside.signum() * braked.min(self.most_turn(gait)).min(free);
+            // Not before it stands.
+            if course.speed > SLOWEST * full {
+                wanted.turn = 0.0;
+            }
+        }
+        wanted
+    }
+
+    /// Its course `dt` seconds later, if it tries to do what is wanted. Speeds change; its place does not.
+    pub(super) fn moved(&self, gait: &Gait, wanted: &Wanted, course: Course, dt: f64) -> Course {
+        let mut moved = course;
+        let change = wanted.speed - course.speed;
+        let slows_down = if course.halts { HALTS } else { SLOWS_DOWN };
+        moved.speed += change.clamp(-slows_down * dt, SPEEDS_UP * dt);
+        moved.halts &= moved.speed > 0.0;
+        if wanted.speed > 0.0 {
+            // A foot that hardly moves is no walk: the first step already has some speed.
+            moved.speed = moved.speed.max(0.02 * self.full_speed(gait));
+        }
+        let change = wanted.turn - course.yaw_rate;
+        moved.yaw_rate += change.clamp(-self.turns() * dt, self.turns() * dt);
+        moved
+    }
+
+    /// How fast the clip of its gait is played at a course.
+    pub(super) fn clip_speed(&self, gait: &Gait, course: &Course) -> f64 {
+        match self.state.playing {
+            Playing::Walk => course.speed / (self.full_speed(gait) * self.stride()),
+            Playing::Turn(_) => {
+                (course.yaw_rate.abs() / (gait.turn_rate * self.size.rate)).min(1.0)
+            }
+            Playing::Idle | Playing::Act(_) => 1.0,
+        }
+    }
+
+    /// How fast it turns on the spot, radians a second: as its file says, but without a clip for it no faster than its
+    /// feet can follow by steps of their own.
+    fn most_turn(&self, gait: &Gait) -> f64 {
+        let most = gait.turn_rate * self.size.rate;
+        let legs = self.kind.legs();
+        if gait.turn.is_some() || legs.is_empty() {
+            return most;
+        }
+        let rounds = legs.len().div_ceil(at_once(legs.len())) as f64;
+        let by_steps = legs.iter().map(|leg| {
+            let radius = leg.stands_at.with_y(0.0).length().max(0.1 * leg.length);
+            let time = STEP_TIME * (leg.length * self.size.scale / GRAVITY).sqrt();
+            TURNS_BY_STEP * leg.length / (radius * rounds * time)
+        });
+        by_steps.fold(most, f64::min)
+    }
+}
+
+/// Length of the level part of a vector, and its direction, radians from +Z to the left.
+fn level(way: DVec3) -> (f64, f64) {
+    (way.with_y(0.0).length(), libm::atan2(way.x, way.z))
+}

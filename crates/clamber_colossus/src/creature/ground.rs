@@ -1,0 +1,81 @@
+//! The ground that a creature walks on: its origin follows it, and steps are shorter where it is steep.
+
+use glam::DVec3;
+
+use super::hips::approach;
+use super::state::{GROUND, NO_GROUND};
+use super::{Creature, Surroundings};
+use crate::feet::Ground;
+
+/// How much shorter its steps are where it goes up and down: on a slope of 45 degrees, by one over one and this.
+const CAREFUL: f64 = 1.2;
+
+/// Time constant with which a giant takes the ground ahead into account, seconds.
+const LOOKS_AHEAD: f64 = 1.0;
+
+/// The largest vertical acceleration from following the ground, metres a second squared.
+const CLIMBS: f64 = 0.5;
+
+impl Creature {
+    /// How long its steps are, as a share of those of its clip.
+    pub(super) fn stride(&self) -> f64 {
+        1.0 / (1.0 + CAREFUL * self.state.steepness)
+    }
+
+    /// Lets the model's origin follow the ground below it, as softly as riders want it.
+    pub(super) fn follow_ground(&mut self, around: &Surroundings<'_>, dt: f64) {
+        let height = self.size.height;
+        let ground = Ground {
+            terrain: around.terrain,
+            reach: 0.5 * height,
+        };
+        let heading = self.state.heading();
+        let spacing = 0.07 * height;
+        let aside = DVec3::new(heading.z, 0.0, -heading.x) * spacing;
+        // One place in each tick, and all of them in the first one.
+        let is_first = self.state.ticks <= 1;
+        let turn = (self.state.ticks % GROUND as u64) as usize;
+        for index in (0..GROUND).filter(|index| is_first || *index == turn) {
+            let place = match index {
+                7 => aside,
+                8 => -aside,
+                step => heading * ((step as f64 - 3.0) * spacing),
+            };
+            let level = ground.below(self.state.position + place);
+            self.state.ground[index] = level.map_or(NO_GROUND, |(level, _)| level);
+        }
+        // The mean over what it walks on within a step or two: a step in the ground becomes a ramp.
+        let known =
+            |index: usize| Some(self.state.ground[index]).filter(|level| *level < NO_GROUND);
+        let (mut sum, mut count, mut steepest) = (0.0, 0.0, 0f64);
+        for index in 0..7 {
+            let Some(level) = known(index) else { continue };
+            (sum, count) = (sum + level, count + 1.0);
+            if let Some(before) = index.checked_sub(1).filter(|_| index >= 3).and_then(known) {
+                steepest = steepest.max((level - before).abs() / spacing);
+            }
+        }
+        if count == 0.0 {
+            return;
+        }
+        if let [Some(left), Some(right)] = [7, 8].map(known) {
+            steepest = steepest.max((left - right).abs() / (2.0 * spacing));
+        }
+        // Gradually, since a stride depends on it.
+        let share = 1.0 - libm::exp(-dt / (LOOKS_AHEAD * self.size.pace.max(1e-3)));
+        self.state.steepness += (steepest - self.state.steepness) * share;
+        if is_first {
+            // It has just been put there.
+            self.state.position.y = sum / count;
+            self.state.steepness = steepest;
+        }
+        let (height, climb) = approach(
+            self.state.position.y,
+            self.state.climb,
+            sum / count,
+            CLIMBS,
+            dt,
+        );
+        (self.state.position.y, self.state.climb) = (height, climb);
+    }
+}

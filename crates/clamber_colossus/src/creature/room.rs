@@ -1,0 +1,411 @@
+//! Whether there is room: how far the way ahead is free, how far it may turn, and whether a blow would go through rock.
+//!
+//! Ground is looked for by rays down along three lanes. What stands on it is looked for by sweeps of thin capsules that
+//! lie across the body, or along it where it turns, one for each band of its height.
+
+use clamber_surface::geometry::WorldCapsule;
+use clamber_surface::surface::TargetMotion;
+use clamber_world::SweepContact;
+use glam::DVec3;
+
+use super::state::NO_GROUND;
+use super::{Creature, Surroundings};
+use crate::feet::Ground;
+use crate::kind::{BANDS, Band, EDGES, Extent, Strike};
+
+/// What is no higher above the ground than this share of its height it steps over.
+pub(super) const STEPS_OVER: f64 = 0.06;
+
+/// It keeps this far from what stands in its way, as a share of its height.
+const MARGIN: f64 = 0.015;
+
+/// The ground ahead is looked at in steps of this share of its height, and in at most so many.
+const SPACING: f64 = 0.08;
+const STATIONS: usize = 24;
+
+/// Lower bands follow the ground in pieces of so many steps. From this band on one straight sweep is enough.
+const PIECE: usize = 3;
+const STRAIGHT_FROM: usize = 2;
+
+/// What a sweep touches does not stop it if it moves along that: the sine of the angle between both.
+const ALONG: f64 = 0.05;
+
+/// Arcs of turns are looked along in chords of this angle, radians: they leave the arc by 1.1 % of its radius.
+const MOST_TURN: f64 = 0.3;
+
+/// Blows may go into what is lower than this share of the creature's height, and into ground: whose normal is as upright
+/// as this cosine.
+const LOW: f64 = 0.12;
+const STEEP: f64 = 0.7;
+
+/// The surroundings of a creature, seen from where it stands, in the direction in which it may go.
+pub(super) struct Room<'a> {
+    around: &'a Surroundings<'a>,
+    extent: &'a Extent,
+    pub(super) origin: DVec3,
+    forward: DVec3,
+    left: DVec3,
+    scale: f64,
+    height: f64,
+    /// Tangent of the steepest ground that it walks onto.
+    steepest: f64,
+}
+
+impl Creature {
+    /// Its surroundings in a direction, radians to the left of its heading.
+    pub(super) fn room<'a>(
+        &self,
+        around: &'a Surroundings<'a>,
+        extent: &'a Extent,
+        angle: f64,
+    ) -> Room<'a> {
+        let (sin, cos) = libm::sincos(self.state.yaw + angle);
+        self.room_towards(around, extent, DVec3::new(sin, 0.0, cos))
+    }
+
+    /// Its surroundings in the direction of a level vector.
+    pub(super) fn room_towards<'a>(
+        &self,
+        around: &'a Surroundings<'a>,
+        extent: &'a Extent,
+        way: DVec3,
+    ) -> Room<'a> {
+        let forward = way.try_normalize().unwrap_or(DVec3::Z);
+        Room {
+            around,
+            extent,
+            origin: self.state.position,
+            forward,
+            left: DVec3::new(forward.z, 0.0, -forward.x),
+            scale: self.size.scale,
+            height: self.size.height,
+            steepest: libm::tan(self.config.most_slope),
+        }
+    }
+}
+
+impl Creature {
+    /// False if the limb of an attack would go through rock or another creature. What is low does not count: feet come
+    /// down on the ground, and hands may strike it.
+    pub(super) fn may_strike(&self, strike: &Strike, around: &Surroundings<'_>) -> bool {
+        let world = self.state.world_from_model(self.size.scale);
+        let low = self.state.position.y + LOW * self.size.height;
+        let mut counts =
+            |hit: &SweepContact| hit.contact.point.y > low && hit.contact.normal.y.abs() < STEEP;
+        for (radius, way) in &strike.swept {
+            let count = way.len().max(2) as f64 - 1.0;
+            let places = way.iter().enumerate().map(|(index, place)| {
+                // A leg goes to where it aims little by little.
+                let share = strike.leg.map_or(0.0, |_| index as f64 / count);
+                world.transform_point(*place) + self.state.aim * share
+            });
+            let places: Vec<DVec3> = places.collect();
+            for pair in places.windows(2) {
+                let ball = WorldCapsule::ball(pair[0], radius * self.size.scale);
+                let ways = [pair[1] - pair[0]; 2];
+                if first(around, &ball, ways, &mut counts).is_some() {
+                    return false;
+                }
+            }
+        }
+        true
+    }
+}
+
+impl Room<'_> {
+    /// How far it may walk straight ahead, metres, up to `far`. Negative where it stands in something, or too near.
+    pub(super) fn ahead(&self, far: f64) -> f64 {
+        let far = far.max(0.0);
+        let margin = MARGIN * self.height;
+        let feet = self.band(0);
+        let spacing = SPACING * self.height;
+        let reach = feet.front + margin + far;
+        let count = ((reach / spacing).ceil() as usize).clamp(1, STATIONS);
+        let spacing = reach / count as f64;
+        let lanes = [feet.right, 0.0, feet.left];
+        let levels = lanes.map(|aside| self.lane(aside, spacing, count));
+        let mut free = far;
+        for station in 0..=count {
+            let at = spacing * station as f64;
+            if !self.is_ground(&levels, &lanes, station, spacing, feet.front) {
+                free = free.min(at - spacing - feet.front - margin);
+                break;
+            }
+        }
+        for index in 0..BANDS {
+            let band = self.band(index);
+            let reach = band.front + margin + free;
+            if reach <= 0.0 {
+                break;
+            }
+            if let Some(hit) = self.sweep_ahead(index, &band, reach, spacing, &levels) {
+                free = free.min(hit - band.front - margin);
+            }
+        }
+        free
+    }
+
+    /// Where it is after so many metres straight ahead; `None` if it does not get there.
+    pub(super) fn walked(&self, far: f64) -> Option<DVec3> {
+        let is_free = self.ahead(far) >= far;
+        let there = self.origin + self.forward * far;
+        let level = is_free.then(|| self.below(there)).flatten()?;
+        Some(there.with_y(level))
+    }
+
+    /// How far it may turn on the spot, radians, up to `far` and with its sign: positive to the left.
+    pub(super) fn turn(&self, far: f64) -> f64 {
+        let slope = self.slope();
+        let pieces = (far.abs() / MOST_TURN).ceil().max(1.0);
+        let piece = far / pieces;
+        let mut free = 0.0;
+        for index in 0..pieces as u32 {
+            let turned = self.turn_piece(f64::from(index) * piece, piece, slope);
+            free += turned;
+            if turned.abs() < piece.abs() {
+                break;
+            }
+        }
+        free
+    }
+
+    /// How far it may turn on from where it has turned by an angle.
+    fn turn_piece(&self, from: f64, far: f64, slope: DVec3) -> f64 {
+        let margin = MARGIN * self.height;
+        let mut free = far.abs();
+        for index in 1..BANDS {
+            let band = self.band(index);
+            let thick = self.thick(index);
+            let sizes = [
+                (self.forward, band.back, band.front),
+                (self.left, band.right, band.left),
+            ];
+            for (axis, low, high) in sizes {
+                let inner = thick - margin;
+                let [low, high] = [(low + inner).min(0.0), (high - inner).max(0.0)];
+                let ends = [low, high].map(|at| turned(axis * at, from));
+                let turned = ends.map(|end| turned(end, far.signum() * free));
+                let place = |level: DVec3| {
+                    let up = self.middle(index) + level.dot(slope);
+                    self.origin + level + DVec3::Y * up
+                };
+                let from = ends.map(place);
+                let to = turned.map(place);
+                let capsule = WorldCapsule {
+                    ends: from,
+                    radius: thick,
+                };
+                let ways = [to[0] - from[0], to[1] - from[1]];
+                let goes = |contact: DVec3| {
+                    let way = DVec3::Y.cross(contact - self.origin) * far.signum();
+                    way.normalize_or_zero()
+                };
+                if let Some(time) = self.sweep(&capsule, ways, &goes) {
+                    free *= time;
+                }
+            }
+        }
+        far.signum() * free
+    }
+
+    /// A band's box, metres.
+    fn band(&self, index: usize) -> Band {
+        let Band {
+            right,
+            left,
+            back,
+            front,
+        } = self.extent.bands[index];
+        Band {
+            right: right * self.scale,
+            left: left * self.scale,
+            back: back * self.scale,
+            front: front * self.scale,
+        }
+    }
+
+    /// Half the thickness of a band, and the height of its middle above the ground, metres.
+    fn thick(&self, index: usize) -> f64 {
+        0.5 * (EDGES[index + 1] - EDGES[index]) * self.height
+    }
+
+    fn middle(&self, index: usize) -> f64 {
+        0.5 * (EDGES[index + 1] + EDGES[index]) * self.height
+    }
+
+    /// Heights of the ground along a lane, at so many steps ahead.
+    fn lane(&self, aside: f64, spacing: f64, count: usize) -> [f64; STATIONS + 1] {
+        let mut levels = [NO_GROUND; STATIONS + 1];
+        let mut level = self.origin.y;
+        for (station, found) in levels.iter_mut().enumerate().take(count + 1) {
+            let at = self.forward * (spacing * station as f64) + self.left * aside;
+            if let Some(next) = self.below((self.origin + at).with_y(level)) {
+                (*found, level) = (next, next);
+            }
+        }
+        levels
+    }
+
+    fn below(&self, place: DVec3) -> Option<f64> {
+        let ground = Ground {
+            terrain: self.around.terrain,
+            reach: 0.5 * self.height,
+        };
+        ground.below(place).map(|(level, _)| level)
+    }
+
+    /// True if it can walk on the ground at a station: it is neither too steep, nor a drop, nor a wall.
+    fn is_ground(
+        &self,
+        levels: &[[f64; STATIONS + 1]; 3],
+        lanes: &[f64; 3],
+        station: usize,
+        spacing: f64,
+        front: f64,
+    ) -> bool {
+        let over = STEPS_OVER * self.height;
+        let is_level = |rise: f64, way: f64| {
+            rise.abs() <= self.steepest * way.abs() + over && rise < NO_GROUND
+        };
+        let at = spacing * station as f64;
+        // On what its feet are already it stands; the rest has to carry it.
+        let is_ahead = at > front;
+        for (lane, aside) in levels.iter().zip(lanes) {
+            let level = lane[station];
+            if level == NO_GROUND {
+                if is_ahead {
+                    return false;
+                }
+                continue;
+            }
+            let before = lane[..station].iter().enumerate();
+            let rises = before.filter(|(_, before)| **before < NO_GROUND);
+            let mut rises =
+                rises.map(|(index, before)| (level - before, spacing * (station - index) as f64));
+            if !rises.all(|(rise, way)| is_level(rise, way)) {
+                return false;
+            }
+            let middle = levels[1][station];
+            if is_ahead && middle < NO_GROUND && !is_level(level - middle, *aside) {
+                return false;
+            }
+        }
+        true
+    }
+
+    /// Where a band that lies across the body first touches something ahead: metres from the origin to where its front
+    /// would be.
+    fn sweep_ahead(
+        &self,
+        index: usize,
+        band: &Band,
+        reach: f64,
+        spacing: f64,
+        levels: &[[f64; STATIONS + 1]; 3],
+    ) -> Option<f64> {
+        let thick = self.thick(index);
+        // As wide as the body, but for the round ends.
+        let [right, left] = [(band.right + thick).min(0.0), (band.left - thick).max(0.0)];
+        let way = (reach - thick).max(0.0);
+        let last = ((way / spacing).ceil() as usize).clamp(1, STATIONS);
+        let step = if index < STRAIGHT_FROM { PIECE } else { last };
+        let level = |lane: usize, station: usize| {
+            let known = levels[lane][..=station].iter().rev();
+            let mut known = known.filter(|level| **level < NO_GROUND);
+            known.next().copied().unwrap_or(self.origin.y)
+        };
+        let ends = |station: usize| {
+            let at = if station == last {
+                way
+            } else {
+                spacing * station as f64
+            };
+            let up = self.middle(index);
+            let end = |lane, aside: f64| {
+                let level = DVec3::Y * (level(lane, station) + up);
+                (self.origin + self.forward * at + self.left * aside).with_y(0.0) + level
+            };
+            (at, [end(0, right), end(2, left)])
+        };
+        let goes = |_| self.forward;
+        let mut station = 0;
+        while station < last {
+            let next = (station + step).min(last);
+            let ((from, before), (to, after)) = (ends(station), ends(next));
+            let capsule = WorldCapsule {
+                ends: before,
+                radius: thick,
+            };
+            let ways = [after[0] - before[0], after[1] - before[1]];
+            if let Some(time) = self.sweep(&capsule, ways, &goes) {
+                return Some(from + (to - from) * time + thick);
+            }
+            station = next;
+        }
+        None
+    }
+
+    /// The time of the first touch of a capsule that is in its way, from 0 to 1.
+    fn sweep(
+        &self,
+        capsule: &WorldCapsule,
+        ways: [DVec3; 2],
+        goes: &dyn Fn(DVec3) -> DVec3,
+    ) -> Option<f64> {
+        let mut is_in_the_way =
+            |hit: &SweepContact| hit.separation_normal.dot(goes(hit.contact.point)) < -ALONG;
+        first(self.around, capsule, ways, &mut is_in_the_way)
+    }
+
+    /// The gradient of the ground on which it stands.
+    fn slope(&self) -> DVec3 {
+        let feet = self.band(0);
+        let rise = |axis: DVec3, low: f64, high: f64| {
+            let [low, high] = [
+                low.min(-MARGIN * self.height),
+                high.max(MARGIN * self.height),
+            ];
+            let ends = [low, high].map(|at| self.below(self.origin + axis * at));
+            match ends {
+                [Some(before), Some(after)] => {
+                    let most = self.steepest;
+                    axis * ((after - before) / (high - low)).clamp(-most, most)
+                }
+                _ => DVec3::ZERO,
+            }
+        };
+        rise(self.forward, feet.back, feet.front) + rise(self.left, feet.right, feet.left)
+    }
+}
+
+/// The time at which a capsule first touches something that counts, from 0 to 1.
+fn first(
+    around: &Surroundings<'_>,
+    capsule: &WorldCapsule,
+    ways: [DVec3; 2],
+    counts: &mut dyn FnMut(&SweepContact) -> bool,
+) -> Option<f64> {
+    let reach = ways[0].length().max(ways[1].length()) + capsule.radius;
+    let middle = 0.5 * (capsule.ends[0] + capsule.ends[1]);
+    let reach = reach + 0.5 * capsule.ends[0].distance(capsule.ends[1]);
+    let all = around.terrain.iter().chain(around.creatures);
+    let near = all.filter(|obstacle| {
+        let bounds = obstacle.bounds();
+        bounds.is_none_or(|(center, radius)| center.distance(middle) <= radius + reach)
+    });
+    let hits = near.filter_map(|obstacle| {
+        let still = TargetMotion::Still;
+        obstacle.cast_capsule_where(capsule, ways, still, counts)
+    });
+    hits.map(|hit| hit.time).min_by(f64::total_cmp)
+}
+
+/// A level vector, turned about up.
+fn turned(level: DVec3, angle: f64) -> DVec3 {
+    let (sin, cos) = libm::sincos(angle);
+    DVec3::new(
+        level.x * cos + level.z * sin,
+        level.y,
+        level.z * cos - level.x * sin,
+    )
+}

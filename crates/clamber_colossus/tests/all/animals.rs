@@ -1,0 +1,477 @@
+//! Feet of animals from elsewhere: two, four and eight legs, of two to five joints, with feet below the leg or beside it.
+
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
+use crate::support;
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use crate::support::TICK;
+use clamber_animation::rig::{
+    Channel, Clip, Interpolation, JointId, Keyframes, Playback, Skeleton,
+};
+use clamber_colossus::{
+    Brain, Creature, CreatureConfig, CreatureKind, CreatureParts, Noise, Surroundings,
+};
+use clamber_gltf::load;
+use clamber_surface::mesh::VertexId;
+use clamber_world::{HalfSpace, Obstacle};
+use glam::{DVec3, Vec3};
+use serde_json::{Value, json};
+
+/// An animal of the test data.
+pub(crate) struct Animal {
+    pub(crate) file: &'static str,
+    legs: Vec<Value>,
+    idle: &'static str,
+    walk: &'static str,
+    /// The height for which its clips were made, metres: of a real one, roughly.
+    made_for: f64,
+}
+
+/// A leg for each side, with `L` and `R` for `*`.
+fn both(joints: &[&str], toe: Option<&str>) -> Vec<Value> {
+    let side = |side: &str| {
+        let joints: Vec<String> = joints.iter().map(|name| name.replace('*', side)).collect();
+        let mut leg = json!({ "joints": joints });
+        if let Some(toe) = toe {
+            leg["toe"] = toe.replace('*', side).into();
+        }
+        leg
+    };
+    vec![side("L"), side("R")]
+}
+
+pub(crate) fn animals() -> Vec<Animal> {
+    let dinosaur = |front: bool| {
+        let mut legs = both(&["BackUpLeg.*", "BackLowLeg.*", "BackFoot.*"], None);
+        if front {
+            legs.extend(both(
+                &["FrontUpLeg.*", "FrontLowLeg.*", "FrontFoot.*"],
+                None,
+            ));
+        }
+        legs
+    };
+    let hoofed = || {
+        let mut legs = both(
+            &[
+                "BackLeg.*",
+                "BackUpperLeg.*",
+                "BackLowerLeg.*",
+                "IKBackLeg.*",
+            ],
+            Some("FFB.*"),
+        );
+        let front = ["FrontUpperLeg.*", "FrontLowerLeg.*", "IKFrontLeg.*"];
+        legs.extend(both(&front, Some("FF.*")));
+        legs
+    };
+    let leg = |joints: &[&str]| json!({ "joints": joints });
+    let mut spider = Vec::new();
+    for name in ["FrontLeg", "MidFrontLeg", "MidBackLeg", "BackLeg"] {
+        for side in ["L", "R"] {
+            let joints = ["", "2", "3"].map(|number| format!("{name}{number}.{side}"));
+            let foot = name.replace("Leg", "Foot");
+            // The file's own slip.
+            let foot = match (name, side) {
+                ("FrontLeg", "R") => "FrontFoot2.R".to_owned(),
+                _ => format!("{foot}.{side}"),
+            };
+            spider.push(json!({ "joints": [joints[0], joints[1], joints[2], foot] }));
+        }
+    }
+    let mut other_spider = Vec::new();
+    for number in 1..=4 {
+        let name = |part: &str| format!("Leg{number}{part}.*");
+        let joints = ["Upper", "Mid", "Lower", "Fore"].map(name);
+        other_spider.extend(both(&joints.each_ref().map(String::as_str), None));
+    }
+    vec![
+        Animal {
+            file: "Trex.glb",
+            legs: dinosaur(false),
+            idle: "Armature|TRex_Idle",
+            walk: "Armature|TRex_Walk",
+            made_for: 4.0,
+        },
+        Animal {
+            file: "Apatosaurus.glb",
+            legs: dinosaur(true),
+            idle: "Armature|Apatosaurus_Idle",
+            walk: "Armature|Apatosaurus_Walk",
+            made_for: 6.0,
+        },
+        Animal {
+            file: "Triceratops.glb",
+            legs: dinosaur(true),
+            idle: "Armature|Triceratops_Idle",
+            walk: "Armature|Triceratops_Walk",
+            made_for: 3.0,
+        },
+        Animal {
+            file: "Stag.glb",
+            legs: hoofed(),
+            idle: "AnimalArmature|Idle",
+            walk: "AnimalArmature|Walk",
+            made_for: 2.0,
+        },
+        Animal {
+            file: "Bull.glb",
+            legs: hoofed(),
+            idle: "AnimalArmature|Idle",
+            walk: "AnimalArmature|Walk",
+            made_for: 1.8,
+        },
+        Animal {
+            file: "Fox.glb",
+            legs: vec![
+                leg(&["b_LeftUpperArm_09", "b_LeftForeArm_010", "b_LeftHand_011"]),
+                leg(&["b_RightUpperArm_06", "b_RightForeArm_07", "b_RightHand_08"]),
+                leg(&[
+                    "b_LeftLeg01_015",
+                    "b_LeftLeg02_016",
+                    "b_LeftFoot01_017",
+                    "b_LeftFoot02_018",
+                ]),
+                leg(&[
+                    "b_RightLeg01_019",
+                    "b_RightLeg02_020",
+                    "b_RightFoot01_021",
+                    "b_RightFoot02_022",
+                ]),
+            ],
+            idle: "Survey",
+            walk: "Walk",
+            made_for: 0.6,
+        },
+        Animal {
+            file: "Spider.glb",
+            legs: spider,
+            idle: "SpiderArmature|Spider_Idle",
+            walk: "SpiderArmature|Spider_Walk",
+            made_for: 1.0,
+        },
+        Animal {
+            file: "gltf_spider_animated.gltf",
+            legs: other_spider,
+            idle: "stands",
+            walk: "stands",
+            made_for: 1.0,
+        },
+    ]
+}
+
+pub(crate) fn kind(animal: &Animal, height: f64) -> Option<Arc<CreatureKind>> {
+    kind_with(animal, height, |clips, _| clips)
+}
+
+/// The kind of an animal whose clips were changed.
+fn kind_with(
+    animal: &Animal,
+    height: f64,
+    change: impl Fn(Vec<Clip>, &Skeleton) -> Vec<Clip>,
+) -> Option<Arc<CreatureKind>> {
+    let Some(root) = std::env::var_os("CLAMBER_TEST_DATA") else {
+        eprintln!(
+            "SKIPPED animals: set CLAMBER_TEST_DATA to the folder that holds models/Trex.glb"
+        );
+        return None;
+    };
+    let rig = load(PathBuf::from(root).join("models").join(animal.file)).unwrap();
+    let mut brain = json!({
+        "body": {
+            "height": height,
+            "made_for": animal.made_for,
+            "legs": animal.legs,
+            "gait": { "idle": animal.idle, "walk": animal.walk, "turn_deg": 40, "steer_deg": 20 }
+        },
+        "start": "stands",
+        "states": {
+            "stands": { "transitions": [{ "to": "turns", "when": ["noise > 0"], "after": 1 }] },
+            "turns": { "act": { "turn": { "to": "noise", "within_deg": 5 } }, "transitions": [
+                { "to": "walks", "when": ["done"] }] },
+            "walks": { "act": { "walk": { "to": "noise", "within": 0.5 * height } }, "transitions": [
+                { "to": "stands", "when": ["done"] }] }
+        }
+    });
+    let mut clips = change(rig.clips, &rig.skeleton);
+    if animal.walk == "stands" {
+        // It has one clip, which shows all that it can do but walk; from 2.3 to 3.4 s it stands still.
+        clips.push(still(&clips[0], &rig.skeleton, 3.0));
+        brain["body"]["gait"]["speed"] = json!(0.3);
+    }
+    let parts = CreatureParts {
+        skeleton: rig.skeleton,
+        clips,
+        mesh: rig.collider,
+        weak_points: Vec::new(),
+    };
+    let brain = Brain::from_json(&brain.to_string(), TICK).unwrap();
+    Some(Arc::new(CreatureKind::new(parts, brain).unwrap()))
+}
+
+/// A clip of a second that holds another one's pose at a time.
+fn still(clip: &Clip, skeleton: &Skeleton, time: f64) -> Clip {
+    let pose = clip
+        .sample(&skeleton.rest_pose(), time, Playback::Clamp)
+        .unwrap();
+    let channels = pose.transforms.iter().enumerate().flat_map(|(index, at)| {
+        let joint = JointId(index as u32);
+        let values = [
+            Keyframes::Translation(vec![at.translation; 2]),
+            Keyframes::Rotation(vec![at.rotation; 2]),
+        ];
+        values.map(|values| {
+            Channel::new(joint, Interpolation::Linear, vec![0.0, 1.0], values).unwrap()
+        })
+    });
+    Clip::new("stands".to_owned(), channels.collect())
+}
+
+/// What feet do that stand.
+#[derive(Debug, Default)]
+struct Figures {
+    /// Most that a sole is above or in the ground, and slides, as a share of what is allowed.
+    gap: f64,
+    depth: f64,
+    slide: f64,
+    /// The mean share of the feet that are planted while it stands, once it has come to rest.
+    standing: f64,
+    plants: usize,
+    walked: f64,
+    states: [usize; 3],
+    planted: f64,
+}
+
+fn live(kind: &Arc<CreatureKind>, height: f64) -> Figures {
+    let mut creature = Creature::new(Arc::clone(kind), CreatureConfig::default()).unwrap();
+    let ground = HalfSpace::below(0.0);
+    let terrain: [&dyn Obstacle; 1] = [&ground];
+    let legs = kind.brain().file().body.legs.len();
+    let feet: Vec<Vec<VertexId>> = (0..legs).map(|leg| foot(kind, leg)).collect();
+    let mut figures = Figures::default();
+    let (mut rests, mut resting) = (0, 0.0);
+    let mut skin: Vec<Vec3> = Vec::new();
+    let mut stands: Vec<Option<(u32, [DVec3; 4])>> = vec![None; legs];
+    let slow = height.sqrt();
+    let lap = 12.0 * slow * (0.4 * kind.height() / kind.walking_speed().unwrap()).max(1.0);
+    let seconds = 6.0 * lap;
+    let settled = (0.6 * slow / TICK) as u32;
+    for tick in 0..(seconds / TICK) as u32 {
+        // Now and then it hears something elsewhere.
+        let turn = (f64::from(tick) * TICK / lap) as u32;
+        let angle = f64::from(turn) * 2.4;
+        let place = DVec3::new(libm::sin(angle), 0.0, libm::cos(angle)) * (3.0 * height);
+        let noises = [Noise {
+            place,
+            loudness: 5.0,
+        }];
+        let rings = (f64::from(tick) * TICK).rem_euclid(lap) > 3.0 * slow;
+        let around = Surroundings {
+            terrain: &terrain,
+            noises: &noises[..usize::from(rings)],
+            ..Surroundings::default()
+        };
+        let from = creature.state().position();
+        creature.step(&around).unwrap();
+        figures.walked += creature.state().position().distance(from) / height;
+        figures.states[creature.state().current().index()] += 1;
+        creature.surface().clone().skin_all(&mut skin);
+        let state = creature.state().current();
+        rests = if kind.brain().path(state) == "stands" {
+            rests + 1
+        } else {
+            0
+        };
+        if rests > 2 * settled {
+            let planted = (0..legs)
+                .filter(|leg| creature.state().is_planted(*leg))
+                .count();
+            figures.standing += planted as f64 / legs as f64;
+            resting += 1.0;
+        }
+        let world = creature.surface().world_from_model();
+        for leg in 0..legs {
+            let heights = feet[leg].iter().map(|vertex| {
+                let place = world.transform_point(skin[vertex.index()].as_dvec3());
+                place.y
+            });
+            let lowest = heights.fold(f64::INFINITY, f64::min);
+            if !creature.state().is_planted(leg) {
+                stands[leg] = None;
+                continue;
+            }
+            let sole = creature.sole(leg).unwrap();
+            figures.planted += 1.0 / legs as f64;
+            let (since, at) = *stands[leg].get_or_insert_with(|| {
+                figures.plants += 1;
+                (tick, sole)
+            });
+            if tick == since + settled {
+                stands[leg] = Some((since, sole));
+            }
+            if tick <= since + settled {
+                continue;
+            }
+            let most = (0.01 * kind.foot_length(leg) * creature.scale()).max(0.001 * height);
+            figures.gap = figures.gap.max(lowest / most);
+            figures.depth = figures.depth.max(-lowest / most);
+            let clearance = creature.foot_clearance(leg, &terrain).unwrap();
+            figures.gap = figures.gap.max(clearance / most);
+            figures.depth = figures.depth.max(-clearance / most);
+            let slide = sole
+                .iter()
+                .zip(at)
+                .map(|(a, b)| a.with_y(0.0).distance(b.with_y(0.0)))
+                .fold(0.0, f64::max);
+            figures.slide = figures.slide.max(slide / most);
+        }
+    }
+    figures.standing /= resting;
+    figures.planted /= seconds / TICK;
+    figures
+}
+
+/// Skin that moves with a foot alone, or nearly.
+fn foot(kind: &CreatureKind, leg: usize) -> Vec<VertexId> {
+    let skeleton = kind.skeleton();
+    let file = &kind.brain().file().body.legs[leg];
+    let ankle = skeleton.find(file.joints.last().unwrap()).unwrap();
+    let mesh = kind.mesh();
+    let share = |vertex: &VertexId| {
+        let ours = mesh.influences(*vertex);
+        let ours = ours.filter(|(joint, _)| skeleton.is_descendant_or_self(*joint, ankle));
+        ours.map(|(_, weight)| weight).sum::<f32>()
+    };
+    let all = || (0..mesh.positions().len() as u32).map(VertexId);
+    all().filter(|vertex| share(vertex) > 0.5).collect()
+}
+
+/// Standing, walking and turning, feet are on the ground to 1 % of their soles or 0.1 % of the height.
+#[test]
+fn feet_stand_on_the_ground() {
+    let mut worst = Vec::new();
+    for animal in animals() {
+        for height in [1.0, 20.0] {
+            let Some(kind) = kind(&animal, height) else {
+                return;
+            };
+            let figures = live(&kind, height);
+            println!(
+                "{} {height} m, {:.3} heights/s: {figures:.2?}",
+                animal.file,
+                kind.walking_speed().unwrap() / kind.height()
+            );
+            let stands = figures.gap.max(figures.depth).max(figures.slide) <= 1.0;
+            let lives = figures.walked > 10.0 && figures.states.iter().all(|ticks| *ticks > 60);
+            if !stands || !lives || figures.standing < 0.95 {
+                worst.push(animal.file);
+            }
+        }
+    }
+    assert!(worst.is_empty(), "{worst:?}");
+}
+
+/// Exporters bake legs that were stretched along their bones: they stand as others do.
+#[test]
+fn stretched_legs_stand_too() {
+    for file in ["Fox.glb", "Bull.glb"] {
+        let all = animals();
+        let animal = all.iter().find(|animal| animal.file == file).unwrap();
+        let stretched = |mut clips: Vec<Clip>, skeleton: &Skeleton| {
+            let legs = animal
+                .legs
+                .iter()
+                .flat_map(|leg| leg["joints"].as_array().unwrap());
+            let joints: Vec<JointId> = legs
+                .map(|name| skeleton.find(name.as_str().unwrap()).unwrap())
+                .collect();
+            for clip in &mut clips {
+                let mut channels = clip.channels().to_vec();
+                channels.extend(joints.iter().map(|joint| {
+                    let rest = skeleton.joints()[joint.index()].rest.scale;
+                    let values = vec![rest * Vec3::new(0.99, 1.03, 1.0); 2];
+                    let values = Keyframes::Scale(values);
+                    Channel::new(*joint, Interpolation::Linear, vec![0.0, 1.0], values).unwrap()
+                }));
+                let speed = clip.ground_speed();
+                *clip = Clip::new(clip.name.clone(), channels)
+                    .with_ground_speed(speed)
+                    .unwrap();
+            }
+            clips
+        };
+        let Some(kind) = kind_with(animal, 4.0, stretched) else {
+            return;
+        };
+        let figures = live(&kind, 4.0);
+        println!("{file}: {figures:.2?}");
+        let worst = figures.gap.max(figures.depth).max(figures.slide);
+        assert!(
+            worst <= 1.0 && figures.standing > 0.95,
+            "{file}: {figures:?}"
+        );
+    }
+}
+
+/// Legs that cannot be are refused, with the names of their joints.
+#[test]
+fn legs_that_cannot_be_are_refused_by_name() {
+    let leg = |joints: &[&str]| {
+        let brain = json!({
+            "body": { "legs": [{ "joints": joints }] }, "start": "rests", "states": { "rests": {} }
+        });
+        support::try_kind(&brain.to_string())
+            .map(|_| ())
+            .unwrap_err()
+            .to_string()
+    };
+    // The giant's soles are skin of its feet; nothing hangs from a joint that is no more than a helper.
+    for (joints, text) in [
+        (
+            &["thigh.L"][..],
+            "`joints` is 1, which is not from 2 to 5 joints of a leg",
+        ),
+        (
+            &["pelvis", "thigh.L", "shin.L", "foot.L", "toe.L", "toe.L"],
+            "`joints` is 6",
+        ),
+        (
+            &["shin.L", "thigh.L", "foot.L"],
+            "`thigh.L` is not below `shin.L`",
+        ),
+        (
+            &["thigh.L", "shin.L", "shin.L"],
+            "`shin.L` is not below `shin.L`",
+        ),
+        (&["thigh.L", "shin.L", "nose"], "there is no joint `nose`"),
+    ] {
+        let error = leg(joints);
+        assert!(error.contains(text), "{joints:?}: {error}");
+    }
+    let Some(root) = std::env::var_os("CLAMBER_TEST_DATA") else {
+        return;
+    };
+    // A pole target moves no skin.
+    let rig = load(PathBuf::from(root).join("models/Stag.glb")).unwrap();
+    let joints = ["BackLeg.L", "BackUpperLeg.L", "PoleTarget.L"];
+    let brain = json!({
+        "body": { "legs": [{ "joints": joints }] }, "start": "rests", "states": { "rests": {} }
+    });
+    let parts = CreatureParts {
+        skeleton: rig.skeleton,
+        clips: rig.clips,
+        mesh: rig.collider,
+        weak_points: Vec::new(),
+    };
+    let brain = Brain::from_json(&brain.to_string(), TICK).unwrap();
+    let error = CreatureKind::new(parts, brain)
+        .map(|_| ())
+        .unwrap_err()
+        .to_string();
+    let text = "the leg of `BackLeg.L`, `BackUpperLeg.L`, `PoleTarget.L` cannot be moved: no skin moves with its \
+                foot `PoleTarget.L`";
+    assert_eq!(error, text);
+}

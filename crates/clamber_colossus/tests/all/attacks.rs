@@ -1,0 +1,335 @@
+//! Attacks of the giant: readable, by touch, in their window only. Scenes B39 and B40.
+
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
+use crate::support::{TICK, brain_file, brain_with, creature, kind, person};
+use clamber_animation::rig::Playback;
+use clamber_animation::{joint_in_model, rig::JointId};
+use clamber_colossus::brain::Act;
+use clamber_colossus::{Creature, CreatureConfig, CreatureEvent, Surroundings};
+use clamber_world::{HalfSpace, Obstacle};
+use glam::DVec3;
+
+/// The states of the giant's own brain that attack, each with its act as text.
+fn attacks() -> Vec<(String, serde_json::Value)> {
+    fn collect(states: &serde_json::Value, found: &mut Vec<(String, serde_json::Value)>) {
+        for (name, state) in states.as_object().into_iter().flatten() {
+            if state["act"]["attack"].is_object() {
+                found.push((name.clone(), state["act"].clone()));
+            }
+            collect(&state["states"], found);
+        }
+    }
+    let file: serde_json::Value = serde_json::from_str(&brain_file()).unwrap();
+    let mut found = Vec::new();
+    collect(&file["states"], &mut found);
+    found
+}
+
+/// The giant, standing, a second before an attack.
+fn before(act: &serde_json::Value) -> Creature {
+    let states = serde_json::json!({
+        "waits": { "transitions": [{ "to": "attacks", "after": 1 }] },
+        "attacks": { "act": act, "transitions": [{ "to": "ends" }] },
+        "ends": { "final": true }
+    });
+    let kind = kind(&brain_with("waits", &states.to_string()));
+    creature(&kind, CreatureConfig::default())
+}
+
+/// What came of one attack on one person.
+#[derive(Clone, Copy, Debug)]
+struct Outcome {
+    hits: usize,
+    /// Seconds from the beginning of the attack's clip to the blow.
+    time: f64,
+    /// Angle between the blow and the limb's velocity there, degrees.
+    aside: f64,
+}
+
+/// Lets an attack happen to somebody who stands at a place, and perhaps runs away after 0.3 s.
+fn attack(before: &Creature, at: DVec3, flees: bool) -> Outcome {
+    let mut giant = before.clone();
+    let ground = HalfSpace::below(0.0);
+    let terrain: [&dyn Obstacle; 1] = [&ground];
+    let mut victim = person(at);
+    let away = (at - giant.state().position()).with_y(0.0).normalize();
+    let mut outcome = Outcome {
+        hits: 0,
+        time: f64::NAN,
+        aside: 0.0,
+    };
+    let mut begun: Option<usize> = None;
+    let brain = giant.kind().brain();
+    let Some(Act::Attack(act)) = brain.act(brain.find("attacks").unwrap()) else {
+        unreachable!("the state attacks");
+    };
+    // The limb alone: some joint or other moves in any direction.
+    let is_limb = |name: &str| {
+        act.limb
+            .iter()
+            .any(|pattern| match pattern.split_once('*') {
+                Some((start, end)) => name.starts_with(start) && name.ends_with(end),
+                None => name == pattern,
+            })
+    };
+    let joints = giant.kind().skeleton().joints().iter().enumerate();
+    let joints: Vec<JointId> = joints
+        .filter(|(_, joint)| is_limb(&joint.name))
+        .map(|(index, _)| JointId(index as u32))
+        .collect();
+    for tick in 0..700 {
+        let from = giant.palette().clone();
+        let world_before = *giant.surface().world_from_model();
+        let people = [victim];
+        let around = Surroundings {
+            terrain: &terrain,
+            people: &people,
+            ..Surroundings::default()
+        };
+        let report = giant.step(&around).unwrap().clone();
+        for event in &report.events {
+            if let CreatureEvent::Entered { to, .. } = event {
+                match giant.kind().brain().path(*to) {
+                    "attacks" => begun = Some(tick),
+                    "ends" => return outcome,
+                    _ => {}
+                }
+            }
+        }
+        if let (Some(begun), Some(blow)) = (begun, report.blows.first()) {
+            outcome.hits += report.blows.len();
+            outcome.time = (tick - begun) as f64 * TICK;
+            // The joint whose rigid motion is nearest to the blow's: that of the skin there, but for blending.
+            let world = giant.surface().world_from_model();
+            let motion = |joint: &JointId| {
+                let now = giant.palette().model_from_joint(*joint).unwrap();
+                let was = from.model_from_joint(*joint).unwrap();
+                let local = now
+                    .inverse()
+                    .transform_point3(world.inverse_transform_point(blow.place));
+                let before = world_before.transform_point(was.transform_point3(local));
+                blow.place - before
+            };
+            let asides = joints
+                .iter()
+                .map(|joint| angle(motion(joint), blow.velocity));
+            outcome.aside = asides.fold(f64::INFINITY, f64::min).to_degrees();
+        }
+        let flees_now = flees && begun.is_some_and(|begun| (tick - begun) as f64 * TICK >= 0.3);
+        if flees_now {
+            victim = person(victim.body.ends[0].with_y(0.0) + away * (3.0 * TICK));
+        }
+    }
+    unreachable!("the attack does not end");
+}
+
+/// The angle between two vectors, radians.
+fn angle(a: DVec3, b: DVec3) -> f64 {
+    libm::acos(
+        a.normalize_or_zero()
+            .dot(b.normalize_or_zero())
+            .clamp(-1.0, 1.0),
+    )
+}
+
+/// Where an attack strikes: the end of its limb when it stops to hurt.
+fn spot(giant: &Creature, act: &serde_json::Value) -> DVec3 {
+    let kind = giant.kind();
+    let attack = &act["attack"];
+    let clip = kind.clips().find(attack["clip"].as_str().unwrap()).unwrap();
+    let clip = kind.clips().clip(clip).unwrap();
+    let limb = attack["limb"].as_array().unwrap();
+    let end = limb.last().unwrap().as_str().unwrap();
+    let recovery = clip
+        .markers()
+        .iter()
+        .find(|one| one.name == "recovery")
+        .unwrap();
+    let pose = clip
+        .sample(&kind.skeleton().rest_pose(), recovery.time, Playback::Clamp)
+        .unwrap();
+    let joint = kind.skeleton().find(end).unwrap();
+    joint_in_model(kind.skeleton(), &pose, joint)
+        .unwrap()
+        .translation
+}
+
+#[test]
+fn a_stomp_hits_who_stays_and_spares_who_runs() {
+    for (name, act) in attacks()
+        .iter()
+        .filter(|(name, _)| name.starts_with("stomp"))
+    {
+        let giant = before(act);
+        let spot = spot(&giant, act);
+        let aim = act["attack"]["aim"].as_f64().unwrap();
+        let mut random = fastrand::Rng::with_seed(1);
+        let (mut hit, mut escaped) = (0, 0);
+        const COUNT: usize = 500;
+        for _ in 0..COUNT {
+            let (angle, reach) = (
+                random.f64() * core::f64::consts::TAU,
+                random.f64().sqrt() * aim,
+            );
+            let at = spot + DVec3::new(libm::sin(angle), 0.0, libm::cos(angle)) * reach;
+            let stays = attack(&giant, at.with_y(0.0), false);
+            let runs = attack(&giant, at.with_y(0.0), true);
+            hit += usize::from(stays.hits > 0);
+            escaped += usize::from(runs.hits == 0);
+            assert!(stays.hits <= 1 && runs.hits <= 1, "{stays:?} {runs:?}");
+        }
+        println!("{name}: {hit} of {COUNT} who stay are hit, {escaped} of {COUNT} who run escape");
+        assert!(
+            hit >= COUNT * 90 / 100 && escaped >= COUNT * 95 / 100,
+            "{name}: {hit} {escaped}"
+        );
+    }
+}
+
+#[test]
+fn blows_come_in_the_window_and_along_the_limb() {
+    for (name, act) in attacks() {
+        let giant = before(&act);
+        let spot = spot(&giant, &act).with_y(0.0);
+        let clip = act["attack"]["clip"].as_str().unwrap();
+        let clip = giant.kind().clips().find(clip).unwrap();
+        let markers = giant.kind().clips().clip(clip).unwrap().markers();
+        let time = |name: &str| markers.iter().find(|one| one.name == name).unwrap().time;
+        let window = [time("active") - TICK, time("recovery") + TICK];
+        let (mut hits, mut worst) = (0, 0f64);
+        let mut places = Vec::new();
+        for x in -14..=14 {
+            for z in -4..=16 {
+                let at = DVec3::new(f64::from(x) * 2.0, 0.0, f64::from(z) * 2.0);
+                let outcome = attack(&giant, at, false);
+                assert!(outcome.hits <= 1, "{name}: {outcome:?}");
+                if outcome.hits == 1 {
+                    (hits, worst) = (hits + 1, worst.max(outcome.aside));
+                    assert!(
+                        (window[0]..=window[1]).contains(&outcome.time),
+                        "{name} at {at}: {outcome:?}, active in {window:?}"
+                    );
+                    places.push([at.x, at.z]);
+                }
+            }
+        }
+        let range = |axis: usize| {
+            let all = places.iter().map(|place| place[axis]);
+            [
+                all.clone().fold(f64::INFINITY, f64::min),
+                all.fold(f64::NEG_INFINITY, f64::max),
+            ]
+        };
+        println!(
+            "{name}: window {window:.2?}, spot {spot:.1}, hits {hits} of 609 places, x {:?} z {:?}, at most {worst:.1} degrees aside",
+            range(0),
+            range(1)
+        );
+        assert!(hits > 0, "{name}");
+        assert!(worst <= 10.0, "{name}: {worst} degrees");
+    }
+}
+
+/// The foot that stomped stands where it came down until its clip lifts it, wherever its prey was.
+#[test]
+fn a_stomp_stands_where_it_came_down() {
+    let (_, act) = attacks()
+        .into_iter()
+        .find(|(name, _)| name == "stomp_right")
+        .unwrap();
+    let before = before(&act);
+    let ground = HalfSpace::below(0.0);
+    let terrain: [&dyn Obstacle; 1] = [&ground];
+    let mut furthest = 0f64;
+    for (distance, degrees) in [2.0, 6.0, 9.0, 12.0, 20.0]
+        .into_iter()
+        .flat_map(|distance| [-80.0f64, -40.0, 0.0, 40.0].map(|degrees| (distance, degrees)))
+    {
+        let angle = degrees.to_radians();
+        let at = DVec3::new(libm::sin(angle), 0.0, libm::cos(angle)) * distance;
+        let mut giant = before.clone();
+        let people = [person(at)];
+        let (mut down, mut stood) = (None, 0);
+        for tick in 0..400 {
+            let around = Surroundings {
+                terrain: &terrain,
+                people: &people,
+                ..Surroundings::default()
+            };
+            let report = giant.step(&around).unwrap();
+            let landed = report.events.iter().find_map(|event| match event {
+                CreatureEvent::Plant { leg: 1, place } => Some(*place),
+                _ => None,
+            });
+            if let (None, Some(place)) = (down, landed) {
+                down = Some((tick, place));
+                furthest = furthest.max(place.with_y(0.0).length());
+            }
+            // It is lifted a second after it came down.
+            let Some((since, _)) = down.filter(|(since, _)| (6..54).contains(&(tick - since)))
+            else {
+                continue;
+            };
+            let what = format!("{distance} m, {degrees} degrees, {} ticks", tick - since);
+            assert!(giant.state().is_planted(1), "{what}");
+            let clearance = giant.foot_clearance(1, &terrain).unwrap();
+            let share = clearance / giant.kind().foot_length(1);
+            assert!(share.abs() < 0.01, "{what}: {clearance} m");
+            stood += 1;
+        }
+        assert_eq!(stood, 48, "{distance} m, {degrees} degrees");
+    }
+    // It does aim.
+    assert!(furthest > 9.5, "{furthest}");
+}
+
+/// An attack that is left for another act hurts nobody any more, whatever its clip's pose still is.
+#[test]
+fn an_attack_ends_with_its_act() {
+    let ground = HalfSpace::below(0.0);
+    let terrain: [&dyn Obstacle; 1] = [&ground];
+    for (name, act) in attacks() {
+        for next in [r#""act": "sleep""#, r#""final": true"#] {
+            let states = format!(
+                r#"{{
+                "waits": {{ "transitions": [{{ "to": "attacks", "after": 0.5 }}] }},
+                "attacks": {{ "act": {act}, "transitions": [
+                    {{ "to": "ends", "on": "active", "interrupts": true }}] }},
+                "ends": {{ {next} }} }}"#
+            );
+            let mut giant = creature(
+                &kind(&brain_with("waits", &states)),
+                CreatureConfig::default(),
+            );
+            let ends = giant.kind().brain().find("ends").unwrap();
+            let (mut blows, mut left) = (0, 0);
+            for _ in 0..600 {
+                // People stand everywhere about it.
+                let place = |index: u64| {
+                    let (x, z) = (index % 13, index / 13);
+                    let at = DVec3::new(x as f64 * 3.0 - 18.0, 0.0, z as f64 * 3.0 - 10.0);
+                    clamber_colossus::Person {
+                        id: index,
+                        ..person(at)
+                    }
+                };
+                let people: Vec<_> = (0..169).map(place).collect();
+                let around = Surroundings {
+                    terrain: &terrain,
+                    people: &people,
+                    ..Surroundings::default()
+                };
+                let report = giant.step(&around).unwrap();
+                let dealt = report.blows.len();
+                if giant.state().current() == ends {
+                    left += 1;
+                    blows += dealt;
+                    assert_eq!(giant.attack(), None, "{name}");
+                }
+            }
+            assert!(left > 100, "{name}");
+            assert_eq!(blows, 0, "{name}, then {next}");
+        }
+    }
+}

@@ -1,0 +1,253 @@
+//! Files from elsewhere: what they do not say, the brain's file does.
+
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use crate::support::{TICK, person};
+use clamber_animation::rig::{Channel, Clip, Keyframes, Skeleton};
+use clamber_colossus::{
+    Brain, Creature, CreatureConfig, CreatureEvent, CreatureKind, CreatureParts, Noise,
+    Surroundings,
+};
+use clamber_gltf::{Rig, load};
+use clamber_world::{HalfSpace, Obstacle};
+use glam::{DVec3, Quat};
+use serde_json::{Value, json};
+
+fn rig(file: &str) -> Option<Rig> {
+    let Some(root) = std::env::var_os("CLAMBER_TEST_DATA") else {
+        eprintln!("SKIPPED {file}: set CLAMBER_TEST_DATA to the folder that holds models/Trex.glb");
+        return None;
+    };
+    Some(load(PathBuf::from(root).join("models").join(file)).unwrap())
+}
+
+fn try_kind(rig: &Rig, brain: &Value) -> Result<Arc<CreatureKind>, String> {
+    let parts = CreatureParts {
+        skeleton: rig.skeleton.clone(),
+        clips: rig.clips.clone(),
+        mesh: Arc::clone(&rig.collider),
+        weak_points: rig.weak_points.clone(),
+    };
+    let brain = Brain::from_json(&brain.to_string(), TICK).map_err(|error| error.to_string())?;
+    let kind = CreatureKind::new(parts, brain).map_err(|error| error.to_string())?;
+    Ok(Arc::new(kind))
+}
+
+/// A Trex that bites, by a file that tells when its jaws hurt, and where it is weak.
+fn trex() -> Value {
+    json!({
+        "body": {
+            "height": 12,
+            "clips": { "Armature|TRex_Attack": { "markers": { "active": 0.3, "recovery": 0.8, "snap": [0.35, 0.7] } } },
+            "weak_points": [
+                { "name": "snout", "joint": "Head", "at": [0, 0, 0.2], "radius": 0.1, "hit_points": 2, "major": true },
+                { "name": "tail", "joint": "Tail5", "radius": 0.05, "hit_points": 1 }
+            ]
+        },
+        "start": "waits",
+        "states": {
+            "waits": { "transitions": [{ "to": "bites", "after": 0.5 }] },
+            "bites": { "act": { "attack": { "clip": "Armature|TRex_Attack", "limb": ["Neck", "Head"], "damage": 0.4, "throw": 5 } },
+                "transitions": [{ "to": "waits" }] }
+        }
+    })
+}
+
+#[test]
+fn markers_and_weak_points_of_the_brains_file_are_as_good_as_the_files_own() {
+    let Some(rig) = rig("Trex.glb") else { return };
+    let kind = try_kind(&rig, &trex()).unwrap();
+    let names: Vec<&str> = kind
+        .weak_points()
+        .iter()
+        .map(|point| point.name.as_str())
+        .collect();
+    assert_eq!(names, ["snout", "tail"]);
+    let orders: Vec<u32> = kind.weak_points().iter().map(|point| point.order).collect();
+    assert_eq!(orders, [1, 0]);
+    let mut creature = Creature::new(Arc::clone(&kind), CreatureConfig::default()).unwrap();
+    // At rest it is a fifth of its height ahead of the head's joint.
+    let head = kind.skeleton().find("Head").unwrap();
+    let rest = kind
+        .skeleton()
+        .palette(&kind.skeleton().rest_pose())
+        .unwrap();
+    let point = &kind.weak_points()[0];
+    let frame = rest.model_from_joint(head).unwrap();
+    let at = frame.transform_point3(point.position.as_dvec3()) - frame.translation;
+    let ahead = DVec3::Z * (0.2 * kind.height());
+    assert!(at.distance(ahead) < 1e-3 * kind.height(), "{at}");
+    let radius = f64::from(point.radius) * creature.scale();
+    assert!((radius - 1.2).abs() < 1e-3, "{radius} m");
+    let ground = HalfSpace::below(0.0);
+    let terrain: [&dyn Obstacle; 1] = [&ground];
+    let (mut blows, mut snaps) = (0, 0);
+    for _ in 0..300 {
+        let mouth = creature.weak_point(0).unwrap();
+        let people = [person(mouth - DVec3::Y * 0.8)];
+        let around = Surroundings {
+            terrain: &terrain,
+            people: &people,
+            ..Surroundings::default()
+        };
+        let report = creature.step(&around).unwrap();
+        blows += report.blows.len();
+        let is_snap = |event: &&CreatureEvent| matches!(event, CreatureEvent::Marker { name } if name == "snap");
+        snaps += report.events.iter().filter(is_snap).count();
+    }
+    println!("{blows} blows, {snaps} snaps");
+    assert!(blows >= 2 && snaps >= 4);
+    assert!(kind.report().never.is_empty(), "{:?}", kind.report().never);
+}
+
+#[test]
+fn what_cannot_be_is_refused_by_name() {
+    let Some(rig) = rig("Trex.glb") else { return };
+    let changed = |pointer: &str, value: Value| {
+        let mut file = trex();
+        *file.pointer_mut(pointer).unwrap() = value;
+        try_kind(&rig, &file).unwrap_err()
+    };
+    for (pointer, value, text) in [
+        (
+            "/body/clips",
+            json!({ "Bite": {} }),
+            "there is no clip `Bite`; there is `Armature|TRex_Attack`",
+        ),
+        (
+            "/body/clips/Armature|TRex_Attack/markers/recovery",
+            json!(9),
+            "recovery",
+        ),
+        (
+            "/body/clips/Armature|TRex_Attack/markers/active",
+            json!(-1),
+            "active",
+        ),
+        (
+            "/body/weak_points/0/joint",
+            json!("Nose"),
+            "there is no joint `Nose`",
+        ),
+        ("/body/weak_points/0/radius", json!(-1), "`radius` is -1"),
+        (
+            "/body/weak_points/0/hit_points",
+            json!(0),
+            "`hit_points` is 0",
+        ),
+        ("/body/weak_points/0/at", json!([0, 99, 0]), "`at` is 99"),
+        (
+            "/body/clips/Armature|TRex_Attack",
+            json!({ "marks": {} }),
+            "unknown field `marks`",
+        ),
+    ] {
+        let error = changed(pointer, value);
+        assert!(error.contains(text), "{pointer}: {error}");
+    }
+    let mut file = trex();
+    file["body"]["facing"] = json!("north");
+    let error = try_kind(&rig, &file).unwrap_err();
+    assert!(error.contains("`+z`, `-z`, `+x`, `-x`"), "{error}");
+}
+
+/// The rig as it would be in a file that looks another way: everything is turned about Y.
+fn turned(rig: &Rig, turn: Quat) -> Rig {
+    let mut rig = rig.clone();
+    let mut joints = rig.skeleton.joints().to_vec();
+    let roots: Vec<bool> = joints.iter().map(|joint| joint.parent.is_none()).collect();
+    for joint in joints.iter_mut().filter(|joint| joint.parent.is_none()) {
+        joint.rest.rotation = turn * joint.rest.rotation;
+        joint.rest.translation = turn * joint.rest.translation;
+    }
+    rig.skeleton = Skeleton::new(joints).unwrap();
+    for clip in &mut rig.clips {
+        let channels = clip.channels().iter().map(|channel| {
+            let mut values = channel.values().clone();
+            if roots[channel.joint().index()] {
+                match &mut values {
+                    Keyframes::Translation(all) => all.iter_mut().for_each(|v| *v = turn * *v),
+                    Keyframes::Rotation(all) => all.iter_mut().for_each(|q| *q = turn * *q),
+                    Keyframes::Scale(_) => {}
+                }
+            }
+            let times = channel.times().to_vec();
+            Channel::new(channel.joint(), channel.interpolation(), times, values).unwrap()
+        });
+        *clip = Clip::new(clip.name.clone(), channels.collect());
+    }
+    rig
+}
+
+/// A file that looks another way lives as one that looks along +Z, once the brain's file says where it looks.
+#[test]
+fn a_file_that_looks_another_way_lives_alike() {
+    let Some(rig) = rig("Fox.glb") else { return };
+    let leg = |joints: [&str; 3]| json!({ "joints": joints });
+    let brain = |facing: &str| {
+        json!({
+            "body": {
+                "facing": facing, "height": 2, "made_for": 0.6,
+                "legs": [
+                    leg(["b_LeftUpperArm_09", "b_LeftForeArm_010", "b_LeftHand_011"]),
+                    leg(["b_RightUpperArm_06", "b_RightForeArm_07", "b_RightHand_08"])
+                ],
+                "gait": { "idle": "Survey", "walk": "Walk", "turn_deg": 60, "steer_deg": 30 }
+            },
+            "start": "stands",
+            "states": {
+                "stands": { "transitions": [{ "to": "walks", "when": ["noise > 0"] }] },
+                "walks": { "act": { "walk": { "to": "noise", "within": 1 } }, "transitions": [
+                    { "to": "stands", "when": ["done"] }] }
+            }
+        })
+    };
+    let ahead = try_kind(&rig, &brain("+z")).unwrap();
+    assert!(ahead.walks_aside().unwrap().abs() < 20.0);
+    let ground = HalfSpace::below(0.0);
+    let terrain: [&dyn Obstacle; 1] = [&ground];
+    for (facing, turn) in [
+        ("-z", std::f32::consts::PI),
+        ("+x", std::f32::consts::FRAC_PI_2),
+        ("-x", -std::f32::consts::FRAC_PI_2),
+    ] {
+        let half = 0.5 * f64::from(turn);
+        let turn = Quat::from_xyzw(0.0, libm::sin(half) as f32, 0.0, libm::cos(half) as f32);
+        let rig = turned(&rig, turn);
+        // Untold, it would walk another way than it looks, and says so.
+        let untold = try_kind(&rig, &brain("+z"));
+        if let Ok(untold) = &untold {
+            let aside = untold.walks_aside().unwrap();
+            assert!(aside.abs() > 45.0, "{facing}: {aside}");
+        }
+        let other = try_kind(&rig, &brain(facing)).unwrap();
+        let mut creatures = [&ahead, &other]
+            .map(|kind| Creature::new(Arc::clone(kind), CreatureConfig::default()).unwrap());
+        for tick in 0..900u32 {
+            let noises = [Noise {
+                place: DVec3::new(9.0, 0.0, 14.0),
+                loudness: 5.0,
+            }];
+            let around = Surroundings {
+                terrain: &terrain,
+                noises: &noises[..usize::from(tick % 300 < 9)],
+                ..Surroundings::default()
+            };
+            for creature in &mut creatures {
+                creature.step(&around).unwrap();
+            }
+            let [a, b] = &creatures;
+            let apart = a.state().position().distance(b.state().position());
+            assert!(apart < 2e-3, "{facing}, tick {tick}: {apart}");
+            let skins = [a, b].map(|creature| creature.surface().bounding_ball().unwrap());
+            assert!(
+                skins[0].0.distance(skins[1].0) < 5e-3,
+                "{facing}, tick {tick}"
+            );
+        }
+        assert!(creatures[0].state().position().length() > 8.0);
+    }
+}

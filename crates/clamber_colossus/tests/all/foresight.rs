@@ -1,0 +1,105 @@
+//! How a creature will stand is what comes, as long as its brain decides on nothing else.
+
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
+use crate::support::{TICK, brain_with, creature, kind};
+use clamber_animation::rig::Palette;
+use clamber_colossus::{CreatureConfig, Foresight, Noise, Surroundings};
+use clamber_world::{HalfSpace, Obstacle};
+use glam::DVec3;
+
+/// It turns to a noise, then walks there.
+const HUNTS: &str = r#"{
+    "waits": { "transitions": [{ "to": "turns", "when": ["noise > 0"] }] },
+    "turns": { "act": { "turn": { "to": "noise", "within_deg": 10 } }, "transitions": [
+        { "to": "walks", "when": ["done"] }] },
+    "walks": { "act": { "walk": { "to": "noise", "within": 5 } }, "transitions": [
+        { "to": "waits", "when": ["done"] }] }
+}"#;
+
+/// Walking, turning and coming to a stand, a hand is foreseen to 0.3 m two seconds ahead.
+#[test]
+fn a_hand_is_foreseen_walking_and_turning() {
+    let ground = HalfSpace::below(0.0);
+    let terrain: [&dyn Obstacle; 1] = [&ground];
+    for scale in [1.0, 0.1, 4.0] {
+        // Times go with the square root of sizes.
+        let slow = f64::sqrt(scale);
+        let ahead = 2.0 * slow.min(1.0);
+        let ticks = (ahead / TICK) as usize;
+        let round = (12.0 * slow / TICK) as usize;
+        let ahead = ticks as f64 * TICK;
+        let kind = kind(&brain_with("waits", HUNTS));
+        let config = CreatureConfig {
+            scale,
+            arena: 1e4,
+            ..CreatureConfig::default()
+        };
+        let mut giant = creature(&kind, config);
+        let hand = kind.skeleton().find("hand.L").unwrap();
+        let (mut memory, mut palette) = (Foresight::default(), Palette::default());
+        let (mut foreseen, mut states) = (Vec::new(), Vec::new());
+        let mut worst = [0f64; 2];
+        let mut judged = [0; 2];
+        for tick in 0..5 * round {
+            // Now and then it hears something elsewhere.
+            let angle = (tick / round) as f64 * 2.2 + 0.7;
+            let place = DVec3::new(libm::sin(angle), 0.0, libm::cos(angle)) * (70.0 * scale);
+            let noises = [Noise {
+                place,
+                loudness: 5.0,
+            }];
+            let around = Surroundings {
+                terrain: &terrain,
+                noises: &noises[..usize::from(tick % round < 5)],
+                ..Surroundings::default()
+            };
+            giant.step(&around).unwrap();
+            let frame = giant.palette().model_from_joint(hand).unwrap();
+            let now = giant
+                .surface()
+                .world_from_model()
+                .transform_point(frame.translation);
+            let state = giant.state().current();
+            let key = (state, giant.state().animator().layers()[0].clip);
+            // What it hears meanwhile changes where it goes.
+            if tick >= ticks && tick % round > ticks + 5 {
+                let (before, seen): (DVec3, bool) = foreseen[tick - ticks];
+                let same = states[tick - ticks..].iter().all(|known| *known == key);
+                // That its gait goes from one clip to another is not foreseen.
+                if same && seen {
+                    let kind_of = usize::from(kind.brain().path(state) == "turns");
+                    worst[kind_of] = worst[kind_of].max(before.distance(now));
+                    judged[kind_of] += 1;
+                }
+            }
+            let world = giant.foresee(ahead, &mut memory, &mut palette).unwrap();
+            let frame = palette.model_from_joint(hand).unwrap();
+            let moves = giant.state().speed() > 0.0 || kind.brain().path(state) == "turns";
+            foreseen.push((world.transform_point(frame.translation), moves));
+            states.push(key);
+        }
+        println!(
+            "scale {scale}: walking {:.3} m, turning {:.3} m, of {judged:?}",
+            worst[0], worst[1]
+        );
+        assert!(judged.iter().all(|count| *count > 15), "{judged:?}");
+        // In metres, and 1 % of its height for who is larger.
+        let most = if scale > 1.0 {
+            0.01 * giant.height()
+        } else {
+            0.3
+        };
+        assert!(worst.iter().all(|off| *off <= most), "{scale}: {worst:?}");
+    }
+    // Times that are none are refused.
+    let giant = creature(
+        &kind(&brain_with("waits", HUNTS)),
+        CreatureConfig::default(),
+    );
+    let (mut memory, mut palette) = (Foresight::default(), Palette::default());
+    for seconds in [-1.0, f64::NAN, f64::INFINITY] {
+        assert!(giant.foresee(seconds, &mut memory, &mut palette).is_err());
+    }
+    assert!(giant.foresee(1e9, &mut memory, &mut palette).is_ok());
+}

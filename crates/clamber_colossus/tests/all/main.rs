@@ -1,0 +1,17 @@
+//! A creature and its brain, seen from outside.
+
+mod animals;
+mod attacks;
+mod brain;
+mod clips;
+mod elsewhere;
+mod feet;
+mod foresight;
+mod giant;
+mod legs;
+mod plates;
+mod senses;
+mod sizes;
+mod support;
+mod trex;
+mod walls;

@@ -1,0 +1,241 @@
+//! What the giant notices, and how soon: scenes B41 and B42.
+
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
+use crate::support;
+
+use std::sync::Arc;
+
+use crate::support::{TICK, brain_file, creature, ground, kind};
+use clamber_colossus::{
+    Creature, CreatureConfig, CreatureEvent, CreatureKind, Noise, Person, Riding, Sense,
+    Surroundings, Wound,
+};
+use clamber_surface::mesh::TriangleId;
+use clamber_world::rapier3d::prelude::{ColliderBuilder, Pose};
+use clamber_world::{BodyPoses, HalfSpace, MaterialPoint, Obstacle, RapierTerrain, WorldCapsule};
+use glam::DVec3;
+
+fn person(at: DVec3, riding: Option<Riding>) -> Person {
+    Person {
+        id: 1,
+        body: WorldCapsule {
+            ends: [at + DVec3::Y * 0.3, at + DVec3::Y * 1.45],
+            radius: 0.3,
+        },
+        riding,
+    }
+}
+
+/// A point of the skin that moves with a joint.
+fn skin_of(kind: &CreatureKind, joint: &str) -> MaterialPoint {
+    let joint = kind.skeleton().find(joint).unwrap();
+    let mesh = kind.mesh();
+    let all = (0..mesh.triangles().len() as u32).map(TriangleId);
+    let triangle = all
+        .into_iter()
+        .find(|triangle| mesh.joint_of(*triangle) == Some(joint));
+    MaterialPoint::on_triangle(triangle.unwrap(), [1.0 / 3.0; 3])
+}
+
+/// The name of the state that is entered in each tick of some seconds, if any.
+fn entered(giant: &mut Creature, around: &Surroundings<'_>, seconds: f64) -> Vec<(f64, String)> {
+    let mut found = Vec::new();
+    for tick in 0..(seconds / TICK) as usize {
+        let report = giant.step(around).unwrap();
+        let states: Vec<_> = report
+            .events
+            .iter()
+            .filter_map(|event| match event {
+                CreatureEvent::Entered { to, .. } => Some(*to),
+                _ => None,
+            })
+            .collect();
+        for state in states {
+            found.push((
+                tick as f64 * TICK,
+                giant.kind().brain().path(state).to_owned(),
+            ));
+        }
+    }
+    found
+}
+
+fn alone(kind: &Arc<CreatureKind>, seed: u64) -> Creature {
+    creature(
+        kind,
+        CreatureConfig {
+            seed,
+            ..CreatureConfig::default()
+        },
+    )
+}
+
+#[test]
+fn an_arrow_alarms_it_within_half_a_second() {
+    let kind = kind(&brain_file());
+    let ground = HalfSpace::below(0.0);
+    let terrain: [&dyn Obstacle; 1] = [&ground];
+    let around = Surroundings {
+        terrain: &terrain,
+        ..Surroundings::default()
+    };
+    let mut giant = alone(&kind, 1);
+    entered(&mut giant, &around, 2.0);
+    let wound = Wound {
+        place: DVec3::Y * 20.0,
+        at: skin_of(&kind, "chest"),
+        damage: 0.0,
+    };
+    assert_eq!(giant.hurt(&wound), 0.0);
+    let states = entered(&mut giant, &around, 0.5);
+    assert!(
+        states.iter().any(|(_, name)| name == "alive/alert/notice"),
+        "{states:?}"
+    );
+    // The alarm fades in its time, to the tick.
+    let moods: Vec<&str> = kind.brain().moods().collect();
+    let alarm = moods.iter().position(|name| *name == "alarm").unwrap();
+    let fades = kind.brain().file().moods["alarm"].fades;
+    let left = fades - 0.5;
+    entered(&mut giant, &around, left - 2.0 * TICK);
+    assert!(giant.state().brain().mood(kind.brain(), alarm) > 0.0);
+    entered(&mut giant, &around, 4.0 * TICK);
+    assert_eq!(giant.state().brain().mood(kind.brain(), alarm), 0.0);
+}
+
+#[test]
+fn what_terrain_hides_is_not_seen() {
+    let kind = kind(&brain_file());
+    let people = [person(DVec3::new(0.0, 0.0, 45.0), None)];
+    for hidden in [false, true] {
+        let mut world = ground(|_, _| 0.0);
+        if hidden {
+            let wall = ColliderBuilder::cuboid(40.0, 40.0, 1.0);
+            let place = DVec3::new(0.0, 0.0, 40.0).as_vec3();
+            world.insert_collider(wall.position(Pose::from_translation(place)), None);
+            world.detect_collisions(&(), &());
+        }
+        let poses = BodyPoses::default();
+        let terrain = RapierTerrain::of_world(&world, &poses);
+        let terrain: [&dyn Obstacle; 1] = [&terrain];
+        let around = Surroundings {
+            terrain: &terrain,
+            people: &people,
+            ..Surroundings::default()
+        };
+        let mut giant = alone(&kind, 1);
+        entered(&mut giant, &around, 0.2);
+        assert_eq!(
+            giant.state().senses().get(Sense::PreySeen),
+            f64::from(u8::from(!hidden))
+        );
+    }
+}
+
+#[test]
+fn a_rider_is_noticed_and_shaken_with_rests() {
+    let kind = kind(&brain_file());
+    let ground = HalfSpace::below(0.0);
+    let terrain: [&dyn Obstacle; 1] = [&ground];
+    let riding = Riding {
+        at: skin_of(&kind, "chest"),
+        hangs: false,
+    };
+    let people = [person(DVec3::Y * 30.0, Some(riding))];
+    let around = Surroundings {
+        terrain: &terrain,
+        people: &people,
+        ..Surroundings::default()
+    };
+    let shakes = ["shrug", "shake", "rage", "rub_left", "rub_right"];
+    let is_shake = |name: &str| {
+        let name = name.rsplit('/').next().unwrap();
+        shakes.contains(&name) || name.starts_with("shake_")
+    };
+    let mut firsts = Vec::new();
+    for seed in 0..20 {
+        let mut giant = alone(&kind, seed);
+        let states = entered(&mut giant, &around, 60.0);
+        let noticed = states
+            .iter()
+            .find(|(_, name)| name.starts_with("alive/ridden"))
+            .unwrap()
+            .0;
+        assert!(noticed <= 1.0, "noticed after {noticed} s");
+        let first = states.iter().find(|(_, name)| is_shake(name)).unwrap().0;
+        assert!(
+            (1.9..=6.1).contains(&(first - noticed)),
+            "first shake after {first} s"
+        );
+        firsts.push((first * 10.0) as i64);
+        // From the end of a shake to the next one.
+        let mut ended: Option<f64> = None;
+        for (time, name) in &states {
+            if is_shake(name) {
+                if let Some(ended) = ended {
+                    assert!(time - ended >= 3.0, "a rest of {} s only", time - ended);
+                }
+                ended = None;
+            } else if ended.is_none() {
+                ended = Some(*time).filter(|time| *time > first);
+            }
+        }
+    }
+    firsts.sort_unstable();
+    firsts.dedup();
+    assert!(firsts.len() > 10, "{firsts:?}");
+}
+
+/// A noise is heard as loud as it is up to the creature's hearing, and falls off with the square of the distance beyond.
+#[test]
+fn noises_fall_off_with_distance() {
+    let states = r#"{ "waits": {} }"#;
+    let kind = support::kind(&support::brain_with("waits", states));
+    let ground = HalfSpace::below(0.0);
+    let terrain: [&dyn Obstacle; 1] = [&ground];
+    let heard = |hearing: f64, noises: &[Noise]| {
+        let config = CreatureConfig {
+            hearing,
+            ..CreatureConfig::default()
+        };
+        let mut giant = support::creature(&kind, config);
+        let around = Surroundings {
+            terrain: &terrain,
+            noises,
+            ..Surroundings::default()
+        };
+        giant.step(&around).unwrap();
+        giant.state().senses().get(Sense::Noise)
+    };
+    let eye = support::creature(&kind, CreatureConfig::default());
+    let head = kind.eye();
+    let at = |distance: f64| Noise {
+        place: eye.state().position() + head + DVec3::X * distance,
+        loudness: 2.0,
+    };
+    for (distance, loudness) in [(10.0, 2.0), (49.0, 2.0), (100.0, 0.5), (1e5, 2.0 * 0.25e-6)] {
+        let found = heard(50.0, &[at(distance)]);
+        let off = (found / loudness - 1.0).abs();
+        assert!(off < 0.05, "{distance} m: {found}");
+    }
+    assert_eq!(heard(f64::INFINITY, &[at(1e5)]), 2.0);
+    assert_eq!(heard(0.0, &[at(20.0)]), 0.0);
+    // What is heard loudest counts, not what is loudest.
+    let far = Noise {
+        loudness: 5.0,
+        ..at(500.0)
+    };
+    let found = heard(50.0, &[far, at(20.0)]);
+    assert_eq!(found, 2.0);
+    assert_eq!(
+        heard(
+            50.0,
+            &[Noise {
+                place: DVec3::NAN,
+                loudness: 9.0
+            }]
+        ),
+        0.0
+    );
+}

@@ -1,0 +1,95 @@
+//! Another creature, whose file was made by others, lives by a brain of some fifty lines at 20 m.
+
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use crate::support::{TICK, person};
+use clamber_colossus::{
+    Brain, Creature, CreatureConfig, CreatureKind, CreatureParts, Person, Riding, Surroundings,
+};
+use clamber_surface::mesh::TriangleId;
+use clamber_world::{HalfSpace, MaterialPoint, Obstacle};
+use glam::DVec3;
+
+/// Height that it is scaled to, metres.
+const HEIGHT: f64 = 20.0;
+
+fn kind() -> Option<Arc<CreatureKind>> {
+    let Some(root) = std::env::var_os("CLAMBER_TEST_DATA") else {
+        eprintln!("SKIPPED trex: set CLAMBER_TEST_DATA to the folder that holds models/Trex.glb");
+        return None;
+    };
+    let rig = clamber_gltf::load(PathBuf::from(root).join("models/Trex.glb")).unwrap();
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/trex.brain.json");
+    let text = std::fs::read_to_string(path).unwrap();
+    assert!(text.lines().count() <= 60);
+    let parts = CreatureParts {
+        skeleton: rig.skeleton,
+        clips: rig.clips,
+        mesh: rig.collider,
+        weak_points: rig.weak_points,
+    };
+    let brain = Brain::from_json(&text, TICK).unwrap();
+    Some(Arc::new(CreatureKind::new(parts, brain).unwrap()))
+}
+
+#[test]
+fn it_strolls_hunts_bites_and_shakes_its_rider() {
+    let Some(kind) = kind() else {
+        return;
+    };
+    let config = CreatureConfig {
+        scale: HEIGHT / kind.height(),
+        ..CreatureConfig::default()
+    };
+    let mut trex = Creature::new(Arc::clone(&kind), config).unwrap();
+    let ground = HalfSpace::below(0.0);
+    let terrain: [&dyn Obstacle; 1] = [&ground];
+    let mut seen = BTreeSet::new();
+    let mut far = 0f64;
+    let mut live = |trex: &mut Creature, people: &[Person], seconds: f64| {
+        for _ in 0..(seconds / TICK) as u32 {
+            let around = Surroundings {
+                terrain: &terrain,
+                people,
+                ..Surroundings::default()
+            };
+            trex.step(&around).unwrap();
+            let state = trex.state();
+            assert!(state.position().is_finite() && state.position().y.abs() < 1.0);
+            far = far.max(state.position().length());
+            seen.insert(kind.brain().path(state.current()).to_owned());
+        }
+    };
+    live(&mut trex, &[], 40.0);
+    // In its view.
+    let yaw = trex.state().yaw() + 0.4;
+    let ahead = DVec3::new(libm::sin(yaw), 0.0, libm::cos(yaw));
+    let prey = trex.state().position() + ahead * 45.0;
+    live(&mut trex, &[person(prey)], 60.0);
+    let reached = trex.state().position().distance(prey);
+    let rider = Person {
+        riding: Some(Riding {
+            at: MaterialPoint::on_triangle(TriangleId(0), [1.0 / 3.0; 3]),
+            hangs: false,
+        }),
+        ..person(trex.state().position() + DVec3::Y * HEIGHT)
+    };
+    live(&mut trex, &[rider], 10.0);
+    for state in [
+        "calm/idle",
+        "calm/patrol",
+        "hunt/notice",
+        "hunt/chase",
+        "hunt/bite",
+        "shake",
+    ] {
+        let path = format!("alive/{state}");
+        assert!(seen.contains(&path), "{path} not in {seen:?}");
+    }
+    assert!(far > 10.0, "it went {far} m");
+    assert!(reached < 20.0, "{reached} m from its prey");
+}

@@ -1,0 +1,288 @@
+//! What must not depend on ticks, on how fine a rig is, or on what a state does not hold.
+
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
+use crate::support;
+
+use std::sync::Arc;
+
+use crate::support::{GROUND, Slab, weak_point};
+use clamber_climber::ClimberInput;
+use clamber_colossus::{CreatureConfig, CreatureKind};
+use clamber_fight::actions::{CUT, STAB, THROW};
+use clamber_fight::{
+    Act, Arena, ArenaConfig, ArenaEvent, FighterConfig, FighterId, Projectile, ProjectileId,
+    ProjectileKind, ProjectileMotion,
+};
+use clamber_world::{HalfSpace, Obstacle, ObstacleId};
+use glam::{DVec3, Vec3};
+
+fn arena(tick: f64) -> Arena {
+    Arena::new(ArenaConfig {
+        tick,
+        ..ArenaConfig::default()
+    })
+    .unwrap()
+}
+
+fn pressed(actions: u32) -> ClimberInput {
+    ClimberInput {
+        actions,
+        ..ClimberInput::IDLE
+    }
+}
+
+/// An arena with one fighter on the ground, who dies and rises again after a second.
+fn alone() -> Arena {
+    let mut arena = arena(1.0 / 60.0);
+    let mut config = FighterConfig::hero();
+    config.respawn = Some(1.0);
+    arena.add_fighter(config, DVec3::Y).unwrap();
+    arena
+}
+
+/// Who throws a stone in the tick in which it dies throws none, then or later: a fresh arena that restores the state goes
+/// on alike.
+#[test]
+fn a_throw_in_the_tick_of_death_is_lost() {
+    let ground = HalfSpace::below(0.0);
+    let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &ground)];
+    let mut ours = alone();
+    for _ in 0..30 {
+        ours.step(&[ClimberInput::IDLE], &terrain).unwrap();
+    }
+    // Nothing is left of it.
+    let mut state = ours.save();
+    state.fighters[0].climber.hit_points = 0.0;
+    ours.restore(&state).unwrap();
+    ours.step(&[pressed(THROW)], &terrain).unwrap();
+    assert!(ours.fighter(FighterId(0)).unwrap().is_dead());
+    let mut fresh = alone();
+    fresh.restore(&ours.save()).unwrap();
+    let mut rose = false;
+    for tick in 0..200 {
+        for arena in [&mut ours, &mut fresh] {
+            let events = arena.step(&[ClimberInput::IDLE], &terrain).unwrap();
+            rose |= events
+                .iter()
+                .any(|event| matches!(event, ArenaEvent::Rose { .. }));
+            let shot = events
+                .iter()
+                .any(|event| matches!(event, ArenaEvent::Shot { .. }));
+            assert!(!shot && arena.projectiles().is_empty(), "tick {tick}");
+        }
+        assert_eq!(ours.fingerprint(), fresh.fingerprint(), "tick {tick}");
+    }
+    assert!(rose);
+}
+
+/// A slab that moves along X with a speed, with a weak point in its middle.
+fn moving(speed: f64, rate: f64) -> Arc<CreatureKind> {
+    let mut heart = weak_point("heart", Vec3::ZERO, 1e6, 0);
+    heart.radius = 0.4;
+    let slab = Slab {
+        rate,
+        weak_points: vec![heart],
+        keys: vec![
+            (0.0, Vec3::ZERO, Vec3::ONE),
+            (60.0, Vec3::X * (60.0 * speed) as f32, Vec3::ONE),
+        ],
+        ..Slab::default()
+    };
+    slab.kind()
+}
+
+/// Of arrows that come down about the weak point, how many hit it, by where they struck at the time of the hit: within
+/// 0.38 m of its middle, and beyond 0.42 m; and the damages of those that do. `along` is the arrows' own speed along X.
+fn arrows(speed: f64, along: f64, rate: f64) -> ([[usize; 2]; 2], Vec<f64>) {
+    let dt = 1.0 / rate;
+    let kind = moving(speed, rate);
+    let ground = HalfSpace::below(-50.0);
+    let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &ground)];
+    let (mut found, mut damages) = ([[0; 2]; 2], Vec::new());
+    for shot in 0..60u64 {
+        let mut arena = arena(dt);
+        arena
+            .add_creature(Arc::clone(&kind), CreatureConfig::default())
+            .unwrap();
+        arena
+            .add_fighter(FighterConfig::hero(), DVec3::new(0.0, -40.0, 30.0))
+            .unwrap();
+        for _ in 0..10 {
+            arena.step(&[ClimberInput::IDLE], &terrain).unwrap();
+        }
+        let aside = (shot % 12) as f64 * 0.07;
+        let angle = shot as f64 * 2.4;
+        let off = DVec3::new(libm::cos(angle), 0.0, libm::sin(angle)) * aside;
+        // It comes down 2 m in about 0.05 s, at another time of a tick each.
+        let height = 2.0 + 0.011 * shot as f64;
+        let time = height / 40.0;
+        let heart = arena.creatures()[0].weak_point(0).unwrap();
+        let position = heart + off + DVec3::new((speed - along) * time, height, 0.0);
+        let mut state = arena.save();
+        state.projectiles.push(Projectile {
+            id: ProjectileId(0),
+            kind: ProjectileKind::Arrow,
+            by: FighterId(0),
+            seconds: 0.0,
+            motion: ProjectileMotion::Flying {
+                position,
+                velocity: DVec3::new(along, -40.0, 0.0),
+            },
+        });
+        state.next_projectile = 1;
+        arena.restore(&state).unwrap();
+        for _ in 0..(0.3 * rate) as u32 {
+            let events = arena
+                .step(&[ClimberInput::IDLE], &terrain)
+                .unwrap()
+                .to_vec();
+            for event in events {
+                let ArenaEvent::Hit {
+                    weak_point,
+                    time,
+                    place,
+                    damage,
+                    ..
+                } = event
+                else {
+                    continue;
+                };
+                let middle = arena.creatures()[0].weak_point(0).unwrap();
+                let then = middle - DVec3::X * (speed * dt * (1.0 - time));
+                let off = (place - then).with_y(0.0).length();
+                damages.extend((damage > 0.0).then_some(damage));
+                let row = usize::from(off > 0.4);
+                if (off - 0.4).abs() > 0.02 {
+                    found[row][usize::from(weak_point.is_some())] += 1;
+                }
+            }
+        }
+    }
+    (found, damages)
+}
+
+/// Weak points are hit where they are at the time of the hit, at every rate of ticks and speed.
+#[test]
+fn weak_points_that_move_are_hit_where_they_are() {
+    for rate in [30.0, 60.0, 120.0] {
+        for speed in [0.0, 10.0, 30.0, 60.0] {
+            let ([within, beyond], _) = arrows(speed, 0.0, rate);
+            println!("{rate} Hz, {speed} m/s: within {within:?}, beyond {beyond:?}");
+            assert_eq!((within[0], beyond[1]), (0, 0), "{rate} Hz, {speed} m/s");
+            assert!(within[1] > 20 && beyond[0] > 15);
+        }
+    }
+}
+
+/// A sword that is raised in a fall has its full strength only as long as it falls.
+#[test]
+fn a_charge_is_not_kept_across_a_hop() {
+    let ground = HalfSpace::below(0.0);
+    let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &ground)];
+    let mut arena = arena(1.0 / 60.0);
+    arena.add_fighter(FighterConfig::hero(), DVec3::Y).unwrap();
+    let mut fell = 0.0f64;
+    let mut landed = false;
+    for tick in 0..120u32 {
+        let input = ClimberInput {
+            jump: tick == 30,
+            ..pressed(if tick == 32 { STAB } else { 0 })
+        };
+        arena.step(&[input], &terrain).unwrap();
+        let fighter = arena.fighter(FighterId(0)).unwrap();
+        match fighter.act() {
+            Act::Charge { falls: true, .. } => fell = fell.max(fighter.charge()),
+            Act::Charge {
+                charge,
+                falls: false,
+            } if !landed => {
+                landed = true;
+                assert!(*charge < 0.1, "it lands with a charge of {charge}");
+            }
+            _ => {}
+        }
+    }
+    assert_eq!(fell, 1.0);
+    assert!(landed);
+}
+
+/// An arrow hurts by how fast it meets what it hits: beside a slab that moves along with it as beside one at rest, and at
+/// every rate of ticks.
+#[test]
+fn arrows_hurt_by_their_relative_speed() {
+    let still = arrows(0.0, 0.0, 60.0).1[0];
+    for rate in [30.0, 60.0, 120.0] {
+        for speed in [10.0, 60.0] {
+            // Both move, only the slab, only the arrow.
+            let square = |along: f64| (40.0 * 40.0 + along * along) / (40.0 * 40.0);
+            for (slab, arrow, share) in [
+                (speed, speed, 1.0),
+                (speed, 0.0, square(speed)),
+                (0.0, speed, square(speed)),
+            ] {
+                let damages = arrows(slab, arrow, rate).1;
+                assert!(damages.len() > 20);
+                for damage in damages {
+                    let off = damage / (still * share) - 1.0;
+                    assert!(off.abs() < 0.02, "{rate} Hz, {slab} and {arrow} m/s: {off}");
+                }
+            }
+        }
+    }
+}
+
+/// One cut does its damage once, however many joints move the skin that it passes.
+#[test]
+fn a_cut_hurts_once() {
+    let mut parts = Vec::new();
+    // A narrow cut ends in the wall. Without time after it, it hurts in its last tick too.
+    for (recover, degrees) in [(0.25, 200f64), (0.25, 90.0), (0.0, 90.0), (0.0, 120.0)] {
+        for joints in [1, 2, 4, 8, 16] {
+            let mut hero = FighterConfig::hero();
+            let sword = hero.sword.as_mut().unwrap();
+            (sword.recover, sword.angle) = (recover, degrees.to_radians());
+            let wanted = 2.0 * sword.cut_damage;
+            let [hits, damage] = two_cuts(hero, joints);
+            parts.push(hits);
+            assert!(
+                (damage - wanted).abs() < 1e-9,
+                "{joints} joints, {recover} s, {degrees}°: {damage} in {hits}"
+            );
+        }
+    }
+    println!("parts struck: {parts:?}");
+    assert!(parts[0] == 2.0 && parts[4] > 8.0, "{parts:?}");
+}
+
+/// The number of hits and the damage of two cuts, one after the other, at a wall of so many joints.
+fn two_cuts(hero: FighterConfig, joints: u32) -> [f64; 2] {
+    let mut arena = arena(1.0 / 60.0);
+    arena
+        .add_creature(support::wall(joints), CreatureConfig::default())
+        .unwrap();
+    let place = DVec3::new(0.0, -0.2, 3.0);
+    arena.add_fighter(hero, place).unwrap();
+    let ground = HalfSpace::below(-1.0);
+    let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &ground)];
+    let (mut hits, mut damage) = (0.0, 0.0);
+    for tick in 0..420u32 {
+        let walk = if tick < 180 {
+            DVec3::NEG_Z
+        } else {
+            DVec3::ZERO
+        };
+        let actions = if tick == 200 || tick == 300 { CUT } else { 0 };
+        let input = ClimberInput {
+            walk,
+            ..pressed(actions)
+        };
+        for event in arena.step(&[input], &terrain).unwrap() {
+            if let ArenaEvent::Hit { damage: done, .. } = event {
+                hits += 1.0;
+                damage += done;
+            }
+        }
+    }
+    [hits, damage]
+}

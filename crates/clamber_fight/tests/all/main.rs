@@ -1,0 +1,15 @@
+//! Fights, seen from outside: weapons, rooms, snapshots, and what must not happen.
+
+mod aims;
+mod arrows;
+mod debris;
+mod fair;
+mod people;
+#[cfg(feature = "ggrs")]
+mod rollback;
+mod room;
+mod snapshots;
+mod stab;
+mod support;
+mod terrain;
+mod wild;

@@ -1,0 +1,290 @@
+//! Fighters in an arena: hit-stop, death, getting up, blows, being crushed, and the sword's light. Scenes B34 and B35.
+
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
+use crate::support;
+
+use crate::support::{GIANT, GROUND, HERO, Slab, land, mode, pressing, step, weak_point};
+use clamber_climber::{ClimberInput, ClimberMode};
+use clamber_colossus::CreatureConfig;
+use clamber_fight::actions::STAB;
+use clamber_fight::{
+    Act, Arena, ArenaConfig, ArenaError, ArenaEvent, ArenaState, FighterConfig, FighterId,
+};
+use clamber_world::{HalfSpace, Obstacle, ObstacleId};
+use glam::{DVec3, Vec3};
+
+fn swaying() -> Slab {
+    let keys = (0..=60)
+        .map(|k| {
+            let t = k as f32 * 0.25;
+            let x = libm::sin(f64::from(t)) as f32;
+            (t, Vec3::new(x, 0.2 * x, 0.0), Vec3::ONE)
+        })
+        .collect();
+    Slab {
+        keys,
+        weak_points: vec![
+            weak_point("heart", Vec3::ZERO, 9.0, 0),
+            weak_point("brain", Vec3::X * 5.0, 1.0, 1),
+        ],
+        ..Slab::default()
+    }
+}
+
+/// Two who stand on the slab; the first stabs, and is held by it for six ticks or not. All states of all ticks.
+fn stabbing(hit_stop: f64) -> (Vec<ArenaState>, u32) {
+    let config = FighterConfig {
+        hit_stop,
+        ..FighterConfig::hero()
+    };
+    let mut arena = swaying().arena(
+        config,
+        &[DVec3::new(-2.0, 1.0, 0.0), DVec3::new(4.0, 1.0, 2.0)],
+    );
+    let ground = HalfSpace::below(-100.0);
+    let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &ground)];
+    let (mut states, mut held) = (Vec::new(), 0);
+    for tick in 0..240 {
+        let ours = pressing(if tick == 60 || tick == 120 { STAB } else { 0 });
+        let other = ClimberInput {
+            walk: DVec3::Z * 0.1,
+            ..ClimberInput::IDLE
+        };
+        arena.step(&[ours, other], &terrain).unwrap();
+        let state = arena.save();
+        held += u32::from(state.fighters[0].hit_stop > 0.0);
+        states.push(state);
+    }
+    (states, held)
+}
+
+#[test]
+fn an_impact_holds_whoever_struck_and_nobody_else() {
+    let ((with, held), (without, free)) = (stabbing(0.1), stabbing(0.0));
+    assert_eq!((held, free), (6, 0));
+    let mut differs = 0;
+    for (a, b) in with.iter().zip(&without) {
+        assert!(
+            a.creatures == b.creatures,
+            "the creature feels it at {}",
+            a.tick
+        );
+        assert!(
+            a.fighters[1] == b.fighters[1],
+            "another fighter feels it at {}",
+            a.tick
+        );
+        differs += u32::from(a.fighters[0] != b.fighters[0]);
+    }
+    assert!(differs >= 6, "the blade is held: {differs}");
+}
+
+#[test]
+fn whoever_dies_falls_and_stands_up_where_it_began() {
+    let mut config = FighterConfig::hero();
+    config.respawn = Some(1.0);
+    let mut arena = Slab::default().arena(config, &[DVec3::new(0.0, 60.0, 0.0)]);
+    let mut events = Vec::new();
+    while !events.contains(&ArenaEvent::Died { fighter: HERO }) {
+        events = step(&mut arena, &ClimberInput::IDLE);
+        assert!(arena.tick() < 1000);
+    }
+    assert!(arena.fighter(HERO).unwrap().is_dead());
+    let at = arena.tick();
+    while !events.contains(&ArenaEvent::Rose { fighter: HERO }) {
+        // The dead neither walk nor strike.
+        events = step(
+            &mut arena,
+            &ClimberInput {
+                walk: DVec3::X,
+                actions: STAB,
+                ..ClimberInput::IDLE
+            },
+        );
+        assert_eq!(arena.fighter(HERO).unwrap().act(), &Act::Ready);
+        let lies = mode(&arena) == ClimberMode::Tumbling;
+        assert!(lies || events.contains(&ArenaEvent::Rose { fighter: HERO }));
+    }
+    assert!(
+        (arena.tick() - at).abs_diff(60) <= 1,
+        "{}",
+        arena.tick() - at
+    );
+    let state = *arena.fighter(HERO).unwrap().climber().state();
+    assert_eq!((state.position, state.hit_points), (DVec3::Y * 60.0, 1.0));
+
+    // Out of the world as well.
+    let config = FighterConfig {
+        respawn: None,
+        ..FighterConfig::hero()
+    };
+    let mut arena = Arena::new(ArenaConfig {
+        floor: -20.0,
+        ..ArenaConfig::default()
+    })
+    .unwrap();
+    arena.add_fighter(config, DVec3::ZERO).unwrap();
+    let died = (0..600).any(|_| {
+        let input = [ClimberInput::IDLE; 1];
+        arena
+            .step(&input, &[])
+            .unwrap()
+            .contains(&ArenaEvent::Died { fighter: HERO })
+    });
+    assert!(died && arena.fighter(HERO).unwrap().is_dead());
+    for _ in 0..1000 {
+        arena.step(&[ClimberInput::IDLE], &[]).unwrap();
+    }
+    assert!(arena.fighter(HERO).unwrap().is_dead(), "forever");
+}
+
+#[test]
+fn a_sword_shows_the_way_in_the_sun() {
+    let mut arena = swaying().arena(FighterConfig::hero(), &[DVec3::new(-2.0, 1.0, 0.0)]);
+    land(&mut arena);
+    let ground = HalfSpace::below(-100.0);
+    let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &ground)];
+    for _ in 0..50 {
+        step(&mut arena, &ClimberInput::IDLE);
+        let creature = arena.creature(GIANT).unwrap();
+        let origin = arena.fighter(HERO).unwrap().blade().unwrap().tip;
+        let to = (creature.weak_point(0).unwrap() - origin).normalize();
+        let aside = to.any_orthonormal_vector();
+        let mut before = f64::INFINITY;
+        // From behind to the weak point the rays gather.
+        for degrees in (0..=180).rev() {
+            let (sin, cos) = libm::sincos(f64::from(degrees).to_radians());
+            let light = arena
+                .sword_light(HERO, to * cos + aside * sin, &terrain)
+                .unwrap();
+            assert_eq!((light.creature, light.weak_point), (GIANT, 0));
+            assert!((light.off.to_degrees() - f64::from(degrees)).abs() < 1e-6);
+            assert!(light.spread < before, "{degrees}");
+            before = light.spread;
+            if degrees == 0 {
+                for ray in light.rays {
+                    let off = libm::acos(ray.dot(to).clamp(-1.0, 1.0)).to_degrees();
+                    assert!(off < 0.5, "{off} degrees off");
+                }
+            }
+        }
+    }
+    // In the shade of terrain, and of another creature.
+    let roof = HalfSpace::behind(DVec3::Y * 50.0, DVec3::NEG_Y).unwrap();
+    assert_eq!(arena.sword_light(HERO, DVec3::X, &[(GROUND, &roof)]), None);
+    let config = CreatureConfig {
+        position: DVec3::new(-2.0, 10.0, 8.0),
+        ..CreatureConfig::default()
+    };
+    arena.add_creature(Slab::default().kind(), config).unwrap();
+    assert_eq!(arena.sword_light(HERO, DVec3::X, &terrain), None);
+}
+
+/// When a weak point is used up, the next one is what the light leads to, in the same tick. (The blade itself is in the
+/// skin then, out of the sun.)
+#[test]
+fn the_light_leads_to_the_next_weak_point_at_once() {
+    let mut slab = swaying();
+    slab.weak_points[0].hit_points = 0.5;
+    let mut arena = slab.arena(FighterConfig::hero(), &[DVec3::Y]);
+    land(&mut arena);
+    let aimed = |arena: &Arena| {
+        let light = arena
+            .sword_light(HERO, DVec3::X, &[])
+            .map(|light| light.weak_point);
+        let next = arena
+            .next_weak_point(DVec3::Y)
+            .map(|(_, weak_point, _)| weak_point);
+        assert!(light.is_none() || light == next);
+        next
+    };
+    assert_eq!(aimed(&arena), Some(0));
+    step(&mut arena, &pressing(STAB));
+    for _ in 0..100 {
+        step(&mut arena, &ClimberInput::IDLE);
+    }
+    let mut events = step(&mut arena, &pressing(STAB));
+    while support::hits(&events).is_empty() {
+        assert_eq!(aimed(&arena), Some(0));
+        events = step(&mut arena, &ClimberInput::IDLE);
+    }
+    assert_eq!(aimed(&arena), Some(1));
+}
+
+#[test]
+fn bad_inputs_change_nothing() {
+    let mut arena = swaying().arena(
+        FighterConfig::hero(),
+        &[DVec3::Y, DVec3::new(3.0, 1.0, 0.0)],
+    );
+    land(&mut arena);
+    let before = arena.fingerprint();
+    let refused = |arena: &mut Arena, inputs: &[ClimberInput]| arena.step(inputs, &[]).unwrap_err();
+    let few = refused(&mut arena, &[ClimberInput::IDLE]);
+    assert!(
+        matches!(
+            few,
+            ArenaError::Inputs {
+                fighters: 2,
+                found: 1
+            }
+        ),
+        "{few}"
+    );
+    let wild = ClimberInput {
+        walk: DVec3::NAN,
+        ..ClimberInput::IDLE
+    };
+    let wild = refused(&mut arena, &[ClimberInput::IDLE, wild]);
+    assert!(
+        matches!(wild, ArenaError::InputNotFinite { fighter: 1 }),
+        "{wild}"
+    );
+    let blow = ClimberInput {
+        blow: Some(Default::default()),
+        ..ClimberInput::IDLE
+    };
+    let blow = refused(&mut arena, &[blow, ClimberInput::IDLE]);
+    assert!(matches!(blow, ArenaError::Blow { fighter: 0 }), "{blow}");
+    let ground = HalfSpace::below(0.0);
+    let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(u64::MAX), &ground)];
+    let id = arena.step(&[ClimberInput::IDLE; 2], &terrain).unwrap_err();
+    assert!(matches!(id, ArenaError::TerrainId { .. }), "{id}");
+    let twice: [(ObstacleId, &dyn Obstacle); 2] =
+        [(ObstacleId(7), &ground), (ObstacleId(7), &ground)];
+    let twice = arena.step(&[ClimberInput::IDLE; 2], &twice).unwrap_err();
+    assert!(
+        matches!(twice, ArenaError::TerrainTwice { found: 7 }),
+        "{twice}"
+    );
+    assert_eq!(arena.fingerprint(), before);
+    assert_eq!(mode(&arena), ClimberMode::Standing);
+
+    // Configurations.
+    let mut config = FighterConfig::hero();
+    config.sword.as_mut().unwrap().charge = 0.0;
+    assert!(matches!(
+        arena.add_fighter(config, DVec3::Y),
+        Err(ArenaError::OutOfRange {
+            name: "sword.charge",
+            ..
+        })
+    ));
+    assert!(
+        arena
+            .add_fighter(FighterConfig::hero(), DVec3::NAN)
+            .is_err()
+    );
+    let other = Slab {
+        rate: 30.0,
+        ..Slab::default()
+    };
+    let other = arena
+        .add_creature(other.kind(), CreatureConfig::default())
+        .unwrap_err();
+    assert!(matches!(other, ArenaError::Tick { .. }), "{other}");
+    assert_eq!(arena.fingerprint(), before);
+    assert_eq!(arena.fighters().len(), 2);
+    assert_eq!(arena.fighter(FighterId(2)).map(|one| one.id()), None);
+}

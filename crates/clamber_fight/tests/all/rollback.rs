@@ -1,0 +1,307 @@
+//! Rollback by ggrs: every tick played again with equal checksums, and two peers over a bad line. Scenes B53 and B55.
+
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
+use crate::support;
+
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::rc::Rc;
+
+use crate::support::{Melee, giant};
+use clamber_fight::rollback::ggrs::{
+    DesyncDetection, GgrsError, GgrsEvent, GgrsRequest, Message, NonBlockingSocket, P2PSession,
+    PlayerType, SessionBuilder, SessionState,
+};
+use clamber_fight::rollback::{ArenaSession, Rollback};
+use clamber_fight::{ArenaEvent, PlayerInput};
+
+type Session = ArenaSession<usize>;
+
+const TICKS: u64 = 60 * 78;
+
+/// Ticks beyond the last one: with their inputs it is confirmed, and played again where a guess was wrong.
+const BEYOND: u64 = 20;
+
+fn input(tick: u64, player: usize) -> PlayerInput {
+    PlayerInput::from_input(&Melee::inputs(tick)[player])
+}
+
+#[test]
+fn every_tick_of_the_fight_is_the_same_when_it_is_played_again() {
+    let mut melee = Melee::new(&giant());
+    let mut session = SessionBuilder::<Session>::new()
+        .with_num_players(3)
+        .unwrap()
+        .with_max_prediction_window(8)
+        .with_check_distance(7)
+        .start_synctest_session()
+        .unwrap();
+    let mut rollback = Rollback::new(&melee.arena);
+    let (mut saved, mut loaded) = (0, 0);
+    for tick in 0..TICKS {
+        for player in 0..3 {
+            session
+                .add_local_input(player, input(tick, player))
+                .unwrap();
+        }
+        // Compares each checksum with the first one of its tick.
+        for request in session.advance_frame().unwrap() {
+            let sum = match &request {
+                GgrsRequest::SaveGameState { .. } => Some(melee.arena.fingerprint()),
+                GgrsRequest::LoadGameState { .. } => {
+                    loaded += 1;
+                    None
+                }
+                GgrsRequest::AdvanceFrame { .. } => None,
+            };
+            let cell = match &request {
+                GgrsRequest::SaveGameState { cell, .. } => Some(cell.clone()),
+                _ => None,
+            };
+            rollback
+                .handle(&mut melee.arena, vec![request], |arena, inputs| {
+                    melee_step(arena, inputs)
+                })
+                .unwrap();
+            if let (Some(cell), Some(sum)) = (cell, sum) {
+                // The checksum is given, and is that of the state.
+                saved += 1;
+                assert!(
+                    format!("{cell:?}").contains(&format!("checksum: Some({sum})")),
+                    "{cell:?}"
+                );
+                assert_eq!(cell.data().unwrap().fingerprint(), sum);
+            }
+        }
+    }
+    assert!(
+        saved > 7 * (TICKS - 10) && loaded > TICKS - 10,
+        "{saved} {loaded}"
+    );
+}
+
+fn melee_step(
+    arena: &mut clamber_fight::Arena,
+    inputs: &[clamber_climber::ClimberInput],
+) -> Result<(), clamber_fight::ArenaError> {
+    let ground = clamber_world::HalfSpace::below(0.0);
+    let terrain: [(clamber_world::ObstacleId, &dyn clamber_world::Obstacle); 1] =
+        [(support::GROUND, &ground)];
+    arena.step(inputs, &terrain).map(drop)
+}
+
+/// A message under way: when it arrives, to whom, from whom.
+type UnderWay = (f64, usize, usize, Message);
+
+/// A line between peers on which messages take their time, and some get lost.
+#[derive(Clone)]
+struct Line {
+    now: Rc<RefCell<f64>>,
+    under_way: Rc<RefCell<Vec<UnderWay>>>,
+    random: Rc<RefCell<fastrand::Rng>>,
+    ours: usize,
+}
+
+/// Milliseconds one way, and by how much more or less; and the share that gets lost.
+const ONE_WAY: f64 = 50.0;
+const JITTER: f64 = 10.0;
+const LOST: f64 = 0.05;
+
+impl NonBlockingSocket<usize> for Line {
+    fn send_to(&mut self, message: &Message, to: &usize) {
+        let mut random = self.random.borrow_mut();
+        if random.f64() < LOST {
+            return;
+        }
+        let takes = ONE_WAY + JITTER * (2.0 * random.f64() - 1.0);
+        let arrives = *self.now.borrow() + takes;
+        self.under_way
+            .borrow_mut()
+            .push((arrives, *to, self.ours, message.clone()));
+    }
+
+    fn receive_all_messages(&mut self) -> Vec<(usize, Message)> {
+        let (now, mut under_way) = (*self.now.borrow(), self.under_way.borrow_mut());
+        let arrived = |one: &UnderWay| one.1 == self.ours && one.0 <= now;
+        let (mut here, rest): (Vec<_>, Vec<_>) = under_way.drain(..).partition(arrived);
+        *under_way = rest;
+        here.sort_by(|a, b| a.0.total_cmp(&b.0));
+        here.into_iter()
+            .map(|(_, _, from, message)| (from, message))
+            .collect()
+    }
+}
+
+struct Peer {
+    session: P2PSession<Session>,
+    melee: Melee,
+    rollback: Rollback,
+    /// Of each tick, the checksum that it had last.
+    sums: BTreeMap<i32, u64>,
+    events: Vec<(u64, ArenaEvent)>,
+    /// The longest time that was played again, in ticks, and how often.
+    longest: u32,
+    rollbacks: u32,
+    waits: u32,
+}
+
+const DELAY: u64 = 2;
+
+impl Peer {
+    fn new(line: &Line, ours: usize, melee: Melee) -> Self {
+        let mut builder = SessionBuilder::<Session>::new()
+            .with_num_players(3)
+            .unwrap()
+            .with_max_prediction_window(8)
+            .with_input_delay(DELAY as usize)
+            .with_desync_detection_mode(DesyncDetection::On { interval: 10 });
+        // The third fighter is played by the first peer.
+        for player in 0..3 {
+            let owner = player % 2;
+            let kind = if owner == ours {
+                PlayerType::Local
+            } else {
+                PlayerType::Remote(owner)
+            };
+            builder = builder.add_player(kind, player).unwrap();
+        }
+        let line = Line {
+            ours,
+            ..line.clone()
+        };
+        Self {
+            session: builder.start_p2p_session(line).unwrap(),
+            rollback: Rollback::new(&melee.arena),
+            melee,
+            sums: BTreeMap::new(),
+            events: Vec::new(),
+            longest: 0,
+            rollbacks: 0,
+            waits: 0,
+        }
+    }
+
+    fn step(&mut self) {
+        self.session.poll_remote_clients();
+        for event in self.session.events() {
+            let is_bad = matches!(
+                event,
+                GgrsEvent::DesyncDetected { .. } | GgrsEvent::Disconnected { .. }
+            );
+            assert!(!is_bad, "{event:?}");
+        }
+        if self.session.current_state() != SessionState::Running
+            || self.session.current_frame() as u64 >= TICKS + BEYOND
+        {
+            return;
+        }
+        let tick = self.session.current_frame() as u64;
+        for player in self.session.local_player_handles() {
+            self.session
+                .add_local_input(player, input(tick, player))
+                .unwrap();
+        }
+        let requests = match self.session.advance_frame() {
+            Err(GgrsError::PredictionThreshold) => {
+                self.waits += 1;
+                return;
+            }
+            requests => requests.unwrap(),
+        };
+        let mut steps = 0;
+        for request in &requests {
+            steps += u32::from(matches!(request, GgrsRequest::AdvanceFrame { .. }));
+            self.rollbacks += u32::from(matches!(request, GgrsRequest::LoadGameState { .. }));
+        }
+        self.longest = self.longest.max(u32::saturating_sub(steps, 1));
+        let sums = &mut self.sums;
+        self.rollback
+            .handle(&mut self.melee.arena, requests, |arena, inputs| {
+                melee_step(arena, inputs)?;
+                sums.insert(arena.tick() as i32, arena.fingerprint());
+                Ok(())
+            })
+            .unwrap();
+        let confirmed = self.session.confirmed_frame();
+        self.events.extend(self.rollback.confirmed(confirmed));
+    }
+}
+
+#[test]
+fn two_peers_over_a_bad_line_have_the_same_fight_and_its_events_once() {
+    let line = Line {
+        now: Rc::default(),
+        under_way: Rc::default(),
+        random: Rc::new(RefCell::new(fastrand::Rng::with_seed(55))),
+        ours: 0,
+    };
+    let kind = giant();
+    let mut peers = [0, 1].map(|ours| Peer::new(&line, ours, Melee::new(&kind)));
+    let began = std::time::Instant::now();
+    let is_done = |peers: &[Peer; 2]| {
+        peers.iter().all(|peer| {
+            peer.session.confirmed_frame() as u64 >= TICKS - 1
+                && peer.session.current_frame() as u64 >= TICKS + BEYOND
+        })
+    };
+    while !is_done(&peers) {
+        for peer in &mut peers {
+            peer.step();
+        }
+        *line.now.borrow_mut() += 1000.0 / 60.0;
+        // ggrs waits by the clock until it asks again for a message that was lost while peers get to know each other.
+        if peers
+            .iter()
+            .any(|peer| peer.session.current_state() != SessionState::Running)
+        {
+            std::thread::sleep(std::time::Duration::from_millis(5));
+        }
+        assert!(began.elapsed().as_secs() < 300, "the peers do not get on");
+    }
+    // What one machine would have played alone.
+    let mut alone = Melee::new(&kind);
+    let mut events = Vec::new();
+    let mut sums = BTreeMap::new();
+    for tick in 0..TICKS {
+        let of = |player: usize| match tick.checked_sub(DELAY) {
+            Some(tick) => input(tick, player),
+            None => PlayerInput::default(),
+        };
+        let inputs = [0, 1, 2].map(|player| of(player).to_input());
+        melee_step(&mut alone.arena, &inputs).unwrap();
+        let tick = alone.arena.tick();
+        sums.insert(tick as i32, alone.arena.fingerprint());
+        events.extend(
+            alone
+                .arena
+                .events()
+                .iter()
+                .map(|event| (tick, event.clone())),
+        );
+    }
+    for peer in &peers {
+        println!(
+            "{} rollbacks, of up to {} ticks, {} waits",
+            peer.rollbacks, peer.longest, peer.waits
+        );
+        assert!(
+            peer.rollbacks > 500 && peer.longest >= 3,
+            "the line is too good"
+        );
+        let ours: BTreeMap<i32, u64> = peer
+            .sums
+            .range(..=TICKS as i32)
+            .map(|(tick, sum)| (*tick, *sum))
+            .collect();
+        assert!(ours == sums, "ticks differ");
+        // Of the last tick nobody needs to know.
+        let known: Vec<_> = events.iter().filter(|(tick, _)| *tick < TICKS).collect();
+        let told: Vec<_> = peer
+            .events
+            .iter()
+            .filter(|(tick, _)| *tick < TICKS)
+            .collect();
+        assert!(told == known, "{} events for {}", told.len(), known.len());
+    }
+}

@@ -1,0 +1,159 @@
+//! Who begins, or rises, finds room.
+
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
+use crate::support::{GROUND, giant};
+use clamber_climber::ClimberInput;
+use clamber_colossus::CreatureConfig;
+use clamber_fight::{Arena, ArenaConfig, ArenaEvent, FighterConfig, FighterId};
+use clamber_world::{HalfSpace, Obstacle, ObstacleId};
+use glam::DVec3;
+
+fn arena() -> Arena {
+    Arena::new(ArenaConfig::default()).unwrap()
+}
+
+fn died(events: &[ArenaEvent]) -> usize {
+    let died = |event: &&ArenaEvent| matches!(event, ArenaEvent::Died { .. });
+    events.iter().filter(died).count()
+}
+
+/// Fighters with one spawn point stand apart from the first tick on, and nobody dies of that.
+#[test]
+fn fighters_with_one_spawn_point_stand_apart() {
+    let ground = HalfSpace::below(0.0);
+    let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &ground)];
+    for count in [2usize, 3, 8, 100] {
+        for apart in [0.0, 1e-9, 0.01, 0.1] {
+            let mut arena = arena();
+            for index in 0..count {
+                let place = DVec3::new(apart * index as f64 / count as f64, 1.0, 0.0);
+                arena.add_fighter(FighterConfig::hero(), place).unwrap();
+            }
+            // Each walks its own way.
+            let input = |index: usize| {
+                let angle = index as f64 / count as f64 * core::f64::consts::TAU;
+                let walk = DVec3::new(libm::cos(angle), 0.0, libm::sin(angle));
+                ClimberInput {
+                    walk,
+                    ..ClimberInput::IDLE
+                }
+            };
+            let inputs: Vec<ClimberInput> = (0..count).map(input).collect();
+            let still = vec![ClimberInput::IDLE; count];
+            let mut dead = 0;
+            for tick in 0..240 {
+                let inputs = if tick < 30 { &still } else { &inputs };
+                dead += died(arena.step(inputs, &terrain).unwrap());
+                if tick == 20 {
+                    let places: Vec<DVec3> = (arena.fighters().iter())
+                        .map(|fighter| fighter.climber().state().position)
+                        .collect();
+                    for (index, a) in places.iter().enumerate() {
+                        for b in &places[..index] {
+                            let level = (*a - *b).with_y(0.0).length();
+                            assert!(level > 0.4, "{count}, {apart}: {level} m apart");
+                        }
+                    }
+                }
+            }
+            assert_eq!(dead, 0, "{count} fighters, {apart} m");
+        }
+    }
+}
+
+/// Who begins or rises inside the giant stands beside it.
+#[test]
+fn nobody_rises_inside_a_creature() {
+    let ground = HalfSpace::below(0.0);
+    let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &ground)];
+    let kind = giant();
+    for joint in ["foot.L", "shin.L", "pelvis", "chest"] {
+        for dies in [false, true] {
+            let mut arena = arena();
+            arena
+                .add_creature(kind.clone(), CreatureConfig::default())
+                .unwrap();
+            let frame = arena.creatures()[0].palette();
+            let frame = frame.model_from_joint(kind.skeleton().find(joint).unwrap());
+            let spawn = frame.unwrap().translation;
+            let mut config = FighterConfig::hero();
+            config.respawn = Some(0.5);
+            arena.add_fighter(config, spawn).unwrap();
+            let mut looked = 0;
+            for tick in 0..160 {
+                if tick == 60 && dies {
+                    let mut state = arena.save();
+                    state.fighters[0].climber.hit_points = 0.0;
+                    arena.restore(&state).unwrap();
+                }
+                let events = arena.step(&[ClimberInput::IDLE], &terrain).unwrap();
+                let is_rise = |event: &ArenaEvent| matches!(event, ArenaEvent::Rose { .. });
+                if tick != 0 && !events.iter().any(is_rise) {
+                    continue;
+                }
+                looked += 1;
+                let body = arena.fighter(FighterId(0)).unwrap().climber().body();
+                let middle = 0.5 * (body.ends[0] + body.ends[1]);
+                // Of rays that begin inside a skin most leave through its back.
+                let skin = arena.creatures()[0].surface();
+                let leaves = |index: &u32| {
+                    let angle = f64::from(*index) * 0.7;
+                    let way =
+                        DVec3::new(libm::cos(angle), libm::sin(1.3 * angle), libm::sin(angle));
+                    let hit = Obstacle::cast_ray(skin, middle, way, 1e3);
+                    hit.is_some_and(|hit| hit.normal.dot(way) > 0.0)
+                };
+                let inside = (0..20).filter(leaves).count();
+                assert!(
+                    inside < 10,
+                    "{joint}, tick {tick}: at {middle}, {inside} of 20"
+                );
+                let mut contacts = Vec::new();
+                skin.overlap_capsule(&body, &mut contacts);
+                let near = contacts.iter().map(|contact| contact.distance);
+                let near = near.fold(f64::INFINITY, f64::min);
+                assert!(near > 0.7 * body.radius, "{joint}, tick {tick}: {near} m");
+            }
+            assert_eq!(looked, 1 + usize::from(dies), "{joint}");
+        }
+    }
+}
+
+/// Who finds no room waits for it.
+#[test]
+fn who_finds_no_room_waits() {
+    let mut config = FighterConfig::hero();
+    config.respawn = Some(0.5);
+    let mut arena = arena();
+    arena.add_fighter(config, DVec3::Y).unwrap();
+    let ground = HalfSpace::below(0.0);
+    // Rock up to 30 m above the ground.
+    let rock = HalfSpace::below(30.0);
+    let open: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &ground)];
+    let full: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &rock)];
+    for _ in 0..20 {
+        arena.step(&[ClimberInput::IDLE], &open).unwrap();
+    }
+    let mut state = arena.save();
+    state.fighters[0].climber.hit_points = 0.0;
+    arena.restore(&state).unwrap();
+    for tick in 0..300 {
+        let events = arena.step(&[ClimberInput::IDLE], &full).unwrap();
+        let rose = events
+            .iter()
+            .any(|event| matches!(event, ArenaEvent::Rose { .. }));
+        assert!(!rose, "tick {tick}");
+    }
+    let mut rose = None;
+    for tick in 0..60 {
+        let events = arena.step(&[ClimberInput::IDLE], &open).unwrap();
+        if events
+            .iter()
+            .any(|event| matches!(event, ArenaEvent::Rose { .. }))
+        {
+            rose.get_or_insert(tick);
+        }
+    }
+    assert!(rose.is_some_and(|tick| tick <= 31), "{rose:?}");
+}

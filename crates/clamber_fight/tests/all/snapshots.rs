@@ -1,0 +1,395 @@
+//! Saved arenas: all goes on with the same bits, what is left out is noticed, and bad bytes are refused. Scene B54.
+
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
+use crate::support;
+
+use std::collections::BTreeMap;
+
+use crate::support::{Melee, Slab, giant, weak_point};
+use clamber_colossus::CreatureConfig;
+use clamber_fight::{Arena, ArenaConfig, ArenaError, ArenaState, FighterConfig};
+use glam::{DVec3, Vec3};
+use serde_json::Value;
+
+/// Ticks that are played again from each saved state.
+const AGAIN: u64 = 7;
+
+#[test]
+fn much_happens_in_the_melee() {
+    let mut melee = Melee::new(&giant());
+    let mut counts: BTreeMap<String, u32> = BTreeMap::new();
+    let mut modes: BTreeMap<String, u32> = BTreeMap::new();
+    for _ in 0..60 * 100 {
+        for event in melee.step() {
+            let text = format!("{event:?}");
+            let name = text.split([' ', '{']).next().unwrap().to_owned();
+            *counts.entry(name).or_default() += 1;
+        }
+        for fighter in melee.arena.fighters() {
+            *modes
+                .entry(format!("{:?}", fighter.climber().state().mode))
+                .or_default() += 1;
+        }
+    }
+    println!("{counts:?}\n{modes:?}");
+    for name in [
+        "Creature",
+        "Climber",
+        "Hit",
+        "Struck",
+        "Shot",
+        "Stuck",
+        "CameLoose",
+        "BrokenOff",
+    ] {
+        assert!(counts.contains_key(name), "no {name}: {counts:?}");
+    }
+    assert!(
+        modes.contains_key("Holding") && modes.contains_key("Hanging"),
+        "{modes:?}"
+    );
+}
+
+/// Every tick of the fight, played again from seven ticks before.
+#[test]
+fn a_restored_arena_goes_on_with_the_same_bits() {
+    let mut melee = Melee::new(&giant());
+    let mut states: Vec<ArenaState> = vec![melee.arena.save()];
+    let mut sums = vec![melee.arena.fingerprint()];
+    for tick in 1..=60 * 20u64 {
+        melee.step();
+        states.push(melee.arena.save());
+        sums.push(melee.arena.fingerprint());
+        assert_eq!(states[tick as usize].fingerprint(), sums[tick as usize]);
+        if tick >= AGAIN && tick % 3 == 0 {
+            let from = tick - AGAIN;
+            melee.arena.restore(&states[from as usize]).unwrap();
+            assert_eq!(melee.arena.fingerprint(), sums[from as usize]);
+            for again in from + 1..=tick {
+                melee.step();
+                assert_eq!(
+                    melee.arena.fingerprint(),
+                    sums[again as usize],
+                    "tick {again} from {from}"
+                );
+            }
+            assert!(melee.arena.save() == states[tick as usize], "tick {tick}");
+        }
+    }
+}
+
+/// A place in a saved state, as its fields and indices.
+type Path = &'static [&'static str];
+
+fn at(value: &mut Value, path: Path) -> &mut Value {
+    path.iter()
+        .fold(value, |value, key| match key.parse::<usize>() {
+            Ok(index) => &mut value[index],
+            Err(_) => value.get_mut(key).unwrap(),
+        })
+}
+
+fn text_hash(text: &str) -> u64 {
+    text.bytes().fold(0, |hash: u64, byte| {
+        (hash.rotate_left(5) ^ u64::from(byte)).wrapping_mul(0x9e37_79b9_7f4a_7c15)
+    })
+}
+
+/// If a field is left out of what is saved, a run that is loaded and played again has other bits: within 60 ticks from
+/// where it first matters.
+#[test]
+fn each_field_that_is_left_out_is_noticed_within_a_second() {
+    const FIELDS: [(&str, Path); 23] = [
+        ("tick", &["tick"]),
+        ("pendulum", &["fighters", "0", "climber", "hanging"]),
+        (
+            "filter of the shake",
+            &["fighters", "0", "climber", "shake"],
+        ),
+        ("stamina", &["fighters", "0", "climber", "stamina"]),
+        ("hit points", &["fighters", "1", "climber", "hit_points"]),
+        ("support", &["fighters", "0", "climber", "support"]),
+        (
+            "support's velocity",
+            &["fighters", "0", "climber", "support_velocity"],
+        ),
+        ("heading", &["fighters", "1", "climber", "heading"]),
+        ("hit-stop", &["fighters", "2", "hit_stop"]),
+        ("charge and other acts", &["fighters", "0", "act"]),
+        ("buttons", &["fighters", "0", "actions"]),
+        ("blow", &["fighters", "1", "blow"]),
+        ("random stream", &["fighters", "1", "random"]),
+        ("arrows", &["projectiles"]),
+        ("number of the next arrow", &["next_projectile"]),
+        ("noises", &["noises"]),
+        ("plates", &["creatures", "1", "plates"]),
+        (
+            "hit points of weak points",
+            &["creatures", "1", "hit_points"],
+        ),
+        ("brain", &["creatures", "0", "brain"]),
+        ("clips", &["creatures", "0", "animator"]),
+        ("feet", &["creatures", "0", "feet"]),
+        ("rides", &["creatures", "0", "rides"]),
+        ("pose", &["creatures", "0", "pose"]),
+    ];
+    let mut melee = Melee::new(&giant());
+    let (mut states, mut sums, mut fields) = (Vec::new(), Vec::new(), Vec::new());
+    for _ in 0..60 * 100 {
+        let state = melee.arena.save();
+        let mut value = serde_json::to_value(&state).unwrap();
+        fields.push(FIELDS.map(|(_, path)| text_hash(&at(&mut value, path).to_string())));
+        states.push(state);
+        sums.push(melee.arena.fingerprint());
+        melee.step();
+    }
+    let value = |tick: usize| serde_json::to_value(&states[tick]).unwrap();
+    for (index, (name, path)) in FIELDS.into_iter().enumerate() {
+        let last = states.len() - 60 - 2 * AGAIN as usize;
+        let first = (0..last)
+            .find(|from| fields[*from][index] != fields[*from + AGAIN as usize][index])
+            .unwrap_or_else(|| panic!("{name} never changes"));
+        let caught = (first..first + 60).find(|from| {
+            let mut live = value(from + AGAIN as usize);
+            let mut loaded = value(*from);
+            *at(&mut loaded, path) = at(&mut live, path).clone();
+            let Ok(state) = serde_json::from_value::<ArenaState>(loaded) else {
+                return true;
+            };
+            // What no arena can be in is noticed as well.
+            if melee.arena.restore(&state).is_err() {
+                return true;
+            }
+            (from + 1..=from + AGAIN as usize).any(|tick| {
+                // The inputs of a tick are those of its number in the run.
+                let mut loaded = melee.arena.save();
+                loaded.tick = tick as u64 - 1;
+                if name != "tick" {
+                    melee.arena.restore(&loaded).unwrap();
+                }
+                melee.step();
+                melee.arena.fingerprint() != sums[tick]
+            })
+        });
+        assert!(
+            caught.is_some(),
+            "{name} can be left out from tick {first} on"
+        );
+    }
+    // Nothing left out: nothing noticed.
+    for from in (0..600).step_by(50) {
+        melee.arena.restore(&states[from]).unwrap();
+        for sum in sums.iter().skip(from + 1).take(AGAIN as usize) {
+            melee.step();
+            assert_eq!(melee.arena.fingerprint(), *sum);
+        }
+    }
+}
+
+#[test]
+fn bytes_come_back_and_others_are_refused() {
+    let kind = giant();
+    let mut melee = Melee::new(&kind);
+    for _ in 0..200 {
+        melee.step();
+    }
+    let bytes = melee.arena.to_bytes().unwrap();
+    let (saved, sum) = (melee.arena.save(), melee.arena.fingerprint());
+    for _ in 0..50 {
+        melee.step();
+    }
+    melee.arena.restore_bytes(&bytes).unwrap();
+    assert!(melee.arena.save() == saved);
+    // Another arena that was made alike goes on from there too.
+    let mut other = Melee::new(&kind);
+    other.arena.restore_bytes(&bytes).unwrap();
+    melee.step();
+    other.step();
+    assert_eq!(melee.arena.fingerprint(), other.arena.fingerprint());
+    assert_ne!(melee.arena.fingerprint(), sum);
+
+    let before = melee.arena.fingerprint();
+    let mut rng = fastrand::Rng::with_seed(1);
+    for round in 0..1000 {
+        let mut wrong = bytes.clone();
+        if round % 2 == 0 {
+            wrong.truncate(rng.usize(0..wrong.len()));
+        } else {
+            let at = rng.usize(0..wrong.len());
+            wrong[at] ^= 1 << rng.u32(0..8);
+        }
+        let error = melee.arena.restore_bytes(&wrong).unwrap_err();
+        let known = matches!(
+            error,
+            ArenaError::Damaged(_) | ArenaError::Version { .. } | ArenaError::Assets { .. }
+        );
+        assert!(known, "{error}");
+    }
+    let mut longer = bytes.clone();
+    longer.push(0);
+    assert!(melee.arena.restore_bytes(&longer).is_err());
+    assert_eq!(melee.arena.fingerprint(), before);
+
+    // Other assets.
+    let mut arena = Arena::new(ArenaConfig::default()).unwrap();
+    let error = arena.restore_bytes(&bytes).unwrap_err();
+    assert!(matches!(error, ArenaError::Assets { .. }), "{error}");
+}
+
+/// States with numbers that are not theirs: refused, or played without a panic.
+#[test]
+fn states_that_were_changed_are_refused_or_played() {
+    let mut melee = Melee::new(&giant());
+    for _ in 0..400 {
+        melee.step();
+    }
+    let good = melee.arena.save();
+    let whole = serde_json::to_value(&good).unwrap();
+    let mut rng = fastrand::Rng::with_seed(2);
+    let (mut refused, mut played) = (0, 0);
+    for _ in 0..1000 {
+        let mut value = whole.clone();
+        spoil(&mut value, &mut rng);
+        let Ok(state) = serde_json::from_value::<ArenaState>(value) else {
+            refused += 1;
+            continue;
+        };
+        if melee.arena.restore(&state).is_err() {
+            refused += 1;
+            assert_eq!(melee.arena.save().fighters.len(), 3);
+            continue;
+        }
+        played += 1;
+        for _ in 0..3 {
+            melee_step(&mut melee);
+        }
+        melee.arena.restore(&good).unwrap();
+    }
+    println!("{refused} refused, {played} played");
+    assert!(refused > 50 && played > 200);
+}
+
+/// Steps without expecting success: a creature may be out of the range of numbers.
+fn melee_step(melee: &mut Melee) {
+    let inputs = Melee::inputs(melee.arena.tick());
+    let ground = clamber_world::HalfSpace::below(0.0);
+    let terrain: [(clamber_world::ObstacleId, &dyn clamber_world::Obstacle); 1] =
+        [(support::GROUND, &ground)];
+    let _ = melee.arena.step(&inputs, &terrain);
+}
+
+/// Changes a number somewhere.
+fn spoil(value: &mut Value, rng: &mut fastrand::Rng) {
+    match value {
+        Value::Array(all) if !all.is_empty() => {
+            let index = rng.usize(0..all.len());
+            spoil(&mut all[index], rng);
+        }
+        Value::Object(all) if !all.is_empty() => {
+            let index = rng.usize(0..all.len());
+            spoil(all.values_mut().nth(index).unwrap(), rng);
+        }
+        Value::Number(number) => {
+            let wild: [Value; 8] = [
+                0.into(),
+                (-1).into(),
+                1e300.into(),
+                (-1e300).into(),
+                u64::MAX.into(),
+                3.into(),
+                0.5.into(),
+                1e-300.into(),
+            ];
+            let other = wild[rng.usize(0..wild.len())].clone();
+            *number = other.as_number().unwrap().clone();
+        }
+        Value::Bool(flag) => *flag = !*flag,
+        other => *other = Value::Null,
+    }
+}
+
+#[test]
+fn a_restore_that_fails_changes_nothing() {
+    let mut melee = Melee::new(&giant());
+    for _ in 0..100 {
+        melee.step();
+    }
+    let before = melee.arena.fingerprint();
+    let good = melee.arena.save();
+    let mut wrong: Vec<ArenaState> = Vec::new();
+    let mut spoil = |change: &dyn Fn(&mut ArenaState)| {
+        let mut state = good.clone();
+        change(&mut state);
+        wrong.push(state);
+    };
+    spoil(&|state| {
+        state.creatures.pop();
+    });
+    // The second creature is refused after the first one was taken.
+    spoil(&|state| state.creatures[1] = state.creatures[0].clone());
+    spoil(&|state| state.fighters[2].climber.stamina = 7.0);
+    spoil(&|state| state.fighters[0].hit_stop = f64::NAN);
+    spoil(&|state| {
+        state.fighters.pop();
+    });
+    for state in wrong {
+        assert!(melee.arena.restore(&state).is_err());
+        assert_eq!(melee.arena.fingerprint(), before);
+    }
+    melee.step();
+    let mut again = Melee::new(&giant());
+    again.arena.restore(&good).unwrap();
+    again.step();
+    assert_eq!(melee.arena.fingerprint(), again.arena.fingerprint());
+}
+
+#[test]
+fn a_snapshot_of_a_giant_and_eight_climbers_is_small() {
+    let mut arena = Arena::new(ArenaConfig::default()).unwrap();
+    arena
+        .add_creature(giant(), CreatureConfig::default())
+        .unwrap();
+    for index in 0..8 {
+        let place = DVec3::new(f64::from(index) - 4.0, 1.0, 20.0);
+        arena.add_fighter(FighterConfig::hero(), place).unwrap();
+    }
+    let mut most = 0;
+    for tick in 0..300u64 {
+        let inputs = [Melee::inputs(tick)[1]; 8];
+        let ground = clamber_world::HalfSpace::below(0.0);
+        arena.step(&inputs, &[(support::GROUND, &ground)]).unwrap();
+        most = most.max(arena.to_bytes().unwrap().len());
+    }
+    println!("{most} bytes");
+    assert!(most <= 64 * 1024, "{most} bytes");
+}
+
+#[test]
+fn assets_tell_arenas_apart() {
+    let make = |slab: &Slab, place: DVec3| slab.arena(FighterConfig::hero(), &[place]).assets();
+    let slab = Slab::default();
+    assert_eq!(make(&slab, DVec3::Y), make(&slab, DVec3::Y));
+    assert_ne!(make(&slab, DVec3::Y), make(&slab, DVec3::X));
+    let wounded = Slab {
+        weak_points: vec![weak_point("heart", Vec3::ZERO, 1.0, 0)],
+        ..slab.clone()
+    };
+    assert_ne!(make(&slab, DVec3::Y), make(&wounded, DVec3::Y));
+    let faster = Slab {
+        rate: 61.0,
+        ..slab.clone()
+    };
+    assert_ne!(make(&slab, DVec3::Y), make(&faster, DVec3::Y));
+
+    // A state is taken by its own kind of arena only: this archer has another bow.
+    let mut arena = slab.arena(FighterConfig::hero(), &[DVec3::Y]);
+    let mut weaker = FighterConfig::hero();
+    weaker.bow.as_mut().unwrap().speed *= 0.5;
+    let other = slab.arena(weaker, &[DVec3::Y]);
+    let before = arena.fingerprint();
+    let error = arena.restore(&other.save()).unwrap_err();
+    assert!(matches!(error, ArenaError::Assets { .. }), "{error}");
+    assert_eq!(arena.fingerprint(), before);
+    arena.restore(&arena.save()).unwrap();
+}

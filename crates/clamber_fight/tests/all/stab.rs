@@ -1,0 +1,368 @@
+//! Stabs: charge, damage, what breaks them off, and where the blade goes. Scenes B26 to B28.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
+
+use crate::support::{GIANT, HERO, Slab, hits, land, mode, pressing, step, weak_point};
+use clamber_climber::{ClimberInput, ClimberMode};
+use clamber_fight::actions::STAB;
+use clamber_fight::{Act, Arena, ArenaEvent, FighterConfig, SwordConfig, Target};
+use glam::{DVec3, Vec3};
+
+const RATES: [f64; 4] = [30.0, 60.0, 120.0, 240.0];
+
+fn hero() -> FighterConfig {
+    FighterConfig {
+        hit_stop: 0.0,
+        ..FighterConfig::hero()
+    }
+}
+
+fn act(arena: &Arena) -> Act {
+    arena.fighter(HERO).unwrap().act().clone()
+}
+
+fn charge(arena: &Arena) -> f64 {
+    arena.fighter(HERO).unwrap().charge()
+}
+
+/// Presses until the sword is up.
+fn raise(arena: &mut Arena, hold: &ClimberInput) {
+    let pressed = ClimberInput {
+        actions: STAB,
+        ..*hold
+    };
+    step(arena, &pressed);
+    for _ in 0..600 {
+        if matches!(act(arena), Act::Charge { .. }) {
+            return;
+        }
+        step(arena, hold);
+    }
+    panic!("{:?}", act(arena));
+}
+
+/// Strikes, and gives the damage of what was hit.
+fn strike(arena: &mut Arena, hold: &ClimberInput) -> Vec<f64> {
+    let mut all = hits(&step(
+        arena,
+        &ClimberInput {
+            actions: STAB,
+            ..*hold
+        },
+    ));
+    for _ in 0..600 {
+        if act(arena) == Act::Ready {
+            return all;
+        }
+        all.append(&mut hits(&step(arena, hold)));
+    }
+    panic!("{:?}", act(arena));
+}
+
+fn with_weak_point(rate: f64, hit_points: f64) -> Slab {
+    Slab {
+        rate,
+        weak_points: vec![weak_point("heart", Vec3::ZERO, hit_points, 0)],
+        ..Slab::default()
+    }
+}
+
+#[test]
+fn a_stab_is_fully_charged_after_two_seconds_and_sooner_while_pressed() {
+    for rate in RATES {
+        for (held, seconds) in [(0, 2.0), (STAB, 1.6)] {
+            let mut arena = with_weak_point(rate, 9.0).arena(hero(), &[DVec3::Y]);
+            land(&mut arena);
+            let hold = pressing(held);
+            raise(&mut arena, &hold);
+            let mut ticks = 0;
+            while charge(&arena) < 1.0 {
+                step(&mut arena, &hold);
+                ticks += 1;
+            }
+            let expected = seconds * rate;
+            assert!(
+                (f64::from(ticks) - expected).abs() <= 1.0,
+                "{rate} Hz: {ticks} for {expected}"
+            );
+        }
+    }
+}
+
+#[test]
+fn damage_is_proportional_to_the_charge() {
+    for rate in RATES {
+        for share in [0.25, 0.5, 0.75, 1.0] {
+            let mut arena = with_weak_point(rate, 9.0).arena(hero(), &[DVec3::Y]);
+            land(&mut arena);
+            raise(&mut arena, &ClimberInput::IDLE);
+            while charge(&arena) < share - 1e-9 {
+                step(&mut arena, &ClimberInput::IDLE);
+            }
+            let charged = charge(&arena);
+            let done = strike(&mut arena, &ClimberInput::IDLE);
+            assert_eq!(done.len(), 1, "{done:?}");
+            assert!(
+                (done[0] - charged).abs() < 0.01 * charged,
+                "{rate} Hz: {done:?} of {charged}"
+            );
+        }
+    }
+}
+
+/// The giant's skin jerks while the stab is charged: a hold of 15 m/s^2 is the most.
+fn jerking(rate: f64, acceleration: f32) -> Slab {
+    // Still for five seconds, then to and fro at that acceleration.
+    let mut keys = vec![(0.0, Vec3::ZERO, Vec3::ONE), (5.0, Vec3::ZERO, Vec3::ONE)];
+    for k in 1..=240 {
+        let t = k as f32 / 240.0;
+        keys.push((5.0 + t, Vec3::X * (0.5 * acceleration * t * t), Vec3::ONE));
+    }
+    keys.push((
+        20.0,
+        Vec3::X * (0.5 * acceleration + acceleration * 14.0),
+        Vec3::ONE,
+    ));
+    Slab {
+        keys,
+        ..with_weak_point(rate, 9.0)
+    }
+}
+
+#[test]
+fn a_shake_beyond_the_hang_threshold_breaks_a_stab_off_within_a_tick() {
+    for rate in RATES {
+        for (acceleration, breaks) in [(10.0, false), (25.0, true)] {
+            let mut config = hero();
+            // The feet stay, and the hold is kept, so that the shake alone decides.
+            config.climber.ground.throw_acceleration = f64::INFINITY;
+            config.climber.stamina = None;
+            let mut arena = jerking(rate, acceleration).arena(config, &[DVec3::Y]);
+            land(&mut arena);
+            let hold = ClimberInput {
+                grip: true,
+                ..ClimberInput::IDLE
+            };
+            for _ in 0..5 {
+                step(&mut arena, &hold);
+            }
+            assert_eq!(mode(&arena), ClimberMode::Holding);
+            raise(&mut arena, &hold);
+            let most = config.climber.grip.unwrap().hang_acceleration;
+            let (mut broke, mut shaken) = (None, None);
+            for tick in 0..(7.0 * rate) as u32 {
+                let events = step(&mut arena, &hold);
+                let shake = arena
+                    .fighter(HERO)
+                    .unwrap()
+                    .climber()
+                    .state()
+                    .shake
+                    .length();
+                if shake > most && shaken.is_none() {
+                    shaken = Some(tick);
+                }
+                if events.contains(&ArenaEvent::BrokenOff { fighter: HERO }) {
+                    broke = Some(tick);
+                    break;
+                }
+            }
+            assert_eq!(shaken.is_some(), breaks, "{rate} Hz, {acceleration} m/s^2");
+            assert_eq!(broke, shaken, "{rate} Hz");
+        }
+    }
+}
+
+/// Whoever strikes in the tick in which the shake breaks it off does not strike, at any rate.
+#[test]
+fn a_strike_in_the_tick_of_the_shake_is_broken_off_at_every_rate() {
+    for rate in RATES {
+        let mut config = hero();
+        config.climber.ground.throw_acceleration = f64::INFINITY;
+        config.climber.stamina = None;
+        let hold = ClimberInput {
+            grip: true,
+            ..ClimberInput::IDLE
+        };
+        let mut arena = jerking(rate, 25.0).arena(config, &[DVec3::Y]);
+        land(&mut arena);
+        for _ in 0..5 {
+            step(&mut arena, &hold);
+        }
+        raise(&mut arena, &hold);
+        let before = loop {
+            let before = arena.save();
+            if step(&mut arena, &hold).contains(&ArenaEvent::BrokenOff { fighter: HERO }) {
+                break before;
+            }
+        };
+        arena.restore(&before).unwrap();
+        let events = step(
+            &mut arena,
+            &ClimberInput {
+                actions: STAB,
+                ..hold
+            },
+        );
+        assert!(
+            events.contains(&ArenaEvent::BrokenOff { fighter: HERO }),
+            "{rate} Hz"
+        );
+        let mut done = Vec::new();
+        for _ in 0..60 {
+            done.append(&mut hits(&step(&mut arena, &hold)));
+        }
+        assert!(done.is_empty(), "{rate} Hz: {done:?}");
+    }
+}
+
+/// Full stabs, and one of a share, into a point of two and a half.
+fn stabs(share: f64) -> (Arena, Vec<f64>) {
+    let slab = Slab {
+        weak_points: vec![
+            weak_point("first", Vec3::ZERO, 2.5, 0),
+            weak_point("second", Vec3::ZERO, 5.0, 1),
+        ],
+        ..Slab::default()
+    };
+    // A tenth of the charge each six ticks: all shares are exact but for rounding.
+    let mut arena = slab.arena(hero(), &[DVec3::Y]);
+    land(&mut arena);
+    let mut done = Vec::new();
+    for wanted in [1.0, 1.0, share] {
+        raise(&mut arena, &ClimberInput::IDLE);
+        while charge(&arena) < wanted - 1e-9 {
+            step(&mut arena, &ClimberInput::IDLE);
+        }
+        done.append(&mut strike(&mut arena, &ClimberInput::IDLE));
+    }
+    (arena, done)
+}
+
+#[test]
+fn a_point_of_two_and_a_half_stabs_takes_as_many_and_passes_nothing_on() {
+    let (arena, done) = stabs(0.5);
+    assert_eq!(done.len(), 3, "{done:?}");
+    let points = arena.creature(GIANT).unwrap().state().hit_points().to_vec();
+    assert!(points[0] <= 1e-9, "{points:?}, {done:?}");
+    // Less leaves it open.
+    let (arena, _) = stabs(0.49 - 1.0 / 120.0);
+    let points = arena.creature(GIANT).unwrap().state().hit_points().to_vec();
+    assert!(points[0] > 0.0 && points[1] == 5.0, "{points:?}");
+    // More is not passed on to the next one.
+    let (arena, done) = stabs(1.0);
+    let points = arena.creature(GIANT).unwrap().state().hit_points().to_vec();
+    assert_eq!(points, [0.0, 5.0], "{done:?}");
+    assert!((done[2] - 0.5).abs() < 1e-9, "{done:?}");
+    assert!(
+        arena.creature(GIANT).unwrap().is_open(1),
+        "the next one opens"
+    );
+}
+
+/// On skin that is stretched by half and moves at 5 m/s the tip goes where it was aimed, and hits in each of 20 poses.
+#[test]
+fn the_tip_goes_to_its_material_point_on_stretched_and_moving_skin() {
+    for pose in 0..20 {
+        let stretch = Vec3::new(
+            1.0 + pose as f32 / 38.0,
+            1.0,
+            1.0 + (19 - pose) as f32 / 38.0,
+        );
+        let way = Vec3::new(5.0, 0.0, 0.0);
+        // It is moving and stretched when the fighter lands, goes on for 20 s, and begins again after the test.
+        let keys = vec![
+            (0.0, Vec3::ZERO, stretch),
+            (60.0, way * 60.0, stretch * Vec3::new(1.5, 1.0, 1.5)),
+        ];
+        let mut arena = Slab {
+            keys,
+            ..with_weak_point(60.0, 100.0)
+        }
+        .arena(hero(), &[DVec3::Y]);
+        land(&mut arena);
+        let hold = ClimberInput {
+            grip: pose % 2 == 0,
+            ..ClimberInput::IDLE
+        };
+        for _ in 0..5 {
+            step(&mut arena, &hold);
+        }
+        raise(&mut arena, &hold);
+        let mut events = step(
+            &mut arena,
+            &ClimberInput {
+                actions: STAB,
+                ..hold
+            },
+        );
+        let Act::Strike {
+            target: Target::Skin(aimed),
+            ..
+        } = act(&arena)
+        else {
+            panic!("{:?}", act(&arena));
+        };
+        let place = loop {
+            let hit = events.iter().find_map(|event| match event {
+                ArenaEvent::Hit { place, .. } => Some(*place),
+                _ => None,
+            });
+            if let Some(place) = hit {
+                break place;
+            }
+            assert!(
+                matches!(act(&arena), Act::Strike { .. }),
+                "pose {pose} missed"
+            );
+            events = step(&mut arena, &hold);
+        };
+        // Where the aimed point is by now, independently: by its anchor on the skin.
+        let surface = arena.creature(GIANT).unwrap().surface();
+        let anchor = aimed.material.anchor_on(surface).unwrap();
+        let motion = surface.in_world().motion(&anchor, 1.0 / 60.0).unwrap();
+        assert!(
+            motion.velocity.length() > 4.9,
+            "pose {pose}: {}",
+            motion.velocity
+        );
+        assert!(place.distance(motion.position) < 0.005, "pose {pose}");
+        // The blade is there, and so deep in the skin.
+        let blade = arena.fighter(HERO).unwrap().blade().unwrap();
+        let depth = (motion.position - blade.tip).dot(motion.normal);
+        assert!(
+            (depth - SwordConfig::default().depth).abs() < 0.01,
+            "pose {pose}: {depth}"
+        );
+    }
+}
+
+#[test]
+fn a_stab_out_of_a_fall_is_full_and_slow_to_pull_out() {
+    let mut arena = with_weak_point(60.0, 9.0).arena(hero(), &[DVec3::Y * 12.0]);
+    let idle = ClimberInput::IDLE;
+    step(&mut arena, &pressing(STAB));
+    let mut done = Vec::new();
+    let mut pulling = 0;
+    for tick in 0..240 {
+        // The sword is up after 0.3 s.
+        let input = if tick == 30 { pressing(STAB) } else { idle };
+        done.append(&mut hits(&step(&mut arena, &input)));
+        pulling += u32::from(matches!(act(&arena), Act::PullOut { .. }));
+    }
+    assert_eq!(done, [1.0]);
+    assert!((90..100).contains(&pulling), "{pulling} ticks");
+    // Who has lost the ground instead has its stab broken off.
+    let mut arena = with_weak_point(60.0, 9.0).arena(hero(), &[DVec3::new(5.8, 1.0, 0.0)]);
+    land(&mut arena);
+    raise(&mut arena, &idle);
+    let surface = arena.creature_mut(GIANT).unwrap().surface_mut();
+    for triangle in 0..surface.mesh().triangles().len() as u32 {
+        surface
+            .disable_triangle(clamber_surface::mesh::TriangleId(triangle))
+            .unwrap();
+    }
+    let broken =
+        (0..3).any(|_| step(&mut arena, &idle).contains(&ArenaEvent::BrokenOff { fighter: HERO }));
+    assert!(broken, "{:?}", mode(&arena));
+}

@@ -1,0 +1,7 @@
+//! Recordings: what is written is read back, by this crate and by others.
+
+mod arena;
+mod battle;
+mod damage;
+mod figure;
+mod python;
