@@ -13,7 +13,7 @@ const NEAR: f64 = 0.15;
 
 impl Creature {
     /// Goes with the ground, as that has moved in this tick: the creature's place and heading, its feet, and the places
-    /// that it lives at. Returns true if the ground moved.
+    /// that it knows. Returns true if the ground moved.
     pub(super) fn be_carried(&mut self, around: &Surroundings<'_>, dt: f64) -> bool {
         let Some(motion) = self.ground_motion(around, dt) else {
             return false;
@@ -25,10 +25,18 @@ impl Creature {
             yaw: yaw_of(motion.turn),
         };
         let state = &mut self.state;
-        for place in [&mut state.position, &mut state.home, &mut state.patrol] {
-            *place = carried.place(*place);
-        }
-        for place in &mut state.walked.corners {
+        let known = [
+            &mut state.position,
+            &mut state.home,
+            &mut state.patrol,
+            &mut state.noise,
+        ];
+        let prey = state.prey.iter_mut().map(|(_, place)| place);
+        for place in known
+            .into_iter()
+            .chain(prey)
+            .chain(&mut state.walked.corners)
+        {
             *place = carried.place(*place);
         }
         state.gaze.value = carried.place(state.gaze.value);

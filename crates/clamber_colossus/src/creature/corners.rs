@@ -21,7 +21,8 @@ const PIECE: f64 = 1.0;
 /// A corner is passed when it is this near, as a share of the creature's height.
 pub(super) const PASSED: f64 = 0.12;
 
-/// A way is looked for anew after so many seconds, for a giant; and after so many if there was none.
+/// A way is looked for anew after so many seconds, for a giant; and after so many if there was none, twice as many the
+/// next time, up to eight times as many.
 const ANEW: f64 = 1.0;
 const AGAIN: f64 = 4.0;
 
@@ -52,14 +53,17 @@ impl Creature {
             return;
         }
         let slim = extent.slim();
-        let at = std::time::Instant::now();
         let found = self.corners(around, &slim, way);
-        eprintln!(
-            "PLAN {:?} {} us",
-            found.as_ref().map(|f| f.len()),
-            at.elapsed().as_micros()
-        );
-        let seconds = if found.is_some() { ANEW } else { AGAIN };
+        let walked = &mut self.state.walked;
+        walked.failed = match found {
+            Some(_) => 0,
+            None => walked.failed.saturating_add(1),
+        };
+        // Longer and longer: a search that finds nothing looks at all there is.
+        let seconds = match walked.failed {
+            0 => ANEW,
+            failed => AGAIN * f64::from(1u32 << (failed - 1).min(3)),
+        };
         let ticks = seconds * self.size.pace / self.kind.brain().tick();
         self.state.walked.ticks_left = ticks.clamp(1.0, 1e6) as u32;
         self.state.walked.corners = found.unwrap_or_default();
@@ -166,9 +170,7 @@ impl Grid<'_> {
             }
             reached
         };
-        let found = astar(&[0; 3], next, guess, is_there);
-        eprintln!("TRIED {}", known.tried);
-        let (cells, _) = found?;
+        let (cells, _) = astar(&[0; 3], next, guess, is_there)?;
         Some(cells.into_iter().map(|at| self.place(at)).collect())
     }
 

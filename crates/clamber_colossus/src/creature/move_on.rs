@@ -19,6 +19,9 @@ pub(super) const LOOKS: u64 = 8;
 /// longer, by the square root of their height (Froude's law).
 const FADE: f64 = 0.35;
 
+/// Stands for a way that is free as far as it looks, metres.
+const FREE: f64 = 1e6;
+
 /// Less than this is no turn, radians.
 const LEAST_TURN: f64 = 0.05;
 
@@ -96,7 +99,9 @@ impl Creature {
         let goes = self.wanted(gait, Some(way), &course);
         let ahead = if way.walks && !goes.arrived {
             let sight = self.sight(gait);
-            room.ahead(sight.min(goes.distance + sight / 2.0))
+            let far = sight.min(goes.distance + sight / 2.0);
+            let free = room.ahead(far);
+            if free >= far { FREE } else { free }
         } else {
             0.0
         };
@@ -106,7 +111,8 @@ impl Creature {
         let goes = self.wanted(gait, Some(way), &course);
         if goes.turns_on_spot {
             let room = self.room(around, extent, 0.0);
-            let most = self.turning_room(gait).min(goes.aside.abs() + LEAST_TURN);
+            let most = self.turning_room(gait).max(2.0 * LEAST_TURN);
+            let most = most.min(goes.aside.abs() + LEAST_TURN);
             let far = most.copysign(goes.aside);
             let free = room.turn(far).abs();
             let other = || room.turn(-most.copysign(goes.aside)).abs();

@@ -5,7 +5,7 @@
 
 use clamber_surface::geometry::WorldCapsule;
 use clamber_surface::surface::TargetMotion;
-use clamber_world::SweepContact;
+use clamber_world::{Obstacle, SweepContact};
 use glam::DVec3;
 
 use super::state::NO_GROUND;
@@ -18,6 +18,9 @@ pub(super) const STEPS_OVER: f64 = 0.06;
 
 /// It keeps this far from what stands in its way, as a share of its height.
 const MARGIN: f64 = 0.015;
+
+/// How much further it keeps from other creatures, since their skin moves while they stand.
+const SWAYS: f64 = 0.05;
 
 /// The ground ahead is looked at in steps of this share of its height, and in at most so many.
 const SPACING: f64 = 0.08;
@@ -37,6 +40,13 @@ const MOST_TURN: f64 = 0.3;
 /// as this cosine.
 const LOW: f64 = 0.12;
 const STEEP: f64 = 0.7;
+
+/// What is looked for.
+#[derive(Clone, Copy)]
+enum Among {
+    Terrain,
+    Creatures,
+}
 
 /// The surroundings of a creature, seen from where it stands, in the direction in which it may go.
 pub(super) struct Room<'a> {
@@ -103,8 +113,10 @@ impl Creature {
             for pair in places.windows(2) {
                 let ball = WorldCapsule::ball(pair[0], radius * self.size.scale);
                 let ways = [pair[1] - pair[0]; 2];
-                if first(around, &ball, ways, &mut counts).is_some() {
-                    return false;
+                for obstacles in [around.terrain, around.creatures] {
+                    if first(obstacles, &ball, ways, &mut counts).is_some() {
+                        return false;
+                    }
                 }
             }
         }
@@ -125,12 +137,10 @@ impl Room<'_> {
         let lanes = [feet.right, 0.0, feet.left];
         let levels = lanes.map(|aside| self.lane(aside, spacing, count));
         let mut free = far;
-        for station in 0..=count {
-            let at = spacing * station as f64;
-            if !self.is_ground(&levels, &lanes, station, spacing, feet.front) {
-                free = free.min(at - spacing - feet.front - margin);
-                break;
-            }
+        let ends = (0..=count)
+            .find_map(|station| self.last_ground(&levels, &lanes, station, spacing, feet.front));
+        if let Some(last) = ends {
+            free = free.min(spacing * last as f64 - feet.front - margin);
         }
         for index in 0..BANDS {
             let band = self.band(index);
@@ -138,8 +148,20 @@ impl Room<'_> {
             if reach <= 0.0 {
                 break;
             }
-            if let Some(hit) = self.sweep_ahead(index, &band, reach, spacing, &levels) {
-                free = free.min(hit - band.front - margin);
+            for among in [Among::Terrain, Among::Creatures] {
+                let hit = self.sweep_ahead(index, &band, reach, spacing, &levels, among);
+                let Some(left) = hit.map(|hit| hit - band.front - margin) else {
+                    continue;
+                };
+                // Another creature may come towards it as fast, so each has half of the way; and it sways.
+                let left = match among {
+                    Among::Terrain => left,
+                    Among::Creatures => {
+                        let left = left - SWAYS * self.height;
+                        if left > 0.0 { 0.5 * left } else { left }
+                    }
+                };
+                free = free.min(left);
             }
         }
         free
@@ -176,14 +198,19 @@ impl Room<'_> {
         for index in 1..BANDS {
             let band = self.band(index);
             let thick = self.thick(index);
-            let sizes = [
-                (self.forward, band.back, band.front),
-                (self.left, band.right, band.left),
+            let inner = thick - margin;
+            let [back, right] = [band.back, band.right].map(|at| (at + inner).min(0.0));
+            let [front, left] = [band.front, band.left].map(|at| (at - inner).max(0.0));
+            // Along the body, across it, and from corner to corner of its box.
+            let spans = [
+                [(0.0, back), (0.0, front)],
+                [(right, 0.0), (left, 0.0)],
+                [(right, back), (left, front)],
+                [(left, back), (right, front)],
             ];
-            for (axis, low, high) in sizes {
-                let inner = thick - margin;
-                let [low, high] = [(low + inner).min(0.0), (high - inner).max(0.0)];
-                let ends = [low, high].map(|at| turned(axis * at, from));
+            for span in spans {
+                let ends = span
+                    .map(|(aside, along)| turned(self.left * aside + self.forward * along, from));
                 let turned = ends.map(|end| turned(end, far.signum() * free));
                 let place = |level: DVec3| {
                     let up = self.middle(index) + level.dot(slope);
@@ -200,7 +227,8 @@ impl Room<'_> {
                     let way = DVec3::Y.cross(contact - self.origin) * far.signum();
                     way.normalize_or_zero()
                 };
-                if let Some(time) = self.sweep(&capsule, ways, &goes) {
+                let all = [Among::Terrain, Among::Creatures];
+                if let Some(time) = self.sweep(&capsule, ways, &goes, &all) {
                     free *= time;
                 }
             }
@@ -254,43 +282,42 @@ impl Room<'_> {
         ground.below(place).map(|(level, _)| level)
     }
 
-    /// True if it can walk on the ground at a station: it is neither too steep, nor a drop, nor a wall.
-    fn is_ground(
+    /// The last station on whose ground it can walk, if it cannot walk on that of a station: since it is too steep, a
+    /// drop, or a wall, counted from where that begins.
+    fn last_ground(
         &self,
         levels: &[[f64; STATIONS + 1]; 3],
         lanes: &[f64; 3],
         station: usize,
         spacing: f64,
         front: f64,
-    ) -> bool {
+    ) -> Option<usize> {
         let over = STEPS_OVER * self.height;
-        let is_level = |rise: f64, way: f64| {
-            rise.abs() <= self.steepest * way.abs() + over && rise < NO_GROUND
-        };
-        let at = spacing * station as f64;
+        let is_level = |rise: f64, way: f64| rise.abs() <= self.steepest * way.abs() + over;
         // On what its feet are already it stands; the rest has to carry it.
-        let is_ahead = at > front;
+        let is_ahead = spacing * station as f64 > front;
+        let middle = levels[1][station];
+        let before = station.saturating_sub(1);
         for (lane, aside) in levels.iter().zip(lanes) {
             let level = lane[station];
             if level == NO_GROUND {
                 if is_ahead {
-                    return false;
+                    return Some(before);
                 }
                 continue;
             }
-            let before = lane[..station].iter().enumerate();
-            let rises = before.filter(|(_, before)| **before < NO_GROUND);
-            let mut rises =
-                rises.map(|(index, before)| (level - before, spacing * (station - index) as f64));
-            if !rises.all(|(rise, way)| is_level(rise, way)) {
-                return false;
+            let too_steep = (0..station).rev().find(|index| {
+                let way = spacing * (station - index) as f64;
+                lane[*index] < NO_GROUND && !is_level(level - lane[*index], way)
+            });
+            if too_steep.is_some() {
+                return too_steep;
             }
-            let middle = levels[1][station];
             if is_ahead && middle < NO_GROUND && !is_level(level - middle, *aside) {
-                return false;
+                return Some(before);
             }
         }
-        true
+        None
     }
 
     /// Where a band that lies across the body first touches something ahead: metres from the origin to where its front
@@ -302,6 +329,7 @@ impl Room<'_> {
         reach: f64,
         spacing: f64,
         levels: &[[f64; STATIONS + 1]; 3],
+        among: Among,
     ) -> Option<f64> {
         let thick = self.thick(index);
         // As wide as the body, but for the round ends.
@@ -337,7 +365,7 @@ impl Room<'_> {
                 radius: thick,
             };
             let ways = [after[0] - before[0], after[1] - before[1]];
-            if let Some(time) = self.sweep(&capsule, ways, &goes) {
+            if let Some(time) = self.sweep(&capsule, ways, &goes, &[among]) {
                 return Some(from + (to - from) * time + thick);
             }
             station = next;
@@ -351,10 +379,18 @@ impl Room<'_> {
         capsule: &WorldCapsule,
         ways: [DVec3; 2],
         goes: &dyn Fn(DVec3) -> DVec3,
+        among: &[Among],
     ) -> Option<f64> {
         let mut is_in_the_way =
             |hit: &SweepContact| hit.separation_normal.dot(goes(hit.contact.point)) < -ALONG;
-        first(self.around, capsule, ways, &mut is_in_the_way)
+        let times = among.iter().filter_map(|among| {
+            let obstacles = match among {
+                Among::Terrain => self.around.terrain,
+                Among::Creatures => self.around.creatures,
+            };
+            first(obstacles, capsule, ways, &mut is_in_the_way)
+        });
+        times.min_by(f64::total_cmp)
     }
 
     /// The gradient of the ground on which it stands.
@@ -380,7 +416,7 @@ impl Room<'_> {
 
 /// The time at which a capsule first touches something that counts, from 0 to 1.
 fn first(
-    around: &Surroundings<'_>,
+    obstacles: &[&dyn Obstacle],
     capsule: &WorldCapsule,
     ways: [DVec3; 2],
     counts: &mut dyn FnMut(&SweepContact) -> bool,
@@ -388,8 +424,7 @@ fn first(
     let reach = ways[0].length().max(ways[1].length()) + capsule.radius;
     let middle = 0.5 * (capsule.ends[0] + capsule.ends[1]);
     let reach = reach + 0.5 * capsule.ends[0].distance(capsule.ends[1]);
-    let all = around.terrain.iter().chain(around.creatures);
-    let near = all.filter(|obstacle| {
+    let near = obstacles.iter().filter(|obstacle| {
         let bounds = obstacle.bounds();
         bounds.is_none_or(|(center, radius)| center.distance(middle) <= radius + reach)
     });

@@ -114,9 +114,11 @@ pub(super) struct Walked {
     pub(super) corners: Vec<DVec3>,
     /// Ticks until it looks for them anew.
     pub(super) ticks_left: u32,
+    /// How often it found no way, one after the other.
+    pub(super) failed: u32,
     /// True if the following was looked for.
     pub(super) is_known: bool,
-    /// How far ahead its way is free, metres.
+    /// How far ahead its way is free, metres; much further than it looks if it is free as far as that.
     pub(super) ahead: f64,
     /// How far it may turn to the side to which it turns, radians.
     pub(super) turn: f64,

@@ -22,7 +22,7 @@ const SETTLES: f64 = 0.8;
 impl Creature {
     /// Lets a tick pass, of the length that its brain was made for.
     ///
-    /// In this order: senses of what was around it at the end of the last tick; the brain; the act that it chose begins
+    /// In this order: ground that has moved carries it; senses of what was around it at the end of the last tick; the brain; the act that it chose begins
     /// or goes on; clips; the place in the world; the pose, with feet on the ground and the head turned; the skin; whom
     /// the limbs strike. Step the creature before the climbers on it. A creature that is asleep only feels and thinks.
     ///
@@ -34,9 +34,9 @@ impl Creature {
         self.report.events.append(&mut self.state.told);
         self.report.blows.clear();
         self.state.ticks = self.state.ticks.wrapping_add(1);
+        let is_carried = self.be_carried(around, dt);
         self.feel(around);
         self.think();
-        let is_carried = self.be_carried(around, dt);
         if self.sleeps(is_carried)? {
             return Ok(&self.report);
         }

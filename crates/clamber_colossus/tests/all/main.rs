@@ -3,7 +3,9 @@
 mod animals;
 mod attacks;
 mod brain;
+mod carried;
 mod clips;
+mod edges;
 mod elsewhere;
 mod feet;
 mod foresight;

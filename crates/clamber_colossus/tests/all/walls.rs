@@ -36,7 +36,7 @@ pub(crate) fn creatures() -> Vec<(&'static str, Arc<CreatureKind>, f64)> {
 }
 
 /// How far its skin is from its origin at rest, on the ground, metres.
-fn reach(kind: &Arc<CreatureKind>, height: f64) -> f64 {
+pub(crate) fn reach(kind: &Arc<CreatureKind>, height: f64) -> f64 {
     let creature = Creature::new(Arc::clone(kind), config()).unwrap();
     let mut skin: Vec<Vec3> = Vec::new();
     creature.surface().clone().skin_all(&mut skin);
@@ -173,7 +173,7 @@ fn walk(
     walk
 }
 
-fn config() -> CreatureConfig {
+pub(crate) fn config() -> CreatureConfig {
     CreatureConfig {
         arena: 1e4,
         hearing: 1e4,

@@ -1,11 +1,11 @@
 //! Where a stab would go.
 
 use clamber_surface::surface::SkinnedSurface;
-use clamber_world::MaterialPoint;
+use clamber_world::{MaterialPoint, Obstacle, ObstacleId};
 use glam::DVec3;
 
 use super::{Arena, CreatureId, creature_index};
-use crate::fighter::{FighterId, Target};
+use crate::fighter::{Around, FighterId, Target};
 
 /// A point of a creature's skin.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,12 +23,20 @@ pub struct Aimed {
 }
 
 impl Arena {
-    /// Where a fighter's stab would go if it struck now: for a mark on the screen, and for bots. `None` without a
-    /// sword, and if no skin is in reach.
-    pub fn stab_aim(&self, fighter: FighterId) -> Option<Aimed> {
+    /// Where a fighter's stab would go if it struck now, among the terrain of the last step: for a mark on the screen,
+    /// and for bots. `None` without a sword, and if no skin is in reach.
+    pub fn stab_aim(
+        &self,
+        fighter: FighterId,
+        terrain: &[(ObstacleId, &dyn Obstacle)],
+    ) -> Option<Aimed> {
         let fighter = self.fighter(fighter)?;
         let skins: Vec<&SkinnedSurface> = self.creatures.iter().map(|one| one.surface()).collect();
-        let Target::Skin(at) = fighter.stab_target(&skins) else {
+        let around = Around {
+            skins: &skins,
+            terrain,
+        };
+        let Target::Skin(at) = fighter.stab_target(&around) else {
             return None;
         };
         let index = creature_index(at.obstacle)?;

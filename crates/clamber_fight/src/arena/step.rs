@@ -9,7 +9,7 @@ use super::{
     Arena, ArenaEvent, CREATURES, CreatureId, Outcome, creature_obstacle, fighter_obstacle,
 };
 use crate::error::ArenaError;
-use crate::fighter::{BodyFrame, Fighter, Room, Wielding};
+use crate::fighter::{Around, BodyFrame, Fighter, Room, Wielding};
 use crate::projectile::{Air, Flown};
 
 /// Memory that is used again in each step.
@@ -232,7 +232,10 @@ impl Arena {
                 let wielding = Wielding {
                     before,
                     input: &inputs[index],
-                    skins: &skins,
+                    around: Around {
+                        skins: &skins,
+                        terrain,
+                    },
                     dt,
                     is_held,
                     is_struck: input.blow.is_some(),

@@ -1,12 +1,11 @@
 //! What a fighter does with its weapons in a tick: what its buttons begin, what breaks it off, and how it goes on.
 
 use clamber_climber::{Climber, ClimberError, ClimberEvent, ClimberInput, ClimberMode};
-use clamber_surface::surface::SkinnedSurface;
 use clamber_world::{Attachment, MaterialPoint, Obstacle, ObstacleId};
 use glam::DVec3;
 
 use super::state::HARMED_PLATES;
-use super::{Act, BodyFrame, Fighter, Room, Target, arrows};
+use super::{Act, Around, BodyFrame, Fighter, Room, Target, arrows};
 use crate::actions::{BOW, CUT, STAB, THROW};
 use crate::arena::{
     ArenaEvent, CreatureId, Hit, Outcome, Weapon, creature_index, creature_obstacle,
@@ -30,7 +29,7 @@ pub(crate) struct Wielding<'a> {
     /// The body before the climber's step.
     pub(crate) before: BodyFrame,
     pub(crate) input: &'a ClimberInput,
-    pub(crate) skins: &'a [&'a SkinnedSurface],
+    pub(crate) around: Around<'a>,
     pub(crate) dt: f64,
     /// True if its own impact holds it in this tick.
     pub(crate) is_held: bool,
@@ -252,7 +251,7 @@ impl Fighter {
     /// Goes on with what it does with its weapons, after the climber's step.
     pub(crate) fn wield(&mut self, tick: &Wielding<'_>, out: &mut Outcome) {
         if tick.throws
-            && let Some(stone) = self.throw(tick.input.aim, out.next_projectile())
+            && let Some(stone) = self.throw(tick, out.next_projectile())
         {
             out.shoot(stone);
         }
@@ -316,7 +315,19 @@ impl Fighter {
         );
         let mut hits = Vec::new();
         let times = [seconds, until];
-        sword.cut_through(times, frames, tick.dt, tick.skins, &mut struck, &mut hits);
+        let skins = tick.around.skins;
+        sword.cut_through(times, frames, tick.dt, skins, &mut struck, &mut hits);
+        hits.retain(|found| {
+            let frame = frames[0].to(&frames[1], found.time);
+            let places = [frame.origin, frame.at(sword.shoulder), found.hit.hit.point];
+            let is_hidden = tick.around.hides(&places, Some(found.creature));
+            if is_hidden {
+                // The cut may still get there from another side.
+                let part = found.hit.hit.part.0;
+                struck.retain(|one| *one != (creature_of(found.creature), part));
+            }
+            !is_hidden
+        });
         for found in &hits {
             let hit = &found.hit.hit;
             self.state.hit_stop = self.config.hit_stop;
@@ -404,7 +415,7 @@ impl Fighter {
             return Act::Ready;
         };
         let target = match target {
-            Target::Open => self.stab_target(tick.skins),
+            Target::Open => self.stab_target(&tick.around),
             target => follow(target, tick),
         };
         let until = seconds + tick.dt;
@@ -441,7 +452,7 @@ impl Fighter {
             return Act::Ready;
         };
         let frames = [tick.before, BodyFrame::of(&self.climber)];
-        let Some((creature, hit)) = self.plunge_contact(frames, tick.skins) else {
+        let Some((creature, hit)) = self.plunge_contact(frames, &tick.around) else {
             let falls = self.climber.state().mode == ClimberMode::Falling;
             // It has come down beside.
             return if falls {
@@ -462,8 +473,8 @@ impl Fighter {
             time: hit.time,
             damage: sword.stab_damage * charge,
         });
-        let obstacle = creature_obstacle(CreatureId(creature as u32));
-        let surface = tick.skins[creature];
+        let obstacle = creature_of(creature);
+        let surface = tick.around.skins[creature];
         let at = Attachment::new(obstacle, surface, &contact, contact.point);
         let into = frames[1].direction(DVec3::NEG_Y);
         Act::PullOut {
@@ -481,7 +492,7 @@ impl Fighter {
             return Act::Draw { drawn };
         }
         if drawn >= bow.least_draw
-            && let Some(arrow) = self.shoot(tick.input.aim, drawn, out.next_projectile())
+            && let Some(arrow) = self.shoot(tick, drawn, out.next_projectile())
         {
             out.shoot(arrow);
         }
@@ -489,12 +500,16 @@ impl Fighter {
     }
 }
 
+fn creature_of(index: usize) -> ObstacleId {
+    creature_obstacle(CreatureId(index as u32))
+}
+
 /// Follows the skin over the tick; the blade is in the air if the skin is gone.
 fn follow(target: Target, tick: &Wielding<'_>) -> Target {
     let Target::Skin(mut at) = target else {
         return target;
     };
-    let skin = creature_index(at.obstacle).and_then(|index| tick.skins.get(index));
+    let skin = creature_index(at.obstacle).and_then(|index| tick.around.skins.get(index));
     // More than rounding, less than anybody sees.
     const SLACK: f64 = 0.01;
     match skin.and_then(|skin| at.follow(*skin, tick.dt, SLACK)) {

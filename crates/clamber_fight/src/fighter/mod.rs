@@ -1,6 +1,7 @@
 //! A fighter: a climber with weapons.
 
 mod act;
+mod around;
 mod blade;
 mod config;
 mod cut;
@@ -16,6 +17,7 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 pub(crate) use act::Wielding;
+pub(crate) use around::Around;
 pub use blade::Blade;
 pub use config::{BowConfig, CrushConfig, FighterConfig, StoneConfig, SwordConfig};
 pub use frame::BodyFrame;

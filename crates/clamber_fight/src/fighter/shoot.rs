@@ -3,7 +3,7 @@
 use clamber_surface::geometry::rotation_from_axis_angle;
 use glam::DVec3;
 
-use super::{BodyFrame, Fighter};
+use super::{BodyFrame, Fighter, Wielding};
 use crate::projectile::{Projectile, ProjectileId, ProjectileKind, ProjectileMotion};
 
 /// A faster archer than this does not stray more, radians.
@@ -16,7 +16,8 @@ impl Fighter {
         aim.try_normalize().unwrap_or_else(ahead)
     }
 
-    /// Where an arrow's tip is when it is let go, in world space; `None` without a bow.
+    /// Where an arrow's tip is when it is let go, in world space; `None` without a bow. With terrain or skin between the
+    /// centre of the climber's ball and there, an arrow begins before that.
     pub fn nock(&self) -> Option<DVec3> {
         let bow = self.config.bow.as_ref()?;
         Some(BodyFrame::of(&self.climber).at(bow.nock))
@@ -30,13 +31,20 @@ impl Fighter {
     }
 
     /// Lets an arrow go.
-    pub(super) fn shoot(&mut self, aim: DVec3, drawn: f64, id: ProjectileId) -> Option<Projectile> {
+    pub(super) fn shoot(
+        &mut self,
+        tick: &Wielding<'_>,
+        drawn: f64,
+        id: ProjectileId,
+    ) -> Option<Projectile> {
         let bow = self.config.bow?;
         if bow.arrows.is_some() {
             self.state.arrows = self.state.arrows.checked_sub(1)?;
         }
-        let (position, velocity) = (self.nock()?, self.arrow_velocity(aim, drawn)?);
+        let velocity = self.arrow_velocity(tick.input.aim, drawn)?;
         let state = self.climber.state();
+        let nock = self.nock()?;
+        let position = tick.around.reached(state.position, nock, bow.radius);
         let moves = (state.velocity - state.base_velocity).length();
         let velocity = self.stray(velocity, (bow.stray * moves).min(MOST_STRAY));
         Some(Projectile {
@@ -49,10 +57,12 @@ impl Fighter {
     }
 
     /// Throws a stone.
-    pub(super) fn throw(&mut self, aim: DVec3, id: ProjectileId) -> Option<Projectile> {
+    pub(super) fn throw(&mut self, tick: &Wielding<'_>, id: ProjectileId) -> Option<Projectile> {
         let stones = self.config.stones?;
-        let position = BodyFrame::of(&self.climber).at(stones.hand);
-        let velocity = self.aim(aim) * stones.speed + self.climber.state().velocity;
+        let hand = BodyFrame::of(&self.climber).at(stones.hand);
+        let state = self.climber.state();
+        let position = tick.around.reached(state.position, hand, stones.radius);
+        let velocity = self.aim(tick.input.aim) * stones.speed + state.velocity;
         Some(Projectile {
             id,
             kind: ProjectileKind::Stone,

@@ -1,11 +1,11 @@
 //! Stabs: where they go, and when the blade is there.
 
 use clamber_surface::geometry::WorldCapsule;
-use clamber_surface::surface::{CastOptions, SkinnedSurface, TargetMotion};
+use clamber_surface::surface::{CastOptions, TargetMotion};
 use clamber_world::{Attachment, Obstacle, SweepContact};
 use glam::DVec3;
 
-use super::{Blade, BodyFrame, Fighter, SwordConfig, Target};
+use super::{Around, Blade, BodyFrame, Fighter, SwordConfig, Target};
 use crate::arena::{CreatureId, creature_obstacle};
 
 /// Where a stab begins to look for skin, from the centre of the climber's ball, as shares of the ball's radius: how far
@@ -29,8 +29,8 @@ impl SwordConfig {
 
 impl Fighter {
     /// The point of the skin before it into which a stab would go: below where it stands, ahead of it, or before its
-    /// hands. The attachment's offset is a unit vector into the skin.
-    pub(crate) fn stab_target(&self, skins: &[&SkinnedSurface]) -> Target {
+    /// hands. None behind terrain or another creature. The attachment's offset is a unit vector into the skin.
+    pub(crate) fn stab_target(&self, around: &Around<'_>) -> Target {
         let Some(sword) = &self.config.sword else {
             return Target::Air;
         };
@@ -44,7 +44,7 @@ impl Fighter {
         let radius = self.config.climber.body.radius;
         let from = frame.at((along * ALONG - into * ABOVE) * radius);
         let into = frame.direction(into);
-        let hits = skins.iter().enumerate().filter_map(|(index, skin)| {
+        let hits = around.skins.iter().enumerate().filter_map(|(index, skin)| {
             let hit = Obstacle::cast_ray(*skin, from, into, sword.reach)?;
             Some((hit, index, *skin))
         });
@@ -55,17 +55,21 @@ impl Fighter {
         let Some((hit, index, skin)) = first else {
             return Target::Air;
         };
+        if around.hides(&[frame.origin, from, hit.point], Some(index)) {
+            return Target::Air;
+        }
         let obstacle = creature_obstacle(CreatureId(index as u32));
         let at = Attachment::new(obstacle, skin, &hit, hit.point);
         // The offset is where the blade goes from there.
         Target::Skin(at.moved_to(at.point + into))
     }
 
-    /// The first skin that the blade below a falling body meets between two places of the body.
+    /// The first skin that the blade below a falling body meets between two places of the body. `None` if terrain or
+    /// another creature is in between.
     pub(super) fn plunge_contact(
         &self,
         frames: [BodyFrame; 2],
-        skins: &[&SkinnedSurface],
+        around: &Around<'_>,
     ) -> Option<(usize, SweepContact)> {
         let sword = self.config.sword.as_ref()?;
         let [from, to] = frames.map(|frame| sword.below(&frame));
@@ -76,10 +80,14 @@ impl Fighter {
         let ways = [to.hilt - from.hilt, to.tip - from.tip];
         let options =
             CastOptions::from(TargetMotion::Moving).with_tolerance(capsule.sweep_tolerance());
-        let contacts = skins.iter().enumerate().filter_map(|(index, skin)| {
+        let contacts = around.skins.iter().enumerate().filter_map(|(index, skin)| {
             let hit = skin.in_world().cast_capsule(&capsule, ways, &options)?;
             Some((index, SweepContact::from(hit)))
         });
-        contacts.min_by(|a, b| a.1.time.total_cmp(&b.1.time).then(a.0.cmp(&b.0)))
+        let first = contacts.min_by(|a, b| a.1.time.total_cmp(&b.1.time).then(a.0.cmp(&b.0)));
+        first.filter(|(index, hit)| {
+            let body = frames[0].to(&frames[1], hit.time).origin;
+            !around.hides(&[body, hit.contact.point], Some(*index))
+        })
     }
 }

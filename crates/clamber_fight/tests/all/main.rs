@@ -2,6 +2,7 @@
 
 mod aims;
 mod arrows;
+mod behind;
 mod debris;
 mod fair;
 mod people;

@@ -60,7 +60,8 @@ impl Fencer {
             Act::Charge { charge, .. } => press(*charge < FULL || !was_pressed),
             Act::Strike { .. } | Act::Plunge { .. } | Act::PullOut { .. } => press(false),
             Act::Ready => {
-                let aimed = performer.arena()?.stab_aim(FighterId(0))?;
+                // No terrain is between them while it stands on the creature.
+                let aimed = performer.arena()?.stab_aim(FighterId(0), &[])?;
                 let is_right = match aim.plate {
                     Some(plate) => aimed.plate == Some(plate),
                     None => aimed.plate.is_none() && aimed.weak_point == aim.weak_point,
@@ -77,7 +78,7 @@ impl Fencer {
     /// How far the blade would miss its weak point, and where to: a vector; `None` if there is no skin before it.
     pub(super) fn miss(&self, performer: &Performer<'_>, aim: Aim) -> Option<DVec3> {
         let place = performer.life()?.weak_point(aim.weak_point?)?;
-        let aimed = performer.arena()?.stab_aim(FighterId(0))?;
+        let aimed = performer.arena()?.stab_aim(FighterId(0), &[])?;
         Some(place - aimed.place)
     }
 

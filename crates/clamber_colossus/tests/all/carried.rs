@@ -1,0 +1,172 @@
+//! Ground that moves carries who stands and walks on it: ships that turn, lifts that rise.
+
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
+use std::sync::Arc;
+
+use clamber_colossus::{Creature, CreatureKind, Noise, Surroundings};
+use clamber_surface::geometry::{Similarity, rotation_from_axis_angle};
+use clamber_surface::surface::TargetMotion;
+use clamber_world::{
+    Contact, HalfSpace, MaterialPoint, Obstacle, PointMotion, SweepContact, WorldCapsule,
+};
+use glam::DVec3;
+
+use crate::support::TICK;
+use crate::walls::{config, creatures};
+
+/// A deck without an end that moves, to the last bit as it is told. It turns about up alone.
+#[derive(Clone, Copy)]
+struct Deck {
+    before: Similarity,
+    now: Similarity,
+}
+
+impl Deck {
+    fn level(&self) -> HalfSpace {
+        HalfSpace::below(self.now.translation.y)
+    }
+
+    fn contact(&self, contact: Contact) -> Contact {
+        let material = MaterialPoint {
+            key: 0,
+            coordinates: self.now.inverse_transform_point(contact.point).to_array(),
+        };
+        Contact {
+            material,
+            ..contact
+        }
+    }
+}
+
+impl Obstacle for Deck {
+    fn overlap_capsule(&self, capsule: &WorldCapsule, contacts: &mut Vec<Contact>) {
+        let from = contacts.len();
+        self.level().overlap_capsule(capsule, contacts);
+        for contact in &mut contacts[from..] {
+            *contact = self.contact(*contact);
+        }
+    }
+
+    fn cast_capsule(
+        &self,
+        capsule: &WorldCapsule,
+        displacements: [DVec3; 2],
+        target: TargetMotion,
+    ) -> Option<SweepContact> {
+        let hit = self.level().cast_capsule(capsule, displacements, target)?;
+        Some(SweepContact {
+            contact: self.contact(hit.contact),
+            ..hit
+        })
+    }
+
+    fn motion(&self, point: &MaterialPoint, dt: f64) -> Option<PointMotion> {
+        let local = DVec3::from_array(point.coordinates);
+        let [before, now] = [self.before, self.now].map(|at| at.transform_point(local));
+        Some(PointMotion {
+            turn: self.now.rotation * self.before.rotation.conjugate(),
+            frame: Some(self.now.rotation),
+            ..PointMotion::translated(before, now, dt)
+        })
+    }
+}
+
+/// Places of a creature that lives on a deck, and of its soles above it, in each second, on the deck.
+struct Life {
+    states: Vec<usize>,
+    places: Vec<DVec3>,
+    /// The most that a sole that stands for long was above or in the deck, as a share of its length.
+    gap: f64,
+}
+
+/// It turns and walks to a noise on the deck, stands there, and hears another one.
+fn live(kind: &Arc<CreatureKind>, moves: &dyn Fn(f64) -> Similarity) -> Life {
+    let mut creature = Creature::new(Arc::clone(kind), config()).unwrap();
+    let height = creature.height();
+    let mut deck = Deck {
+        before: Similarity::IDENTITY,
+        now: Similarity::IDENTITY,
+    };
+    let mut life = Life {
+        states: Vec::new(),
+        places: Vec::new(),
+        gap: 0.0,
+    };
+    let legs = kind.brain().file().body.legs.len();
+    let mut since = vec![0u32; legs];
+    let settled = (0.6 * height.sqrt() / TICK) as u32;
+    let lap = 20.0 * height.sqrt();
+    for tick in 1..=(3.0 * lap / TICK) as u32 {
+        let time = f64::from(tick) * TICK;
+        let at = moves(time);
+        (deck.before, deck.now) = (deck.now, at);
+        let angle = (time / lap).floor() * 2.4;
+        let noise = DVec3::new(libm::sin(angle), 0.0, libm::cos(angle)) * (3.0 * height);
+        let noises = [Noise {
+            place: at.transform_point(noise),
+            loudness: 5.0,
+        }];
+        let rings = time.rem_euclid(lap) > 2.0 * height.sqrt();
+        let terrain: [&dyn Obstacle; 1] = [&deck];
+        let around = Surroundings {
+            terrain: &terrain,
+            noises: &noises[..usize::from(rings)],
+            ..Surroundings::default()
+        };
+        creature.step(&around).unwrap();
+        life.states.push(creature.state().current().index());
+        life.places
+            .push(at.inverse_transform_point(creature.state().position()));
+        for (leg, since) in since.iter_mut().enumerate() {
+            *since = if creature.state().is_planted(leg) {
+                *since + 1
+            } else {
+                0
+            };
+            if *since > settled {
+                let most = (0.01 * kind.foot_length(leg) * creature.scale()).max(0.001 * height);
+                let gap = creature.foot_clearance(leg, &terrain).unwrap() / most;
+                life.gap = life.gap.max(gap.abs());
+            }
+        }
+    }
+    life
+}
+
+#[test]
+fn on_a_deck_that_moves_it_lives_as_on_one_that_does_not() {
+    let mut failed = Vec::new();
+    for (name, kind, height) in creatures().into_iter().take(3) {
+        let at_rest = live(&kind, &|_| Similarity::IDENTITY);
+        let pace = height.sqrt();
+        let sails =
+            |time: f64| Similarity::from_translation(DVec3::new(1.3, 0.0, -0.8) * (time * pace));
+        let rises = |time: f64| Similarity::from_translation(DVec3::Y * (0.5 * time * pace));
+        let turns = |time: f64| Similarity {
+            rotation: rotation_from_axis_angle(DVec3::Y, 0.2 * time / pace),
+            translation: DVec3::new(3.0, 0.3, 0.0) * (time * pace),
+            ..Similarity::IDENTITY
+        };
+        let all: [(&str, &dyn Fn(f64) -> Similarity); 3] =
+            [("sails", &sails), ("rises", &rises), ("turns", &turns)];
+        for (what, moves) in all {
+            let carried = live(&kind, moves);
+            let away = carried.places.iter().zip(&at_rest.places);
+            let away = away.map(|(a, b)| a.distance(*b)).fold(0.0, f64::max) / height;
+            let other = carried.states.iter().zip(&at_rest.states);
+            let other = other.filter(|(a, b)| a != b).count();
+            let moved = at_rest.places.last().unwrap().length() / height;
+            let told = format!(
+                "{name} {what}: {away:.2e} heights away, {other} ticks in another state, soles \
+                 {:.2} (at rest {:.2}), ends {moved:.1} heights away",
+                carried.gap, at_rest.gap
+            );
+            println!("{told}");
+            if away > 1e-6 || other > 0 || carried.gap > 1.0 || moved < 1.0 {
+                failed.push(told);
+            }
+        }
+    }
+    assert!(failed.is_empty(), "{}", failed.join("\n"));
+}

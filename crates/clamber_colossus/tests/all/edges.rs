@@ -1,0 +1,264 @@
+//! Steps, cliffs and gullies in the ground, slopes that are too steep, and other creatures in the way.
+
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
+use std::sync::Arc;
+
+use clamber_colossus::{Creature, CreatureConfig, CreatureKind, Noise, Sense, Surroundings};
+use clamber_world::{Obstacle, TriangleTerrain};
+use glam::{DVec3, Vec3};
+
+use crate::support::TICK;
+use crate::walls::{config, creatures, reach};
+
+/// Ground of strips across the way: from each of these distances on it has a height, metres; a slope between two that
+/// differ, or a vertical face between two of one distance.
+fn strips(profile: &[[f64; 2]]) -> TriangleTerrain {
+    let wide = 4000.0;
+    let mut corners = Vec::new();
+    let mut triangles = Vec::new();
+    for (index, [at, level]) in profile.iter().enumerate() {
+        let (y, z) = (*level as f32, *at as f32);
+        corners.extend([Vec3::new(-wide, y, z), Vec3::new(wide, y, z)]);
+        if let Some(before) = index.checked_sub(1) {
+            let [a, b] = [before, index].map(|row| 2 * row as u32);
+            triangles.extend([[a, b, b + 1], [a, b + 1, a + 1]]);
+        }
+    }
+    TriangleTerrain::new(&corners, &triangles, &[], DVec3::ZERO).unwrap()
+}
+
+/// What became of a walk across such ground.
+#[derive(Clone, Copy, Debug, Default)]
+struct Walk {
+    /// How far it came, metres along +Z, and how high.
+    far: f64,
+    high: f64,
+    /// The most that a sole that stands was above the ground, and in it, as a share of what is allowed: 1 % of its
+    /// length or 0.1 % of the height.
+    gap: f64,
+    depth: f64,
+    blocked: bool,
+    arrived: bool,
+}
+
+fn walk(kind: &Arc<CreatureKind>, height: f64, terrain: &[&dyn Obstacle], goal: f64) -> Walk {
+    let mut creature = Creature::new(Arc::clone(kind), config()).unwrap();
+    let pace = height.sqrt();
+    let legs = kind.brain().file().body.legs.len();
+    let mut since = vec![0u32; legs];
+    let settled = (0.6 * pace / TICK) as u32;
+    let mut walk = Walk::default();
+    for _ in 0..((10.0 + 3.0 * goal / height) * pace / TICK) as u32 {
+        let noises = [Noise {
+            place: DVec3::Z * goal,
+            loudness: 5.0,
+        }];
+        let around = Surroundings {
+            terrain,
+            noises: &noises[..usize::from(!walk.arrived)],
+            ..Surroundings::default()
+        };
+        creature.step(&around).unwrap();
+        let state = creature.state();
+        let is_blocked = state.senses().get(Sense::Blocked) > 0.0;
+        walk.blocked |= is_blocked;
+        let walks = kind.brain().path(state.current()) == "walks";
+        walk.arrived |= walks && !is_blocked && state.senses().get(Sense::Done) > 0.0;
+        walk.far = walk.far.max(state.position().z);
+        walk.high = walk.high.max(state.position().y);
+        for (leg, since) in since.iter_mut().enumerate() {
+            *since = if state.is_planted(leg) { *since + 1 } else { 0 };
+            if *since > settled {
+                let most = (0.01 * kind.foot_length(leg) * creature.scale()).max(0.001 * height);
+                let gap = creature.foot_clearance(leg, terrain).unwrap_or(f64::MAX) / most;
+                walk.gap = walk.gap.max(gap);
+                walk.depth = walk.depth.max(-gap);
+            }
+        }
+    }
+    walk
+}
+
+/// Ground of some kind, and whether it walks on over it.
+type Ground = (&'static str, fn(f64, f64) -> Vec<[f64; 2]>, bool);
+
+/// Kinds of ground, whose edge is that far away, for a creature of a height.
+const GROUNDS: [Ground; 12] = [
+    ("step of 0.02", |away, tall| step(away, 0.02 * tall), true),
+    ("drop of 0.02", |away, tall| step(away, -0.02 * tall), true),
+    ("step of 0.12", |away, tall| step(away, 0.12 * tall), false),
+    ("step of 0.29", |away, tall| step(away, 0.29 * tall), false),
+    (
+        "cliff of 0.12",
+        |away, tall| step(away, -0.12 * tall),
+        false,
+    ),
+    ("cliff of 0.4", |away, tall| step(away, -0.4 * tall), false),
+    ("cliff of 3", |away, tall| step(away, -3.0 * tall), false),
+    (
+        "gully, 0.5 wide and 0.3 deep",
+        |away, tall| gully(away, 0.5 * tall, 0.3 * tall),
+        false,
+    ),
+    (
+        "gully, 0.1 wide and 1 deep",
+        |away, tall| gully(away, 0.1 * tall, tall),
+        false,
+    ),
+    (
+        "slope of 20 degrees",
+        |away, tall| slope(away, tall, 20.0),
+        true,
+    ),
+    (
+        "slope of 45 degrees",
+        |away, tall| slope(away, tall, 45.0),
+        false,
+    ),
+    (
+        "slope down of 20 degrees",
+        |away, tall| slope(away, -tall, -20.0),
+        true,
+    ),
+];
+
+/// Where ground begins and ends.
+const NEAR: f64 = -2000.0;
+const FAR: f64 = 4000.0;
+
+fn step(away: f64, rise: f64) -> Vec<[f64; 2]> {
+    vec![[NEAR, 0.0], [away, 0.0], [away, rise], [FAR, rise]]
+}
+
+fn gully(away: f64, wide: f64, deep: f64) -> Vec<[f64; 2]> {
+    let end = away + wide;
+    vec![
+        [NEAR, 0.0],
+        [away, 0.0],
+        [away, -deep],
+        [end, -deep],
+        [end, 0.0],
+        [FAR, 0.0],
+    ]
+}
+
+fn slope(away: f64, rise: f64, degrees: f64) -> Vec<[f64; 2]> {
+    let end = away + rise / libm::tan(degrees.to_radians());
+    vec![[NEAR, 0.0], [away, 0.0], [end, rise], [FAR, rise]]
+}
+
+fn to_edge(
+    (name, kind, height): &(&'static str, Arc<CreatureKind>, f64),
+    (what, profile, passes): Ground,
+    failed: &mut Vec<String>,
+) {
+    let away = reach(kind, *height) + height;
+    let goal = 2.0 * away + 2.0 * height;
+    let ground = strips(&profile(away, *height));
+    let terrain: [&dyn Obstacle; 1] = [&ground];
+    let walk = walk(kind, *height, &terrain, goal);
+    let told = format!("{name}, {what} at {away:.1}: {walk:.2?}");
+    println!("{told}");
+    let is_right = if passes {
+        walk.arrived
+    } else {
+        walk.blocked && walk.far < away
+    };
+    // Where it walks on and its front legs stand far from its hind legs, some are too short: bodies do not pitch.
+    let pitches = passes && ["Apatosaurus.glb", "Triceratops.glb"].contains(name);
+    let stands = walk.gap <= 1.0 && walk.depth <= 1.0;
+    if !is_right || !(stands || pitches) {
+        failed.push(told);
+    }
+}
+
+/// What is too high, too deep or too steep stops it, before its feet are off the ground: two kinds of ground for each
+/// creature.
+#[test]
+fn edges_stop_it() {
+    let mut failed = Vec::new();
+    for (index, one) in creatures().iter().enumerate() {
+        for ground in [GROUNDS[index], GROUNDS[(index + 6) % GROUNDS.len()]] {
+            to_edge(one, ground, &mut failed);
+        }
+    }
+    assert!(failed.is_empty(), "{}", failed.join("\n"));
+}
+
+#[test]
+#[ignore = "takes minutes: 72 walks"]
+fn all_edges_stop_it() {
+    let mut failed = Vec::new();
+    for one in &creatures() {
+        for ground in GROUNDS {
+            to_edge(one, ground, &mut failed);
+        }
+    }
+    assert!(failed.is_empty(), "{}", failed.join("\n"));
+}
+
+/// Two that walk to each other stop before their skins meet.
+#[test]
+fn two_creatures_do_not_walk_into_each_other() {
+    let mut failed = Vec::new();
+    for (name, kind, height) in creatures() {
+        let away = 2.0 * reach(&kind, height) + 2.0 * height;
+        let mut both = [(0.0, 0.0), (away, core::f64::consts::PI)].map(|(z, yaw)| {
+            let config = CreatureConfig {
+                position: DVec3::Z * z,
+                yaw,
+                ..config()
+            };
+            Creature::new(Arc::clone(&kind), config).unwrap()
+        });
+        let ground = clamber_world::HalfSpace::below(0.0);
+        let terrain: [&dyn Obstacle; 1] = [&ground];
+        let mut deepest = 0f64;
+        let mut near = f64::INFINITY;
+        let mut skin: Vec<Vec3> = Vec::new();
+        for tick in 0..(30.0 * height.sqrt() / TICK) as u32 {
+            for one in 0..2 {
+                let [a, b] = &mut both;
+                let (own, other) = if one == 0 { (a, b) } else { (b, a) };
+                let noises = [Noise {
+                    place: other.state().position(),
+                    loudness: 5.0,
+                }];
+                let skins: [&dyn Obstacle; 1] = [other.surface()];
+                let around = Surroundings {
+                    terrain: &terrain,
+                    creatures: &skins,
+                    noises: &noises,
+                    ..Surroundings::default()
+                };
+                own.step(&around).unwrap();
+            }
+            let [a, b] = &both;
+            near = near.min(a.state().position().distance(b.state().position()));
+            if tick % 30 == 0 {
+                a.surface().clone().skin_all(&mut skin);
+                let world = a.surface().world_from_model();
+                for place in skin.iter().step_by(3) {
+                    let place = world.transform_point(place.as_dvec3());
+                    // A ray that leaves a closed skin from within meets its back.
+                    let up = b.surface().cast_ray(place, DVec3::Y, 4.0 * height);
+                    let inside = up.filter(|hit| hit.normal.y > 0.0);
+                    let out = b.surface().closest_point(place, height);
+                    if let (Some(_), Some(out)) = (inside, out) {
+                        deepest = deepest.max(out.distance.abs() / height);
+                    }
+                }
+            }
+        }
+        let told = format!(
+            "{name}: {deepest:.3} deep, {:.2} heights away",
+            near / height
+        );
+        println!("{told}");
+        if deepest > 0.02 || near > away - 0.5 * height {
+            failed.push(told);
+        }
+    }
+    assert!(failed.is_empty(), "{}", failed.join("\n"));
+}
