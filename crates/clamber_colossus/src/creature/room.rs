@@ -11,7 +11,7 @@ use glam::DVec3;
 use super::state::NO_GROUND;
 use super::{Creature, Surroundings};
 use crate::feet::Ground;
-use crate::kind::{BANDS, Band, EDGES, Extent, Strike};
+use crate::kind::{BANDS, Band, EDGES, Extent, Strike, Swept};
 
 /// What is no higher above the ground than this share of its height it steps over.
 pub(super) const STEPS_OVER: f64 = 0.06;
@@ -36,9 +36,7 @@ const ALONG: f64 = 0.05;
 /// Arcs of turns are looked along in chords of this angle, radians: they leave the arc by 1.1 % of its radius.
 const MOST_TURN: f64 = 0.3;
 
-/// Blows may go into what is lower than this share of the creature's height, and into ground: whose normal is as upright
-/// as this cosine.
-const LOW: f64 = 0.12;
+/// Blows may go into ground: what has a normal that is as upright as this cosine.
 const STEEP: f64 = 0.7;
 
 /// What is looked for.
@@ -95,26 +93,26 @@ impl Creature {
 }
 
 impl Creature {
-    /// False if the limb of an attack would go through rock or another creature. What is low does not count: feet come
-    /// down on the ground, and hands may strike it.
+    /// False if anything of it would go through rock or another creature in an attack. What it steps over does not count, nor
+    /// ground: feet come down on that, and hands may strike it.
     pub(super) fn may_strike(&self, strike: &Strike, around: &Surroundings<'_>) -> bool {
         let world = self.state.world_from_model(self.size.scale);
-        let low = self.state.position.y + LOW * self.size.height;
-        let mut counts =
-            |hit: &SweepContact| hit.contact.point.y > low && hit.contact.normal.y.abs() < STEEP;
-        for (radius, way) in &strike.swept {
+        let low = self.state.position.y + STEPS_OVER * self.size.height;
+        let mut is_rock = |hit: &SweepContact| hit.contact.normal.y.abs() < STEEP;
+        for Swept { radius, aims, way } in &strike.swept {
             let count = way.len().max(2) as f64 - 1.0;
             let places = way.iter().enumerate().map(|(index, place)| {
                 // A leg goes to where it aims little by little.
-                let share = strike.leg.map_or(0.0, |_| index as f64 / count);
-                world.transform_point(*place) + self.state.aim * share
+                let share = if *aims { index as f64 / count } else { 0.0 };
+                let place = world.transform_point(*place) + self.state.aim * share;
+                place.with_y(place.y.max(low + radius * self.size.scale))
             });
             let places: Vec<DVec3> = places.collect();
             for pair in places.windows(2) {
                 let ball = WorldCapsule::ball(pair[0], radius * self.size.scale);
                 let ways = [pair[1] - pair[0]; 2];
                 for obstacles in [around.terrain, around.creatures] {
-                    if first(obstacles, &ball, ways, &mut counts).is_some() {
+                    if first(obstacles, &ball, ways, &mut is_rock).is_some() {
                         return false;
                     }
                 }

@@ -1,5 +1,6 @@
-use clamber_animation::rig::Skeleton;
-use clamber_surface::mesh::ColliderMesh;
+use clamber_animation::joint_in_model;
+use clamber_animation::rig::{JointId, Skeleton};
+use clamber_surface::mesh::{ColliderMesh, VertexId};
 use clamber_surface::skin::skin;
 use clamber_surface::surface::SurfaceError;
 use glam::{DVec3, Vec3};
@@ -42,4 +43,42 @@ impl RestSkin {
     pub(crate) fn height(&self) -> f64 {
         self.high.y - self.low.y
     }
+
+    /// A ball in the skin of each joint that moves some.
+    pub(crate) fn balls(&self, skeleton: &Skeleton, mesh: &ColliderMesh) -> Vec<JointBall> {
+        let joints = skeleton.joints().len();
+        let mut ours: Vec<Vec<DVec3>> = vec![Vec::new(); joints];
+        for (index, place) in self.positions.iter().enumerate() {
+            for (joint, weight) in mesh.influences(VertexId(index as u32)) {
+                if weight >= 0.5 {
+                    ours[joint.index()].push(place.as_dvec3());
+                }
+            }
+        }
+        let rest = skeleton.rest_pose();
+        let all = (0..).map(JointId).zip(&ours);
+        let balls = all.filter(|(_, ours)| !ours.is_empty());
+        let balls = balls.filter_map(|(joint, ours)| {
+            let frame = joint_in_model(skeleton, &rest, joint)?;
+            let count = ours.len() as f64;
+            let middle = ours.iter().sum::<DVec3>() / count;
+            let squares = ours.iter().map(|place| place.distance_squared(middle));
+            Some(JointBall {
+                joint,
+                middle: frame.inverse().transform_point3(middle),
+                radius: (squares.sum::<f64>() / count).sqrt(),
+            })
+        });
+        balls.collect()
+    }
+}
+
+/// A ball in the skin that follows a joint by half at least: its radius is the root mean square of the distances from
+/// the middle.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct JointBall {
+    pub(crate) joint: JointId,
+    /// In the joint's space.
+    pub(crate) middle: DVec3,
+    pub(crate) radius: f64,
 }

@@ -30,11 +30,11 @@ pub use file::{
 };
 pub(crate) use gait::Gait;
 pub(crate) use leg::{Contacts, Leg, rotation_of};
-pub(crate) use measures::RestSkin;
+pub(crate) use measures::{JointBall, RestSkin};
 pub(crate) use names::Names;
 pub use plate::Plate;
 pub(crate) use sole::SoleShape;
-pub(crate) use strikes::Strike;
+pub(crate) use strikes::{Strike, Swept};
 
 use crate::brain::{Act, Attack, Brain, BrainError, BrainProblem, BrainReport, StateId, list};
 use crate::error::ColossusError;
@@ -163,6 +163,7 @@ impl CreatureKind {
             .as_ref()
             .map(|gait| Extent::new(&skeleton, &clips, &mesh, &rest, gait.clips()))
             .transpose()?;
+        let balls = rest.balls(&skeleton, &mesh);
         let mut acts = Vec::new();
         for state in brain.states() {
             acts.push(compile(
@@ -172,7 +173,7 @@ impl CreatureKind {
                 &legs,
                 gait.as_ref(),
                 &weak_points,
-                (&mesh, &rest),
+                &balls,
             )?);
         }
         let mut regions = vec![0; skeleton.joints().len()];
@@ -420,7 +421,7 @@ fn compile(
     legs: &[Leg],
     gait: Option<&Gait>,
     weak_points: &[WeakPoint],
-    skin: (&ColliderMesh, &RestSkin),
+    balls: &[JointBall],
 ) -> Result<CompiledAct, ColossusError> {
     let here = |problem| brain.error_in(state, problem);
     for name in brain.exposes(state) {
@@ -442,13 +443,13 @@ fn compile(
         .transpose()
         .map_err(here)?;
     let strike = match act {
-        Act::Attack(attack) => Some(strike(names, attack, legs, skin).map_err(here)?),
+        Act::Attack(attack) => Some(strike(names, attack, legs, balls).map_err(here)?),
         Act::Walk(walk) => match &walk.strike {
             Some(clip) => {
                 let (owner, attack) = attack_with(brain, clip)
                     .ok_or_else(|| here(BrainProblem::NoAttack { clip: clip.clone() }))?;
                 let there = |problem| brain.error_in(owner, problem);
-                Some(strike(names, attack, legs, skin).map_err(there)?)
+                Some(strike(names, attack, legs, balls).map_err(there)?)
             }
             None => None,
         },
@@ -478,13 +479,13 @@ fn strike(
     names: &Names<'_>,
     attack: &Attack,
     legs: &[Leg],
-    skin: (&ColliderMesh, &RestSkin),
+    balls: &[JointBall],
 ) -> Result<Strike, BrainProblem> {
     let mut limb = Vec::new();
     for pattern in &attack.limb {
         limb.extend(names.joints(pattern)?);
     }
-    Strike::new(names, attack, limb, legs, skin)
+    Strike::new(names, attack, limb, legs, balls)
 }
 
 fn attack_with<'a>(brain: &'a Brain, clip: &str) -> Option<(StateId, &'a Attack)> {

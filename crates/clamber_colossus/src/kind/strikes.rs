@@ -1,9 +1,8 @@
 use clamber_animation::joint_in_model;
 use clamber_animation::rig::{JointId, Playback};
-use clamber_surface::mesh::{ColliderMesh, VertexId};
 use glam::DVec3;
 
-use super::{Leg, Names, RestSkin};
+use super::{JointBall, Leg, Names};
 use crate::brain::{Attack, BrainProblem};
 
 /// An attack of a kind of creature.
@@ -26,13 +25,22 @@ pub(crate) struct Strike {
     reaches: Vec<DVec3>,
     /// Length of that leg that is used.
     length: f64,
-    /// Where balls in the limb are in the clip, in model space, at times that are evenly spread until it stops to hurt,
-    /// one after the other; and the radius of each ball.
-    pub(crate) swept: Vec<(f64, Vec<DVec3>)>,
+    /// Balls in the skin of all joints.
+    pub(crate) swept: Vec<Swept>,
 }
 
-/// Times at which a limb is looked at on its way.
-const SWEPT: u32 = 24;
+/// A ball in the skin of a joint, on its way in a clip.
+#[derive(Clone, Debug)]
+pub(crate) struct Swept {
+    pub(crate) radius: f64,
+    /// True if it goes to where the attack aims.
+    pub(crate) aims: bool,
+    /// Its middle in model space, at times that are evenly spread until the limb stops to hurt.
+    pub(crate) way: Vec<DVec3>,
+}
+
+/// Times at which a body is looked at on its way.
+const SWEPT: u32 = 16;
 
 /// A leg that strikes is stretched to this share of its length at most.
 const STRETCH: f64 = 0.97;
@@ -48,7 +56,7 @@ impl Strike {
         attack: &Attack,
         limb: Vec<JointId>,
         legs: &[Leg],
-        skin: (&ColliderMesh, &RestSkin),
+        balls: &[JointBall],
     ) -> Result<Self, BrainProblem> {
         let id = names.clip(&attack.clip)?;
         let phases = || BrainProblem::Phases {
@@ -99,19 +107,18 @@ impl Strike {
             reaches.extend(before.chain(after));
         }
         let mut swept = Vec::new();
-        for joint in &limb {
-            let Some((middle, radius)) = ball_of(names, skin, *joint) else {
-                continue;
-            };
+        for ball in balls {
+            let aims = leg.is_some() && limb.contains(&ball.joint);
             let mut way = Vec::new();
             for phase in 0..=SWEPT {
                 let time = to * f64::from(phase) / f64::from(SWEPT);
                 let pose = clip.sample(names.clips.rest(), time, Playback::Clamp);
                 let pose = pose.map_err(|_| phases())?;
-                let frame = joint_in_model(names.skeleton, &pose, *joint);
-                way.extend(frame.map(|frame| frame.transform_point3(middle)));
+                let frame = joint_in_model(names.skeleton, &pose, ball.joint);
+                way.extend(frame.map(|frame| frame.transform_point3(ball.middle)));
             }
-            swept.push((radius, way));
+            let radius = ball.radius;
+            swept.push(Swept { radius, aims, way });
         }
         Ok(Self {
             swept,
@@ -146,30 +153,4 @@ impl Strike {
     pub(crate) fn hurts(&self, joint: JointId) -> bool {
         self.limb.contains(&joint)
     }
-}
-
-/// A ball in the skin that follows a joint by half at least, in the joint's space, with the radius of the root mean
-/// square: skin is as often within it as outside. `None` if no skin follows the joint.
-fn ball_of(
-    names: &Names<'_>,
-    (mesh, rest): (&ColliderMesh, &RestSkin),
-    joint: JointId,
-) -> Option<(DVec3, f64)> {
-    let frame = joint_in_model(names.skeleton, names.clips.rest(), joint)?;
-    let follows = |index: &usize| {
-        let mut influences = mesh.influences(VertexId(*index as u32));
-        influences.any(|(other, weight)| other == joint && weight >= 0.5)
-    };
-    let ours: Vec<DVec3> = (0..rest.positions.len())
-        .filter(follows)
-        .map(|index| rest.positions[index].as_dvec3())
-        .collect();
-    if ours.is_empty() {
-        return None;
-    }
-    let count = ours.len() as f64;
-    let middle = ours.iter().sum::<DVec3>() / count;
-    let squares = ours.iter().map(|place| place.distance_squared(middle));
-    let radius = (squares.sum::<f64>() / count).sqrt();
-    Some((frame.inverse().transform_point3(middle), radius))
 }

@@ -272,3 +272,131 @@ fn walls_that_end_are_gone_round() {
     }
     assert!(failed.is_empty(), "{}", failed.join("\n"));
 }
+
+/// It turns to a noise behind it, beside a wall as near as it could walk along, and before one: to either side, or the
+/// long way round, or not at all.
+#[test]
+fn it_does_not_turn_into_walls() {
+    let ground = HalfSpace::below(0.0);
+    let mut failed = Vec::new();
+    for (name, kind, height) in &creatures() {
+        let far = reach(kind, *height);
+        for (at, turned) in [
+            (DVec3::X * (0.7 * far), core::f64::consts::FRAC_PI_2),
+            (DVec3::NEG_X * (0.9 * far), -core::f64::consts::FRAC_PI_2),
+            (DVec3::Z * (1.05 * far), 0.0),
+            (DVec3::NEG_Z * (1.0 * far), core::f64::consts::PI),
+        ] {
+            let wall = Wall {
+                at,
+                turned,
+                half: 10.0 * height,
+                height: height * 1.2,
+                thick: 0.0,
+            };
+            let rock = wall.terrain();
+            let terrain: [&dyn Obstacle; 2] = [&ground, &rock];
+            // What stands in it at first is not its fault.
+            let still = walk(
+                kind,
+                config(),
+                DVec3::Z * height,
+                &[&ground],
+                1.0,
+                &|from, at| wall.depth(from, at),
+            );
+            if still.deepest > 0.0 {
+                continue;
+            }
+            for goal in [DVec3::new(0.3, 0.0, -1.0), DVec3::new(-1.0, 0.0, -0.3)] {
+                let goal = goal * (4.0 * far);
+                let walk = walk(kind, config(), goal, &terrain, 20.0, &|from, at| {
+                    wall.depth(from, at)
+                });
+                let told = format!("{name} {at:.1} {goal:.1}: {walk:.3?}");
+                println!("{told}");
+                let ends = walk.blocked.is_some() || walk.moved > 0.3;
+                if walk.deepest > 0.02 || !ends {
+                    failed.push(told);
+                }
+            }
+        }
+    }
+    assert!(failed.is_empty(), "{}", failed.join("\n"));
+}
+
+/// Attacks whose limb would go through a wall are not begun, and the brain is told; without the wall they are. What a
+/// limb strikes behind the wall is not struck.
+#[test]
+fn blows_do_not_go_through_walls() {
+    let file: serde_json::Value = serde_json::from_str(&crate::support::brain_file()).unwrap();
+    let mut attacks = Vec::new();
+    collect(&file["states"], &mut attacks);
+    let (mut walled, mut deepest) = (0, 0f64);
+    for attack in &attacks {
+        let states = format!(
+            r#"{{ "strikes": {{ "act": {attack}, "transitions": [{{ "to": "stands", "when": ["blocked"] }}] }}, "stands": {{ }} }}"#
+        );
+        let kind = giant(&brain_with("strikes", &states));
+        for (away, is_wall) in [
+            (4.5, true),
+            (7.0, true),
+            (12.0, true),
+            (60.0, true),
+            (0.0, false),
+        ] {
+            let ground = HalfSpace::below(0.0);
+            let wall = Wall {
+                at: DVec3::Z * away,
+                turned: 0.0,
+                half: 200.0,
+                height: 80.0,
+                thick: 0.0,
+            };
+            let rock = wall.terrain();
+            let all: [&dyn Obstacle; 2] = [&ground, &rock];
+            let terrain = if is_wall { &all[..] } else { &all[..1] };
+            let mut giant = Creature::new(Arc::clone(&kind), config()).unwrap();
+            let mut skin = Vec::new();
+            let (mut began, mut blocked, mut own) = (false, false, 0f64);
+            for tick in 0..400 {
+                let around = Surroundings {
+                    terrain,
+                    ..Surroundings::default()
+                };
+                giant.step(&around).unwrap();
+                blocked |= giant.state().senses().get(Sense::Blocked) > 0.0;
+                began |= giant.attack().is_some();
+                if is_wall && began && tick % 4 == 0 {
+                    giant.surface().clone().skin_all(&mut skin);
+                    let world = giant.surface().world_from_model();
+                    let places = skin.iter().map(|p| world.transform_point(p.as_dvec3()));
+                    let depths = places.map(|place| wall.depth(world.translation, place));
+                    own = depths.fold(own, f64::max);
+                }
+            }
+            deepest = deepest.max(own);
+            assert_ne!(began, blocked, "{attack} {away}");
+            assert!(began || is_wall && away < 60.0, "{attack} {away}");
+            walled += u32::from(blocked);
+        }
+    }
+    println!(
+        "{walled} of {} not begun; {deepest:.2} m deep",
+        3 * attacks.len()
+    );
+    assert!(walled >= 8 && deepest < 0.02 * 41.0, "{walled}, {deepest}");
+}
+
+fn collect(states: &serde_json::Value, found: &mut Vec<String>) {
+    for state in states
+        .as_object()
+        .into_iter()
+        .flat_map(|states| states.values())
+    {
+        if state["act"]["attack"].is_object() {
+            found.push(state["act"].to_string());
+        }
+        collect(&state["states"], found);
+    }
+}
