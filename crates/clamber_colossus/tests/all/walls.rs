@@ -6,7 +6,8 @@ use std::sync::Arc;
 
 use clamber_colossus::{Creature, CreatureConfig, CreatureKind, Noise, Sense, Surroundings};
 use clamber_surface::geometry::rotation_from_axis_angle;
-use clamber_world::{HalfSpace, Obstacle, TriangleTerrain};
+use clamber_world::rapier3d::prelude::{ColliderBuilder, PhysicsWorld, Pose};
+use clamber_world::{BodyPoses, HalfSpace, Obstacle, RapierTerrain, TriangleTerrain};
 use glam::{DQuat, DVec3, Vec3};
 
 use crate::animals::{animals, kind as animal};
@@ -225,7 +226,36 @@ fn walls_stop_it() {
     for (one, [tall, thick, turned]) in creatures().iter().zip(walls) {
         to_wall(one, [tall, thick, turned.to_radians()], &mut failed);
     }
+    for (one, height) in animals().iter().zip([1.0, 300.0, 4.0]) {
+        if let Some(kind) = animal(one, height) {
+            to_wall(&(one.file, kind, height), [1.0, 0.0, 0.3], &mut failed);
+        }
+    }
     assert!(failed.is_empty(), "{}", failed.join("\n"));
+}
+
+/// The same wall as a half-space, and as a box of rapier's.
+#[test]
+fn walls_of_other_makes_stop_it() {
+    let (_, kind, height) = creatures().remove(0);
+    let ground = HalfSpace::below(0.0);
+    let away = reach(&kind, height) + 0.7 * height;
+    let solid = HalfSpace::behind(DVec3::Z * away, DVec3::NEG_Z).unwrap();
+    let mut world = PhysicsWorld::default();
+    let half = Vec3::new(300.0, height as f32, 5.0);
+    let place = Pose::from_translation(Vec3::new(0.0, 0.0, away as f32 + half.z));
+    let cuboid = ColliderBuilder::cuboid(half.x, half.y, half.z).position(place);
+    world.insert_collider(cuboid, None);
+    world.detect_collisions(&(), &());
+    let poses = BodyPoses::default();
+    let rock = RapierTerrain::of_world(&world, &poses);
+    for wall in [&solid as &dyn Obstacle, &rock] {
+        let depth = |_, place: DVec3| place.z - away;
+        let goal = DVec3::Z * (2.0 * away + 2.0 * height);
+        let walk = walk(&kind, config(), goal, &[&ground, wall], 12.0, &depth);
+        println!("{walk:.3?}");
+        assert!(walk.deepest <= 0.02 && walk.blocked.is_some(), "{walk:?}");
+    }
 }
 
 #[test]

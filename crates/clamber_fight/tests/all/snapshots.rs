@@ -79,6 +79,50 @@ fn a_restored_arena_goes_on_with_the_same_bits() {
     }
 }
 
+/// Plays a fight for so many ticks. From each of its states a fresh arena goes on with the same bits for a few ticks, and
+/// from one in `far` for 600.
+fn fresh_arenas_go_on_alike(number: u64, ticks: u64, far: u64) {
+    let kind = giant();
+    let mut melee = Melee::another(&kind, number);
+    let mut states = vec![melee.arena.save()];
+    for _ in 0..ticks + 600 {
+        melee.step();
+        states.push(melee.arena.save());
+    }
+    let sums: Vec<u64> = states.iter().map(ArenaState::fingerprint).collect();
+    for from in 0..ticks {
+        let mut fresh = Melee::another(&kind, number);
+        fresh.arena.restore(&states[from as usize]).unwrap();
+        let last = if from % far == 0 { 600 } else { AGAIN };
+        for tick in from + 1..=from + last {
+            fresh.step();
+            let sum = fresh.arena.fingerprint();
+            assert_eq!(
+                sum, sums[tick as usize],
+                "{number}: tick {tick} from {from}"
+            );
+        }
+        assert!(
+            fresh.arena.save() == states[(from + last) as usize],
+            "{from}"
+        );
+    }
+}
+
+/// Nothing outside the state influences a tick: what another arena remembers of its life makes no difference.
+#[test]
+fn a_fresh_arena_goes_on_with_the_same_bits() {
+    fresh_arenas_go_on_alike(1, 240, 60);
+}
+
+#[test]
+#[ignore = "takes many minutes: ten fights of 40 s, from each of their ticks"]
+fn fresh_arenas_go_on_with_the_same_bits_in_ten_fights() {
+    for number in 0..10 {
+        fresh_arenas_go_on_alike(number, 2400, 20);
+    }
+}
+
 /// A place in a saved state, as its fields and indices.
 type Path = &'static [&'static str];
 

@@ -273,6 +273,8 @@ pub(crate) fn giant() -> Arc<CreatureKind> {
 pub(crate) struct Melee {
     pub(crate) arena: Arena,
     ground: HalfSpace,
+    /// Ticks by which inputs are others than those of the first fight.
+    shift: u64,
 }
 
 /// Where the slab is.
@@ -280,8 +282,13 @@ const SLAB: DVec3 = DVec3::new(60.0, 1.0, 60.0);
 
 impl Melee {
     pub(crate) fn new(giant: &Arc<CreatureKind>) -> Self {
+        Self::another(giant, 0)
+    }
+
+    /// The same with other lots, and other inputs.
+    pub(crate) fn another(giant: &Arc<CreatureKind>, number: u64) -> Self {
         let mut arena = Arena::new(ArenaConfig {
-            seed: 5,
+            seed: 5 + number,
             ..ArenaConfig::default()
         })
         .unwrap();
@@ -289,7 +296,7 @@ impl Melee {
             .add_creature(
                 Arc::clone(giant),
                 CreatureConfig {
-                    seed: 3,
+                    seed: 3 + number,
                     ..CreatureConfig::default()
                 },
             )
@@ -328,6 +335,7 @@ impl Melee {
         Self {
             arena,
             ground: HalfSpace::below(0.0),
+            shift: 61 * number,
         }
     }
 
@@ -378,7 +386,7 @@ impl Melee {
 
     pub(crate) fn step(&mut self) -> Vec<ArenaEvent> {
         let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &self.ground)];
-        let inputs = Self::inputs(self.arena.tick());
+        let inputs = Self::inputs(self.arena.tick() + self.shift);
         self.arena.step(&inputs, &terrain).unwrap().to_vec()
     }
 }
