@@ -75,6 +75,9 @@ pub enum RecordError {
         /// Hash of the assets of this arena.
         found: u64,
     },
+    /// The names of an arena's creatures and fighters are not one each, or two have the same.
+    #[error("{0}: give each creature and each fighter of the arena a name of its own")]
+    Names(String),
     /// The arena cannot be saved, or what was saved cannot be restored.
     #[error(transparent)]
     Arena(#[from] clamber_fight::ArenaError),

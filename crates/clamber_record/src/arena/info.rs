@@ -51,6 +51,28 @@ impl ArenaInfo {
         name.unwrap_or_else(|| format!("fighter {number}"))
     }
 
+    /// Refuses names that are not one each for an arena's creatures and fighters, or that two of them share: frames and
+    /// channels are told apart by them.
+    pub(crate) fn check_names(&self, arena: &Arena) -> Result<(), RecordError> {
+        let counts = [
+            ("creatures", self.creatures.len(), arena.creatures().len()),
+            ("fighters", self.fighters.len(), arena.fighters().len()),
+        ];
+        for (what, names, found) in counts {
+            if names != found {
+                let problem = format!("there are {names} names for {found} {what}");
+                return Err(RecordError::Names(problem));
+            }
+        }
+        let mut all: Vec<&str> = self.creatures.iter().map(String::as_str).collect();
+        all.extend(self.fighters.iter().map(String::as_str));
+        all.sort_unstable();
+        match all.windows(2).find(|pair| pair[0] == pair[1]) {
+            Some(pair) => Err(RecordError::Names(format!("two are called `{}`", pair[0]))),
+            None => Ok(()),
+        }
+    }
+
     pub(crate) fn to_metadata(&self) -> BTreeMap<String, String> {
         let own = [
             ("version".to_owned(), RecordingInfo::VERSION.to_owned()),

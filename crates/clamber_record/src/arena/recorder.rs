@@ -52,14 +52,15 @@ impl<W: Write + Send + 'static> ArenaRecorder<W> {
     /// A recorder that writes to `out`, which it owns. The recording begins with the arena as it is now.
     ///
     /// # Errors
-    /// [`RecordError::OtherArena`] if `info` is of another arena, [`RecordError::TickSeconds`], [`RecordError::Write`] if `out`
-    /// fails, [`RecordError::Io`] if the thread cannot be started.
+    /// [`RecordError::OtherArena`] if `info` is of another arena, [`RecordError::Names`] if its names are not one each,
+    /// [`RecordError::TickSeconds`], [`RecordError::Write`] if `out` fails, [`RecordError::Io`] if the thread cannot be started.
     pub fn new(
         out: W,
         info: &ArenaInfo,
         arena: &Arena,
         options: RecordOptions,
     ) -> Result<Self, RecordError> {
+        info.check_names(arena)?;
         let joints: Vec<_> = arena
             .creatures()
             .iter()

@@ -282,3 +282,34 @@ fn the_python_reader_reads_a_cut_file_to_its_last_chunk() {
         assert_eq!(last.trim().parse().ok(), ours.last(), "{share}: {last}");
     }
 }
+
+/// Names that are too few, too many, or shared are refused before anything is written.
+#[test]
+fn names_are_one_each() {
+    let arena = arena();
+    type Change = fn(&mut ArenaInfo);
+    let wrong: [(Change, &str); 4] = [
+        (|info| info.creatures.truncate(1), "1 names for 2 creatures"),
+        (
+            |info| info.fighters.push("ann".into()),
+            "4 names for 3 fighters",
+        ),
+        (
+            |info| info.creatures[1] = "creature 0".into(),
+            "`creature 0`",
+        ),
+        (
+            |info| info.fighters[2] = "creature 1".into(),
+            "`creature 1`",
+        ),
+    ];
+    for (change, words) in wrong {
+        let mut info = ArenaInfo::of(&arena);
+        change(&mut info);
+        let options = RecordOptions::default();
+        let recorder = ArenaRecorder::new(Vec::new(), &info, &arena, options);
+        let error = recorder.map(|_| ()).unwrap_err();
+        assert!(matches!(error, RecordError::Names(_)), "{error}");
+        assert!(error.to_string().contains(words), "{error}");
+    }
+}
