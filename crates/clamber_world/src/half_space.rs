@@ -130,6 +130,10 @@ impl Obstacle for HalfSpace {
         })
     }
 
+    fn rests(&self, _: &MaterialPoint) -> bool {
+        true
+    }
+
     fn cast_ray(&self, origin: DVec3, direction: DVec3, max_distance: f64) -> Option<Contact> {
         let direction = direction.try_normalize()?;
         if max_distance.is_nan() || max_distance < 0.0 || !origin.is_finite() {

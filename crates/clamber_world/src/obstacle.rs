@@ -203,6 +203,13 @@ pub trait Obstacle {
         })
     }
 
+    /// True if it is known, for less than [`motion`](Obstacle::motion) costs, that the material at a point has not moved
+    /// in the tick that ends now. False if it has, or may have. By default never.
+    fn rests(&self, point: &MaterialPoint) -> bool {
+        let _ = point;
+        false
+    }
+
     /// Centre and radius of a ball in world space, metres, that contains everything that queries of this tick can
     /// touch. `None` if the obstacle is unbounded or its size is unknown. Queries outside the ball skip the obstacle.
     fn bounds(&self) -> Option<(DVec3, f64)> {

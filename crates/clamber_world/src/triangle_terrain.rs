@@ -104,6 +104,10 @@ impl Obstacle for TriangleTerrain {
         self.surface.path(point, dt)
     }
 
+    fn rests(&self, _: &MaterialPoint) -> bool {
+        true
+    }
+
     fn bounds(&self) -> Option<(DVec3, f64)> {
         self.surface.bounds()
     }

@@ -3,13 +3,21 @@
 use clamber_world::PointMotion;
 use glam::{DQuat, DVec3};
 
-use super::state::{GROUND, NO_GROUND};
+use super::move_on::{LOOKS, SELDOM};
+use super::state::{GroundPoint, NO_GROUND};
 use super::{Creature, Surroundings};
 use crate::angle::nearest_turn;
 use crate::feet::Carried;
 
 /// Ground carries it that is no further from its origin than this share of its height.
 const NEAR: f64 = 0.15;
+
+/// The ground is looked at so far around its origin too, as a share of its height, and moves alike there to this share.
+const BROAD: f64 = 0.12;
+const ALIKE: f64 = 0.1;
+
+/// A point of the ground is the one that is remembered if it was no further from there than this share of its height.
+const SAME: f64 = 1e-6;
 
 impl Creature {
     /// Goes with the ground, as that has moved in this tick: the creature's place and heading, its feet, and the places
@@ -24,20 +32,17 @@ impl Creature {
             turn: motion.turn,
             yaw: yaw_of(motion.turn),
         };
+        if !self.is_broad(&carried, around, dt) {
+            return false;
+        }
         let state = &mut self.state;
-        let known = [
-            &mut state.position,
-            &mut state.home,
-            &mut state.patrol,
-            &mut state.noise,
-        ];
+        state.position = carried.place(state.position);
+        // Those may be far away: they go with the ground as if that were level.
+        let known = [&mut state.home, &mut state.patrol, &mut state.noise];
         let prey = state.prey.iter_mut().map(|(_, place)| place);
-        for place in known
-            .into_iter()
-            .chain(prey)
-            .chain(&mut state.walked.corners)
-        {
-            *place = carried.place(*place);
+        let known = known.into_iter().chain(prey);
+        for place in known.chain(&mut state.walked.corners) {
+            *place = carried.level_place(*place);
         }
         state.gaze.value = carried.place(state.gaze.value);
         state.gaze.velocity = carried.vector(state.gaze.velocity);
@@ -49,7 +54,7 @@ impl Creature {
         }
         // The ground below the places at which it is looked for.
         let rise = motion.position.y - motion.previous_position.y;
-        for level in state.ground.iter_mut().take(GROUND) {
+        for level in &mut state.ground {
             if *level < NO_GROUND {
                 *level += rise;
             }
@@ -58,19 +63,85 @@ impl Creature {
     }
 
     /// How the ground below it has moved in this tick; `None` if it has not, or if there is none.
-    fn ground_motion(&self, around: &Surroundings<'_>, dt: f64) -> Option<PointMotion> {
-        let reach = NEAR * self.size.height;
-        let from = self.state.position + DVec3::Y * reach;
-        let hits = around.terrain.iter().filter_map(|obstacle| {
-            // Where the ground was in this tick's beginning, the creature still is.
-            let hit = obstacle.cast_ray(from, DVec3::NEG_Y, 2.0 * reach)?;
-            Some((hit, obstacle))
+    ///
+    /// A point of the ground is remembered, since its motion costs less than a ray, and is looked for anew now and then.
+    fn ground_motion(&mut self, around: &Surroundings<'_>, dt: f64) -> Option<PointMotion> {
+        let often = if self.state.speed > 0.0 { 1 } else { SELDOM };
+        let looks = self.state.ticks.is_multiple_of(often * LOOKS);
+        let among = around.terrain.len() as u32;
+        let known = self.state.stands_on.take();
+        let known = known.filter(|point| !looks && point.among == among);
+        let mut point = known.or_else(|| self.ground_point(around))?;
+        let rests = |point: &GroundPoint| {
+            let obstacle = around.terrain.get(point.obstacle as usize);
+            obstacle.is_some_and(|obstacle| obstacle.rests(&point.material))
+        };
+        if rests(&point) {
+            self.state.stands_on = Some(point);
+            return None;
+        }
+        let mut motion = point_motion(around, &point, dt);
+        let is_it = motion.as_ref().is_some_and(|motion| {
+            motion.previous_position.distance(point.at) <= SAME * self.size.height
         });
-        let (hit, obstacle) = hits.max_by(|a, b| a.0.point.y.total_cmp(&b.0.point.y))?;
-        let motion = obstacle.motion(&hit.material, dt)?;
-        let moves = motion.position != motion.previous_position || motion.turn != DQuat::IDENTITY;
-        (moves && !motion.placed && motion.is_finite()).then_some(motion)
+        if known.is_some() && !is_it {
+            // Another obstacle is in its place by now.
+            point = self.ground_point(around)?;
+            motion = point_motion(around, &point, dt);
+        }
+        let motion = motion.filter(PointMotion::is_finite)?;
+        let at = motion.position;
+        self.state.stands_on = Some(GroundPoint { at, ..point });
+        let moves = at != motion.previous_position || motion.turn != DQuat::IDENTITY;
+        (moves && !motion.placed).then_some(motion)
     }
+
+    /// The point of the ground below it.
+    fn ground_point(&self, around: &Surroundings<'_>) -> Option<GroundPoint> {
+        self.ground_point_at(around, self.state.position)
+    }
+
+    /// True if the ground moves alike beside it and behind it, wherever some is there: a ship, and no rock that rolls by
+    /// between its feet.
+    fn is_broad(&self, carried: &Carried, around: &Surroundings<'_>, dt: f64) -> bool {
+        let ahead = self.state.heading() * (BROAD * self.size.height);
+        let left = DVec3::new(ahead.z, 0.0, -ahead.x);
+        [ahead, left - ahead, -left - ahead]
+            .into_iter()
+            .all(|aside| {
+                let place = self.state.position + aside;
+                let Some(point) = self.ground_point_at(around, place) else {
+                    return true;
+                };
+                let motion = point_motion(around, &point, dt);
+                motion.is_some_and(|motion| {
+                    let alike = carried.place(motion.previous_position);
+                    let moved = carried.to.distance(carried.from);
+                    alike.distance(motion.position) <= ALIKE * (moved + self.size.height * 1e-3)
+                })
+            })
+    }
+
+    fn ground_point_at(&self, around: &Surroundings<'_>, place: DVec3) -> Option<GroundPoint> {
+        let reach = NEAR * self.size.height;
+        let from = place + DVec3::Y * reach;
+        let among = around.terrain.len() as u32;
+        let hits = (0..).zip(around.terrain).filter_map(|(obstacle, terrain)| {
+            let hit = terrain.cast_ray(from, DVec3::NEG_Y, 2.0 * reach)?;
+            Some(GroundPoint {
+                obstacle,
+                among,
+                material: hit.material,
+                at: hit.point,
+            })
+        });
+        hits.max_by(|a, b| a.at.y.total_cmp(&b.at.y))
+    }
+}
+
+fn point_motion(around: &Surroundings<'_>, point: &GroundPoint, dt: f64) -> Option<PointMotion> {
+    let obstacle = around.terrain.get(point.obstacle as usize)?;
+    obstacle.motion(&point.material, dt)
 }
 
 /// The turn about up of a rotation, radians: its twist about Y.

@@ -18,13 +18,23 @@ const MOST_STEPS: usize = 500;
 /// Straight lines are looked along in pieces of this share of its height.
 const PIECE: f64 = 1.0;
 
-/// A corner is passed when it is this near, as a share of the creature's height.
-pub(super) const PASSED: f64 = 0.12;
+/// It looks along straight lines as far as this, in heights. What is further away it does not know.
+const FARTHEST: f64 = 16.0;
 
-/// A way is looked for anew after so many seconds, for a giant; and after so many if there was none, twice as many the
-/// next time, up to eight times as many.
+/// So many places of a way are left out at a time, if it is straight.
+const SKIPPED: usize = 12;
+
+/// A corner is passed when it is this near, as a share of the creature's height.
+const PASSED: f64 = 0.12;
+
+/// A way is looked for anew after so many seconds, for a giant: with something in its way, and without; and after so many
+/// if there was none, twice as many the next time, up to eight times as many.
 const ANEW: f64 = 1.0;
+const FAR: f64 = 4.0;
 const AGAIN: f64 = 4.0;
+
+/// Small creatures look no sooner than after so many seconds.
+const LEAST: f64 = 0.5;
 
 /// A place on the grid: steps from where the creature is along X and Z, and how high above it the ground is there, in
 /// thousandths of its height, since there may be several storeys.
@@ -43,12 +53,6 @@ const SAME_STOREY: i32 = 100;
 impl Creature {
     /// Finds the corners of the way to a goal, if it is time for that.
     pub(super) fn find_corners(&mut self, around: &Surroundings<'_>, extent: &Extent, way: &Way) {
-        let passed = PASSED * self.size.height;
-        let position = self.state.position;
-        let is_there = |corner: &DVec3| (*corner - position).with_y(0.0).length() < passed;
-        while self.state.walked.corners.first().is_some_and(is_there) {
-            self.state.walked.corners.remove(0);
-        }
         if self.state.walked.ticks_left > 0 {
             return;
         }
@@ -60,13 +64,38 @@ impl Creature {
             None => walked.failed.saturating_add(1),
         };
         // Longer and longer: a search that finds nothing looks at all there is.
-        let seconds = match walked.failed {
-            0 => ANEW,
-            failed => AGAIN * f64::from(1u32 << (failed - 1).min(3)),
+        walked.corners = found.unwrap_or_default();
+        let seconds = match (walked.failed, walked.corners.is_empty()) {
+            (0, true) => FAR,
+            (0, false) => ANEW,
+            (failed, _) => AGAIN * f64::from(1u32 << (failed - 1).min(3)),
         };
-        let ticks = seconds * self.size.pace / self.kind.brain().tick();
-        self.state.walked.ticks_left = ticks.clamp(1.0, 1e6) as u32;
-        self.state.walked.corners = found.unwrap_or_default();
+        self.state.walked.ticks_left = self.ticks_of(seconds);
+    }
+
+    /// Corners that it has reached are behind it.
+    pub(super) fn pass_corners(&mut self) {
+        let passed = PASSED * self.size.height;
+        let position = self.state.position;
+        let is_there = |corner: &DVec3| (*corner - position).with_y(0.0).length() < passed;
+        let corners = &mut self.state.walked.corners;
+        let count = corners.iter().take_while(|corner| is_there(corner)).count();
+        corners.drain(..count);
+    }
+
+    /// Something is ahead: it looks for another way soon, unless it has found none.
+    pub(super) fn doubt_corners(&mut self) {
+        let soon = self.ticks_of(ANEW);
+        let walked = &mut self.state.walked;
+        if walked.failed == 0 {
+            walked.ticks_left = walked.ticks_left.min(soon);
+        }
+    }
+
+    /// Ticks of seconds that are told for a giant.
+    fn ticks_of(&self, seconds: f64) -> u32 {
+        let seconds = (seconds * self.size.pace).max(LEAST);
+        (seconds / self.kind.brain().tick()).clamp(1.0, 1e6) as u32
     }
 
     /// The corners of a way; `None` if there is none, or it is too long.
@@ -74,7 +103,7 @@ impl Creature {
         let start = self.state.position;
         let end = |from: DVec3| {
             let to = (way.goal - from).with_y(0.0);
-            let left = (to.length() - way.within).max(0.0);
+            let left = (to.length() - way.within).clamp(0.0, FARTHEST * self.size.height);
             from + to.normalize_or_zero() * left
         };
         if self.passes(around, slim, start, end(start)).is_some() {
@@ -106,7 +135,8 @@ impl Creature {
                 let [from, to] = [places[index], places[*next]];
                 self.passes(around, slim, from, to).is_some()
             };
-            let far = (index + 2..places.len()).rev().find(passes);
+            let far = places.len().min(index + SKIPPED);
+            let far = (index + 2..far).rev().find(passes);
             index = far.unwrap_or(index + 1);
             corners.push(places[index]);
         }
@@ -122,7 +152,11 @@ impl Creature {
         to: DVec3,
     ) -> Option<f64> {
         let way = (to - from).with_y(0.0);
-        let pieces = (way.length() / (PIECE * self.size.height)).ceil().max(1.0);
+        let heights = way.length() / self.size.height;
+        if heights.is_nan() || heights > 2.0 * FARTHEST {
+            return None;
+        }
+        let pieces = (heights / PIECE).ceil().max(1.0);
         let step = way / pieces;
         let mut room = self.room_towards(around, slim, step);
         room.origin = from;
@@ -150,7 +184,7 @@ impl Grid<'_> {
         let is_there = |at: &Cell| to_goal(at) <= way.within.max(0.75 * self.cell);
         let guess = |at: &Cell| {
             let left = (to_goal(at) - way.within).max(0.0) / self.cell;
-            (f64::from(STEP) * left) as u32
+            (f64::from(STEP) * left).min(1e9) as u32
         };
         let mut known = Known::default();
         let next = |at: &Cell| {

@@ -5,7 +5,7 @@ use core::f64::consts::TAU;
 use glam::DVec3;
 
 use super::legs::at_once;
-use super::move_on::LOOKS;
+use super::move_on::{LOOKS, SELDOM};
 use super::state::Playing;
 use super::way::Way;
 use super::{Creature, CreatureState};
@@ -49,8 +49,10 @@ pub(super) struct Course {
     /// Along its heading, metres a second, and radians a second to the left.
     pub(super) speed: f64,
     pub(super) yaw_rate: f64,
-    /// How far its way is free, metres.
+    /// How far its way is free, metres; and how far it may turn, radians, to the side that the sign tells. `None` if it
+    /// may turn as far as it wants.
     pub(super) ahead: f64,
+    pub(super) turn: Option<f64>,
     /// True while it turns on the spot, and while it stops abruptly.
     turning: bool,
     pub(super) halts: bool,
@@ -64,6 +66,7 @@ impl Course {
             speed: state.speed,
             yaw_rate: state.yaw_rate,
             ahead: state.walked.ahead,
+            turn: Some(state.walked.turn),
             turning: matches!(state.playing, Playing::Turn(_)),
             halts: state.halts,
         }
@@ -81,7 +84,8 @@ pub(super) struct Wanted {
     pub(super) distance: f64,
     pub(super) arrived: bool,
     pub(super) turns_on_spot: bool,
-    /// True if it walks.
+    /// True if its goal is ahead, so that it walks there if it can.
+    pub(super) faces: bool,
     pub(super) walks: bool,
     /// True if it stands before something.
     pub(super) is_stopped: bool,
@@ -96,15 +100,24 @@ impl Creature {
     /// How far it has to see: as far as it takes to come to a stand, at its walking speed, and some ticks longer.
     pub(super) fn sight(&self, gait: &Gait) -> f64 {
         let speed = self.full_speed(gait);
-        let looks = 2.0 * LOOKS as f64 * self.kind.brain().tick();
+        let looks = ((SELDOM + 1) * LOOKS) as f64 * self.kind.brain().tick();
         speed * speed / (2.0 * 0.7 * SLOWS_DOWN) + speed * looks
     }
 
-    /// How far it has to be able to turn, radians, before it begins to do so as fast as it can.
-    pub(super) fn turning_room(&self, gait: &Gait) -> f64 {
-        let rate = self.most_turn(gait);
-        let looks = 2.0 * LOOKS as f64 * self.kind.brain().tick();
+    /// How far it has to be able to turn, radians, before it begins to do so as fast as it can: on the spot, or walking.
+    pub(super) fn turning_room(&self, gait: &Gait, walks: bool) -> f64 {
+        let rate = if walks {
+            gait.steer_rate * self.size.rate
+        } else {
+            self.most_turn(gait)
+        };
+        let looks = LOOKS as f64 * self.kind.brain().tick();
         rate * rate / (2.0 * 0.7 * self.turns()) + rate * looks
+    }
+
+    /// How fast it may turn if it has to come to a stand within an angle, radians a second.
+    fn stoppable(&self, angle: f64) -> f64 {
+        (2.0 * 0.7 * self.turns() * angle.max(0.0)).sqrt()
     }
 
     /// How fast its turning changes, radians a second squared.
@@ -143,8 +156,13 @@ impl Creature {
         let is_turned = way.bearing.is_none() || aside.abs() <= within;
         let braked = |distance: f64| (2.0 * 0.7 * SLOWS_DOWN * distance.max(0.0)).sqrt();
         let slowest = SLOWEST * careful;
+        let may_turn = |aside: f64| {
+            let room = course.turn.map(|turn| turn * aside.signum());
+            room.map_or(f64::INFINITY, |room| self.stoppable(room))
+        };
         let free = braked(course.ahead);
-        wanted.is_stopped = !is_near && walked.is_known && free < slowest;
+        let is_before = course.ahead < distance - goal_within;
+        wanted.is_stopped = !is_near && walked.is_known && is_before && free < slowest;
         if is_near {
             wanted.arrived = is_turned;
             wanted.turns_on_spot = !is_turned;
@@ -155,7 +173,8 @@ impl Creature {
                 (false, false) => TURN_FIRST,
             };
             let stops = wanted.is_stopped && aside.abs() > STRAIGHT;
-            wanted.turns_on_spot = aside.abs() > most || stops;
+            wanted.faces = aside.abs() <= most;
+            wanted.turns_on_spot = !wanted.faces || stops;
             wanted.walks = !wanted.turns_on_spot;
         }
         if wanted.walks {
@@ -165,15 +184,20 @@ impl Creature {
             } else {
                 speed.min(free)
             };
-            wanted.turn = (aside * steers).clamp(-gait.steer_rate, gait.steer_rate) * rate;
+            let turn = (aside * steers).abs().min(gait.steer_rate) * rate;
+            let free = may_turn(aside);
+            wanted.turn = aside.signum() * turn.min(free);
+            if wanted.is_stopped {
+                wanted.turn = 0.0;
+            }
         }
         // It has got as far as it gets.
         wanted.arrived |= walked.is_blocked;
         if wanted.turns_on_spot {
-            let stoppable = |angle: f64| (2.0 * 0.7 * self.turns() * angle.max(0.0)).sqrt();
+            let stoppable = |angle: f64| self.stoppable(angle);
             // It gets there in the end, and no faster than it can stop there.
             let braked = stoppable(aside.abs() - 0.5 * within).max(0.5 * stoppable(0.5 * within));
-            let free = stoppable(walked.turn);
+            let free = may_turn(aside);
             wanted.turn = aside.signum() * braked.min(self.most_turn(gait)).min(free);
             // Not before it stands.
             if course.speed > SLOWEST * full {

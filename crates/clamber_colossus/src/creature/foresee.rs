@@ -47,6 +47,11 @@ impl Creature {
         animator.clone_from(&state.animator);
         memory.events.clear();
         let mut course = Course::of(state);
+        // It looks anew before it comes there.
+        course.turn = None;
+        if !state.walked.faces {
+            course.ahead = f64::INFINITY;
+        }
         let current = state.brain.current();
         let way = self.way(current).filter(|_| state.acting == Some(current));
         let mut moved = RootDelta::default();

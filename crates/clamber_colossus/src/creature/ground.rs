@@ -7,6 +7,10 @@ use super::state::{GROUND, NO_GROUND};
 use super::{Creature, Surroundings};
 use crate::feet::Ground;
 
+/// The ground is looked for in steps of this share of its height: seven along its heading, from behind to ahead, and one
+/// to each side.
+pub(super) const GROUND_SPACING: f64 = 0.07;
+
 /// How much shorter its steps are where it goes up and down: on a slope of 45 degrees, by one over one and this.
 const CAREFUL: f64 = 1.2;
 
@@ -30,7 +34,7 @@ impl Creature {
             reach: 0.5 * height,
         };
         let heading = self.state.heading();
-        let spacing = 0.07 * height;
+        let spacing = GROUND_SPACING * height;
         let aside = DVec3::new(heading.z, 0.0, -heading.x) * spacing;
         // One place in each tick, and all of them in the first one.
         let is_first = self.state.ticks <= 1;

@@ -9,7 +9,7 @@ use super::{Creature, CreatureEvent, Surroundings};
 use crate::angle::nearest_turn;
 use crate::brain::Act;
 use crate::error::ColossusError;
-use crate::kind::{Gait, HUMAN};
+use crate::kind::{Extent, Gait, HUMAN};
 use crate::senses::Sense;
 
 /// It looks for what is in its way in one of so many ticks.
@@ -19,11 +19,17 @@ pub(super) const LOOKS: u64 = 8;
 /// longer, by the square root of their height (Froude's law).
 const FADE: f64 = 0.35;
 
-/// Stands for a way that is free as far as it looks, metres.
-const FREE: f64 = 1e6;
+/// Where nothing is in its way it looks so many times less often. It turns so little, as a share of how fast that changes
+/// in a second, that it walks straight on.
+pub(super) const SELDOM: u64 = 4;
+const STEADY: f64 = 0.1;
 
-/// Less than this is no turn, radians.
+/// What is further ahead than this stands for a way that is free as far as it looks, metres.
+const FREE: f64 = 1e5;
+
+/// Less than this is no turn, radians; and one that walks turns to a goal that is no further aside without a look.
 const LEAST_TURN: f64 = 0.05;
+const LEAST_STEER: f64 = 0.02;
 
 impl Creature {
     /// Lets clips and the creature's place move on by a tick, and says whether the act is done.
@@ -65,7 +71,7 @@ impl Creature {
         self.state.yaw = nearest_turn(self.state.yaw + moved.yaw + self.state.yaw_rate * dt);
         self.state.position += self.state.heading() * (self.state.speed * dt);
         self.state.walked.ahead -= self.state.speed * dt;
-        self.state.walked.turn -= (self.state.yaw_rate * dt).abs();
+        self.state.walked.turn -= self.state.yaw_rate * dt;
         self.state.walked.ticks_left = self.state.walked.ticks_left.saturating_sub(1);
         self.follow_ground(around, dt);
         let is_over = match kind.brain().act(state) {
@@ -95,39 +101,88 @@ impl Creature {
         if way.walks && !self.wanted(gait, Some(way), &course).arrived {
             self.find_corners(around, extent, way);
         }
-        let room = self.room(around, extent, 0.0);
         let goes = self.wanted(gait, Some(way), &course);
-        let ahead = if way.walks && !goes.arrived {
+        self.state.walked.ahead = if goes.faces {
             let sight = self.sight(gait);
             let far = sight.min(goes.distance + sight / 2.0);
-            let free = room.ahead(far);
-            if free >= far { FREE } else { free }
+            let free = self.room(around, extent).ahead(far);
+            if free >= far {
+                2.0 * FREE
+            } else {
+                self.doubt_corners();
+                free
+            }
         } else {
             0.0
         };
-        self.state.walked.ahead = ahead;
         self.state.walked.is_known = true;
-        course.ahead = ahead;
+        self.state.walked.faces = goes.faces;
+        course.ahead = self.state.walked.ahead;
         let goes = self.wanted(gait, Some(way), &course);
-        if goes.turns_on_spot {
-            let room = self.room(around, extent, 0.0);
-            let most = self.turning_room(gait).max(2.0 * LEAST_TURN);
-            let most = most.min(goes.aside.abs() + LEAST_TURN);
-            let far = most.copysign(goes.aside);
-            let free = room.turn(far).abs();
-            let other = || room.turn(-most.copysign(goes.aside)).abs();
-            let walked = &mut self.state.walked;
-            walked.turn = free;
-            if free < LEAST_TURN && free < goes.aside.abs() {
-                if walked.round == 0 && other() >= LEAST_TURN {
-                    walked.round = if goes.aside > 0.0 { -1 } else { 1 };
-                } else {
-                    walked.is_blocked = true;
-                }
-            }
-        } else if goes.is_stopped && self.state.speed == 0.0 {
-            self.state.walked.is_blocked = true;
+        let walked = &mut self.state.walked;
+        // Nearly there, it takes the short way again; and another time it may go the long way round.
+        if !goes.turns_on_spot || goes.aside.abs() < core::f64::consts::FRAC_PI_2 {
+            walked.round = 0;
         }
+        walked.has_gone_round &= goes.turns_on_spot;
+        if goes.turns_on_spot {
+            self.look_aside(gait, &goes, around, extent);
+        } else if goes.walks && !goes.is_stopped {
+            // Its head and its tail go aside when it steers.
+            let far = self.turning_room(gait, true).copysign(goes.aside);
+            self.state.walked.turn = if goes.aside.abs() > LEAST_STEER {
+                self.room(around, extent).turn(far, self.slope())
+            } else {
+                far
+            };
+        } else if goes.is_stopped && self.state.speed == 0.0 {
+            // It is as near to a corner as it gets: perhaps it comes round it from here.
+            if walked.corners.is_empty() {
+                walked.is_blocked = true;
+            } else {
+                walked.corners.remove(0);
+            }
+        }
+    }
+
+    /// Looks how far it may turn on the spot.
+    fn look_aside(
+        &mut self,
+        gait: &Gait,
+        goes: &Wanted,
+        around: &Surroundings<'_>,
+        extent: &Extent,
+    ) {
+        let (room, slope) = (self.room(around, extent), self.slope());
+        let most = (2.0 * self.turning_room(gait, false)).max(2.0 * LEAST_TURN);
+        let most = most.min(goes.aside.abs() + LEAST_TURN);
+        let turn = room.turn(most.copysign(goes.aside), slope);
+        let other = || room.turn(-most.copysign(goes.aside), slope).abs();
+        let walked = &mut self.state.walked;
+        walked.turn = turn;
+        let free = turn.abs();
+        if free < LEAST_TURN && free < goes.aside.abs() {
+            if !walked.has_gone_round && other() >= LEAST_TURN {
+                walked.round = if goes.aside > 0.0 { -1 } else { 1 };
+                walked.has_gone_round = true;
+            } else {
+                walked.is_blocked = true;
+            }
+        }
+    }
+
+    /// True in ticks in which it looks where it goes: in one of [`LOOKS`], and less often while it walks straight on and
+    /// nothing is in its way, or has room to turn.
+    fn looks(&self, gait: &Gait, wanted: &Wanted) -> bool {
+        let (state, walked) = (&self.state, &self.state.walked);
+        let is_new = !walked.is_known || wanted.faces && !walked.faces;
+        if is_new || state.ticks.is_multiple_of(SELDOM * LOOKS) {
+            return true;
+        }
+        let walks_free = walked.ahead > FREE && state.yaw_rate.abs() < STEADY * self.turns();
+        let room = walked.turn * wanted.aside.signum();
+        let turns_free = wanted.turns_on_spot && room > self.turning_room(gait, false);
+        state.ticks.is_multiple_of(LOOKS) && !walks_free && !turns_free
     }
 
     fn clip_is_over(&self) -> bool {
@@ -147,12 +202,14 @@ impl Creature {
         dt: f64,
     ) -> Result<bool, ColossusError> {
         let mut course = Course::of(&self.state);
-        let looks = !self.state.walked.is_known || self.state.ticks.is_multiple_of(LOOKS);
-        if let Some(way) = way.filter(|_| looks) {
+        self.pass_corners();
+        let mut wanted = self.wanted(gait, way, &course);
+        if let Some(way) = way.filter(|_| self.looks(gait, &wanted)) {
             self.look(gait, way, around);
+            course.ahead = self.state.walked.ahead;
+            course.turn = Some(self.state.walked.turn);
+            wanted = self.wanted(gait, Some(way), &course);
         }
-        course.ahead = self.state.walked.ahead;
-        let wanted = self.wanted(gait, way, &course);
         let Wanted {
             turn,
             arrived,

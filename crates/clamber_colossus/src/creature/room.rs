@@ -8,6 +8,7 @@ use clamber_surface::surface::TargetMotion;
 use clamber_world::{Obstacle, SweepContact};
 use glam::DVec3;
 
+use super::ground::GROUND_SPACING;
 use super::state::NO_GROUND;
 use super::{Creature, Surroundings};
 use crate::feet::Ground;
@@ -24,14 +25,17 @@ const SWAYS: f64 = 0.05;
 
 /// The ground ahead is looked at in steps of this share of its height, and in at most so many.
 const SPACING: f64 = 0.08;
-const STATIONS: usize = 24;
+const STATIONS: usize = 64;
 
 /// Lower bands follow the ground in pieces of so many steps. From this band on one straight sweep is enough.
 const PIECE: usize = 3;
 const STRAIGHT_FROM: usize = 2;
 
+/// Ground that is no higher or lower than this share of its height is about level.
+const ABOUT: f64 = 0.04;
+
 /// What a sweep touches does not stop it if it moves along that: the sine of the angle between both.
-const ALONG: f64 = 0.05;
+const ALONG: f64 = 0.01;
 
 /// Arcs of turns are looked along in chords of this angle, radians: they leave the arc by 1.1 % of its radius.
 const MOST_TURN: f64 = 0.3;
@@ -60,15 +64,9 @@ pub(super) struct Room<'a> {
 }
 
 impl Creature {
-    /// Its surroundings in a direction, radians to the left of its heading.
-    pub(super) fn room<'a>(
-        &self,
-        around: &'a Surroundings<'a>,
-        extent: &'a Extent,
-        angle: f64,
-    ) -> Room<'a> {
-        let (sin, cos) = libm::sincos(self.state.yaw + angle);
-        self.room_towards(around, extent, DVec3::new(sin, 0.0, cos))
+    /// Its surroundings in the direction of its heading.
+    pub(super) fn room<'a>(&self, around: &'a Surroundings<'a>, extent: &'a Extent) -> Room<'a> {
+        self.room_towards(around, extent, self.state.heading())
     }
 
     /// Its surroundings in the direction of a level vector.
@@ -98,7 +96,6 @@ impl Creature {
     pub(super) fn may_strike(&self, strike: &Strike, around: &Surroundings<'_>) -> bool {
         let world = self.state.world_from_model(self.size.scale);
         let low = self.state.position.y + STEPS_OVER * self.size.height;
-        let mut is_rock = |hit: &SweepContact| hit.contact.normal.y.abs() < STEEP;
         for Swept { radius, aims, way } in &strike.swept {
             let count = way.len().max(2) as f64 - 1.0;
             let places = way.iter().enumerate().map(|(index, place)| {
@@ -110,15 +107,36 @@ impl Creature {
             let places: Vec<DVec3> = places.collect();
             for pair in places.windows(2) {
                 let ball = WorldCapsule::ball(pair[0], radius * self.size.scale);
-                let ways = [pair[1] - pair[0]; 2];
+                let way = pair[1] - pair[0];
+                // What it stands in or leaves is not in its way.
+                let mut is_rock = |hit: &SweepContact| {
+                    let normal = hit.separation_normal;
+                    !hit.started_inside && normal.y < STEEP && normal.dot(way) < 0.0
+                };
                 for obstacles in [around.terrain, around.creatures] {
-                    if first(obstacles, &ball, ways, &mut is_rock).is_some() {
+                    if first(obstacles, &ball, [way; 2], &mut is_rock).is_some() {
                         return false;
                     }
                 }
             }
         }
         true
+    }
+}
+
+impl Creature {
+    /// The gradient of the ground on which it stands, as it knows it.
+    pub(super) fn slope(&self) -> DVec3 {
+        let heading = self.state.heading();
+        let left = DVec3::new(heading.z, 0.0, -heading.x);
+        let most = libm::tan(self.config.most_slope).min(1.0);
+        let rise = |[from, to]: [usize; 2], steps: f64| {
+            let [from, to] = [from, to].map(|index| self.state.ground[index]);
+            let known = from < NO_GROUND && to < NO_GROUND;
+            let rise = (to - from) / (steps * GROUND_SPACING * self.size.height);
+            if known { rise.clamp(-most, most) } else { 0.0 }
+        };
+        heading * rise([0, 6], 6.0) + left * rise([8, 7], 2.0)
     }
 }
 
@@ -133,33 +151,35 @@ impl Room<'_> {
         let count = ((reach / spacing).ceil() as usize).clamp(1, STATIONS);
         let spacing = reach / count as f64;
         let lanes = [feet.right, 0.0, feet.left];
-        let levels = lanes.map(|aside| self.lane(aside, spacing, count));
+        let from = (feet.front / spacing) as usize;
+        let levels = lanes.map(|aside| self.lane(aside, spacing, [from, count]));
         let mut free = far;
-        let ends = (0..=count)
+        let ends = (from..=count)
             .find_map(|station| self.last_ground(&levels, &lanes, station, spacing, feet.front));
         if let Some(last) = ends {
             free = free.min(spacing * last as f64 - feet.front - margin);
         }
         for index in 0..BANDS {
-            let band = self.band(index);
-            let reach = band.front + margin + free;
-            if reach <= 0.0 {
+            if index == STRAIGHT_FROM && self.is_about_level(&levels) && self.is_high_way_free(free)
+            {
                 break;
             }
-            for among in [Among::Terrain, Among::Creatures] {
-                let hit = self.sweep_ahead(index, &band, reach, spacing, &levels, among);
-                let Some(left) = hit.map(|hit| hit - band.front - margin) else {
-                    continue;
-                };
-                // Another creature may come towards it as fast, so each has half of the way; and it sways.
-                let left = match among {
-                    Among::Terrain => left,
-                    Among::Creatures => {
-                        let left = left - SWAYS * self.height;
-                        if left > 0.0 { 0.5 * left } else { left }
-                    }
-                };
-                free = free.min(left);
+            let band = self.band(index);
+            let front = band.front + margin;
+            let hit =
+                self.sweep_ahead(index, &band, front + free, spacing, &levels, Among::Terrain);
+            if let Some(hit) = hit {
+                free = free.min(hit - front);
+            }
+            if self.around.creatures.is_empty() {
+                continue;
+            }
+            // Another creature may come towards it as fast, so each has half of the way; and it sways.
+            let front = front + SWAYS * self.height;
+            let reach = front + 2.0 * free.max(0.0);
+            let hit = self.sweep_ahead(index, &band, reach, spacing, &levels, Among::Creatures);
+            if let Some(left) = hit.map(|hit| hit - front) {
+                free = free.min(if left > 0.0 { 0.5 * left } else { left });
             }
         }
         free
@@ -174,8 +194,7 @@ impl Room<'_> {
     }
 
     /// How far it may turn on the spot, radians, up to `far` and with its sign: positive to the left.
-    pub(super) fn turn(&self, far: f64) -> f64 {
-        let slope = self.slope();
+    pub(super) fn turn(&self, far: f64, slope: DVec3) -> f64 {
         let pieces = (far.abs() / MOST_TURN).ceil().max(1.0);
         let piece = far / pieces;
         let mut free = 0.0;
@@ -193,7 +212,26 @@ impl Room<'_> {
     fn turn_piece(&self, from: f64, far: f64, slope: DVec3) -> f64 {
         let margin = MARGIN * self.height;
         let mut free = far.abs();
+        let feet = self.band(0);
+        let over = STEPS_OVER * self.height;
+        for (aside, along) in [
+            (feet.right, feet.back),
+            (feet.left, feet.back),
+            (feet.right, feet.front),
+            (feet.left, feet.front),
+        ] {
+            // Where its feet may come to stand then.
+            let corner = turned(self.left * aside + self.forward * along, from + far);
+            let below = self.below(self.origin + corner + DVec3::Y * corner.dot(slope));
+            let most = self.steepest * corner.length() + over;
+            if below.is_none_or(|level| (level - self.origin.y).abs() > most) {
+                free = 0.0;
+            }
+        }
         for index in 1..BANDS {
+            if index == STRAIGHT_FROM && self.is_high_turn_free(from, far, slope) {
+                break;
+            }
             let band = self.band(index);
             let thick = self.thick(index);
             let inner = thick - margin;
@@ -234,6 +272,72 @@ impl Room<'_> {
         far.signum() * free
     }
 
+    /// True if certainly nothing is in the way of the higher bands: one fat capsule around them, instead of one sweep for
+    /// each of them.
+    fn is_high_way_free(&self, free: f64) -> bool {
+        let high = self.high_box();
+        let (middle, radius) = self.high_middle();
+        let way = high.front + (MARGIN + SWAYS) * self.height + 2.0 * free.max(0.0);
+        let capsule = WorldCapsule {
+            ends: [high.right, high.left].map(|aside| middle + self.left * aside),
+            radius,
+        };
+        self.is_clear(&capsule, self.forward * way)
+    }
+
+    /// True if the ground ahead is about as high as that on which it stands.
+    fn is_about_level(&self, levels: &[[f64; STATIONS + 1]; 3]) -> bool {
+        let known = levels.iter().flatten().filter(|level| **level < NO_GROUND);
+        let mut rises = known.map(|level| (level - self.origin.y).abs());
+        rises.all(|rise| rise <= ABOUT * self.height)
+    }
+
+    /// The same for a turn from one angle on by another one.
+    fn is_high_turn_free(&self, from: f64, by: f64, slope: DVec3) -> bool {
+        let high = self.high_box();
+        let (middle, radius) = self.high_middle();
+        let wide = high.left.max(-high.right);
+        let long = high.front.max(-high.back);
+        let reach = (wide * wide + long * long).sqrt();
+        if slope.length() * reach > ABOUT * self.height {
+            return false;
+        }
+        // Half of the turn to each side, from the middle of it.
+        let aside = wide + reach * libm::sin((0.5 * by).abs());
+        let axis = turned(self.forward, from + 0.5 * by);
+        let capsule = WorldCapsule {
+            ends: [high.back, high.front].map(|along| middle + axis * along),
+            radius: radius.max(aside + MARGIN * self.height),
+        };
+        self.is_clear(&capsule, DVec3::ZERO)
+    }
+
+    /// The box around the higher bands, metres.
+    fn high_box(&self) -> Band {
+        let bands = (STRAIGHT_FROM..BANDS).map(|index| self.band(index));
+        let around = |a: Band, b: Band| Band {
+            right: a.right.min(b.right),
+            left: a.left.max(b.left),
+            back: a.back.min(b.back),
+            front: a.front.max(b.front),
+        };
+        bands.reduce(around).unwrap_or(self.band(0))
+    }
+
+    /// The middle of the higher bands, and half their height.
+    fn high_middle(&self) -> (DVec3, f64) {
+        let [low, high] = [EDGES[STRAIGHT_FROM], EDGES[BANDS]].map(|edge| edge * self.height);
+        let up = DVec3::Y * (0.5 * (low + high));
+        (self.origin + up, 0.5 * (high - low) + ABOUT * self.height)
+    }
+
+    fn is_clear(&self, capsule: &WorldCapsule, way: DVec3) -> bool {
+        let all = [self.around.terrain, self.around.creatures];
+        let mut any = |_: &SweepContact| true;
+        all.into_iter()
+            .all(|obstacles| first(obstacles, capsule, [way; 2], &mut any).is_none())
+    }
+
     /// A band's box, metres.
     fn band(&self, index: usize) -> Band {
         let Band {
@@ -259,14 +363,16 @@ impl Room<'_> {
         0.5 * (EDGES[index + 1] + EDGES[index]) * self.height
     }
 
-    /// Heights of the ground along a lane, at so many steps ahead.
-    fn lane(&self, aside: f64, spacing: f64, count: usize) -> [f64; STATIONS + 1] {
+    /// Heights of the ground along a lane, at the stations of so many steps ahead that count: those that are not under the
+    /// body, and ends of pieces.
+    fn lane(&self, aside: f64, spacing: f64, [from, count]: [usize; 2]) -> [f64; STATIONS + 1] {
         let mut levels = [NO_GROUND; STATIONS + 1];
         let mut level = self.origin.y;
-        for (station, found) in levels.iter_mut().enumerate().take(count + 1) {
+        let under = (0..from).step_by(PIECE);
+        for station in under.chain(from..count + 1) {
             let at = self.forward * (spacing * station as f64) + self.left * aside;
             if let Some(next) = self.below((self.origin + at).with_y(level)) {
-                (*found, level) = (next, next);
+                (levels[station], level) = (next, next);
             }
         }
         levels
@@ -292,17 +398,16 @@ impl Room<'_> {
     ) -> Option<usize> {
         let over = STEPS_OVER * self.height;
         let is_level = |rise: f64, way: f64| rise.abs() <= self.steepest * way.abs() + over;
-        // On what its feet are already it stands; the rest has to carry it.
-        let is_ahead = spacing * station as f64 > front;
+        if spacing * station as f64 <= front {
+            // There its feet stand already.
+            return None;
+        }
         let middle = levels[1][station];
         let before = station.saturating_sub(1);
         for (lane, aside) in levels.iter().zip(lanes) {
             let level = lane[station];
             if level == NO_GROUND {
-                if is_ahead {
-                    return Some(before);
-                }
-                continue;
+                return Some(before);
             }
             let too_steep = (0..station).rev().find(|index| {
                 let way = spacing * (station - index) as f64;
@@ -311,7 +416,7 @@ impl Room<'_> {
             if too_steep.is_some() {
                 return too_steep;
             }
-            if is_ahead && middle < NO_GROUND && !is_level(level - middle, *aside) {
+            if middle < NO_GROUND && !is_level(level - middle, *aside) {
                 return Some(before);
             }
         }
@@ -389,26 +494,6 @@ impl Room<'_> {
             first(obstacles, capsule, ways, &mut is_in_the_way)
         });
         times.min_by(f64::total_cmp)
-    }
-
-    /// The gradient of the ground on which it stands.
-    fn slope(&self) -> DVec3 {
-        let feet = self.band(0);
-        let rise = |axis: DVec3, low: f64, high: f64| {
-            let [low, high] = [
-                low.min(-MARGIN * self.height),
-                high.max(MARGIN * self.height),
-            ];
-            let ends = [low, high].map(|at| self.below(self.origin + axis * at));
-            match ends {
-                [Some(before), Some(after)] => {
-                    let most = self.steepest;
-                    axis * ((after - before) / (high - low)).clamp(-most, most)
-                }
-                _ => DVec3::ZERO,
-            }
-        };
-        rise(self.forward, feet.back, feet.front) + rise(self.left, feet.right, feet.left)
     }
 }
 

@@ -13,6 +13,7 @@ use crate::error::ColossusError;
 use crate::feet::Foot;
 use crate::kind::CreatureKind;
 use crate::senses::Senses;
+use clamber_world::MaterialPoint;
 
 /// All that changes in a creature: a plain value, to be saved and restored.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -31,6 +32,8 @@ pub struct CreatureState {
     /// Heights of the ground along its heading, from behind to ahead, and to the left and right; one is looked for in
     /// each tick.
     pub(super) ground: [f64; GROUND],
+    /// The point of the ground that it goes with, if that moves.
+    pub(super) stands_on: Option<GroundPoint>,
     /// What it knows of the way that it is on.
     pub(super) walked: Walked,
     /// How steep the ground ahead is, as a tangent.
@@ -82,6 +85,9 @@ pub struct CreatureState {
 const FARTHEST: f64 = 1e12;
 const FASTEST: f64 = 1e6;
 
+/// A way has no more corners.
+const MOST_CORNERS: usize = 512;
+
 /// Stands for no wall in reach: JSON has no infinity.
 pub(super) const NO_WALL: f32 = f32::MAX;
 
@@ -107,6 +113,18 @@ pub(super) enum Playing {
     Act(StateId),
 }
 
+/// A point of the ground.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct GroundPoint {
+    /// The obstacle, by its place among the terrain of the last step.
+    pub(super) obstacle: u32,
+    /// How many obstacles there were.
+    pub(super) among: u32,
+    pub(super) material: MaterialPoint,
+    /// Where it was at the end of the last step, in world space.
+    pub(super) at: DVec3,
+}
+
 /// What a creature knows of the way that it is on.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Walked {
@@ -120,10 +138,14 @@ pub(super) struct Walked {
     pub(super) is_known: bool,
     /// How far ahead its way is free, metres; much further than it looks if it is free as far as that.
     pub(super) ahead: f64,
-    /// How far it may turn to the side to which it turns, radians.
+    /// How far it may turn, radians: to the side that its sign tells, positive to the left.
     pub(super) turn: f64,
+    /// True if its goal was ahead when it looked last.
+    pub(super) faces: bool,
     /// To which side it turns the long way round, since the short one is blocked: -1 to the right, 1 to the left, or 0.
     pub(super) round: i8,
+    /// True if it has turned the long way round since it began to turn.
+    pub(super) has_gone_round: bool,
     /// True if it does not get on.
     pub(super) is_blocked: bool,
 }
@@ -133,7 +155,8 @@ impl Walked {
     fn is_within(&self, most: f64) -> bool {
         let places = self.corners.iter().flat_map(|corner| corner.to_array());
         let mut numbers = places.chain([self.ahead, self.turn]);
-        numbers.all(|number| number.abs() <= most)
+        let is_way = self.corners.len() <= MOST_CORNERS && (-1..=1).contains(&self.round);
+        is_way && numbers.all(|number| number.abs() <= most)
     }
 }
 
@@ -191,6 +214,7 @@ impl CreatureState {
             position: config.position,
             climb: 0.0,
             ground: [NO_GROUND; GROUND],
+            stands_on: None,
             walked: Walked::default(),
             steepness: 0.0,
             yaw: config.yaw,
@@ -380,14 +404,30 @@ impl CreatureState {
         ];
         let far = |number: f64| number.is_nan() || number.abs() > FARTHEST;
         let fast = |number: &f64| number.is_nan() || number.abs() > FASTEST;
-        let places = [self.position, self.home, self.patrol, self.noise];
-        let mut coordinates = places.iter().flat_map(|place| place.to_array());
+        let known = self.prey.map_or(self.home, |(_, place)| place);
+        let gaze = [self.gaze.value, self.gaze.velocity];
+        let stands = self.stands_on.map_or(self.home, |point| point.at);
+        let places = [
+            self.position,
+            self.home,
+            self.patrol,
+            self.noise,
+            known,
+            stands,
+        ];
+        let places = places.into_iter().chain(gaze);
+        let mut coordinates = places.flat_map(|place| place.to_array());
+        let level = |level: &f64| *level == NO_GROUND || !far(*level);
         if coordinates.any(far)
             || far(self.yaw)
             || far(self.aim.length())
             || numbers.iter().any(fast)
             || !self.hips.is_within(FASTEST)
             || !self.walked.is_within(FARTHEST)
+            || !self.ground.iter().all(level)
+            || [self.gaze_weight.value, self.gaze_weight.velocity]
+                .iter()
+                .any(fast)
             || !self.feet.iter().all(|foot| foot.is_within(FARTHEST))
         {
             return Err(ColossusError::OtherKind(

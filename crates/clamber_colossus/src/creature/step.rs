@@ -133,7 +133,7 @@ impl Creature {
         Ok(())
     }
 
-    /// Begins an attack, unless its limb would go through rock.
+    /// Begins an attack, unless anything of it would go through rock or another creature.
     fn begin_attack(
         &mut self,
         state: StateId,
@@ -144,6 +144,9 @@ impl Creature {
             self.aim(strike);
             if !self.may_strike(strike, around) {
                 self.state.walked.is_blocked = true;
+                if kind.gait().is_none() {
+                    self.state.playing = Playing::Idle;
+                }
                 return self.play(Playing::Idle, 1.0, kind.brain().fade(state));
             }
         }

@@ -278,7 +278,7 @@ impl Foot {
     pub(crate) fn be_carried(&mut self, carried: &Carried) {
         let footing = |at: &mut Footing| {
             at.ball = carried.place(at.ball);
-            at.normal = carried.vector(at.normal);
+            at.normal = carried.turn * at.normal;
         };
         let spring = |spring: &mut Spring<DVec3>| {
             spring.value = carried.vector(spring.value);
@@ -305,7 +305,7 @@ impl Foot {
             }
         }
         self.clip = carried.place(self.clip);
-        self.normal = carried.vector(self.normal);
+        self.normal = carried.turn * self.normal;
         spring(&mut self.offset);
         spring(&mut self.settling);
         if self.path.floor != NO_GROUND {

@@ -34,6 +34,11 @@ impl Carried {
         self.to + self.turn * (place - self.from)
     }
 
+    /// The same for a place that stays as high above the ground: it turns about up alone.
+    pub(crate) fn level_place(&self, place: DVec3) -> DVec3 {
+        self.to + self.vector(place - self.from)
+    }
+
     /// A vector of the creature, turned with its heading: what stands upright stays so.
     pub(crate) fn vector(&self, vector: DVec3) -> DVec3 {
         rotation_from_axis_angle(DVec3::Y, self.yaw) * vector

@@ -60,7 +60,7 @@ impl Extent {
                 skin_into(mesh, palette.matrices(), &mut positions).map_err(SurfaceError::from)?;
                 for corner in mesh.triangles().iter().flatten() {
                     let place = positions[corner.index()].as_dvec3();
-                    let share = (place.y - rest.low.y) / height;
+                    let share = place.y / height;
                     bands[band_of(share)].hold(place);
                 }
             }

@@ -449,7 +449,8 @@ fn compile(
                 let (owner, attack) = attack_with(brain, clip)
                     .ok_or_else(|| here(BrainProblem::NoAttack { clip: clip.clone() }))?;
                 let there = |problem| brain.error_in(owner, problem);
-                Some(strike(names, attack, legs, balls).map_err(there)?)
+                // It only goes there.
+                Some(strike(names, attack, legs, &[]).map_err(there)?)
             }
             None => None,
         },

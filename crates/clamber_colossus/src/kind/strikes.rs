@@ -106,19 +106,22 @@ impl Strike {
             let after = step(clip.duration() - to, 1.0).map_while(|time| stands(at(time)?));
             reaches.extend(before.chain(after));
         }
-        let mut swept = Vec::new();
-        for ball in balls {
-            let aims = leg.is_some() && limb.contains(&ball.joint);
-            let mut way = Vec::new();
-            for phase in 0..=SWEPT {
-                let time = to * f64::from(phase) / f64::from(SWEPT);
-                let pose = clip.sample(names.clips.rest(), time, Playback::Clamp);
-                let pose = pose.map_err(|_| phases())?;
+        let aims = |ball: &JointBall| leg.is_some() && limb.contains(&ball.joint);
+        let new = |ball: &JointBall| Swept {
+            radius: ball.radius,
+            aims: aims(ball),
+            way: Vec::new(),
+        };
+        let mut swept: Vec<Swept> = balls.iter().map(new).collect();
+        for phase in 0..=SWEPT {
+            let time = to * f64::from(phase) / f64::from(SWEPT);
+            let pose = clip.sample(names.clips.rest(), time, Playback::Clamp);
+            let pose = pose.map_err(|_| phases())?;
+            for (ball, swept) in balls.iter().zip(&mut swept) {
                 let frame = joint_in_model(names.skeleton, &pose, ball.joint);
-                way.extend(frame.map(|frame| frame.transform_point3(ball.middle)));
+                let place = frame.map(|frame| frame.transform_point3(ball.middle));
+                swept.way.extend(place);
             }
-            let radius = ball.radius;
-            swept.push(Swept { radius, aims, way });
         }
         Ok(Self {
             swept,

@@ -5,12 +5,14 @@
 use std::sync::Arc;
 
 use clamber_colossus::{Creature, CreatureKind, Noise, Surroundings};
-use clamber_surface::geometry::{Similarity, rotation_from_axis_angle};
-use clamber_surface::surface::TargetMotion;
+use clamber_surface::geometry::{Affine, Similarity, rotation_from_axis_angle};
+use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
+use clamber_surface::rig::{JointId, Palette};
+use clamber_surface::surface::{SkinnedSurface, TargetMotion};
 use clamber_world::{
     Contact, HalfSpace, MaterialPoint, Obstacle, PointMotion, SweepContact, WorldCapsule,
 };
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 use crate::support::TICK;
 use crate::walls::{config, creatures};
@@ -169,4 +171,47 @@ fn on_a_deck_that_moves_it_lives_as_on_one_that_does_not() {
         }
     }
     assert!(failed.is_empty(), "{}", failed.join("\n"));
+}
+
+/// A plate of 3 m that slides through between a giant's feet does not take it along; nor does one that spins.
+#[test]
+fn what_moves_between_its_feet_does_not_carry_it() {
+    let (_, kind, _) = creatures().remove(0);
+    let corners = [(-1.5, -1.5), (-1.5, 1.5), (1.5, 1.5), (1.5, -1.5)];
+    let positions = corners.map(|(x, z)| Vec3::new(x, 0.2, z));
+    let bone = Influence {
+        joint: JointId(0),
+        weight: 1.0,
+    };
+    let source = MeshSource {
+        positions: &positions,
+        triangles: &[[0, 1, 2], [0, 2, 3]],
+        influences: &[bone; 4],
+        joint_count: 1,
+        ..MeshSource::default()
+    };
+    let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
+    let mut plate = SkinnedSurface::new(Arc::new(mesh));
+    let still = Palette::from_matrices([Affine::IDENTITY]);
+    let ground = HalfSpace::below(0.0);
+    let mut creature = Creature::new(kind, config()).unwrap();
+    let (mut moved, mut turned) = (0f64, 0f64);
+    for tick in 0..240 {
+        let time = f64::from(tick) * TICK;
+        let at = Similarity {
+            rotation: rotation_from_axis_angle(DVec3::Y, 3.0 * time),
+            translation: DVec3::X * (0.5 * time - 1.0),
+            ..Similarity::IDENTITY
+        };
+        plate.advance(&still, at).unwrap();
+        let terrain: [&dyn Obstacle; 2] = [&ground, &plate];
+        let around = Surroundings {
+            terrain: &terrain,
+            ..Surroundings::default()
+        };
+        creature.step(&around).unwrap();
+        moved = moved.max(creature.state().position().with_y(0.0).length());
+        turned = turned.max(creature.state().yaw().abs());
+    }
+    assert!(moved < 1e-9 && turned < 1e-9, "{moved} m, {turned}");
 }

@@ -198,19 +198,22 @@ fn all_edges_stop_it() {
     assert!(failed.is_empty(), "{}", failed.join("\n"));
 }
 
-/// Two that walk to each other stop before their skins meet.
+/// Two that walk to each other, and two that want to go where the other one comes from, stop before their skins meet.
 #[test]
 fn two_creatures_do_not_walk_into_each_other() {
     let mut failed = Vec::new();
-    for (name, kind, height) in creatures() {
-        let away = 2.0 * reach(&kind, height) + 2.0 * height;
+    let all = creatures();
+    let beyond = all.iter().take(3).map(|one| (one, 4.0));
+    for ((name, kind, height), beyond) in all.iter().map(|one| (one, 0.0)).chain(beyond) {
+        let height = *height;
+        let away = 2.0 * reach(kind, height) + 2.0 * height;
         let mut both = [(0.0, 0.0), (away, core::f64::consts::PI)].map(|(z, yaw)| {
             let config = CreatureConfig {
                 position: DVec3::Z * z,
                 yaw,
                 ..config()
             };
-            Creature::new(Arc::clone(&kind), config).unwrap()
+            Creature::new(Arc::clone(kind), config).unwrap()
         });
         let ground = clamber_world::HalfSpace::below(0.0);
         let terrain: [&dyn Obstacle; 1] = [&ground];
@@ -221,8 +224,9 @@ fn two_creatures_do_not_walk_into_each_other() {
             for one in 0..2 {
                 let [a, b] = &mut both;
                 let (own, other) = if one == 0 { (a, b) } else { (b, a) };
+                let goes = if one == 0 { 1.0 } else { -1.0 };
                 let noises = [Noise {
-                    place: other.state().position(),
+                    place: other.state().position() + DVec3::Z * (goes * beyond * height),
                     loudness: 5.0,
                 }];
                 let skins: [&dyn Obstacle; 1] = [other.surface()];

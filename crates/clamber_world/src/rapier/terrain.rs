@@ -450,6 +450,13 @@ impl Obstacle for RapierTerrain<'_> {
         let before = self.previous_pose(collider);
         now.motion_since(&before.unwrap_or(now), local, self.origin, dt)
     }
+
+    fn rests(&self, point: &MaterialPoint) -> bool {
+        let handle = Self::collider_of(point);
+        self.colliders.get(handle).is_some_and(|collider| {
+            self.sees(handle, collider) && self.previous_body_pose(collider).is_none()
+        })
+    }
 }
 
 /// A collider that a sweep may meet.
