@@ -41,7 +41,9 @@ pub(crate) fn reach(kind: &Arc<CreatureKind>, height: f64) -> f64 {
     let creature = Creature::new(Arc::clone(kind), config()).unwrap();
     let mut skin: Vec<Vec3> = Vec::new();
     creature.surface().clone().skin_all(&mut skin);
-    let far = skin.iter().map(|place| f64::from(place.x.hypot(place.z)));
+    let far = skin
+        .iter()
+        .map(|place| f64::from(place.with_y(0.0).length()));
     far.fold(0.0, f64::max) * height / kind.height()
 }
 

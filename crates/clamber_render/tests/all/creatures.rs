@@ -1,8 +1,7 @@
 //! The rendered skin agrees with the surface that is queried: on the giant, and on models from files.
 
-#![expect(
+#![allow(
     clippy::unwrap_used,
-    clippy::panic,
     reason = "a test's helpers may fail like the test"
 )]
 

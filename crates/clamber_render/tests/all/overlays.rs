@@ -1,7 +1,5 @@
 //! Tests that overlays have the length and width that they are given.
 
-#![expect(clippy::panic, reason = "a test's helpers may fail like the test")]
-
 use crate::common;
 
 use clamber_render::{Camera, Frame, Image, Light, Overlay, Renderer};

@@ -1,8 +1,7 @@
 //! Tests that meshes, shadows and overlays are where they should be, and that bad input is an error.
 
-#![expect(
+#![allow(
     clippy::unwrap_used,
-    clippy::panic,
     reason = "a test's helpers may fail like the test"
 )]
 

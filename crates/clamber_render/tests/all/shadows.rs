@@ -1,8 +1,7 @@
 //! Tests that faces in the sun are lit evenly, and faces behind a wall are not lit.
 
-#![expect(
+#![allow(
     clippy::unwrap_used,
-    clippy::panic,
     reason = "a test's helpers may fail like the test"
 )]
 

@@ -1,7 +1,5 @@
 //! Tests that the device poses vertices as the collider's skinning does.
 
-#![expect(clippy::panic, reason = "a test's helpers may fail like the test")]
-
 use crate::common;
 
 use clamber_render::{RenderError, RenderMesh, Renderer, SkinSource};

@@ -8,7 +8,7 @@
 //! After a failure, the new picture and a picture of the differences are in `tmp` in cargo's target folder. If the new
 //! pictures are right, `CLAMBER_BLESS=1 cargo test -p clamber_render --test all stored` stores them; look at them first.
 
-#![expect(
+#![allow(
     clippy::unwrap_used,
     clippy::panic,
     reason = "a test's helpers may fail like the test"

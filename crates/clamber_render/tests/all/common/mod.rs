@@ -1,5 +1,7 @@
 //! Helpers that tests of pictures share.
 
+#![allow(clippy::panic, reason = "a test's helpers may fail like the test")]
+
 use std::io::Write;
 
 use clamber_render::{Gpu, RenderError};
