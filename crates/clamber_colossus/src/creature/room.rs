@@ -88,11 +88,9 @@ impl Creature {
             steepest: libm::tan(self.config.most_slope),
         }
     }
-}
 
-impl Creature {
-    /// False if anything of it would go through rock or another creature in an attack. What it steps over does not count, nor
-    /// ground: feet come down on that, and hands may strike it.
+    /// False if anything of it would go through rock or another creature in an attack. What it steps over does not count,
+    /// nor ground: feet come down on that, and hands may strike it.
     pub(super) fn may_strike(&self, strike: &Strike, around: &Surroundings<'_>) -> bool {
         let world = self.state.world_from_model(self.size.scale);
         let low = self.state.position.y + STEPS_OVER * self.size.height;
@@ -122,9 +120,7 @@ impl Creature {
         }
         true
     }
-}
 
-impl Creature {
     /// The gradient of the ground on which it stands, as it knows it.
     pub(super) fn slope(&self) -> DVec3 {
         let heading = self.state.heading();
@@ -272,8 +268,8 @@ impl Room<'_> {
         far.signum() * free
     }
 
-    /// True if certainly nothing is in the way of the higher bands: one fat capsule around them, instead of one sweep for
-    /// each of them.
+    /// True if certainly nothing is in the way of the higher bands: one fat capsule around them, in place of one sweep
+    /// for each.
     fn is_high_way_free(&self, free: f64) -> bool {
         let high = self.high_box();
         let (middle, radius) = self.high_middle();
@@ -303,11 +299,12 @@ impl Room<'_> {
             return false;
         }
         // Half of the turn to each side, from the middle of it.
-        let aside = wide + reach * libm::sin((0.5 * by).abs());
+        let aside = wide + reach * libm::sin((0.5 * by).abs()) + MARGIN * self.height;
         let axis = turned(self.forward, from + 0.5 * by);
         let capsule = WorldCapsule {
             ends: [high.back, high.front].map(|along| middle + axis * along),
-            radius: radius.max(aside + MARGIN * self.height),
+            // As high as the bands are, as far aside as they come.
+            radius: (radius * radius + aside * aside).sqrt(),
         };
         self.is_clear(&capsule, DVec3::ZERO)
     }
