@@ -51,9 +51,11 @@ fn engines() -> TestRun {
 }
 
 /// The packages that have tests which are ignored elsewhere, or which run a fifth of their cases there.
-const LONG: [&str; 4] = [
+const LONG: [&str; 6] = [
     "clamber",
     "clamber_climber",
+    "clamber_colossus",
+    "clamber_fight",
     "clamber_fuzz",
     "clamber_surface",
 ];
