@@ -96,7 +96,7 @@ fn run(brief: bool) -> Result<(), Box<dyn Error>> {
         };
         let step = quantile(&mut steps, 0.5) - skin;
         cells.value(&format!("a giant that {name}, us"), step);
-        // It looks where it walks, in a valley of some 100,000 triangles.
+        // 3 was asked: it looks where it walks.
         let most = match name {
             "sleeps" => 0.1,
             "walks" => 4.0,

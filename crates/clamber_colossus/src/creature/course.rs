@@ -39,7 +39,7 @@ const TURN_FIRST: f64 = 1.2;
 const WALK_ON: f64 = 0.5;
 
 /// A goal that is no further aside than this is straight ahead, radians.
-pub(super) const STRAIGHT: f64 = 0.15;
+const STRAIGHT: f64 = 0.15;
 
 /// Where a creature is, and how it moves.
 #[derive(Clone, Copy, Debug)]
@@ -223,9 +223,9 @@ impl Creature {
         moved
     }
 
-    /// How fast the clip of its gait is played at a course.
-    pub(super) fn clip_speed(&self, gait: &Gait, course: &Course) -> f64 {
-        match self.state.playing {
+    /// How fast a clip of its gait is played at a course.
+    pub(super) fn clip_speed(&self, gait: &Gait, playing: Playing, course: &Course) -> f64 {
+        match playing {
             Playing::Walk => course.speed / (self.full_speed(gait) * self.stride()),
             Playing::Turn(_) => {
                 (course.yaw_rate.abs() / (gait.turn_rate * self.size.rate)).min(1.0)

@@ -79,7 +79,7 @@ impl Creature {
                 course.ahead -= speed * dt;
                 let plays = !matches!(state.playing, Playing::Act(_));
                 if let Some(layer) = animator.layers_mut().first_mut().filter(|_| plays) {
-                    layer.speed = self.clip_speed(gait, &course);
+                    layer.speed = self.clip_speed(gait, state.playing, &course);
                 }
             }
             let step = animator.advance(kind.clips(), dt, &mut memory.events)?;

@@ -219,8 +219,6 @@ impl Creature {
         let moved = self.moved(gait, &wanted, course, dt);
         (self.state.speed, self.state.yaw_rate) = (moved.speed, moved.yaw_rate);
         self.state.halts = moved.halts;
-        let (rate, stride) = (self.size.rate, self.stride());
-        let full = self.full_speed(gait);
         let moves = self.state.speed > 0.0 && !self.state.halts;
         let acts = matches!(self.state.playing, Playing::Act(_)) && way.is_none();
         let playing = if moves {
@@ -232,11 +230,7 @@ impl Creature {
         } else {
             Playing::Idle
         };
-        let clip_speed = match playing {
-            Playing::Walk => self.state.speed / (full * stride),
-            Playing::Turn(_) => (self.state.yaw_rate.abs() / (gait.turn_rate * rate)).min(1.0),
-            Playing::Idle | Playing::Act(_) => 1.0,
-        };
+        let clip_speed = self.clip_speed(gait, playing, &moved);
         let size = (self.size.height / HUMAN).max(1e-4).sqrt();
         self.play(playing, clip_speed, FADE * size)?;
         if let Some(layer) = self.state.animator.layers_mut().first_mut()

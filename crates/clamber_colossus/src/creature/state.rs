@@ -2,6 +2,7 @@ use clamber_animation::ik::LookMemory;
 use clamber_animation::rig::{Playback, Pose};
 use clamber_animation::{Animator, Layer, LayerKind, PoseBuffers, Spring};
 use clamber_surface::geometry::{Similarity, rotation_from_axis_angle};
+use clamber_world::MaterialPoint;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -13,7 +14,6 @@ use crate::error::ColossusError;
 use crate::feet::Foot;
 use crate::kind::CreatureKind;
 use crate::senses::Senses;
-use clamber_world::MaterialPoint;
 
 /// All that changes in a creature: a plain value, to be saved and restored.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -110,9 +110,7 @@ impl Creature {
         let kind = std::sync::Arc::clone(&self.kind);
         let act = kind.brain().act(state);
         let walks = matches!(act, Some(Act::Walk(_)));
-        let speed = kind
-            .gait()
-            .map_or(0.0, |gait| gait.speed * self.size.scale * self.size.rate);
+        let speed = kind.gait().map_or(0.0, |gait| self.full_speed(gait));
         if !walks && !self.state.halts && self.state.speed > STANDS * speed {
             return Ok(());
         }

@@ -53,7 +53,8 @@ impl<W: Write + Send + 'static> ArenaRecorder<W> {
     ///
     /// # Errors
     /// [`RecordError::OtherArena`] if `info` is of another arena, [`RecordError::Names`] if its names are not one each,
-    /// [`RecordError::TickSeconds`], [`RecordError::Write`] if `out` fails, [`RecordError::Io`] if the thread cannot be started.
+    /// [`RecordError::TickSeconds`], [`RecordError::Write`] if `out` fails, [`RecordError::Io`] if the thread cannot be
+    /// started.
     pub fn new(
         out: W,
         info: &ArenaInfo,
