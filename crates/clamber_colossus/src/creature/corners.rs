@@ -219,9 +219,10 @@ impl Grid<'_> {
         known.tried += 1;
         let [x, z] = SIDES[side];
         let to = self.place([at[0] + x, at[1] + z, 0]);
-        let home = self.creature.state.home;
+        let (home, is_sent) = (self.creature.state.home, self.creature.sent_to().is_some());
         let far = |place: DVec3| (place - home).with_y(0.0).length();
-        let is_inside = far(to) <= self.creature.config.arena.max(far(self.start));
+        // Where it is sent, its arena does not matter.
+        let is_inside = is_sent || far(to) <= self.creature.config.arena.max(far(self.start));
         let passes = || {
             let from = self.place(at);
             self.creature.passes(self.around, self.slim, from, to)

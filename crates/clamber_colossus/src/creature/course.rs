@@ -1,6 +1,6 @@
 //! How a creature moves along its way: its speed and its turning, and how they change.
 
-use core::f64::consts::TAU;
+use core::f64::consts::{FRAC_PI_2, TAU};
 
 use glam::DVec3;
 
@@ -161,6 +161,11 @@ impl Creature {
             room.map_or(f64::INFINITY, |room| self.stoppable(room))
         };
         let free = braked(course.ahead);
+        // On the circle to its goal that its heading touches it turns by twice the angle that the goal is aside, on a way
+        // of the distance over the sine of that; faster than this it would go round and round its goal.
+        let missed = (aside.abs() - goal_within / distance.max(1e-9)).clamp(0.0, FRAC_PI_2);
+        let steered = gait.steer_rate * rate;
+        let round = steered * distance / (2.0 * libm::sin(missed)).max(1e-9);
         let is_before = course.ahead < distance - goal_within;
         wanted.is_stopped = !is_near && walked.is_known && is_before && free < slowest;
         if is_near {
@@ -174,11 +179,12 @@ impl Creature {
             };
             let stops = wanted.is_stopped && aside.abs() > STRAIGHT;
             wanted.faces = aside.abs() <= most;
-            wanted.turns_on_spot = !wanted.faces || stops;
+            wanted.turns_on_spot = !wanted.faces || stops || round < slowest;
             wanted.walks = !wanted.turns_on_spot;
         }
         if wanted.walks {
-            let speed = careful.min(braked(distance - goal_within)).max(slowest);
+            let speed = careful.min(braked(distance - goal_within)).min(round);
+            let speed = speed.max(slowest);
             wanted.speed = if wanted.is_stopped {
                 0.0
             } else {

@@ -52,8 +52,7 @@ impl Creature {
         if !state.walked.faces {
             course.ahead = f64::INFINITY;
         }
-        let current = state.brain.current();
-        let way = self.way(current).filter(|_| state.acting == Some(current));
+        let way = self.current_way();
         let mut moved = RootDelta::default();
         if !(0.0..=f64::MAX).contains(&seconds) {
             // Refuses it.

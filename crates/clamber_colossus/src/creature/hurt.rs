@@ -84,7 +84,7 @@ impl Creature {
     }
 
     /// The damage that a weak point takes. What is too much for it is not passed on.
-    fn wound(&mut self, weak_point: usize, damage: f64) -> f64 {
+    pub(super) fn wound(&mut self, weak_point: usize, damage: f64) -> f64 {
         let left = &mut self.state.hit_points[weak_point];
         let damage = damage.min(*left);
         *left -= damage;

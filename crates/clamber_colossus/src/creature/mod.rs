@@ -12,6 +12,7 @@ mod hips;
 mod hurt;
 mod legs;
 mod move_on;
+mod ordered;
 mod press;
 mod report;
 mod room;

@@ -39,12 +39,12 @@ impl Creature {
         dt: f64,
     ) -> Result<(), ColossusError> {
         let state = self.state.brain.current();
-        let way = self.way(state);
+        let way = self.current_way();
+        let is_sent = self.state.errand.is_some();
         let begun = self.state.acting == Some(state);
         let mut done = false;
         let kind = std::sync::Arc::clone(&self.kind);
         if let Some(gait) = kind.gait() {
-            let way = way.filter(|_| begun);
             done = self.walk(gait, way.as_ref(), around, dt)?;
         }
         self.events.clear();
@@ -75,7 +75,7 @@ impl Creature {
         self.state.walked.ticks_left = self.state.walked.ticks_left.saturating_sub(1);
         self.follow_ground(around, dt);
         let is_over = match kind.brain().act(state) {
-            Some(Act::Walk(_) | Act::Turn(_)) => done,
+            Some(Act::Walk(_) | Act::Turn(_)) => done && !is_sent,
             Some(Act::Once(_) | Act::Attack(_)) => {
                 begun && (self.state.playing != Playing::Act(state) || self.clip_is_over())
             }
@@ -89,6 +89,7 @@ impl Creature {
         self.state
             .senses
             .set(Sense::Blocked, f64::from(u8::from(is_blocked)));
+        self.end_errand(done);
         Ok(())
     }
 

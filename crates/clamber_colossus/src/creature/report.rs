@@ -28,6 +28,16 @@ pub enum CreatureEvent {
         /// The marker's name.
         name: String,
     },
+    /// It is where the game had sent it, and does what its brain wants again.
+    Arrived {
+        /// Where it was sent.
+        place: DVec3,
+    },
+    /// It does not get on to where the game had sent it, and does what its brain wants again.
+    Stopped {
+        /// Where it was sent.
+        place: DVec3,
+    },
     /// A foot came down.
     Plant {
         /// The leg, by its index in the file.

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::CreatureConfig;
 use super::hips::Hips;
+use super::ordered::Errand;
 use super::report::CreatureEvent;
 use crate::brain::{BrainState, StateId};
 use crate::error::ColossusError;
@@ -24,6 +25,8 @@ pub struct CreatureState {
     pub(super) playing: Playing,
     /// The state whose act has begun; another one than the brain's while the creature still comes to a stand.
     pub(super) acting: Option<StateId>,
+    /// Where the game has sent it: acts wait meanwhile.
+    pub(super) errand: Option<Errand>,
     /// True if it stops abruptly.
     pub(super) halts: bool,
     /// Where the model's origin is. Its height follows the ground.
@@ -82,7 +85,7 @@ pub struct CreatureState {
 
 /// A creature is no further from the origin than this, metres, and nothing of it moves faster than this, metres a second,
 /// in a state that is restored: what was changed to more could not be stepped.
-const FARTHEST: f64 = 1e12;
+pub(super) const FARTHEST: f64 = 1e12;
 const FASTEST: f64 = 1e6;
 
 /// A way has no more corners.
@@ -210,6 +213,7 @@ impl CreatureState {
             animator,
             playing: Playing::Idle,
             acting: None,
+            errand: None,
             halts: false,
             position: config.position,
             climb: 0.0,
@@ -407,6 +411,7 @@ impl CreatureState {
         let known = self.prey.map_or(self.home, |(_, place)| place);
         let gaze = [self.gaze.value, self.gaze.velocity];
         let stands = self.stands_on.map_or(self.home, |point| point.at);
+        let sent = self.errand.map_or(self.home, |errand| errand.to);
         let places = [
             self.position,
             self.home,
@@ -414,6 +419,7 @@ impl CreatureState {
             self.noise,
             known,
             stands,
+            sent,
         ];
         let places = places.into_iter().chain(gaze);
         let mut coordinates = places.flat_map(|place| place.to_array());

@@ -103,6 +103,10 @@ impl Creature {
     /// Begins the current state's act, as soon as the creature stands, or goes on with it. An act that interrupts
     /// another one begins at once: giants may stop abruptly.
     fn act(&mut self, around: &Surroundings<'_>) -> Result<(), ColossusError> {
+        if let Some(errand) = &mut self.state.errand {
+            errand.has_begun = true;
+            return Ok(());
+        }
         let state = self.state.brain.current();
         if self.state.acting == Some(state) {
             return Ok(());

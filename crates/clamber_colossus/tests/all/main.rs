@@ -11,6 +11,7 @@ mod feet;
 mod foresight;
 mod giant;
 mod legs;
+mod ordered;
 mod plates;
 mod senses;
 mod sizes;

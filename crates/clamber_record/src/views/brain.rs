@@ -99,6 +99,14 @@ pub(crate) fn line(creature: &Creature, event: &CreatureEvent) -> Option<String>
             let name = plates.get(*plate).map_or("", |plate| &plate.name);
             format!("staggered by a blow on plate {plate} ({name}){end}")
         }
+        CreatureEvent::Arrived { place } => {
+            let [x, y, z] = place.to_array();
+            format!("is where it was sent, at {x:.1}, {y:.1}, {z:.1}")
+        }
+        CreatureEvent::Stopped { place } => {
+            let [x, y, z] = place.to_array();
+            format!("does not get on to where it was sent, to {x:.1}, {y:.1}, {z:.1}")
+        }
         CreatureEvent::Marker { .. } | CreatureEvent::Plant { .. } => return None,
         // An event that is newer than this list.
         other => format!("{other:?}"),

@@ -1,0 +1,164 @@
+//! What a game makes a creature do: it is placed, sent somewhere, or put into a state.
+
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+use super::report::CreatureEvent;
+use super::state::{FARTHEST, Walked};
+use super::way::Way;
+use super::{Creature, CreatureConfig, CreatureState};
+use crate::error::ColossusError;
+use crate::senses::Sense;
+
+/// A creature that was sent has arrived within this share of its height.
+const WITHIN: f64 = 0.1;
+
+/// Where a game has sent a creature.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Errand {
+    pub(super) to: DVec3,
+    pub(super) has_begun: bool,
+}
+
+impl Creature {
+    /// Puts the creature somewhere else, at rest, as if it had begun there: its home is there, too. What its brain thinks,
+    /// its clips and its wounds stay. Its skin stands there without motion, so that whoever is on it is left behind.
+    ///
+    /// # Errors
+    /// [`ColossusError::OutOfRange`] for numbers that are not finite or beyond 1e12 m, and those of posing. Nothing is
+    /// changed then.
+    pub fn put(&mut self, position: DVec3, yaw: f64) -> Result<(), ColossusError> {
+        let numbers = position.to_array().into_iter().chain([yaw]);
+        for found in numbers {
+            if found.is_nan() || found.abs() > FARTHEST {
+                return Err(ColossusError::OutOfRange {
+                    what: "place",
+                    range: "finite, and at most 1e12",
+                    found,
+                });
+            }
+        }
+        let config = CreatureConfig {
+            position,
+            yaw,
+            ..self.config
+        };
+        let fresh = CreatureState::new(&self.kind, &config, self.size.rate);
+        let mut state = CreatureState {
+            position: fresh.position,
+            yaw: fresh.yaw,
+            speed: fresh.speed,
+            yaw_rate: fresh.yaw_rate,
+            climb: fresh.climb,
+            steepness: fresh.steepness,
+            ground: fresh.ground,
+            stands_on: fresh.stands_on,
+            walked: fresh.walked,
+            walls: fresh.walls,
+            feet: fresh.feet,
+            hips: fresh.hips,
+            look: fresh.look,
+            gaze: fresh.gaze,
+            gaze_weight: fresh.gaze_weight,
+            home: fresh.home,
+            patrol: fresh.patrol,
+            ..self.state.clone()
+        };
+        self.swap_state(&mut state)
+    }
+
+    /// Sends the creature to a place, whatever its brain wants, or lets it do what that wants again. It walks round what
+    /// is in its way, also beyond its arena. Its brain goes on meanwhile, but its acts wait; what it does now ends at
+    /// once. [`CreatureEvent::Arrived`] or [`CreatureEvent::Stopped`] tells of the end. Returns false, and nothing is
+    /// changed, if it cannot walk, or if the place is not finite or beyond 1e12 m.
+    pub fn send(&mut self, to: Option<DVec3>) -> bool {
+        let is_far = |place: DVec3| !place.is_finite() || place.abs().max_element() > FARTHEST;
+        if self.kind.gait().is_none() || to.is_some_and(is_far) {
+            return false;
+        }
+        // What it did, or where it went, is over.
+        self.leave_act();
+        self.state.errand = to.map(|to| Errand {
+            to,
+            has_begun: false,
+        });
+        true
+    }
+
+    /// Where it was sent; `None` once it is there, or does not get on.
+    pub fn sent_to(&self) -> Option<DVec3> {
+        self.state.errand.map(|errand| errand.to)
+    }
+
+    /// Puts its brain into a state, by its name in the file, as if a transition that interrupts led there. Returns
+    /// false, and nothing is changed, if there is no such state.
+    pub fn enter(&mut self, state: &str) -> bool {
+        let brain = self.kind.brain();
+        let Some(to) = brain.find(state) else {
+            return false;
+        };
+        let from = self.state.brain.current();
+        brain.go_to(&mut self.state.brain, to);
+        let to = self.state.brain.current();
+        self.leave_act();
+        self.state.halts = true;
+        self.state.told.push(CreatureEvent::Entered { from, to });
+        true
+    }
+
+    /// Does damage to a weak point, open or not, by its index, as a fall onto a rock or a fire does. Returns the damage
+    /// done, which is what it had left at most; `None`, and nothing is changed, if there is no such weak point, or for a
+    /// damage that is negative or not finite.
+    pub fn harm(&mut self, weak_point: usize, damage: f64) -> Option<f64> {
+        let left = *self.state.hit_points.get(weak_point)?;
+        if !(0.0..=f64::MAX).contains(&damage) {
+            return None;
+        }
+        Some(if left > 0.0 {
+            self.wound(weak_point, damage)
+        } else {
+            0.0
+        })
+    }
+
+    fn leave_act(&mut self) {
+        self.state.acting = None;
+        self.state.struck.clear();
+        self.state.aim = DVec3::ZERO;
+        self.state.walked = Walked::default();
+        self.state.senses.set(Sense::Done, 0.0);
+    }
+
+    /// Where it goes: where it was sent, or where its act leads it.
+    pub(super) fn current_way(&self) -> Option<Way> {
+        if let Some(errand) = self.state.errand {
+            return errand.has_begun.then_some(Way {
+                goal: errand.to,
+                bearing: None,
+                within: WITHIN * self.size.height,
+                within_angle: 0.0,
+                walks: true,
+            });
+        }
+        let state = self.state.brain.current();
+        self.way(state).filter(|_| self.state.acting == Some(state))
+    }
+
+    /// Ends its errand if it is there, or does not get on.
+    pub(super) fn end_errand(&mut self, is_there: bool) {
+        let Some(errand) = self.state.errand.filter(|errand| errand.has_begun) else {
+            return;
+        };
+        let place = errand.to;
+        let event = if self.state.walked.is_blocked {
+            CreatureEvent::Stopped { place }
+        } else if is_there {
+            CreatureEvent::Arrived { place }
+        } else {
+            return;
+        };
+        self.state.errand = None;
+        self.state.walked = Walked::default();
+        self.report.events.push(event);
+    }
+}
