@@ -1,7 +1,7 @@
 //! Two climbers against one giant, by rollback: two peers in one process over a bad line, or two processes over a
 //! network.
 //!
-//! Both peers send each other only their players' inputs, eleven bytes a tick. Each guesses what has not arrived, goes
+//! Both peers send each other only their players' inputs, thirteen bytes a tick. Each guesses what has not arrived, goes
 //! back when a guess was wrong, and plays again. At the end both have the same fight, tick by tick, and have told of
 //! everything once.
 //!

@@ -116,7 +116,7 @@ impl<A: Address> Peer<A> {
         self.longest = self.longest.max(steps.saturating_sub(1));
         let (sums, taken, ground) = (&mut self.sums, &mut self.inputs, self.fight.ground);
         self.rollback
-            .handle(&mut self.fight.arena, requests, |arena, inputs| {
+            .handle(&mut self.fight.arena, requests, |arena, inputs, _| {
                 Duel::step(arena, &ground, inputs)?;
                 sums.insert(arena.tick(), arena.fingerprint());
                 taken.insert(arena.tick(), inputs.to_vec());

@@ -27,8 +27,8 @@ use clamber::world::{
 use clamber_colossus::{Brain, CreatureConfig, CreatureKind};
 use clamber_fight::actions::STAB;
 use clamber_fight::{
-    Arena, ArenaConfig, ArenaEvent, ArenaState, CreatureId, FighterConfig, FighterId, Projectile,
-    ProjectileId, ProjectileKind, ProjectileMotion, creature_obstacle,
+    Arena, ArenaConfig, ArenaEvent, ArenaState, BowConfig, CreatureId, FighterConfig, FighterId,
+    Projectile, ProjectileId, ProjectileKind, ProjectileMotion, creature_obstacle,
 };
 use clamber_scenes::measure::{Bound, Cells, is_brief, quantile};
 use clamber_scenes::rocks::scatter;
@@ -377,6 +377,7 @@ fn arrows(
             id: ProjectileId(arrow),
             kind: ProjectileKind::Arrow,
             by: FighterId(0),
+            body: BowConfig::default().arrow(),
             seconds: 0.0,
             motion: ProjectileMotion::Stuck {
                 at: Attachment::new(

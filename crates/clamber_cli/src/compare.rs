@@ -59,6 +59,11 @@ pub enum Comparison {
         /// The fighter's name.
         fighter: String,
     },
+    /// The step to this tick has other orders, in arenas that are equal so far.
+    OrdersDiffer {
+        /// The tick.
+        tick: u64,
+    },
     /// One ends after so many ticks that are equal, the other goes on.
     Shorter(u64),
 }
@@ -121,13 +126,15 @@ fn arenas(
     [first, second]: [&ArenaRecording; 2],
     options: &CompareOptions,
 ) -> Result<Comparison, CompareError> {
-    if first.info().assets != second.info().assets {
-        return Err(CompareError::Scene("creatures, fighters or configurations"));
+    if first.info().config != second.info().config {
+        return Err(CompareError::Scene("configurations"));
     }
     if first.first() != second.first() {
         return Err(CompareError::Scene("first ticks"));
     }
     let mut equal = 0;
+    // Whose inputs a step has.
+    let mut fighters: Vec<usize> = Vec::new();
     for (ours, theirs) in first.ticks_from(0).zip(second.ticks_from(0)) {
         let ours = ours.map_err(|error| failed(&options.first, error))?;
         let theirs = theirs.map_err(|error| failed(&options.second, error))?;
@@ -135,13 +142,21 @@ fn arenas(
         if let Some(fighter) = both.position(|(one, other)| one != other) {
             return Ok(Comparison::InputsDiffer {
                 tick: ours.tick,
-                fighter: first.info().fighter(fighter),
+                fighter: match fighters.get(fighter) {
+                    Some(number) => first.info().fighter(*number),
+                    None => format!("input {fighter}"),
+                },
             });
+        }
+        if ours.orders != theirs.orders {
+            return Ok(Comparison::OrdersDiffer { tick: ours.tick });
         }
         let (all, parts) = (theirs.fingerprint, &theirs.parts);
         if let Some(difference) = ArenaDifference::between(first.info(), &ours, all, parts) {
             return Ok(Comparison::ArenasDiffer(Box::new(difference)));
         }
+        fighters.clear();
+        fighters.extend(ours.fighters());
         equal += 1;
     }
     Ok(ended(equal, first.len() == second.len()))
@@ -183,6 +198,10 @@ pub fn print(options: &CompareOptions) -> Result<bool, CompareError> {
         }
         Comparison::ArenasDiffer(difference) => {
             println!("{difference}");
+            false
+        }
+        Comparison::OrdersDiffer { tick } => {
+            println!("the orders of the step to tick {tick} differ; all is equal before");
             false
         }
         Comparison::InputsDiffer { tick, fighter } => {

@@ -28,10 +28,10 @@ const STEPS: f64 = 127.0;
 /// Length up to which a vector may be longer than 1 by rounding.
 const LONGEST: f64 = 1.01;
 
-/// A player's input for one tick in eleven bytes, to be sent over a network.
+/// A player's input for one tick in thirteen bytes, to be sent over a network.
 ///
 /// [`PlayerInput::from_input`] rounds: directions to 1/127 of their length, the aim to 0.006 degrees. All peers step their
-/// arenas with [`PlayerInput::to_input`], which gives all of them the same bits. It holds no blow: blows come out of
+/// arenas with [`PlayerInput::to_input`], which gives all of them the same bits. Its order is 0. It holds no blow: blows come out of
 /// the arena itself. Of the actions it holds the lower eight bits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct PlayerInput {
@@ -44,6 +44,9 @@ pub struct PlayerInput {
     pub aim: [i16; 2],
     /// Buttons.
     pub buttons: u16,
+    /// What the player asks the game to do in this tick, in numbers of the game's own; 0 for nothing. With rollback the
+    /// peers turn it into [`Order`](crate::Order)s, all of them in the same tick.
+    pub order: u16,
 }
 
 impl PlayerInput {
@@ -83,6 +86,7 @@ impl PlayerInput {
                 | flag(input.jump_held, JUMP_HELD)
                 | flag(input.grip, GRIP)
                 | flag(input.crouch, CROUCH),
+            order: 0,
         }
     }
 

@@ -2,6 +2,8 @@ use clamber_climber::ClimberError;
 use clamber_colossus::ColossusError;
 use thiserror::Error;
 
+use crate::arena::KindId;
+
 /// Why an arena refuses something. It is unchanged then, if not said otherwise.
 #[derive(Debug, Error)]
 #[non_exhaustive]
@@ -65,8 +67,8 @@ pub enum ArenaError {
     /// A state is of another arena.
     #[error("this state is of another arena: {0}")]
     OtherArena(&'static str),
-    /// What was read is not a saved arena, or it is damaged.
-    #[error("this is not a saved arena, or it is damaged: {0}")]
+    /// What was read is not a saved arena, or orders that were written, or it is damaged.
+    #[error("this is not what was saved, or it is damaged: {0}")]
     Damaged(String),
     /// The arena was saved by another version.
     #[error(
@@ -78,15 +80,36 @@ pub enum ArenaError {
         /// The version that can be read.
         expected: u32,
     },
-    /// The arena was saved with other creatures or configurations.
+    /// The arena was saved with another configuration.
     #[error(
-        "this arena was saved with other creatures, brains, fighters or configurations (hash {found:016x}, and here it is {expected:016x}): load the files that it was saved with, and add the same creatures and fighters in the same order"
+        "this arena was saved with another `ArenaConfig` (hash {found:016x}, and here it is {expected:016x}): make the arena with the one that it was saved with"
     )]
-    Assets {
+    Config {
         /// The hash found.
         found: u64,
         /// The hash of this arena.
         expected: u64,
+    },
+    /// A creature is of a kind that the arena does not know.
+    #[error(
+        "this arena does not know a kind of creature (hash {0:016x}): load its files, unchanged, and give the kind to `Arena::add_kind`", kind.0
+    )]
+    Kind {
+        /// The kind.
+        kind: KindId,
+    },
+    /// Somebody joins an arena that was stepped already.
+    #[error(
+        "this arena was stepped already: let them join by an order, `Order::AddCreature` or `Order::AddFighter`"
+    )]
+    Begun,
+    /// An order is none that can be followed.
+    #[error("order {index} cannot be followed: {reason}")]
+    Order {
+        /// Its index in the list.
+        index: usize,
+        /// What is wrong with it.
+        reason: String,
     },
     /// A climber refuses its configuration, its state or its input.
     #[error(transparent)]

@@ -13,8 +13,8 @@ mod testing;
 
 pub use actions::PlayerInput;
 pub use arena::{
-    Aimed, Arena, ArenaConfig, ArenaEvent, ArenaState, CreatureId, SwordLight, Weapon,
-    creature_obstacle, fighter_obstacle,
+    Aimed, Arena, ArenaConfig, ArenaEvent, ArenaPart, ArenaState, CreatureId, KindId, Order,
+    SavedCreature, SavedFighter, SwordLight, Weapon, creature_obstacle, fighter_obstacle,
 };
 pub use error::ArenaError;
 pub use fighter::{
@@ -22,5 +22,6 @@ pub use fighter::{
     StoneConfig, SwordConfig, Target,
 };
 pub use projectile::{
-    Flight, Projectile, ProjectileId, ProjectileKind, ProjectileMotion, ProjectilePlace,
+    Flight, Projectile, ProjectileBody, ProjectileId, ProjectileKind, ProjectileMotion,
+    ProjectilePlace,
 };

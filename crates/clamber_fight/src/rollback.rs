@@ -6,7 +6,8 @@
 //!
 //! ```no_run
 //! use clamber_fight::rollback::{ArenaSession, Rollback};
-//! use clamber_fight::{Arena, PlayerInput};
+//! use clamber_climber::StepRules;
+//! use clamber_fight::{Arena, Order, PlayerInput};
 //! use clamber_world::{HalfSpace, Obstacle, ObstacleId};
 //! use ggrs::{DesyncDetection, GgrsError, PlayerType, SessionBuilder, UdpNonBlockingSocket};
 //!
@@ -26,8 +27,9 @@
 //!     if session.current_state() == ggrs::SessionState::Running {
 //!         session.add_local_input(0, input)?;
 //!         match session.advance_frame() {
-//!             Ok(requests) => rollback.handle(&mut arena, requests, |arena, inputs| {
-//!                 arena.step(inputs, &terrain).map(drop)
+//!             Ok(requests) => rollback.handle(&mut arena, requests, |arena, inputs, asked| {
+//!                 let orders = orders_of(arena, asked); // the game's own: see below
+//!                 arena.step_with(inputs, &orders, &terrain, &StepRules::default()).map(drop)
 //!             })?,
 //!             Err(GgrsError::PredictionThreshold) => {} // the other one is too far behind: wait
 //!             Err(error) => return Err(error.into()),
@@ -39,7 +41,29 @@
 //!     # return Ok(());
 //! }
 //! # }
+//!
+//! /// Fruit that heals, which a player eats by an order of its own; and lava, which hurts who stands in it.
+//! fn orders_of(arena: &Arena, asked: &[u16]) -> Vec<Order> {
+//!     const EATS: u16 = 1;
+//!     let mut orders = Vec::new();
+//!     for (fighter, asked) in arena.fighters().iter().zip(asked) {
+//!         let (fighter, place) = (fighter.id(), fighter.climber().state().position);
+//!         if *asked == EATS {
+//!             orders.push(Order::Heal { fighter, hit_points: 0.2, stamina: 0.5 });
+//!         }
+//!         if place.y < -2.0 {
+//!             orders.push(Order::Hurt { fighter, damage: 0.01 });
+//!         }
+//!     }
+//!     orders
+//! }
 //! ```
+//!
+//! [`Order`](crate::Order)s are not sent by ggrs: each peer makes them anew from what all of them know, the arena and the
+//! inputs, of which [`PlayerInput::order`](crate::PlayerInput) is one. ggrs does not let players join a session. For a
+//! late joiner all end theirs at a confirmed tick, one sends the others [`Arena::to_bytes`](crate::Arena), the newcomer
+//! joins by [`Order::AddFighter`](crate::Order) in the first step, and all begin a new session: the example `duel` does
+//! it.
 
 use std::collections::BTreeMap;
 use std::fmt::Debug;
@@ -49,7 +73,7 @@ use std::marker::PhantomData;
 use clamber_climber::ClimberInput;
 /// The version of ggrs that this module uses.
 pub use ggrs;
-use ggrs::{Config, Frame, GgrsRequest, InputStatus, PredictRepeatLast};
+use ggrs::{Config, Frame, GgrsRequest, InputPredictor, InputStatus};
 
 use crate::actions::PlayerInput;
 use crate::arena::{Arena, ArenaEvent, ArenaState};
@@ -62,9 +86,22 @@ pub struct ArenaSession<A>(PhantomData<A>);
 
 impl<A: Clone + PartialEq + Eq + Hash + Debug + 'static> Config for ArenaSession<A> {
     type Input = PlayerInput;
-    type InputPredictor = PredictRepeatLast;
+    type InputPredictor = PredictPlayer;
     type State = ArenaState;
     type Address = A;
+}
+
+/// Guesses inputs that have not arrived: the player goes on with what it did last, and orders nothing.
+#[derive(Debug)]
+pub struct PredictPlayer;
+
+impl InputPredictor<PlayerInput> for PredictPlayer {
+    fn predict(previous: PlayerInput) -> PlayerInput {
+        PlayerInput {
+            order: 0,
+            ..previous
+        }
+    }
 }
 
 /// Does what ggrs asks for, and keeps events until they are certain.
@@ -85,8 +122,12 @@ impl Rollback {
         }
     }
 
-    /// Does what a session asks for, in order: saves, restores, and steps by `step`, which gets one input for each
-    /// player. All states are saved with their [`Arena::fingerprint`] as checksum. A player who has left does nothing.
+    /// Does what a session asks for, in order: saves, restores, and steps by `step`, which gets of each player, by its
+    /// number in the session, the input and the [`PlayerInput::order`]. All states are saved with their
+    /// [`Arena::fingerprint`] as checksum. A player who has left does nothing, and orders nothing.
+    ///
+    /// What `step` does depends on nothing but the arena, these inputs and orders, and terrain that is the same on all
+    /// peers: it is called again for the same tick when a guess was wrong.
     ///
     /// # Errors
     /// Those of `step`, and [`ArenaError::OtherArena`] if a state is asked for that was not saved.
@@ -94,7 +135,7 @@ impl Rollback {
         &mut self,
         arena: &mut Arena,
         requests: Vec<GgrsRequest<ArenaSession<A>>>,
-        mut step: impl FnMut(&mut Arena, &[ClimberInput]) -> Result<(), ArenaError>,
+        mut step: impl FnMut(&mut Arena, &[ClimberInput], &[u16]) -> Result<(), ArenaError>,
     ) -> Result<(), ArenaError> {
         for request in requests {
             match request {
@@ -114,8 +155,13 @@ impl Rollback {
                         InputStatus::Disconnected => ClimberInput::IDLE,
                         InputStatus::Confirmed | InputStatus::Predicted => input.to_input(),
                     };
+                    let order = |(input, status): &(PlayerInput, InputStatus)| match status {
+                        InputStatus::Disconnected => 0,
+                        InputStatus::Confirmed | InputStatus::Predicted => input.order,
+                    };
+                    let orders: Vec<u16> = inputs.iter().map(order).collect();
                     let inputs: Vec<ClimberInput> = inputs.iter().map(input).collect();
-                    step(arena, &inputs)?;
+                    step(arena, &inputs, &orders)?;
                     if !arena.events().is_empty() {
                         self.events.insert(arena.tick(), arena.events().to_vec());
                     }

@@ -56,7 +56,7 @@ pub enum RecordError {
         /// Matrices of the palette.
         palette: usize,
     },
-    /// There is not one input for each fighter of the arena.
+    /// There is not one input for each fighter that was in the arena before the step.
     #[error("{found} inputs were given for {fighters} fighters: pass those of the last step")]
     Inputs {
         /// Fighters of the arena.
@@ -64,15 +64,15 @@ pub enum RecordError {
         /// Inputs given.
         found: usize,
     },
-    /// The arena is not the one of the recording, by the hash of its assets.
+    /// The arena is not the one of the recording, by the hash of its configuration.
     #[error(
-        "this is another arena than the recorded one: its creatures, fighters or configurations differ (assets {found:016x}, \
-         recorded {recorded:016x}); make it from the same files with the same settings"
+        "this is another arena than the recorded one: its `ArenaConfig` differs (hash {found:016x}, recorded \
+         {recorded:016x}); make it with the same one"
     )]
     OtherArena {
-        /// Hash of the assets of the recorded arena.
+        /// Hash of the configuration of the recorded arena.
         recorded: u64,
-        /// Hash of the assets of this arena.
+        /// Hash of the configuration of this arena.
         found: u64,
     },
     /// The names of an arena's creatures and fighters are not one each, or two have the same.

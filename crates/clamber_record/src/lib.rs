@@ -21,8 +21,7 @@ mod writing;
 
 pub use any::AnyRecording;
 pub use arena::{
-    ArenaDifference, ArenaInfo, ArenaPart, ArenaRecorder, ArenaRecording, ArenaReplay,
-    RecordedArenaTick,
+    ArenaDifference, ArenaInfo, ArenaRecorder, ArenaRecording, ArenaReplay, RecordedArenaTick,
 };
 pub use clamber_surface::surface::{creature_fingerprint, palette_fingerprint};
 pub use error::RecordError;

@@ -270,6 +270,15 @@ pub(crate) struct ArenaTick {
     /// Fingerprints of the creatures, of the fighters, and of the rest.
     #[prost(uint64, repeated, tag = "4")]
     pub(crate) parts: Vec<u64>,
+    /// Numbers of the creatures.
+    #[prost(uint32, repeated, tag = "5")]
+    pub(crate) creatures: Vec<u32>,
+    /// Numbers of the fighters.
+    #[prost(uint32, repeated, tag = "6")]
+    pub(crate) fighters: Vec<u32>,
+    /// The orders of the step, as the arena writes them; empty without any.
+    #[prost(bytes = "bytes", tag = "7")]
+    pub(crate) orders: prost::bytes::Bytes,
 }
 
 /// A saved arena.

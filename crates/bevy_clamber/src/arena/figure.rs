@@ -2,7 +2,7 @@ use bevy_ecs::prelude::*;
 use bevy_time::Time;
 use bevy_transform::components::Transform;
 use clamber_body::BodyFrame;
-use clamber_fight::{CreatureId, creature_obstacle};
+use clamber_fight::creature_obstacle;
 use clamber_world::{Obstacle, ObstacleId};
 
 use super::component::ArenaFighter;
@@ -28,8 +28,8 @@ pub(super) fn pose(
         let figure = figure.bypass_change_detection();
         let look_at = figure.look_at.map(|at| at.as_dvec3() + origin.0);
         let posed = terrain.with(|terrain| {
-            let creatures = (0..).map(CreatureId).zip(fight.creatures());
-            let creatures = creatures
+            let creatures = fight
+                .creatures()
                 .map(|(id, creature)| (creature_obstacle(id), creature.surface() as &dyn Obstacle));
             let all: Vec<(ObstacleId, &dyn Obstacle)> =
                 terrain.iter().copied().chain(creatures).collect();

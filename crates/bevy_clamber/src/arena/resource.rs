@@ -1,7 +1,7 @@
 use std::ops::Deref;
 
 use bevy_ecs::prelude::*;
-use clamber_fight::{Arena, ArenaEvent};
+use clamber_fight::{Arena, ArenaEvent, Order};
 
 /// The fight: an [`Arena`] that [`ArenaPlugin`](super::ArenaPlugin) steps once a tick. Make the arena with its
 /// creatures and fighters, and insert it as a resource.
@@ -42,18 +42,32 @@ use clamber_fight::{Arena, ArenaEvent};
 /// # let _ = spawn;
 /// ```
 ///
-/// To save, load and roll back, use the arena itself: [`FightArena::arena_mut`]. Do it before
+/// What else the game does to it goes by [`FightArena::order`]. To save, load and roll back, use the arena itself: [`FightArena::arena_mut`]. Do it before
 /// [`ClamberSystems::Climb`](crate::ClamberSystems::Climb): entities show it in the same tick then, otherwise in the
 /// next.
 #[derive(Resource, Clone, Debug)]
 pub struct FightArena {
     arena: Arena,
+    orders: Vec<Order>,
 }
 
 impl FightArena {
     /// A fight in this arena.
     pub fn new(arena: Arena) -> Self {
-        Self { arena }
+        Self {
+            arena,
+            orders: Vec::new(),
+        }
+    }
+
+    /// Gives an order: it is followed at the beginning of the next tick, after those that were given before it. If one of
+    /// a tick's orders cannot be followed, the arena stands still for that tick, and a warning tells why.
+    pub fn order(&mut self, order: Order) {
+        self.orders.push(order);
+    }
+
+    pub(super) fn take(&mut self) -> (&mut Arena, Vec<Order>) {
+        (&mut self.arena, std::mem::take(&mut self.orders))
     }
 
     /// The arena, to restore a state or to step it otherwise than by the plugin.

@@ -1,6 +1,7 @@
 use bevy_ecs::prelude::*;
 use bevy_time::Time;
-use clamber_climber::ClimberInput as Input;
+use clamber_climber::{ClimberInput as Input, StepRules};
+use clamber_fight::Fighter;
 
 use super::component::ArenaFighter;
 use super::resource::{FightArena, FightEvent};
@@ -11,7 +12,7 @@ use crate::climber::LatchedInput;
 /// Share by which the schedule's tick may differ from the arena's: a `Duration` rounds to nanoseconds.
 const ROUNDING: f64 = 1e-4;
 
-/// Steps the arena with the inputs of its fighters, and tells what happened.
+/// Steps the arena with the inputs of its fighters and the orders that were given, and tells what happened.
 pub(super) fn step(
     time: Res<Time>,
     fight: Option<ResMut<FightArena>>,
@@ -31,15 +32,17 @@ pub(super) fn step(
     let mut inputs = vec![Input::IDLE; fight.fighters().len()];
     for (fighter, mut input, mut latched) in &mut fighters {
         let taken = latched.take(input.bypass_change_detection());
-        if let Some(place) = inputs.get_mut(fighter.0.0 as usize) {
-            *place = Input {
+        let all = fight.fighters();
+        if let Ok(index) = all.binary_search_by_key(&fighter.0, Fighter::id) {
+            inputs[index] = Input {
                 blow: None,
                 ..taken
             };
         }
     }
+    let (arena, orders) = fight.take();
     let stepped = terrain.with(|terrain| {
-        let events = fight.arena_mut().step(&inputs, terrain)?;
+        let events = arena.step_with(&inputs, &orders, terrain, &StepRules::default())?;
         Ok::<_, clamber_fight::ArenaError>(events.to_vec())
     });
     match stepped {

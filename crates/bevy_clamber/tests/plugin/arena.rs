@@ -159,7 +159,11 @@ fn the_arena_of_an_app_is_bit_for_bit_that_without_bevy() {
         assert_eq!(fight.fingerprint(), alone.fingerprint(), "tick {tick}");
 
         // What is shown is what the arena has.
-        let creature = alone.creatures()[0].surface().world_from_model();
+        let creature = alone
+            .creature(CreatureId(0))
+            .unwrap()
+            .surface()
+            .world_from_model();
         let root = app.world().get::<Transform>(giant.root).unwrap();
         assert_eq!(root.translation, creature.translation.as_vec3());
         for (entity, fighter) in fighters.iter().zip(alone.fighters()) {
@@ -203,7 +207,7 @@ fn the_arena_of_an_app_is_bit_for_bit_that_without_bevy() {
     let joints = giant
         .joints
         .iter()
-        .zip(&alone.creatures()[0].pose().transforms);
+        .zip(&alone.creature(CreatureId(0)).unwrap().pose().transforms);
     for (joint, local) in joints {
         let shown = app.world().get::<Transform>(*joint).unwrap();
         assert_eq!(shown.translation, local.translation);
@@ -338,7 +342,7 @@ fn a_fighters_figure_holds_the_giant_as_it_is_shown() {
             continue;
         }
         held += 1;
-        let skin: &dyn Obstacle = fight.creatures()[0].surface();
+        let skin: &dyn Obstacle = fight.creature(CreatureId(0)).unwrap().surface();
         let figure = app.world().get::<ClimberFigure>(hero).unwrap();
         for hand in Extremity::ALL.into_iter().take(2) {
             let (body, figure) = (figure.body(), figure.figure());

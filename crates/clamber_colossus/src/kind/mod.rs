@@ -227,6 +227,11 @@ impl CreatureKind {
         })
     }
 
+    /// True if it walks: its brain's file names the clips of a gait.
+    pub fn can_walk(&self) -> bool {
+        self.gait.is_some()
+    }
+
     /// A 64-bit hash of all that the kind consists of, for comparing peers and saved states: skeleton, clips, skin,
     /// weak points, and the brain's file.
     pub fn fingerprint(&self) -> u64 {

@@ -1,10 +1,9 @@
 //! Where a stab would go.
 
-use clamber_surface::surface::SkinnedSurface;
 use clamber_world::{MaterialPoint, Obstacle, ObstacleId};
 use glam::DVec3;
 
-use super::{Arena, CreatureId, creature_index};
+use super::{Arena, CreatureId, Skins, creature_of};
 use crate::fighter::{Around, FighterId, Target};
 
 /// A point of a creature's skin.
@@ -31,19 +30,18 @@ impl Arena {
         terrain: &[(ObstacleId, &dyn Obstacle)],
     ) -> Option<Aimed> {
         let fighter = self.fighter(fighter)?;
-        let skins: Vec<&SkinnedSurface> = self.creatures.iter().map(|one| one.surface()).collect();
+        let skins = self.skins();
         let around = Around {
-            skins: &skins,
+            skins: Skins(&skins),
             terrain,
         };
         let Target::Skin(at) = fighter.stab_target(&around) else {
             return None;
         };
-        let index = creature_index(at.obstacle)?;
-        let creature = self.creatures.get(index)?;
-        let (weak_point, plate) = creature.struck_at(&at.material, at.point);
+        let id = creature_of(at.obstacle)?;
+        let (weak_point, plate) = self.creature(id)?.struck_at(&at.material, at.point);
         Some(Aimed {
-            creature: CreatureId(index as u32),
+            creature: id,
             at: at.material,
             place: at.point,
             weak_point,

@@ -119,7 +119,32 @@ pub enum ArenaEvent {
     Killed {
         /// The creature.
         creature: CreatureId,
-        /// Whose hit it was.
-        by: FighterId,
+        /// Whose hit it was; `None` if it was an order's.
+        by: Option<FighterId>,
+    },
+    /// A creature has joined.
+    CreatureJoined {
+        /// The creature.
+        creature: CreatureId,
+    },
+    /// A creature has left.
+    CreatureLeft {
+        /// The creature.
+        creature: CreatureId,
+    },
+    /// A fighter has joined.
+    FighterJoined {
+        /// The fighter.
+        fighter: FighterId,
+    },
+    /// A fighter has left.
+    FighterLeft {
+        /// The fighter.
+        fighter: FighterId,
+    },
+    /// An order was for somebody who is not there, and changed nothing.
+    Unheard {
+        /// Its index in the list of this step's orders.
+        order: usize,
     },
 }

@@ -1,4 +1,4 @@
-//! A saved arena as bytes: a version, the hash of the assets, the state, and a checksum.
+//! A saved arena as bytes: a version, the hash of the configuration, the state, and a checksum.
 
 use super::fingerprint::hash_of;
 use super::{Arena, ArenaState};
@@ -8,13 +8,13 @@ use crate::error::ArenaError;
 const MAGIC: [u8; 8] = *b"clamarna";
 
 /// Version of the format. Whatever changes what is saved raises it.
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 
-/// Length of what comes before the state: [`MAGIC`], version, hash of the assets, checksum.
+/// Length of what comes before the state: [`MAGIC`], version, hash of the configuration, checksum.
 const HEADER: usize = 8 + 4 + 8 + 8;
 
 impl Arena {
-    /// All that changes as bytes, for a file or to send it: a header with version, hash of the assets and a checksum,
+    /// All that changes as bytes, for a file or to send it: a header with version, hash of the configuration and a checksum,
     /// then the state in the format of the crate postcard.
     ///
     /// # Errors
@@ -25,7 +25,7 @@ impl Arena {
         let mut bytes = Vec::with_capacity(HEADER + state.len());
         bytes.extend(MAGIC);
         bytes.extend(VERSION.to_le_bytes());
-        bytes.extend(self.assets().to_le_bytes());
+        bytes.extend(self.config_hash().to_le_bytes());
         bytes.extend(checksum(&state).to_le_bytes());
         bytes.extend(state);
         Ok(bytes)
@@ -35,8 +35,7 @@ impl Arena {
     ///
     /// # Errors
     /// [`ArenaError::Damaged`] if these are other bytes, [`ArenaError::Version`] if they are of another version,
-    /// [`ArenaError::Assets`] if other creatures or configurations were in the arena then, and as [`Arena::restore`]. Nothing is
-    /// changed then.
+    /// and as [`Arena::restore`]. Nothing is changed then.
     pub fn restore_bytes(&mut self, bytes: &[u8]) -> Result<(), ArenaError> {
         self.restore(&self.read(bytes)?)
     }
@@ -52,14 +51,14 @@ impl Arena {
         if found != expected {
             return Err(ArenaError::Version { found, expected });
         }
-        let (assets, rest) = split::<8>(rest).ok_or_else(|| damaged("it is too short"))?;
+        let (config, rest) = split::<8>(rest).ok_or_else(|| damaged("it is too short"))?;
         let (sum, state) = split::<8>(rest).ok_or_else(|| damaged("it is too short"))?;
         if u64::from_le_bytes(sum) != checksum(state) {
             return Err(damaged("its checksum is another one"));
         }
-        let (found, expected) = (u64::from_le_bytes(assets), self.assets());
+        let (found, expected) = (u64::from_le_bytes(config), self.config_hash());
         if found != expected {
-            return Err(ArenaError::Assets { found, expected });
+            return Err(ArenaError::Config { found, expected });
         }
         let read = postcard::take_from_bytes::<ArenaState>(state);
         let (state, rest) = read.map_err(|error| ArenaError::Damaged(error.to_string()))?;

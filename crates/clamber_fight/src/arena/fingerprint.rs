@@ -9,42 +9,66 @@ use serde::ser::{
     SerializeTupleStruct, SerializeTupleVariant,
 };
 
-use super::{Arena, ArenaState};
-use crate::fighter::FighterState;
+use clamber_climber::ClimberState;
+use clamber_colossus::CreatureState;
+
+use super::member::mark;
+use super::{Arena, ArenaState, CreatureId};
+use crate::fighter::{FighterId, FighterState, fighter_mark};
+
+/// A part of an arena.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[non_exhaustive]
+pub enum ArenaPart {
+    /// A creature.
+    Creature(CreatureId),
+    /// A fighter.
+    Fighter(FighterId),
+    /// Projectiles, noises and counters.
+    Rest,
+}
 
 impl Arena {
     /// A 64-bit hash of every bit of what [`Arena::save`] would save, for comparing runs and peers; not for hash
     /// tables.
     pub fn fingerprint(&self) -> u64 {
         let mut hash = Hasher::default();
-        hash.take(&(self.tick, self.next_projectile));
-        for creature in &self.creatures {
-            hash.take(creature.state());
+        self.take_counters(&mut hash);
+        for one in &self.creatures {
+            take_creature(&mut hash, one.mark, one.creature.state());
         }
         for fighter in &self.fighters {
-            hash.take(fighter.climber().state());
-            add_fighter(&mut hash, fighter.rest());
+            let climber = fighter.climber().state();
+            take_fighter(&mut hash, fighter.mark(), climber, fighter.rest());
         }
         hash.take(&(&self.projectiles, &self.noises));
         hash.hash()
     }
 
-    /// Hashes of the parts, to tell which of them differ: of each creature, of each fighter, and of the rest.
-    pub fn part_fingerprints(&self) -> Vec<u64> {
-        let creatures = self.creatures.iter().map(|creature| {
+    /// Hashes of the parts, to tell which of them differ: of each creature, of each fighter, and of the rest, in this
+    /// order.
+    pub fn part_fingerprints(&self) -> Vec<(ArenaPart, u64)> {
+        let creatures = self.creatures.iter().map(|one| {
             let mut hash = Hasher::default();
-            hash.take(creature.state());
-            hash.hash()
+            take_creature(&mut hash, one.mark, one.creature.state());
+            (ArenaPart::Creature(one.id), hash.hash())
         });
         let fighters = self.fighters.iter().map(|fighter| {
             let mut hash = Hasher::default();
-            hash.take(fighter.climber().state());
-            add_fighter(&mut hash, fighter.rest());
-            hash.hash()
+            let climber = fighter.climber().state();
+            take_fighter(&mut hash, fighter.mark(), climber, fighter.rest());
+            (ArenaPart::Fighter(fighter.id()), hash.hash())
         });
-        let rest = (&self.projectiles, &self.noises);
-        let rest = hash_of(self.tick, &(self.next_projectile, rest));
+        let mut rest = Hasher::default();
+        self.take_counters(&mut rest);
+        rest.take(&(&self.projectiles, &self.noises));
+        let rest = (ArenaPart::Rest, rest.hash());
         creatures.chain(fighters).chain([rest]).collect()
+    }
+
+    fn take_counters(&self, hash: &mut Hasher) {
+        let next = (self.next_creature, self.next_fighter, self.next_projectile);
+        hash.take(&(self.tick, next));
     }
 }
 
@@ -52,17 +76,30 @@ impl ArenaState {
     /// [`Arena::fingerprint`] of the arena of which this was saved.
     pub fn fingerprint(&self) -> u64 {
         let mut hash = Hasher::default();
-        hash.take(&(self.tick, self.next_projectile));
-        for creature in &self.creatures {
-            hash.take(creature);
+        let next = (self.next_creature, self.next_fighter, self.next_projectile);
+        hash.take(&(self.tick, next));
+        for one in &self.creatures {
+            let mark = mark(one.id, one.kind, &one.config);
+            take_creature(&mut hash, mark, &one.state);
         }
-        for fighter in &self.fighters {
-            hash.take(&fighter.climber);
-            add_fighter(&mut hash, fighter);
+        for one in &self.fighters {
+            let mark = fighter_mark(one.id, &one.config);
+            take_fighter(&mut hash, mark, &one.state.climber, &one.state);
         }
         hash.take(&(&self.projectiles, &self.noises));
         hash.hash()
     }
+}
+
+fn take_creature(hash: &mut Hasher, mark: u64, state: &CreatureState) {
+    hash.word(mark);
+    hash.take(state);
+}
+
+fn take_fighter(hash: &mut Hasher, mark: u64, climber: &ClimberState, state: &FighterState) {
+    hash.word(mark);
+    hash.take(climber);
+    add_fighter(hash, state);
 }
 
 /// All of a fighter beside its climber.
@@ -78,13 +115,14 @@ fn add_fighter(hash: &mut Hasher, state: &FighterState) {
         arrows,
         random,
         has_begun,
+        spawn,
     } = state;
     hash.take(&(act, actions, blow, harm, hit_stop, dead, arrows, random));
-    hash.take(has_begun);
+    hash.take(&(has_begun, spawn));
 }
 
 /// Hash of a value, as it is serialised.
-pub(super) fn hash_of(start: u64, value: &impl Serialize) -> u64 {
+pub(crate) fn hash_of(start: u64, value: &impl Serialize) -> u64 {
     let mut hash = Hasher::new(start);
     hash.take(value);
     hash.hash()

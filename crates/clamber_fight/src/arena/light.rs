@@ -47,7 +47,7 @@ impl Arena {
         let aim = aim.try_normalize()?;
         let origin = self.fighter(fighter)?.blade()?.tip;
         let sun = self.config.sun.try_normalize()?;
-        let creatures = self.creatures.iter().map(|one| {
+        let creatures = self.creatures().map(|(_, one)| {
             let obstacle: &dyn Obstacle = one.surface();
             obstacle
         });
@@ -89,8 +89,7 @@ impl Arena {
 
     /// The weak point nearest to a place among those that can be hurt now, and where it is.
     pub fn next_weak_point(&self, from: DVec3) -> Option<(CreatureId, usize, DVec3)> {
-        let creatures = (0..).map(CreatureId).zip(&self.creatures);
-        let open = creatures.flat_map(|(id, creature)| {
+        let open = self.creatures().flat_map(|(id, creature)| {
             let points = 0..creature.kind().weak_points().len();
             points.filter_map(move |index| {
                 let place = creature

@@ -1,36 +1,40 @@
 //! The arena: all that fights, stepped in one order.
 
 mod aimed;
-mod assets;
 mod config;
 mod event;
 mod file;
 mod fingerprint;
 mod light;
+mod member;
+mod order;
 mod outcome;
 mod state;
 mod step;
 
 use clamber_colossus::{Creature, CreatureConfig, CreatureKind};
+use clamber_surface::surface::SkinnedSurface;
 use clamber_world::{Obstacle, ObstacleId};
 use glam::DVec3;
-use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 pub use aimed::Aimed;
 pub use config::ArenaConfig;
 pub use event::{ArenaEvent, Weapon};
+pub use fingerprint::ArenaPart;
+pub(crate) use fingerprint::hash_of;
 pub use light::SwordLight;
+use member::Member;
+pub(crate) use member::Skins;
+pub use member::{CreatureId, KindId};
+pub use order::Order;
 pub(crate) use outcome::{Hit, Outcome};
-pub use state::ArenaState;
+pub use state::{ArenaState, SavedCreature, SavedFighter};
 
 use crate::error::ArenaError;
 use crate::fighter::{Fighter, FighterConfig, FighterId};
 use crate::projectile::{Projectile, ProjectileId, ProjectileMotion, ProjectilePlace, place_on};
-
-/// A creature of an arena, by its number: they are numbered in the order in which they are added.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-pub struct CreatureId(pub u32);
 
 /// Where the obstacle ids of creatures and of fighters begin. Terrain has smaller ones, such as the bits of an engine's
 /// entities.
@@ -47,10 +51,10 @@ pub const fn fighter_obstacle(fighter: FighterId) -> ObstacleId {
     ObstacleId(FIGHTERS + fighter.0 as u64)
 }
 
-/// The index of the creature with an obstacle id; `None` for terrain and fighters.
-pub(crate) fn creature_index(obstacle: ObstacleId) -> Option<usize> {
-    let index = obstacle.0.checked_sub(CREATURES)?;
-    (index < FIGHTERS - CREATURES).then_some(index as usize)
+/// The creature with an obstacle id; `None` for terrain and fighters.
+pub(crate) fn creature_of(obstacle: ObstacleId) -> Option<CreatureId> {
+    let number = obstacle.0.checked_sub(CREATURES)?;
+    Some(CreatureId(u32::try_from(number).ok()?))
 }
 
 /// All that fights: creatures, fighters, projectiles, and their random streams, as one value that is stepped by a list
@@ -61,16 +65,18 @@ pub(crate) fn creature_index(obstacle: ObstacleId) -> Option<usize> {
 #[derive(Clone, Debug)]
 pub struct Arena {
     config: ArenaConfig,
-    creatures: Vec<Creature>,
+    kinds: BTreeMap<KindId, Arc<CreatureKind>>,
+    /// By ascending number, as the fighters.
+    creatures: Vec<Member>,
+    next_creature: u32,
     fighters: Vec<Fighter>,
+    next_fighter: u32,
     /// By ascending number.
     projectiles: Vec<Projectile>,
     next_projectile: u64,
     noises: Vec<clamber_colossus::Noise>,
     tick: u64,
     events: Vec<ArenaEvent>,
-    /// Hash of all that does not change.
-    assets: u64,
     scratch: step::Scratch,
 }
 
@@ -82,10 +88,12 @@ impl Arena {
     pub fn new(config: ArenaConfig) -> Result<Self, ArenaError> {
         config.check()?;
         Ok(Self {
-            assets: assets::of_arena(&config),
             config,
+            kinds: BTreeMap::new(),
             creatures: Vec::new(),
+            next_creature: 0,
             fighters: Vec::new(),
+            next_fighter: 0,
             projectiles: Vec::new(),
             next_projectile: 0,
             noises: Vec::new(),
@@ -95,47 +103,93 @@ impl Arena {
         })
     }
 
-    /// Adds a creature. Do it before the first step, or in the same tick everywhere: states that were saved before are
-    /// of another arena.
+    /// Makes a kind of creature known, so that creatures of it can join ([`Order::AddCreature`]) and states with some
+    /// can be restored. Nothing else is changed: it can be done at any time, in any order.
     ///
     /// # Errors
-    /// [`ArenaError::Tick`] if its brain was made for another tick, and [`ArenaError::Creature`] as of [`Creature::new`].
+    /// [`ArenaError::Tick`] if its brain was made for another tick.
+    pub fn add_kind(&mut self, kind: Arc<CreatureKind>) -> Result<KindId, ArenaError> {
+        let (creature, arena) = (kind.brain().tick(), self.config.tick);
+        if creature != arena {
+            return Err(ArenaError::Tick { creature, arena });
+        }
+        let id = KindId(kind.fingerprint());
+        self.kinds.entry(id).or_insert(kind);
+        Ok(id)
+    }
+
+    /// A creature joins before the first step; later, it does so by [`Order::AddCreature`].
+    ///
+    /// # Errors
+    /// [`ArenaError::Begun`] after the first step, [`ArenaError::Tick`] if its brain was made for another tick, and
+    /// [`ArenaError::Creature`] as of [`Creature::new`].
     pub fn add_creature(
         &mut self,
         kind: Arc<CreatureKind>,
         config: CreatureConfig,
     ) -> Result<CreatureId, ArenaError> {
-        let (creature, arena) = (kind.brain().tick(), self.config.tick);
-        if creature != arena {
-            return Err(ArenaError::Tick { creature, arena });
-        }
-        let assets = assets::with_creature(self.assets, &kind, &config);
-        self.creatures.push(Creature::new(kind, config)?);
-        self.assets = assets;
-        Ok(CreatureId(self.creatures.len() as u32 - 1))
+        self.check_new()?;
+        let kind = self.add_kind(kind)?;
+        let member = self.new_member(CreatureId(self.next_creature), kind, config)?;
+        Ok(self.join_creature(member))
     }
 
-    /// Adds a fighter, at rest in the air; `position` is the centre of its climber's ball. It comes back there after
-    /// its death. Do it before the first step, or in the same tick everywhere: states that were saved before are of
-    /// another arena.
+    /// A fighter joins before the first step, at rest in the air; `position` is the centre of its climber's ball. It
+    /// comes back there after its death. After the first step it does so by [`Order::AddFighter`].
     ///
     /// # Errors
-    /// [`ArenaError::OutOfRange`] and [`ArenaError::Climber`] for a configuration outside its ranges, or a position that is not
-    /// finite.
+    /// [`ArenaError::Begun`] after the first step, [`ArenaError::OutOfRange`] and [`ArenaError::Climber`] for a
+    /// configuration outside its ranges, or a position that is not finite.
     pub fn add_fighter(
         &mut self,
         config: FighterConfig,
         position: DVec3,
     ) -> Result<FighterId, ArenaError> {
-        let id = FighterId(self.fighters.len() as u32);
-        let seed = self
-            .config
-            .seed
-            .wrapping_add(u64::from(id.0).wrapping_mul(0x9e37_79b9_7f4a_7c15));
-        let fighter = Fighter::new(id, config, position, seed)?;
-        self.assets = assets::with_fighter(self.assets, &config, position);
+        self.check_new()?;
+        let fighter = self.new_fighter(FighterId(self.next_fighter), config, position)?;
+        Ok(self.join_fighter(fighter))
+    }
+
+    fn check_new(&self) -> Result<(), ArenaError> {
+        if self.tick == 0 {
+            Ok(())
+        } else {
+            Err(ArenaError::Begun)
+        }
+    }
+
+    fn new_member(
+        &self,
+        id: CreatureId,
+        kind: KindId,
+        config: CreatureConfig,
+    ) -> Result<Member, ArenaError> {
+        let known = self.kinds.get(&kind).ok_or(ArenaError::Kind { kind })?;
+        Member::new(id, (kind, known), config)
+    }
+
+    fn new_fighter(
+        &self,
+        id: FighterId,
+        config: FighterConfig,
+        position: DVec3,
+    ) -> Result<Fighter, ArenaError> {
+        let number = u64::from(id.0).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        Fighter::new(id, config, position, self.config.seed.wrapping_add(number))
+    }
+
+    fn join_creature(&mut self, member: Member) -> CreatureId {
+        let id = member.id;
+        self.next_creature = id.0 + 1;
+        self.creatures.push(member);
+        id
+    }
+
+    fn join_fighter(&mut self, fighter: Fighter) -> FighterId {
+        let id = fighter.id();
+        self.next_fighter = id.0 + 1;
         self.fighters.push(fighter);
-        Ok(id)
+        id
     }
 
     /// The configuration.
@@ -148,29 +202,59 @@ impl Arena {
         self.tick
     }
 
-    /// The creatures, by number.
-    pub fn creatures(&self) -> &[Creature] {
-        &self.creatures
+    /// The kinds of creatures that it knows.
+    pub fn kinds(&self) -> impl ExactSizeIterator<Item = (KindId, &Arc<CreatureKind>)> {
+        self.kinds.iter().map(|(id, kind)| (*id, kind))
     }
 
-    /// A creature; `None` if there is no such creature.
+    /// The creatures, by ascending number.
+    pub fn creatures(&self) -> impl ExactSizeIterator<Item = (CreatureId, &Creature)> + Clone {
+        self.creatures.iter().map(|one| (one.id, &one.creature))
+    }
+
+    /// A creature; `None` if there is no such creature, or if it has left.
     pub fn creature(&self, id: CreatureId) -> Option<&Creature> {
-        self.creatures.get(id.0 as usize)
+        Some(&self.creatures.get(self.creature_index(id)?)?.creature)
     }
 
-    /// A creature, to set its own senses. What else is changed in it is not saved.
-    pub fn creature_mut(&mut self, id: CreatureId) -> Option<&mut Creature> {
-        self.creatures.get_mut(id.0 as usize)
+    /// The number that the next creature gets.
+    pub fn next_creature(&self) -> CreatureId {
+        CreatureId(self.next_creature)
     }
 
-    /// The fighters, by number.
+    /// The fighters, by ascending number.
     pub fn fighters(&self) -> &[Fighter] {
         &self.fighters
     }
 
-    /// A fighter; `None` if there is no such fighter.
+    /// A fighter; `None` if there is no such fighter, or if it has left.
     pub fn fighter(&self, id: FighterId) -> Option<&Fighter> {
-        self.fighters.get(id.0 as usize)
+        self.fighters.get(self.fighter_index(id)?)
+    }
+
+    /// The number that the next fighter gets.
+    pub fn next_fighter(&self) -> FighterId {
+        FighterId(self.next_fighter)
+    }
+
+    fn creature_index(&self, id: CreatureId) -> Option<usize> {
+        self.creatures.binary_search_by_key(&id, |one| one.id).ok()
+    }
+
+    fn creature_mut(&mut self, id: CreatureId) -> Option<&mut Creature> {
+        let index = self.creature_index(id)?;
+        Some(&mut self.creatures.get_mut(index)?.creature)
+    }
+
+    fn fighter_index(&self, id: FighterId) -> Option<usize> {
+        self.fighters.binary_search_by_key(&id, Fighter::id).ok()
+    }
+
+    fn skins(&self) -> Vec<(CreatureId, &SkinnedSurface)> {
+        let skins = self.creatures();
+        skins
+            .map(|(id, creature)| (id, creature.surface()))
+            .collect()
     }
 
     /// Arrows and stones, by ascending number.
@@ -202,8 +286,8 @@ impl Arena {
                 tip: *position,
                 direction: *direction,
             }),
-            ProjectileMotion::Stuck { at, direction } => match creature_index(at.obstacle) {
-                Some(index) => place_on(at, *direction, self.creatures.get(index)?.surface()),
+            ProjectileMotion::Stuck { at, direction } => match creature_of(at.obstacle) {
+                Some(creature) => place_on(at, *direction, self.creature(creature)?.surface()),
                 None => {
                     let (_, obstacle) = terrain.iter().find(|(id, _)| *id == at.obstacle)?;
                     place_on(at, *direction, *obstacle)
@@ -221,9 +305,9 @@ impl Arena {
         self.projectiles.get(found)
     }
 
-    /// Hash of all that does not change: the arena's configuration, its creatures' files and configurations, and those
-    /// of its fighters. Arenas that fight each other over a network have the same.
-    pub fn assets(&self) -> u64 {
-        self.assets
+    /// Hash of its configuration. Arenas that fight each other over a network have the same; whether they are alike in
+    /// all else, [`Arena::fingerprint`] tells.
+    pub fn config_hash(&self) -> u64 {
+        hash_of(0xcbf2_9ce4_8422_2325, &self.config)
     }
 }

@@ -2,7 +2,7 @@ use clamber_colossus::Noise;
 use clamber_world::MaterialPoint;
 use glam::DVec3;
 
-use super::{ArenaEvent, Weapon};
+use super::{ArenaEvent, CreatureId, Weapon};
 use crate::fighter::FighterId;
 use crate::projectile::{Projectile, ProjectileId};
 
@@ -23,7 +23,7 @@ pub(crate) struct Hit {
     pub(crate) by: FighterId,
     pub(crate) weapon: Weapon,
     pub(crate) projectile: Option<ProjectileId>,
-    pub(crate) creature: usize,
+    pub(crate) creature: CreatureId,
     pub(crate) at: MaterialPoint,
     pub(crate) place: DVec3,
     pub(crate) time: f64,

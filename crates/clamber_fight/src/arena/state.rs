@@ -1,22 +1,26 @@
-use clamber_colossus::{CreatureState, Noise};
+use clamber_colossus::{CreatureConfig, CreatureState, Noise};
 use serde::{Deserialize, Serialize};
 
-use super::Arena;
+use super::{Arena, CreatureId, KindId, Member};
 use crate::error::ArenaError;
-use crate::fighter::FighterState;
+use crate::fighter::{Fighter, FighterConfig, FighterId, FighterState};
 use crate::projectile::Projectile;
 
-/// All that changes in an arena: a plain value, without meshes, caches and configurations.
+/// All that changes in an arena: a plain value, without meshes and caches.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ArenaState {
-    /// [`Arena::assets`] of the arena that it is of.
-    pub assets: u64,
+    /// [`Arena::config_hash`] of the arena that it is of.
+    pub config: u64,
     /// Ticks so far.
     pub tick: u64,
-    /// The creatures, by number.
-    pub creatures: Vec<CreatureState>,
-    /// The fighters, by number.
-    pub fighters: Vec<FighterState>,
+    /// The creatures, by ascending number.
+    pub creatures: Vec<SavedCreature>,
+    /// The number that the next creature gets.
+    pub next_creature: u32,
+    /// The fighters, by ascending number.
+    pub fighters: Vec<SavedFighter>,
+    /// The number that the next fighter gets.
+    pub next_fighter: u32,
     /// Arrows and stones, by ascending number.
     pub projectiles: Vec<Projectile>,
     /// The number that the next projectile gets.
@@ -25,44 +29,124 @@ pub struct ArenaState {
     pub noises: Vec<Noise>,
 }
 
+/// A creature of a saved arena.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SavedCreature {
+    /// Its number.
+    pub id: CreatureId,
+    /// Its kind: the arena that restores it has to know it ([`Arena::add_kind`]).
+    pub kind: KindId,
+    /// Where it began, and how large it is.
+    pub config: CreatureConfig,
+    /// All that changes in it.
+    pub state: CreatureState,
+}
+
+/// A fighter of a saved arena.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SavedFighter {
+    /// Its number.
+    pub id: FighterId,
+    /// Its body and weapons.
+    pub config: FighterConfig,
+    /// All that changes in it.
+    pub state: FighterState,
+}
+
 impl Arena {
     /// All that changes, to be restored later.
     pub fn save(&self) -> ArenaState {
+        let creatures = self.creatures.iter().map(|one| SavedCreature {
+            id: one.id,
+            kind: one.kind,
+            config: *one.creature.config(),
+            state: one.creature.state().clone(),
+        });
+        let fighters = self.fighters.iter().map(|one| SavedFighter {
+            id: one.id(),
+            config: *one.config(),
+            state: one.state(),
+        });
         ArenaState {
-            assets: self.assets,
+            config: self.config_hash(),
             tick: self.tick,
-            creatures: self
-                .creatures
-                .iter()
-                .map(|one| one.state().clone())
-                .collect(),
-            fighters: self.fighters.iter().map(|one| one.state()).collect(),
+            creatures: creatures.collect(),
+            next_creature: self.next_creature,
+            fighters: fighters.collect(),
+            next_fighter: self.next_fighter,
             projectiles: self.projectiles.clone(),
             next_projectile: self.next_projectile,
             noises: self.noises.clone(),
         }
     }
 
-    /// Goes back to a saved state: all goes on with the same bits as it did then. Events of the last step are
-    /// forgotten.
+    /// Goes back to a saved state, of this arena or of another one with the same configuration: all goes on with the
+    /// same bits as it did then. Whoever was not there then is gone, and whoever was comes back, if the arena knows its
+    /// kind. Events of the last step are forgotten.
     ///
     /// # Errors
-    /// [`ArenaError::Assets`] if it is of another arena, and [`ArenaError::OtherArena`], [`ArenaError::Climber`] and
-    /// [`ArenaError::Creature`] if it was changed to what cannot be. Nothing is changed then.
+    /// [`ArenaError::Config`] if it is of an arena with another configuration, [`ArenaError::Kind`] if this one does not
+    /// know the kind of a creature, and [`ArenaError::OtherArena`], [`ArenaError::OutOfRange`], [`ArenaError::Climber`]
+    /// and [`ArenaError::Creature`] if the state was changed to what cannot be. Nothing is changed then.
     pub fn restore(&mut self, state: &ArenaState) -> Result<(), ArenaError> {
         self.check_state(state)?;
-        for (fighter, saved) in self.fighters.iter().zip(&state.fighters) {
-            fighter.check(saved)?;
-        }
-        self.swap_creatures(state.creatures.clone())?;
-        for (fighter, saved) in self.fighters.iter_mut().zip(&state.fighters) {
-            fighter.restore(saved)?;
+        let fighters = self.restored_fighters(&state.fighters)?;
+        self.restore_creatures(&state.creatures)?;
+        match fighters {
+            Some(fighters) => self.fighters = fighters,
+            None => {
+                for (fighter, saved) in self.fighters.iter_mut().zip(&state.fighters) {
+                    fighter.restore(&saved.state)?;
+                }
+            }
         }
         self.projectiles.clone_from(&state.projectiles);
         self.noises.clone_from(&state.noises);
+        self.next_creature = state.next_creature;
+        self.next_fighter = state.next_fighter;
         self.next_projectile = state.next_projectile;
         self.tick = state.tick;
         self.events.clear();
+        Ok(())
+    }
+
+    /// Fighters in their saved states; `None` if those that are there are the same ones, and can take these states.
+    fn restored_fighters(
+        &self,
+        saved: &[SavedFighter],
+    ) -> Result<Option<Vec<Fighter>>, ArenaError> {
+        let is_same = |(one, saved): (&Fighter, &SavedFighter)| {
+            one.id() == saved.id && *one.config() == saved.config
+        };
+        let pairs = || self.fighters.iter().zip(saved);
+        if self.fighters.len() == saved.len() && pairs().all(is_same) {
+            for (fighter, saved) in pairs() {
+                fighter.check(&saved.state)?;
+            }
+            return Ok(None);
+        }
+        let restored = saved.iter().map(|saved| {
+            let mut fighter = self.new_fighter(saved.id, saved.config, saved.state.spawn)?;
+            fighter.restore(&saved.state)?;
+            Ok(fighter)
+        });
+        restored.collect::<Result<_, ArenaError>>().map(Some)
+    }
+
+    /// Gives the creatures their saved states, or changes none of them.
+    fn restore_creatures(&mut self, saved: &[SavedCreature]) -> Result<(), ArenaError> {
+        let is_same = |(one, saved): (&Member, &SavedCreature)| {
+            (one.id, one.kind) == (saved.id, saved.kind) && *one.creature.config() == saved.config
+        };
+        if self.creatures.len() == saved.len() && self.creatures.iter().zip(saved).all(is_same) {
+            return self.swap_creatures(saved.iter().map(|one| one.state.clone()).collect());
+        }
+        let restored = saved.iter().map(|saved| {
+            let mut member = self.new_member(saved.id, saved.kind, saved.config)?;
+            member.creature.restore(saved.state.clone())?;
+            Ok(member)
+        });
+        self.creatures = restored.collect::<Result<_, ArenaError>>()?;
         Ok(())
     }
 
@@ -70,8 +154,8 @@ impl Arena {
     fn swap_creatures(&mut self, mut states: Vec<CreatureState>) -> Result<(), ArenaError> {
         let mut swapped = 0;
         let mut failed = None;
-        for (creature, state) in self.creatures.iter_mut().zip(&mut states) {
-            if let Err(error) = creature.swap_state(state) {
+        for (one, state) in self.creatures.iter_mut().zip(&mut states) {
+            if let Err(error) = one.creature.swap_state(state) {
                 failed = Some(error);
                 break;
             }
@@ -80,33 +164,33 @@ impl Arena {
         let Some(error) = failed else {
             return Ok(());
         };
-        for (creature, before) in self.creatures.iter_mut().zip(&mut states).take(swapped) {
-            creature.swap_state(before)?;
+        for (one, before) in self.creatures.iter_mut().zip(&mut states).take(swapped) {
+            one.creature.swap_state(before)?;
         }
         Err(error.into())
     }
 
     fn check_state(&self, state: &ArenaState) -> Result<(), ArenaError> {
-        let (found, expected) = (state.assets, self.assets);
+        let (found, expected) = (state.config, self.config_hash());
         if found != expected {
-            return Err(ArenaError::Assets { found, expected });
+            return Err(ArenaError::Config { found, expected });
         }
         let other = |reason| Err(ArenaError::OtherArena(reason));
-        if state.creatures.len() != self.creatures.len() {
-            return other("it has another number of creatures");
+        let creatures = state.creatures.iter().map(|one| one.id.0);
+        let fighters = state.fighters.iter().map(|one| one.id.0);
+        if !are_in_order(creatures, state.next_creature)
+            || !are_in_order(fighters, state.next_fighter)
+        {
+            return other("the numbers of its creatures or fighters are not in order");
         }
-        if state.fighters.len() != self.fighters.len() {
-            return other("it has another number of fighters");
-        }
-        if !state.fighters.iter().all(FighterState::is_finite) {
+        if !state.fighters.iter().all(|one| one.state.is_finite()) {
             return other("what a fighter does is out of range");
         }
         if !state.projectiles.is_sorted_by(|a, b| a.id < b.id) {
             return other("its projectiles are not in order");
         }
-        let fighters = self.fighters.len();
         for one in &state.projectiles {
-            if one.by.0 as usize >= fighters {
+            if one.by.0 >= state.next_fighter {
                 return other("a projectile was shot by nobody");
             }
             if one.id.0 >= state.next_projectile {
@@ -122,4 +206,9 @@ impl Arena {
         }
         Ok(())
     }
+}
+
+/// True if numbers ascend, and all of them have been given.
+fn are_in_order(numbers: impl Iterator<Item = u32> + Clone, next: u32) -> bool {
+    numbers.clone().is_sorted_by(|a, b| a < b) && numbers.last().is_none_or(|last| last < next)
 }

@@ -1,21 +1,24 @@
 //! One step of an arena, in the order in which it happens.
 
 use clamber_climber::{Blow, ClimberGroup, ClimberInput, ClimberMode, StepRules};
-use clamber_colossus::{Creature, Person, Riding, Surroundings, Wound};
+use clamber_colossus::{Person, Riding, Surroundings, Wound};
 use clamber_surface::surface::SkinnedSurface;
 use clamber_world::{Obstacle, ObstacleId};
 
 use super::{
-    Arena, ArenaEvent, CREATURES, CreatureId, Outcome, creature_obstacle, fighter_obstacle,
+    Arena, ArenaEvent, CREATURES, CreatureId, Member, Order, Outcome, Skins, creature_obstacle,
+    fighter_obstacle,
 };
 use crate::error::ArenaError;
-use crate::fighter::{Around, BodyFrame, Fighter, Room, Wielding};
+use crate::fighter::{Around, BodyFrame, Fighter, FighterId, Room, Wielding};
 use crate::projectile::{Air, Flown};
 
 /// Memory that is used again in each step.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Scratch {
     people: Vec<Person>,
+    /// Of those who were there at the beginning of the step.
+    inputs: Vec<(FighterId, ClimberInput)>,
     ids: Vec<ObstacleId>,
     group: ClimberGroup,
     outcome: Outcome,
@@ -26,7 +29,7 @@ pub(super) struct Scratch {
 const APART: f64 = 20.0;
 
 impl Arena {
-    /// Lets a tick pass. `inputs` has one input for each fighter, in their order. Fur can be gripped.
+    /// Lets a tick pass. `inputs` has one input for each fighter, by ascending number. Fur can be gripped.
     ///
     /// In this order: creatures sense what was around them at the end of the last tick, decide, move, and strike;
     /// fighters' climbers move among terrain, creatures and each other; weapons go on, then projectiles; what they hit
@@ -42,25 +45,37 @@ impl Arena {
         inputs: &[ClimberInput],
         terrain: &[(ObstacleId, &dyn Obstacle)],
     ) -> Result<&[ArenaEvent], ArenaError> {
-        self.step_with(inputs, terrain, &StepRules::default())
+        self.step_with(inputs, &[], terrain, &StepRules::default())
     }
 
-    /// [`Arena::step`] by a game's own rules for climbers: for contacts, and custom modes. Each fighter's climber has
+    /// [`Arena::step`] with orders of the game, which are followed first, and by a game's own rules for climbers: for
+    /// contacts, and custom modes. `inputs` are of those who were there before the orders. Each fighter's climber has
     /// [`fighter_obstacle`] as [`StepRules::id`], whatever the rules say.
     ///
     /// # Errors
-    /// As [`Arena::step`].
+    /// As [`Arena::step`], and [`ArenaError::Order`] for an order that cannot be followed. Nothing is changed then.
     pub fn step_with(
         &mut self,
         inputs: &[ClimberInput],
+        orders: &[Order],
         terrain: &[(ObstacleId, &dyn Obstacle)],
         rules: &StepRules<'_>,
     ) -> Result<&[ArenaEvent], ArenaError> {
         self.check(inputs, terrain)?;
+        let joining = self.check_orders(orders)?;
         self.tick = self.tick.wrapping_add(1);
         self.events.clear();
         let mut scratch = std::mem::take(&mut self.scratch);
-        let stepped = self.step_checked(inputs, terrain, rules, &mut scratch);
+        scratch.inputs.clear();
+        let given = self
+            .fighters
+            .iter()
+            .map(Fighter::id)
+            .zip(inputs.iter().copied());
+        scratch.inputs.extend(given);
+        let stepped = self
+            .follow(orders, joining, terrain)
+            .and_then(|()| self.step_checked(terrain, rules, &mut scratch));
         self.scratch = scratch;
         stepped?;
         Ok(&self.events)
@@ -100,14 +115,13 @@ impl Arena {
 
     fn step_checked(
         &mut self,
-        inputs: &[ClimberInput],
         terrain: &[(ObstacleId, &dyn Obstacle)],
         rules: &StepRules<'_>,
         scratch: &mut Scratch,
     ) -> Result<(), ArenaError> {
         self.step_creatures(terrain, &mut scratch.people)?;
         scratch.outcome.clear(self.next_projectile);
-        self.step_fighters(inputs, terrain, rules, scratch)?;
+        self.step_fighters(terrain, rules, scratch)?;
         self.step_projectiles(terrain, &mut scratch.outcome);
         self.next_projectile = scratch.outcome.next;
         self.projectiles.append(&mut scratch.outcome.shot);
@@ -126,16 +140,17 @@ impl Arena {
         let ground: Vec<&dyn Obstacle> = terrain.iter().map(|(_, obstacle)| *obstacle).collect();
         for index in 0..self.creatures.len() {
             let (before, rest) = self.creatures.split_at_mut(index);
-            let Some((creature, after)) = rest.split_first_mut() else {
+            let Some((member, after)) = rest.split_first_mut() else {
                 break;
             };
-            let index = CreatureId(index as u32);
-            let others = before.iter().chain(after.iter()).map(Creature::surface);
+            let (id, creature) = (member.id, &mut member.creature);
+            let others = before.iter().chain(after.iter());
+            let others = others.map(|other| other.creature.surface());
             let others: Vec<&dyn Obstacle> = others.map(|skin| skin as &dyn Obstacle).collect();
             people.clear();
             // The dead are of no interest.
             let living = self.fighters.iter().filter(|fighter| !fighter.is_dead());
-            people.extend(living.map(|fighter| person(fighter, creature_obstacle(index))));
+            people.extend(living.map(|fighter| person(fighter, creature_obstacle(id))));
             let around = Surroundings {
                 terrain: &ground,
                 creatures: &others,
@@ -145,7 +160,7 @@ impl Arena {
             let report = creature.step(&around)?;
             self.events
                 .extend(report.events.iter().map(|event| ArenaEvent::Creature {
-                    creature: index,
+                    creature: id,
                     event: event.clone(),
                 }));
         }
@@ -155,7 +170,6 @@ impl Arena {
 
     fn step_fighters(
         &mut self,
-        inputs: &[ClimberInput],
         terrain: &[(ObstacleId, &dyn Obstacle)],
         rules: &StepRules<'_>,
         scratch: &mut Scratch,
@@ -165,8 +179,8 @@ impl Arena {
             fighter.take_harm()?;
         }
         let mut obstacles: Vec<(ObstacleId, &dyn Obstacle)> = terrain.to_vec();
-        for (index, creature) in (0..).map(CreatureId).zip(&self.creatures) {
-            obstacles.push((creature_obstacle(index), creature.surface()));
+        for member in &self.creatures {
+            obstacles.push((creature_obstacle(member.id), member.creature.surface()));
         }
         // Those that have begun keep their places; of others the first in order do.
         for index in 0..self.fighters.len() {
@@ -190,10 +204,13 @@ impl Arena {
         let climbers = living.map(|fighter| (fighter_obstacle(fighter.id()), fighter.climber()));
         scratch.group.update(climbers, &obstacles, dt);
         let fixed = obstacles.len();
-        let skins: Vec<&SkinnedSurface> = self.creatures.iter().map(Creature::surface).collect();
-        for (index, player) in inputs.iter().enumerate() {
+        let skins = self.creatures.iter();
+        let skins = skins.map(|member| (member.id, member.creature.surface()));
+        let skins: Vec<(CreatureId, &SkinnedSurface)> = skins.collect();
+        for index in 0..self.fighters.len() {
             obstacles.truncate(fixed);
             let ours = &self.fighters[index];
+            let player = input_of(&scratch.inputs, ours.id());
             let id = fighter_obstacle(ours.id());
             let mut bodies = scratch.group.others(id).peekable();
             for other in self.fighters.iter() {
@@ -206,7 +223,7 @@ impl Arena {
             };
             let fighter = &mut self.fighters[index];
             let is_held = fighter.be_held(dt);
-            let (input, throws) = fighter.begin(player, is_held);
+            let (input, throws) = fighter.begin(&player, is_held);
             let before = BodyFrame::of(fighter.climber());
             fighter.step(&input, &obstacles, &rules, dt)?;
             let id = fighter.id();
@@ -231,9 +248,9 @@ impl Arena {
             if !fighter.is_dead() {
                 let wielding = Wielding {
                     before,
-                    input: &inputs[index],
+                    input: &player,
                     around: Around {
-                        skins: &skins,
+                        skins: Skins(&skins),
                         terrain,
                     },
                     dt,
@@ -248,20 +265,17 @@ impl Arena {
     }
 
     fn step_projectiles(&mut self, terrain: &[(ObstacleId, &dyn Obstacle)], outcome: &mut Outcome) {
-        let skins: Vec<&SkinnedSurface> = self.creatures.iter().map(Creature::surface).collect();
+        let skins = self.creatures.iter();
+        let skins = skins.map(|member| (member.id, member.creature.surface()));
+        let skins: Vec<(CreatureId, &SkinnedSurface)> = skins.collect();
         let air = Air {
-            skins: &skins,
+            skins: Skins(&skins),
             terrain,
             gravity: self.config.gravity,
             dt: self.config.tick,
         };
-        let fighters = &self.fighters;
-        self.projectiles.retain_mut(|projectile| {
-            let shooter = fighters.get(projectile.by.0 as usize);
-            shooter.is_some_and(|shooter| {
-                projectile.step(shooter.config(), &air, outcome) == Flown::There
-            })
-        });
+        self.projectiles
+            .retain_mut(|projectile| projectile.step(&air, outcome) == Flown::There);
         let stuck = self.projectiles.iter().filter(|one| one.is_stuck()).count();
         let too_many = stuck.saturating_sub(self.config.stuck_arrows as usize);
         let oldest = self.projectiles.iter_mut().filter(|one| one.is_stuck());
@@ -275,13 +289,14 @@ impl Arena {
     fn do_damage(&mut self, outcome: &mut Outcome) {
         outcome.hits.sort_by(|a, b| a.time.total_cmp(&b.time));
         for hit in &outcome.hits {
-            let Some(creature) = self.creatures.get_mut(hit.creature) else {
+            let id = hit.creature;
+            let Some(index) = self.creature_index(id) else {
                 continue;
             };
+            let creature = &mut self.creatures[index].creature;
             let was_alive = creature.health() > 0.0;
-            let id = CreatureId(hit.creature as u32);
             let (weak_point, plate) = creature.struck_at(&hit.at, hit.place);
-            let by = self.fighters.get_mut(hit.by.0 as usize);
+            let by = self.fighters.iter_mut().find(|one| one.id() == hit.by);
             let is_new = by.is_none_or(|by| by.hurts_anew(hit.weapon, id, [weak_point, plate]));
             let damage = creature.hurt(&Wound {
                 place: hit.place,
@@ -303,7 +318,7 @@ impl Arena {
             if was_alive && creature.health() <= 0.0 {
                 self.events.push(ArenaEvent::Killed {
                     creature: id,
-                    by: hit.by,
+                    by: Some(hit.by),
                 });
             }
         }
@@ -311,36 +326,35 @@ impl Arena {
 
     /// Blows reach their fighters with the next tick: of several the hardest, with the damage of all.
     fn deal_blows(&mut self) {
-        for (index, creature) in (0..).map(CreatureId).zip(&self.creatures) {
+        for Member { id, creature, .. } in &self.creatures {
             for blow in &creature.report().blows {
-                let fighter = usize::try_from(blow.person).ok();
-                let Some(fighter) = fighter.and_then(|one| self.fighters.get_mut(one)) else {
+                let person = u32::try_from(blow.person).map(FighterId);
+                let mut fighters = self.fighters.iter_mut();
+                let Some(fighter) = fighters.find(|one| Ok(one.id()) == person) else {
                     continue;
                 };
                 let (velocity, damage) = (blow.velocity, blow.damage.clamp(0.0, 1.0));
                 self.events.push(ArenaEvent::Struck {
-                    creature: index,
+                    creature: *id,
                     fighter: fighter.id(),
                     velocity,
                     damage,
                     place: blow.place,
                 });
-                let mut dealt = Blow {
+                fighter.take_blow(Blow {
                     velocity,
                     damage,
-                    by: Some(creature_obstacle(index)),
-                };
-                let state = fighter.rest_mut();
-                if let Some(other) = state.blow {
-                    if other.velocity.length_squared() >= velocity.length_squared() {
-                        (dealt.velocity, dealt.by) = (other.velocity, other.by);
-                    }
-                    dealt.damage = (dealt.damage + other.damage).min(1.0);
-                }
-                state.blow = Some(dealt);
+                    by: Some(creature_obstacle(*id)),
+                });
             }
         }
     }
+}
+
+/// The input of a fighter: none if it has just joined.
+fn input_of(inputs: &[(FighterId, ClimberInput)], fighter: FighterId) -> ClimberInput {
+    let found = inputs.binary_search_by_key(&fighter, |one| one.0);
+    found.map_or(ClimberInput::IDLE, |index| inputs[index].1)
 }
 
 /// A fighter as a creature senses it.

@@ -7,9 +7,7 @@ use glam::DVec3;
 use super::state::HARMED_PLATES;
 use super::{Act, Around, BodyFrame, Fighter, Room, Target, arrows};
 use crate::actions::{BOW, CUT, STAB, THROW};
-use crate::arena::{
-    ArenaEvent, CreatureId, Hit, Outcome, Weapon, creature_index, creature_obstacle,
-};
+use crate::arena::{ArenaEvent, CreatureId, Hit, Outcome, Weapon, creature_obstacle, creature_of};
 
 /// Walking speed with a drawn bow, as a share.
 const DRAWN_WALK: f64 = 0.5;
@@ -179,7 +177,7 @@ impl Fighter {
                 self.state.dead = Some(seconds);
                 if let Some(after) = self.config.respawn.filter(|after| seconds >= *after)
                     && looks(seconds - after, dt)
-                    && let Some(place) = self.free_place(room)
+                    && let Some(place) = self.free_place(self.state.spawn, room)
                 {
                     self.stand_up_again(place)?;
                     events.push(ArenaEvent::Rose { fighter });
@@ -195,7 +193,7 @@ impl Fighter {
             return Ok(());
         }
         // Terrain pushes out what is put into it a little; skin and people do not, if they are deep in each other.
-        let is_creature = |(id, _): &&(ObstacleId, &dyn Obstacle)| creature_index(*id).is_some();
+        let is_creature = |(id, _): &&(ObstacleId, &dyn Obstacle)| creature_of(*id).is_some();
         let creatures = room.obstacles.iter().filter(is_creature);
         let creatures: Vec<(ObstacleId, &dyn Obstacle)> = creatures.copied().collect();
         let living = Room {
@@ -203,15 +201,14 @@ impl Fighter {
             bodies: room.bodies,
         };
         if !living.is_free(&self.climber.body())
-            && let Some(place) = self.free_place(room)
+            && let Some(place) = self.free_place(self.climber.state().position, room)
         {
-            let fresh = Climber::new(self.config.climber, place)?;
-            self.climber.restore(*fresh.state())?;
+            self.put(place)?;
         }
         Ok(())
     }
 
-    fn stand_up_again(&mut self, place: DVec3) -> Result<(), ClimberError> {
+    pub(super) fn stand_up_again(&mut self, place: DVec3) -> Result<(), ClimberError> {
         let fresh = Climber::new(self.config.climber, place)?;
         self.climber.restore(*fresh.state())?;
         self.state.dead = None;
@@ -324,7 +321,7 @@ impl Fighter {
             if is_hidden {
                 // The cut may still get there from another side.
                 let part = found.hit.hit.part.0;
-                struck.retain(|one| *one != (creature_of(found.creature), part));
+                struck.retain(|one| *one != (creature_obstacle(found.creature), part));
             }
             !is_hidden
         });
@@ -427,7 +424,7 @@ impl Fighter {
             };
         }
         if let Target::Skin(at) = &target
-            && let Some(creature) = creature_index(at.obstacle)
+            && let Some(creature) = creature_of(at.obstacle)
         {
             self.state.hit_stop = self.config.hit_stop;
             out.hits.push(Hit {
@@ -473,13 +470,16 @@ impl Fighter {
             time: hit.time,
             damage: sword.stab_damage * charge,
         });
-        let obstacle = creature_of(creature);
-        let surface = tick.around.skins[creature];
-        let at = Attachment::new(obstacle, surface, &contact, contact.point);
+        let obstacle = creature_obstacle(creature);
         let into = frames[1].direction(DVec3::NEG_Y);
+        let skin = tick.around.skins.get(creature);
+        let target = skin.map_or(Target::Air, |skin| {
+            let at = Attachment::new(obstacle, skin, &contact, contact.point);
+            Target::Skin(at.moved_to(at.point + into))
+        });
         Act::PullOut {
             seconds: sword.pull_out_fallen,
-            target: Target::Skin(at.moved_to(at.point + into)),
+            target,
         }
     }
 
@@ -500,19 +500,15 @@ impl Fighter {
     }
 }
 
-fn creature_of(index: usize) -> ObstacleId {
-    creature_obstacle(CreatureId(index as u32))
-}
-
 /// Follows the skin over the tick; the blade is in the air if the skin is gone.
 fn follow(target: Target, tick: &Wielding<'_>) -> Target {
     let Target::Skin(mut at) = target else {
         return target;
     };
-    let skin = creature_index(at.obstacle).and_then(|index| tick.around.skins.get(index));
+    let skin = creature_of(at.obstacle).and_then(|creature| tick.around.skins.get(creature));
     // More than rounding, less than anybody sees.
     const SLACK: f64 = 0.01;
-    match skin.and_then(|skin| at.follow(*skin, tick.dt, SLACK)) {
+    match skin.and_then(|skin| at.follow(skin, tick.dt, SLACK)) {
         Some(_) => Target::Skin(at),
         None => Target::Air,
     }

@@ -1,13 +1,14 @@
 use clamber_surface::geometry::WorldCapsule;
-use clamber_surface::surface::{SkinnedSurface, TargetMotion};
+use clamber_surface::surface::TargetMotion;
 use clamber_world::{Obstacle, ObstacleId};
 use glam::DVec3;
+
+use crate::arena::{CreatureId, Skins};
 
 /// What may come between a fighter and where its weapons go: they begin at the body, and go through nothing.
 #[derive(Clone, Copy)]
 pub(crate) struct Around<'a> {
-    /// Of all creatures, by number.
-    pub(crate) skins: &'a [&'a SkinnedSurface],
+    pub(crate) skins: Skins<'a>,
     pub(crate) terrain: &'a [(ObstacleId, &'a dyn Obstacle)],
 }
 
@@ -20,7 +21,7 @@ const SHORT: f64 = 0.99;
 impl Around<'_> {
     /// True if terrain, or the skin of another creature than that one, is on one of the straight lines from each of these
     /// places to the next.
-    pub(crate) fn hides(&self, places: &[DVec3], creature: Option<usize>) -> bool {
+    pub(crate) fn hides(&self, places: &[DVec3], creature: Option<CreatureId>) -> bool {
         let mut lines = places.windows(2).map(|pair| {
             let way = pair[1] - pair[0];
             (pair[0], way, way.length() - SLACK)
@@ -29,10 +30,9 @@ impl Around<'_> {
             let meets = |obstacle: &dyn Obstacle| {
                 length > 0.0 && obstacle.cast_ray(from, way, length).is_some()
             };
-            let skins = self.skins.iter().enumerate();
-            let mut others = skins.filter(|(index, _)| Some(*index) != creature);
+            let mut others = self.skins.iter().filter(|(id, _)| Some(*id) != creature);
             self.terrain.iter().any(|(_, obstacle)| meets(*obstacle))
-                || others.any(|(_, skin)| meets(*skin))
+                || others.any(|(_, skin)| meets(skin))
         })
     }
 
@@ -45,7 +45,7 @@ impl Around<'_> {
             Some(hit.time)
         };
         let terrain = self.terrain.iter().filter_map(|(_, one)| time(*one));
-        let times = terrain.chain(self.skins.iter().filter_map(|skin| time(*skin)));
+        let times = terrain.chain(self.skins.iter().filter_map(|(_, skin)| time(skin)));
         let first = times.min_by(f64::total_cmp);
         first.map_or(to, |time| from + way * (SHORT * time))
     }

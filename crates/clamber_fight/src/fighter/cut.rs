@@ -5,7 +5,7 @@ use clamber_surface::surface::{CastOptions, SkinnedSurface, WorldSweepHit};
 use clamber_world::ObstacleId;
 
 use super::{Blade, BodyFrame, SwordConfig};
-use crate::arena::{CreatureId, creature_obstacle};
+use crate::arena::{CreatureId, Skins, creature_obstacle};
 
 /// How far the chords on which something is looked for may be from the arc, metres.
 const ARC: f64 = 0.004;
@@ -19,7 +19,7 @@ const MOST_CHORDS: f64 = 1e4;
 /// Something that a blade struck.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BladeHit {
-    pub(crate) creature: usize,
+    pub(crate) creature: CreatureId,
     pub(crate) hit: WorldSweepHit,
     /// Share of the tick.
     pub(crate) time: f64,
@@ -45,7 +45,7 @@ impl SwordConfig {
         [from, to]: [f64; 2],
         frames: [BodyFrame; 2],
         dt: f64,
-        skins: &[&SkinnedSurface],
+        skins: Skins<'_>,
         struck: &mut Vec<(ObstacleId, u32)>,
         hits: &mut Vec<BladeHit>,
     ) {
@@ -68,12 +68,12 @@ impl SwordConfig {
             radius: self.radius,
         };
         for chord in chords([begin, end], parts) {
-            for (index, skin) in skins.iter().enumerate() {
-                if !sweeps.is_near(skin, index, chord, chord.map(blade)) {
+            for (creature, skin) in skins.iter() {
+                if !sweeps.is_near(skin, creature, chord, chord.map(blade)) {
                     continue;
                 }
                 for fine in chords(chord, FINER) {
-                    sweeps.strike(skin, index, fine, fine.map(blade));
+                    sweeps.strike(skin, creature, fine, fine.map(blade));
                 }
             }
         }
@@ -100,20 +100,27 @@ impl Sweeps<'_> {
     fn is_near(
         &self,
         skin: &SkinnedSurface,
-        index: usize,
+        creature: CreatureId,
         span: [f64; 2],
         blades: [Blade; 2],
     ) -> bool {
-        self.first(skin, index, span, blades, ARC).is_some()
+        self.first(skin, creature, span, blades, ARC).is_some()
     }
 
     /// Strikes what is met on a chord.
-    fn strike(&mut self, skin: &SkinnedSurface, index: usize, span: [f64; 2], blades: [Blade; 2]) {
+    fn strike(
+        &mut self,
+        skin: &SkinnedSurface,
+        creature: CreatureId,
+        span: [f64; 2],
+        blades: [Blade; 2],
+    ) {
         let thicker = ARC / f64::from(FINER * FINER);
-        while let Some(hit) = self.first(skin, index, span, blades, thicker) {
-            self.struck.push((obstacle(index), hit.hit.part.0));
+        while let Some(hit) = self.first(skin, creature, span, blades, thicker) {
+            self.struck
+                .push((creature_obstacle(creature), hit.hit.part.0));
             self.hits.push(BladeHit {
-                creature: index,
+                creature,
                 hit,
                 time: span[0] + (span[1] - span[0]) * hit.time,
             });
@@ -123,7 +130,7 @@ impl Sweeps<'_> {
     fn first(
         &self,
         skin: &SkinnedSurface,
-        index: usize,
+        creature: CreatureId,
         [from, to]: [f64; 2],
         [before, after]: [Blade; 2],
         thicker: f64,
@@ -136,15 +143,14 @@ impl Sweeps<'_> {
         let options = CastOptions::MOVING
             .during(from, to)
             .with_tolerance(capsule.sweep_tolerance());
-        let mut is_new =
-            |hit: &WorldSweepHit| !self.struck.contains(&(obstacle(index), hit.hit.part.0));
+        let mut is_new = |hit: &WorldSweepHit| {
+            !self
+                .struck
+                .contains(&(creature_obstacle(creature), hit.hit.part.0))
+        };
         let space = skin.in_world();
         space.cast_capsule_where(&capsule, ways, &options, &mut is_new)
     }
-}
-
-fn obstacle(index: usize) -> ObstacleId {
-    creature_obstacle(CreatureId(index as u32))
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@ mod blade;
 mod config;
 mod cut;
 mod frame;
+mod ordered;
 mod room;
 mod shoot;
 mod stab;
@@ -24,9 +25,10 @@ pub use frame::BodyFrame;
 pub(crate) use room::Room;
 pub use state::{Act, FighterState, Target};
 
+use crate::arena::hash_of;
 use crate::error::ArenaError;
 
-/// A fighter of an arena, by its number: they are numbered in the order in which they are added.
+/// A fighter of an arena, by its number: they are numbered in the order in which they join, and no number is used twice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct FighterId(pub u32);
 
@@ -35,8 +37,8 @@ pub struct FighterId(pub u32);
 pub struct Fighter {
     id: FighterId,
     config: FighterConfig,
-    /// Where it begins.
-    spawn: DVec3,
+    /// Hash of what does not change of it.
+    mark: u64,
     climber: Climber,
     /// All that changes beside the climber; its `climber` is out of date between ticks.
     state: FighterState,
@@ -63,11 +65,12 @@ impl Fighter {
             arrows: arrows(&config),
             random: seed,
             has_begun: false,
+            spawn,
         };
         Ok(Self {
             id,
+            mark: fighter_mark(id, &config),
             config,
-            spawn,
             climber,
             state,
             report: StepReport::default(),
@@ -136,6 +139,10 @@ impl Fighter {
         }
     }
 
+    pub(crate) fn mark(&self) -> u64 {
+        self.mark
+    }
+
     /// All that changes beside the climber.
     pub(crate) fn rest(&self) -> &FighterState {
         &self.state
@@ -159,7 +166,7 @@ impl Fighter {
 
     /// Refuses states that its climber cannot be in.
     pub(crate) fn check(&self, state: &FighterState) -> Result<(), ArenaError> {
-        let mut climber = Climber::new(self.config.climber, self.spawn)?;
+        let mut climber = Climber::new(self.config.climber, state.spawn)?;
         Ok(climber.restore(state.climber)?)
     }
 
@@ -169,6 +176,11 @@ impl Fighter {
         self.report = StepReport::default();
         Ok(())
     }
+}
+
+/// Hash of what does not change of a fighter.
+pub(crate) fn fighter_mark(id: FighterId, config: &FighterConfig) -> u64 {
+    hash_of(2, &(id, config))
 }
 
 fn arrows(config: &FighterConfig) -> u32 {

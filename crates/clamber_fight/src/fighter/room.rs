@@ -6,7 +6,7 @@ use clamber_world::{Contact, Obstacle, ObstacleId};
 use glam::DVec3;
 
 use super::Fighter;
-use crate::arena::creature_index;
+use crate::arena::creature_of;
 
 /// Rings of places about a spawn, as many places on each more than on the one before it, and the distance between rings,
 /// in radii of the body.
@@ -30,9 +30,9 @@ pub(crate) struct Room<'a> {
 }
 
 impl Fighter {
-    /// The place nearest to the spawn where this fighter has room; `None` if there is none within some 40 radii.
-    pub(crate) fn free_place(&self, room: &Room<'_>) -> Option<DVec3> {
-        let (spawn, size) = (self.spawn, self.config.climber.body.radius);
+    /// The place nearest to another one where this fighter has room; `None` if there is none within some 40 radii.
+    pub(crate) fn free_place(&self, near: DVec3, room: &Room<'_>) -> Option<DVec3> {
+        let size = self.config.climber.body.radius;
         let body = |place: DVec3| Climber::new(self.config.climber, place).map(|new| new.body());
         let has_ground = |place: DVec3| {
             let depth = GROUND * self.config.climber.body.height;
@@ -40,12 +40,12 @@ impl Fighter {
             let mut all = room.obstacles.iter();
             all.any(|(_, obstacle)| obstacle.cast_ray(from, DVec3::NEG_Y, depth).is_some())
         };
-        let needs_ground = has_ground(spawn);
+        let needs_ground = has_ground(near);
         let is_free = |place: &DVec3| {
             let is_clear = body(*place).is_ok_and(|body| room.is_free(&body));
             is_clear && (!needs_ground || has_ground(*place))
         };
-        places(spawn, APART * size).find(is_free)
+        places(near, APART * size).find(is_free)
     }
 }
 
@@ -61,7 +61,7 @@ impl Room<'_> {
                 ..*body
             };
             obstacle.overlap_capsule(&slim, &mut contacts);
-            contacts.is_empty() && (creature_index(*id).is_none() || !is_inside(*obstacle, middle))
+            contacts.is_empty() && (creature_of(*id).is_none() || !is_inside(*obstacle, middle))
         });
         clear && self.bodies.iter().all(|other| !overlap(body, other))
     }

@@ -3,11 +3,41 @@
 use clamber_surface::geometry::rotation_from_axis_angle;
 use glam::DVec3;
 
-use super::{BodyFrame, Fighter, Wielding};
-use crate::projectile::{Projectile, ProjectileId, ProjectileKind, ProjectileMotion};
+use super::{BodyFrame, BowConfig, Fighter, StoneConfig, Wielding};
+use crate::projectile::{
+    Projectile, ProjectileBody, ProjectileId, ProjectileKind, ProjectileMotion,
+};
 
 /// A faster archer than this does not stray more, radians.
 const MOST_STRAY: f64 = 0.5;
+
+impl BowConfig {
+    /// What matters of its arrows in flight.
+    pub fn arrow(&self) -> ProjectileBody {
+        ProjectileBody {
+            radius: self.radius,
+            drag: self.drag,
+            depth: self.depth,
+            damage: self.damage,
+            speed: self.speed,
+            loudness: 0.0,
+        }
+    }
+}
+
+impl StoneConfig {
+    /// What matters of these stones in flight.
+    pub fn stone(&self) -> ProjectileBody {
+        ProjectileBody {
+            radius: self.radius,
+            drag: 0.0,
+            depth: 0.0,
+            damage: 0.0,
+            speed: self.speed,
+            loudness: self.loudness,
+        }
+    }
+}
 
 impl Fighter {
     /// Where it aims: along the input's aim, or ahead of it if that is zero.
@@ -51,6 +81,7 @@ impl Fighter {
             id,
             kind: ProjectileKind::Arrow,
             by: self.id,
+            body: bow.arrow(),
             seconds: 0.0,
             motion: ProjectileMotion::Flying { position, velocity },
         })
@@ -67,6 +98,7 @@ impl Fighter {
             id,
             kind: ProjectileKind::Stone,
             by: self.id,
+            body: stones.stone(),
             seconds: 0.0,
             motion: ProjectileMotion::Flying { position, velocity },
         })

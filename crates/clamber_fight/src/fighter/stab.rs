@@ -44,21 +44,21 @@ impl Fighter {
         let radius = self.config.climber.body.radius;
         let from = frame.at((along * ALONG - into * ABOVE) * radius);
         let into = frame.direction(into);
-        let hits = around.skins.iter().enumerate().filter_map(|(index, skin)| {
-            let hit = Obstacle::cast_ray(*skin, from, into, sword.reach)?;
-            Some((hit, index, *skin))
+        let hits = around.skins.iter().filter_map(|(creature, skin)| {
+            let hit = Obstacle::cast_ray(skin, from, into, sword.reach)?;
+            Some((hit, creature, skin))
         });
         let first = hits.min_by(|a, b| {
             let by_distance = a.0.distance.total_cmp(&b.0.distance);
             by_distance.then(a.1.cmp(&b.1))
         });
-        let Some((hit, index, skin)) = first else {
+        let Some((hit, creature, skin)) = first else {
             return Target::Air;
         };
-        if around.hides(&[frame.origin, from, hit.point], Some(index)) {
+        if around.hides(&[frame.origin, from, hit.point], Some(creature)) {
             return Target::Air;
         }
-        let obstacle = creature_obstacle(CreatureId(index as u32));
+        let obstacle = creature_obstacle(creature);
         let at = Attachment::new(obstacle, skin, &hit, hit.point);
         // The offset is where the blade goes from there.
         Target::Skin(at.moved_to(at.point + into))
@@ -70,7 +70,7 @@ impl Fighter {
         &self,
         frames: [BodyFrame; 2],
         around: &Around<'_>,
-    ) -> Option<(usize, SweepContact)> {
+    ) -> Option<(CreatureId, SweepContact)> {
         let sword = self.config.sword.as_ref()?;
         let [from, to] = frames.map(|frame| sword.below(&frame));
         let capsule = WorldCapsule {
@@ -80,14 +80,14 @@ impl Fighter {
         let ways = [to.hilt - from.hilt, to.tip - from.tip];
         let options =
             CastOptions::from(TargetMotion::Moving).with_tolerance(capsule.sweep_tolerance());
-        let contacts = around.skins.iter().enumerate().filter_map(|(index, skin)| {
+        let contacts = around.skins.iter().filter_map(|(creature, skin)| {
             let hit = skin.in_world().cast_capsule(&capsule, ways, &options)?;
-            Some((index, SweepContact::from(hit)))
+            Some((creature, SweepContact::from(hit)))
         });
         let first = contacts.min_by(|a, b| a.1.time.total_cmp(&b.1.time).then(a.0.cmp(&b.0)));
-        first.filter(|(index, hit)| {
+        first.filter(|(creature, hit)| {
             let body = frames[0].to(&frames[1], hit.time).origin;
-            !around.hides(&[body, hit.contact.point], Some(*index))
+            !around.hides(&[body, hit.contact.point], Some(*creature))
         })
     }
 }

@@ -1,5 +1,6 @@
 use clamber_climber::{Blow, ClimberState};
 use clamber_world::{Attachment, ObstacleId};
+use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 /// All that changes in a fighter: a plain value.
@@ -23,8 +24,10 @@ pub struct FighterState {
     pub arrows: u32,
     /// State of its random stream, of which its arrows stray.
     pub random: u64,
-    /// False until its first step, in which it finds room.
+    /// False until its next step, in which it finds room where it is: at its beginning, and after it was placed.
     pub has_begun: bool,
+    /// Where it stands up again after its death: the centre of its climber's ball.
+    pub spawn: DVec3,
 }
 
 /// Where the numbers of plates begin in [`Act::Cut`].
@@ -130,6 +133,7 @@ impl FighterState {
             .blow
             .is_none_or(|blow| blow.velocity.is_finite() && is_share(blow.damage));
         act && blow
+            && self.spawn.is_finite()
             && is_time(self.harm)
             && is_time(self.hit_stop)
             && is_time(self.dead.unwrap_or(0.0))

@@ -4,7 +4,7 @@ mod flight;
 mod step;
 mod stuck;
 
-use clamber_world::Attachment;
+use clamber_world::{Attachment, ObstacleId};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -25,12 +25,31 @@ pub struct Projectile {
     pub id: ProjectileId,
     /// What it is.
     pub kind: ProjectileKind,
-    /// Who shot or threw it.
+    /// Who shot or threw it, who may have left since.
     pub by: FighterId,
+    /// What of it matters in flight.
+    pub body: ProjectileBody,
     /// Seconds since it was shot, since it stuck, or since it has been falling.
     pub seconds: f64,
     /// How it moves.
     pub motion: ProjectileMotion,
+}
+
+/// What of a projectile matters in flight and when it hits. It keeps that of the bow or the stones of whoever shot it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ProjectileBody {
+    /// Radius, metres.
+    pub radius: f64,
+    /// Drag, 1/m: its air brakes an arrow by this times the square of its speed.
+    pub drag: f64,
+    /// How deep its tip goes into what it hits, metres.
+    pub depth: f64,
+    /// Damage at [`ProjectileBody::speed`]; it grows with the square of the speed relative to what is hit.
+    pub damage: f64,
+    /// Speed at which it does its damage, metres a second.
+    pub speed: f64,
+    /// How loud it is where it hits; 0 if nobody hears it.
+    pub loudness: f64,
 }
 
 /// What a projectile is.
@@ -87,6 +106,11 @@ impl Projectile {
         matches!(self.motion, ProjectileMotion::Stuck { .. })
     }
 
+    /// True if it sticks in an obstacle.
+    pub(crate) fn is_in(&self, obstacle: ObstacleId) -> bool {
+        matches!(self.motion, ProjectileMotion::Stuck { at, .. } if at.obstacle == obstacle)
+    }
+
     /// True if it still flies.
     pub fn is_flying(&self) -> bool {
         matches!(self.motion, ProjectileMotion::Flying { .. })
@@ -104,6 +128,15 @@ impl Projectile {
                 direction,
             } => position.is_finite() && velocity.is_finite() && direction.is_finite(),
         };
-        motion && (0.0..=f64::MAX).contains(&self.seconds)
+        let ProjectileBody {
+            radius,
+            drag,
+            depth,
+            damage,
+            speed,
+            loudness,
+        } = self.body;
+        let numbers = [self.seconds, radius, drag, depth, damage, speed, loudness];
+        motion && numbers.iter().all(|x| (0.0..=f64::MAX).contains(x))
     }
 }

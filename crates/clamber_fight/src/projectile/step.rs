@@ -2,16 +2,13 @@
 
 use clamber_colossus::Noise;
 use clamber_surface::geometry::WorldCapsule;
-use clamber_surface::surface::{SkinnedSurface, TargetMotion};
+use clamber_surface::surface::TargetMotion;
 use clamber_world::{Obstacle, ObstacleId, SweepContact};
 use glam::DVec3;
 
 use super::stuck::stick;
-use super::{Flight, Projectile, ProjectileKind, ProjectileMotion};
-use crate::arena::{
-    ArenaEvent, CreatureId, Hit, Outcome, Weapon, creature_index, creature_obstacle,
-};
-use crate::fighter::FighterConfig;
+use super::{Flight, Projectile, ProjectileBody, ProjectileKind, ProjectileMotion};
+use crate::arena::{ArenaEvent, Hit, Outcome, Skins, Weapon, creature_obstacle, creature_of};
 
 /// Seconds after which an arrow that has met nothing is gone, and one that falls.
 const LONGEST_FLIGHT: f64 = 20.0;
@@ -23,7 +20,7 @@ const SLACK: f64 = 0.01;
 /// What projectiles fly through.
 #[derive(Clone, Copy)]
 pub(crate) struct Air<'a> {
-    pub(crate) skins: &'a [&'a SkinnedSurface],
+    pub(crate) skins: Skins<'a>,
     pub(crate) terrain: &'a [(ObstacleId, &'a dyn Obstacle)],
     pub(crate) gravity: DVec3,
     pub(crate) dt: f64,
@@ -39,8 +36,8 @@ pub(crate) enum Flown {
 impl<'a> Air<'a> {
     /// The obstacle with an id.
     pub(crate) fn obstacle(&self, id: ObstacleId) -> Option<&'a dyn Obstacle> {
-        if let Some(index) = creature_index(id) {
-            let skin: &'a dyn Obstacle = *self.skins.get(index)?;
+        if let Some(creature) = creature_of(id) {
+            let skin: &'a dyn Obstacle = self.skins.get(creature)?;
             return Some(skin);
         }
         let found = self.terrain.iter().find(|(known, _)| *known == id);
@@ -55,10 +52,9 @@ impl<'a> Air<'a> {
         radius: f64,
     ) -> Option<(ObstacleId, &'a dyn Obstacle, SweepContact)> {
         let ball = WorldCapsule::ball(from, radius);
-        let creatures = (0..).zip(self.skins).map(|(index, skin)| {
-            let id = creature_obstacle(CreatureId(index));
-            let obstacle: &'a dyn Obstacle = *skin;
-            (id, obstacle)
+        let creatures = self.skins.iter().map(|(creature, skin)| {
+            let obstacle: &'a dyn Obstacle = skin;
+            (creature_obstacle(creature), obstacle)
         });
         let all = self.terrain.iter().copied().chain(creatures);
         let hits = all.filter_map(|(id, obstacle)| {
@@ -79,16 +75,11 @@ impl<'a> Air<'a> {
 
 impl Projectile {
     /// Lets a tick pass.
-    pub(crate) fn step(
-        &mut self,
-        shooter: &FighterConfig,
-        air: &Air<'_>,
-        out: &mut Outcome,
-    ) -> Flown {
+    pub(crate) fn step(&mut self, air: &Air<'_>, out: &mut Outcome) -> Flown {
         self.seconds += air.dt;
         match self.motion {
             ProjectileMotion::Flying { position, velocity } => {
-                self.fly(shooter, [position, velocity], air, out)
+                self.fly([position, velocity], air, out)
             }
             ProjectileMotion::Stuck { .. } => {
                 self.stay(air, out);
@@ -104,7 +95,7 @@ impl Projectile {
                     drag: 0.0,
                 };
                 let (to, velocity) = flight.step(position, velocity, air.dt);
-                let radius = shooter.bow.map_or(0.01, |bow| bow.radius);
+                let radius = self.body.radius;
                 let meets = air.first_contact(position, to - position, radius);
                 // What it has just come loose from touches it still.
                 let ends = meets.is_some_and(|(.., hit)| !hit.started_inside || self.seconds > 0.5);
@@ -121,19 +112,13 @@ impl Projectile {
         }
     }
 
-    fn fly(
-        &mut self,
-        shooter: &FighterConfig,
-        [position, velocity]: [DVec3; 2],
-        air: &Air<'_>,
-        out: &mut Outcome,
-    ) -> Flown {
-        let (radius, drag) = match self.kind {
-            ProjectileKind::Arrow => shooter
-                .bow
-                .map_or((0.005, 0.0), |bow| (bow.radius, bow.drag)),
-            ProjectileKind::Stone => (shooter.stones.map_or(0.05, |stones| stones.radius), 0.0),
-        };
+    fn fly(&mut self, [position, velocity]: [DVec3; 2], air: &Air<'_>, out: &mut Outcome) -> Flown {
+        let ProjectileBody {
+            radius,
+            drag,
+            depth,
+            ..
+        } = self.body;
         let flight = Flight {
             gravity: air.gravity,
             drag,
@@ -152,11 +137,10 @@ impl Projectile {
         let at_contact = velocity + (faster - velocity) * hit.time;
         let motion = obstacle.motion(&hit.contact.material, air.dt);
         let relative = at_contact - motion.map_or(DVec3::ZERO, |motion| motion.velocity);
-        self.hit(shooter, id, &hit, relative, out);
+        self.hit(id, &hit, relative, out);
         if self.kind == ProjectileKind::Stone {
             return Flown::Gone;
         }
-        let depth = shooter.bow.map_or(0.0, |bow| bow.depth);
         let direction = at_contact.normalize_or(DVec3::NEG_Y);
         let Some(motion) = stick(id, obstacle, &hit, direction, depth, air.dt) else {
             return Flown::Gone;
@@ -172,31 +156,23 @@ impl Projectile {
     }
 
     /// Tells whom it struck, at a velocity relative to what it struck, and who hears it.
-    fn hit(
-        &self,
-        shooter: &FighterConfig,
-        id: ObstacleId,
-        hit: &SweepContact,
-        velocity: DVec3,
-        out: &mut Outcome,
-    ) {
-        let (weapon, damage) = match self.kind {
-            ProjectileKind::Arrow => {
-                let (damage, full) = shooter
-                    .bow
-                    .map_or((0.0, 1.0), |bow| (bow.damage, bow.speed));
-                let share = velocity.length_squared() / (full * full).max(f64::MIN_POSITIVE);
-                (Weapon::Arrow, damage * share)
-            }
-            ProjectileKind::Stone => (Weapon::Stone, 0.0),
+    fn hit(&self, id: ObstacleId, hit: &SweepContact, velocity: DVec3, out: &mut Outcome) {
+        let weapon = match self.kind {
+            ProjectileKind::Arrow => Weapon::Arrow,
+            ProjectileKind::Stone => Weapon::Stone,
         };
-        if let (ProjectileKind::Stone, Some(stones)) = (self.kind, shooter.stones) {
-            out.noises.push(Noise {
-                place: hit.contact.point,
-                loudness: stones.loudness,
-            });
+        let ProjectileBody {
+            damage,
+            speed: full,
+            loudness,
+            ..
+        } = self.body;
+        let damage = damage * (velocity.length_squared() / (full * full).max(f64::MIN_POSITIVE));
+        if loudness > 0.0 {
+            let place = hit.contact.point;
+            out.noises.push(Noise { place, loudness });
         }
-        if let Some(creature) = creature_index(id) {
+        if let Some(creature) = creature_of(id) {
             out.hits.push(Hit {
                 by: self.by,
                 weapon,
@@ -215,8 +191,8 @@ impl Projectile {
         let ProjectileMotion::Stuck { at, direction } = &mut self.motion else {
             return;
         };
-        let is_there = match creature_index(at.obstacle) {
-            Some(index) => air.skins.get(index).is_some_and(|skin| {
+        let is_there = match creature_of(at.obstacle) {
+            Some(creature) => air.skins.get(creature).is_some_and(|skin| {
                 let triangle = at.material.triangle();
                 triangle.is_some_and(|triangle| skin.is_enabled(triangle))
             }),
@@ -243,7 +219,7 @@ impl Projectile {
                 direction: frame * direction,
             };
         let still = loose(at.position(), DVec3::ZERO, at.frame);
-        let skin = creature_index(at.obstacle).and_then(|index| air.skins.get(index));
+        let skin = creature_of(at.obstacle).and_then(|creature| air.skins.get(creature));
         self.motion = match skin {
             // Hidden skin has a motion as well.
             Some(skin) => {

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use clamber_climber::{ClimberInput, ClimberMode};
 use clamber_colossus::CreatureConfig;
 use clamber_fight::actions::{BOW, CUT, STAB, THROW};
-use clamber_fight::{Arena, ArenaConfig, ArenaEvent, FighterConfig};
+use clamber_fight::{Arena, ArenaConfig, ArenaEvent, CreatureId, FighterConfig};
 use clamber_world::{HalfSpace, Obstacle, ObstacleId, TriangleTerrain};
 use glam::{DVec3, Vec3};
 
@@ -187,7 +187,7 @@ fn shots_at_what_is_near_hit_its_near_side() {
             ..CreatureConfig::default()
         };
         arena.add_creature(Arc::clone(&kind), config).unwrap();
-        let foot = arena.creatures()[0].sole(0).unwrap();
+        let foot = arena.creature(CreatureId(0)).unwrap().sole(0).unwrap();
         let middle = 0.25 * foot.iter().sum::<DVec3>();
         let place = middle + out * 8.0 + DVec3::Y;
         arena.add_fighter(FighterConfig::hero(), place).unwrap();
@@ -208,7 +208,7 @@ fn shots_at_what_is_near_hit_its_near_side() {
         run(&mut arena, aims, &terrain, 70);
         let fighter = arena.fighter(HERO).unwrap();
         let center = fighter.climber().state().position;
-        let near = arena.creatures()[0].surface();
+        let near = arena.creature(CreatureId(0)).unwrap().surface();
         let Some(first) = Obstacle::cast_ray(near, center + DVec3::Y * 0.99, -out, 3.0) else {
             continue;
         };

@@ -11,8 +11,8 @@ use clamber_climber::ClimberInput;
 use clamber_colossus::{CreatureConfig, CreatureKind};
 use clamber_fight::actions::{CUT, STAB, THROW};
 use clamber_fight::{
-    Act, Arena, ArenaConfig, ArenaEvent, FighterConfig, FighterId, Projectile, ProjectileId,
-    ProjectileKind, ProjectileMotion,
+    Act, Arena, ArenaConfig, ArenaEvent, BowConfig, CreatureId, FighterConfig, FighterId,
+    Projectile, ProjectileId, ProjectileKind, ProjectileMotion,
 };
 use clamber_world::{HalfSpace, Obstacle, ObstacleId};
 use glam::{DVec3, Vec3};
@@ -53,7 +53,7 @@ fn a_throw_in_the_tick_of_death_is_lost() {
     }
     // Nothing is left of it.
     let mut state = ours.save();
-    state.fighters[0].climber.hit_points = 0.0;
+    state.fighters[0].state.climber.hit_points = 0.0;
     ours.restore(&state).unwrap();
     ours.step(&[pressed(THROW)], &terrain).unwrap();
     assert!(ours.fighter(FighterId(0)).unwrap().is_dead());
@@ -117,13 +117,18 @@ fn arrows(speed: f64, along: f64, rate: f64) -> ([[usize; 2]; 2], Vec<f64>) {
         // It comes down 2 m in about 0.05 s, at another time of a tick each.
         let height = 2.0 + 0.011 * shot as f64;
         let time = height / 40.0;
-        let heart = arena.creatures()[0].weak_point(0).unwrap();
+        let heart = arena
+            .creature(CreatureId(0))
+            .unwrap()
+            .weak_point(0)
+            .unwrap();
         let position = heart + off + DVec3::new((speed - along) * time, height, 0.0);
         let mut state = arena.save();
         state.projectiles.push(Projectile {
             id: ProjectileId(0),
             kind: ProjectileKind::Arrow,
             by: FighterId(0),
+            body: BowConfig::default().arrow(),
             seconds: 0.0,
             motion: ProjectileMotion::Flying {
                 position,
@@ -148,7 +153,11 @@ fn arrows(speed: f64, along: f64, rate: f64) -> ([[usize; 2]; 2], Vec<f64>) {
                 else {
                     continue;
                 };
-                let middle = arena.creatures()[0].weak_point(0).unwrap();
+                let middle = arena
+                    .creature(CreatureId(0))
+                    .unwrap()
+                    .weak_point(0)
+                    .unwrap();
                 let then = middle - DVec3::X * (speed * dt * (1.0 - time));
                 let off = (place - then).with_y(0.0).length();
                 damages.extend((damage > 0.0).then_some(damage));

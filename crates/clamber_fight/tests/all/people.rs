@@ -4,12 +4,14 @@
 
 use crate::support;
 
-use crate::support::{GIANT, GROUND, HERO, Slab, land, mode, pressing, step, weak_point};
+use crate::support::{
+    GIANT, GROUND, HERO, Slab, land, mode, pressing, step, step_with, weak_point,
+};
 use clamber_climber::{ClimberInput, ClimberMode};
 use clamber_colossus::CreatureConfig;
 use clamber_fight::actions::STAB;
 use clamber_fight::{
-    Act, Arena, ArenaConfig, ArenaError, ArenaEvent, ArenaState, FighterConfig, FighterId,
+    Act, Arena, ArenaConfig, ArenaError, ArenaEvent, ArenaState, FighterConfig, FighterId, Order,
 };
 use clamber_world::{HalfSpace, Obstacle, ObstacleId};
 use glam::{DVec3, Vec3};
@@ -53,7 +55,7 @@ fn stabbing(hit_stop: f64) -> (Vec<ArenaState>, u32) {
         };
         arena.step(&[ours, other], &terrain).unwrap();
         let state = arena.save();
-        held += u32::from(state.fighters[0].hit_stop > 0.0);
+        held += u32::from(state.fighters[0].state.hit_stop > 0.0);
         states.push(state);
     }
     (states, held)
@@ -71,11 +73,11 @@ fn an_impact_holds_whoever_struck_and_nobody_else() {
             a.tick
         );
         assert!(
-            a.fighters[1] == b.fighters[1],
+            a.fighters[1].state == b.fighters[1].state,
             "another fighter feels it at {}",
             a.tick
         );
-        differs += u32::from(a.fighters[0] != b.fighters[0]);
+        differs += u32::from(a.fighters[0].state != b.fighters[0].state);
     }
     assert!(differs >= 6, "the blade is held: {differs}");
 }
@@ -177,7 +179,10 @@ fn a_sword_shows_the_way_in_the_sun() {
         position: DVec3::new(-2.0, 10.0, 8.0),
         ..CreatureConfig::default()
     };
-    arena.add_creature(Slab::default().kind(), config).unwrap();
+    let kind = arena.add_kind(Slab::default().kind()).unwrap();
+    let joins = [Order::AddCreature { kind, config }];
+    step_with(&mut arena, &[ClimberInput::IDLE], &joins);
+    assert!(arena.fighter(HERO).unwrap().blade().is_some());
     assert_eq!(arena.sword_light(HERO, DVec3::X, &terrain), None);
 }
 
@@ -261,7 +266,17 @@ fn bad_inputs_change_nothing() {
     assert_eq!(arena.fingerprint(), before);
     assert_eq!(mode(&arena), ClimberMode::Standing);
 
+    // After the first step nobody joins but by orders.
+    let begun = arena.add_fighter(FighterConfig::hero(), DVec3::Y);
+    assert!(matches!(begun, Err(ArenaError::Begun)));
+    let kind = Slab::default().kind();
+    let begun = arena.add_creature(kind, CreatureConfig::default());
+    assert!(matches!(begun, Err(ArenaError::Begun)));
+    assert_eq!(arena.fingerprint(), before);
+
     // Configurations.
+    let mut arena = Slab::default().arena(FighterConfig::hero(), &[DVec3::Y, DVec3::X]);
+    let before = arena.fingerprint();
     let mut config = FighterConfig::hero();
     config.sword.as_mut().unwrap().charge = 0.0;
     assert!(matches!(

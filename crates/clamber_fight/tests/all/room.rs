@@ -5,7 +5,7 @@
 use crate::support::{GROUND, giant};
 use clamber_climber::ClimberInput;
 use clamber_colossus::CreatureConfig;
-use clamber_fight::{Arena, ArenaConfig, ArenaEvent, FighterConfig, FighterId};
+use clamber_fight::{Arena, ArenaConfig, ArenaEvent, CreatureId, FighterConfig, FighterId};
 use clamber_world::{HalfSpace, Obstacle, ObstacleId};
 use glam::DVec3;
 
@@ -74,7 +74,7 @@ fn nobody_rises_inside_a_creature() {
             arena
                 .add_creature(kind.clone(), CreatureConfig::default())
                 .unwrap();
-            let frame = arena.creatures()[0].palette();
+            let frame = arena.creature(CreatureId(0)).unwrap().palette();
             let frame = frame.model_from_joint(kind.skeleton().find(joint).unwrap());
             let spawn = frame.unwrap().translation;
             let mut config = FighterConfig::hero();
@@ -84,7 +84,7 @@ fn nobody_rises_inside_a_creature() {
             for tick in 0..160 {
                 if tick == 60 && dies {
                     let mut state = arena.save();
-                    state.fighters[0].climber.hit_points = 0.0;
+                    state.fighters[0].state.climber.hit_points = 0.0;
                     arena.restore(&state).unwrap();
                 }
                 let events = arena.step(&[ClimberInput::IDLE], &terrain).unwrap();
@@ -96,7 +96,7 @@ fn nobody_rises_inside_a_creature() {
                 let body = arena.fighter(FighterId(0)).unwrap().climber().body();
                 let middle = 0.5 * (body.ends[0] + body.ends[1]);
                 // Of rays that begin inside a skin most leave through its back.
-                let skin = arena.creatures()[0].surface();
+                let skin = arena.creature(CreatureId(0)).unwrap().surface();
                 let leaves = |index: &u32| {
                     let angle = f64::from(*index) * 0.7;
                     let way =
@@ -136,7 +136,7 @@ fn who_finds_no_room_waits() {
         arena.step(&[ClimberInput::IDLE], &open).unwrap();
     }
     let mut state = arena.save();
-    state.fighters[0].climber.hit_points = 0.0;
+    state.fighters[0].state.climber.hit_points = 0.0;
     arena.restore(&state).unwrap();
     for tick in 0..300 {
         let events = arena.step(&[ClimberInput::IDLE], &full).unwrap();

@@ -146,37 +146,43 @@ fn text_hash(text: &str) -> u64 {
 fn each_field_that_is_left_out_is_noticed_within_a_second() {
     const FIELDS: [(&str, Path); 23] = [
         ("tick", &["tick"]),
-        ("pendulum", &["fighters", "0", "climber", "hanging"]),
+        (
+            "pendulum",
+            &["fighters", "0", "state", "climber", "hanging"],
+        ),
         (
             "filter of the shake",
-            &["fighters", "0", "climber", "shake"],
+            &["fighters", "0", "state", "climber", "shake"],
         ),
-        ("stamina", &["fighters", "0", "climber", "stamina"]),
-        ("hit points", &["fighters", "1", "climber", "hit_points"]),
-        ("support", &["fighters", "0", "climber", "support"]),
+        ("stamina", &["fighters", "0", "state", "climber", "stamina"]),
+        (
+            "hit points",
+            &["fighters", "1", "state", "climber", "hit_points"],
+        ),
+        ("support", &["fighters", "0", "state", "climber", "support"]),
         (
             "support's velocity",
-            &["fighters", "0", "climber", "support_velocity"],
+            &["fighters", "0", "state", "climber", "support_velocity"],
         ),
-        ("heading", &["fighters", "1", "climber", "heading"]),
-        ("hit-stop", &["fighters", "2", "hit_stop"]),
-        ("charge and other acts", &["fighters", "0", "act"]),
-        ("buttons", &["fighters", "0", "actions"]),
-        ("blow", &["fighters", "1", "blow"]),
-        ("random stream", &["fighters", "1", "random"]),
+        ("heading", &["fighters", "1", "state", "climber", "heading"]),
+        ("hit-stop", &["fighters", "2", "state", "hit_stop"]),
+        ("charge and other acts", &["fighters", "0", "state", "act"]),
+        ("buttons", &["fighters", "0", "state", "actions"]),
+        ("blow", &["fighters", "1", "state", "blow"]),
+        ("random stream", &["fighters", "1", "state", "random"]),
         ("arrows", &["projectiles"]),
         ("number of the next arrow", &["next_projectile"]),
         ("noises", &["noises"]),
-        ("plates", &["creatures", "1", "plates"]),
+        ("plates", &["creatures", "1", "state", "plates"]),
         (
             "hit points of weak points",
-            &["creatures", "1", "hit_points"],
+            &["creatures", "1", "state", "hit_points"],
         ),
-        ("brain", &["creatures", "0", "brain"]),
-        ("clips", &["creatures", "0", "animator"]),
-        ("feet", &["creatures", "0", "feet"]),
-        ("rides", &["creatures", "0", "rides"]),
-        ("pose", &["creatures", "0", "pose"]),
+        ("brain", &["creatures", "0", "state", "brain"]),
+        ("clips", &["creatures", "0", "state", "animator"]),
+        ("feet", &["creatures", "0", "state", "feet"]),
+        ("rides", &["creatures", "0", "state", "rides"]),
+        ("pose", &["creatures", "0", "state", "pose"]),
     ];
     let mut melee = Melee::new(&giant());
     let (mut states, mut sums, mut fields) = (Vec::new(), Vec::new(), Vec::new());
@@ -266,7 +272,7 @@ fn bytes_come_back_and_others_are_refused() {
         let error = melee.arena.restore_bytes(&wrong).unwrap_err();
         let known = matches!(
             error,
-            ArenaError::Damaged(_) | ArenaError::Version { .. } | ArenaError::Assets { .. }
+            ArenaError::Damaged(_) | ArenaError::Version { .. } | ArenaError::Config { .. }
         );
         assert!(known, "{error}");
     }
@@ -275,10 +281,24 @@ fn bytes_come_back_and_others_are_refused() {
     assert!(melee.arena.restore_bytes(&longer).is_err());
     assert_eq!(melee.arena.fingerprint(), before);
 
-    // Other assets.
-    let mut arena = Arena::new(ArenaConfig::default()).unwrap();
+    // Another configuration; and an arena that does not know the creatures.
+    let config = ArenaConfig {
+        stuck_arrows: 3,
+        ..*melee.arena.config()
+    };
+    let mut arena = Arena::new(config).unwrap();
     let error = arena.restore_bytes(&bytes).unwrap_err();
-    assert!(matches!(error, ArenaError::Assets { .. }), "{error}");
+    assert!(matches!(error, ArenaError::Config { .. }), "{error}");
+    let mut arena = Arena::new(*melee.arena.config()).unwrap();
+    let error = arena.restore_bytes(&bytes).unwrap_err();
+    assert!(matches!(error, ArenaError::Kind { .. }), "{error}");
+    // Empty as it is, it takes the state once it knows them.
+    for (_, kind) in melee.arena.kinds() {
+        arena.add_kind(kind.clone()).unwrap();
+    }
+    arena.restore_bytes(&bytes).unwrap();
+    assert!(arena.save() == saved);
+    assert_eq!(arena.fingerprint(), sum);
 }
 
 /// States with numbers that are not theirs: refused, or played without a panic.
@@ -367,16 +387,24 @@ fn a_restore_that_fails_changes_nothing() {
         change(&mut state);
         wrong.push(state);
     };
-    spoil(&|state| {
-        state.creatures.pop();
-    });
     // The second creature is refused after the first one was taken.
-    spoil(&|state| state.creatures[1] = state.creatures[0].clone());
-    spoil(&|state| state.fighters[2].climber.stamina = 7.0);
-    spoil(&|state| state.fighters[0].hit_stop = f64::NAN);
+    spoil(&|state| state.creatures[1].state = state.creatures[0].state.clone());
+    spoil(&|state| state.creatures.swap(0, 1));
+    spoil(&|state| state.creatures[1].id = state.creatures[0].id);
+    spoil(&|state| state.next_creature = 1);
+    spoil(&|state| state.next_fighter -= 1);
+    spoil(&|state| state.fighters[1].id.0 = 900);
+    spoil(&|state| state.creatures[1].kind.0 ^= 1);
+    spoil(&|state| state.creatures[0].config.scale = f64::NAN);
+    spoil(&|state| state.creatures[0].config.scale = 0.0);
+    spoil(&|state| state.fighters[1].config.climber.body.radius = -1.0);
+    spoil(&|state| state.fighters[1].state.spawn.x = f64::INFINITY);
     spoil(&|state| {
-        state.fighters.pop();
+        state.fighters.remove(0);
+        state.fighters[1].state.climber.hit_points = 2.0;
     });
+    spoil(&|state| state.fighters[2].state.climber.stamina = 7.0);
+    spoil(&|state| state.fighters[0].state.hit_stop = f64::NAN);
     for state in wrong {
         assert!(melee.arena.restore(&state).is_err());
         assert_eq!(melee.arena.fingerprint(), before);
@@ -410,8 +438,11 @@ fn a_snapshot_of_a_giant_and_eight_climbers_is_small() {
 }
 
 #[test]
-fn assets_tell_arenas_apart() {
-    let make = |slab: &Slab, place: DVec3| slab.arena(FighterConfig::hero(), &[place]).assets();
+fn fingerprints_tell_arenas_apart_before_their_first_step() {
+    let make = |slab: &Slab, place: DVec3| {
+        let arena = slab.arena(FighterConfig::hero(), &[place]);
+        arena.fingerprint()
+    };
     let slab = Slab::default();
     assert_eq!(make(&slab, DVec3::Y), make(&slab, DVec3::Y));
     assert_ne!(make(&slab, DVec3::Y), make(&slab, DVec3::X));
@@ -426,14 +457,13 @@ fn assets_tell_arenas_apart() {
     };
     assert_ne!(make(&slab, DVec3::Y), make(&faster, DVec3::Y));
 
-    // A state is taken by its own kind of arena only: this archer has another bow.
+    // A state brings its own fighters: this archer has another bow.
     let mut arena = slab.arena(FighterConfig::hero(), &[DVec3::Y]);
     let mut weaker = FighterConfig::hero();
     weaker.bow.as_mut().unwrap().speed *= 0.5;
     let other = slab.arena(weaker, &[DVec3::Y]);
-    let before = arena.fingerprint();
-    let error = arena.restore(&other.save()).unwrap_err();
-    assert!(matches!(error, ArenaError::Assets { .. }), "{error}");
-    assert_eq!(arena.fingerprint(), before);
-    arena.restore(&arena.save()).unwrap();
+    assert_ne!(arena.fingerprint(), other.fingerprint());
+    arena.restore(&other.save()).unwrap();
+    assert_eq!(arena.fingerprint(), other.fingerprint());
+    assert_eq!(*arena.fighters()[0].config(), weaker);
 }

@@ -2,10 +2,10 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
-use crate::support::{GIANT, HERO, Slab, hits, land, mode, pressing, step, weak_point};
+use crate::support::{GIANT, HERO, Slab, hits, land, mode, pressing, step, step_with, weak_point};
 use clamber_climber::{ClimberInput, ClimberMode};
 use clamber_fight::actions::STAB;
-use clamber_fight::{Act, Arena, ArenaEvent, FighterConfig, SwordConfig, Target};
+use clamber_fight::{Act, Arena, ArenaEvent, FighterConfig, Order, SwordConfig, Target};
 use glam::{DVec3, Vec3};
 
 const RATES: [f64; 4] = [30.0, 60.0, 120.0, 240.0];
@@ -356,13 +356,9 @@ fn a_stab_out_of_a_fall_is_full_and_slow_to_pull_out() {
     let mut arena = with_weak_point(60.0, 9.0).arena(hero(), &[DVec3::new(5.8, 1.0, 0.0)]);
     land(&mut arena);
     raise(&mut arena, &idle);
-    let surface = arena.creature_mut(GIANT).unwrap().surface_mut();
-    for triangle in 0..surface.mesh().triangles().len() as u32 {
-        surface
-            .disable_triangle(clamber_surface::mesh::TriangleId(triangle))
-            .unwrap();
-    }
-    let broken =
-        (0..3).any(|_| step(&mut arena, &idle).contains(&ArenaEvent::BrokenOff { fighter: HERO }));
+    let gone = [Order::RemoveCreature { creature: GIANT }];
+    let events = step_with(&mut arena, &[idle], &gone);
+    assert!(events.contains(&ArenaEvent::CreatureLeft { creature: GIANT }));
+    let broken = events.contains(&ArenaEvent::BrokenOff { fighter: HERO });
     assert!(broken, "{:?}", mode(&arena));
 }

@@ -1,10 +1,13 @@
-//! Whole arenas: creatures of any size anywhere, fighters, random inputs, and states that are taken back.
+//! Whole arenas: creatures of any size anywhere, fighters, random inputs, random orders, and states that are taken back.
+
+#[path = "orders.rs"]
+mod orders;
 
 use std::sync::Arc;
 
-use clamber_climber::ClimberInput;
+use clamber_climber::{ClimberInput, StepRules};
 use clamber_colossus::{Brain, CreatureConfig};
-use clamber_fight::{Arena, ArenaConfig, FighterConfig};
+use clamber_fight::{Arena, ArenaConfig, FighterConfig, Order};
 use clamber_scenes::Creature;
 use clamber_world::{HalfSpace, Obstacle, ObstacleId};
 use fastrand::Rng;
@@ -21,18 +24,20 @@ pub(crate) fn arena(giant: &Creature, seed: u64) -> usize {
     let (mut arena, origin) = make(giant, &mut rng);
     let ground = HalfSpace::below(origin.y);
     let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(0), &ground)];
-    let mut held = vec![ClimberInput::IDLE; arena.fighters().len()];
+    let mut held: Vec<ClimberInput> = Vec::new();
     let mut checks = 0;
     let mut saved = arena.save();
-    let mut played: Vec<Vec<ClimberInput>> = Vec::new();
+    let mut played: Vec<(Vec<ClimberInput>, Vec<Order>)> = Vec::new();
     for tick in 0..TICKS {
         for held in &mut held {
             if rng.u8(0..8) == 0 {
                 *held = input(&mut rng);
             }
         }
-        step(&mut arena, &held, &terrain, tick);
-        played.push(held.clone());
+        held.resize(arena.fighters().len(), ClimberInput::IDLE);
+        let orders = orders::orders(&mut rng, &arena, origin);
+        step(&mut arena, (&held, &orders), &terrain, tick);
+        played.push((held.clone(), orders));
         for fighter in arena.fighters() {
             let state = fighter.climber().state();
             let finite = state.position.is_finite() && state.velocity.is_finite();
@@ -49,11 +54,15 @@ pub(crate) fn arena(giant: &Creature, seed: u64) -> usize {
         }
         if played.len() == AGAIN {
             let sum = arena.fingerprint();
+            // In turns by itself, and by another arena that knows nothing but the kind of creature.
+            if rng.bool() {
+                arena = fresh(&arena);
+            }
             if let Err(error) = arena.restore(&saved) {
                 panic!("tick {tick}: {error}");
             }
-            for inputs in played.drain(..) {
-                step(&mut arena, &inputs, &terrain, tick);
+            for (inputs, orders) in played.drain(..) {
+                step(&mut arena, (&inputs, &orders), &terrain, tick);
             }
             assert!(
                 arena.fingerprint() == sum,
@@ -68,13 +77,27 @@ pub(crate) fn arena(giant: &Creature, seed: u64) -> usize {
 
 fn step(
     arena: &mut Arena,
-    inputs: &[ClimberInput],
+    (inputs, orders): (&[ClimberInput], &[Order]),
     terrain: &[(ObstacleId, &dyn Obstacle)],
     tick: usize,
 ) {
-    if let Err(error) = arena.step(inputs, terrain) {
+    if let Err(error) = arena.step_with(inputs, orders, terrain, &StepRules::default()) {
         panic!("tick {tick}: {error}");
     }
+}
+
+/// An empty arena that knows the same kinds of creatures.
+fn fresh(arena: &Arena) -> Arena {
+    let mut fresh = match Arena::new(*arena.config()) {
+        Ok(fresh) => fresh,
+        Err(error) => panic!("{error}"),
+    };
+    for (_, kind) in arena.kinds() {
+        if let Err(error) = fresh.add_kind(Arc::clone(kind)) {
+            panic!("{error}");
+        }
+    }
+    fresh
 }
 
 fn make(giant: &Creature, rng: &mut Rng) -> (Arena, DVec3) {
@@ -100,7 +123,9 @@ fn make(giant: &Creature, rng: &mut Rng) -> (Arena, DVec3) {
             arena.add_creature(Arc::clone(&kind), config)?;
         }
         for _ in 0..rng.u32(1..5) {
-            let creature = &arena.creatures()[rng.usize(0..arena.creatures().len())];
+            let number = rng.usize(0..arena.creatures().len());
+            let creature = arena.creatures().nth(number);
+            let (_, creature) = creature.ok_or("no creature")?;
             let (size, at) = (creature.scale(), creature.config().position);
             let place = if rng.bool() {
                 at + DVec3::new(lot(rng) * 3.0, 36.0, lot(rng) * 3.0) * size

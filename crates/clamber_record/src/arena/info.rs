@@ -8,13 +8,13 @@ use crate::{RecordError, RecordingInfo};
 /// The metadata of a recording of an arena.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ArenaInfo {
-    /// [`Arena::assets`]: it tells whether creatures, fighters or configurations have changed since.
-    pub assets: u64,
+    /// [`Arena::config_hash`]: it tells whether the arena's configuration has changed since.
+    pub config: u64,
     /// Duration of a tick, seconds.
     pub tick_seconds: f64,
-    /// Names of the creatures, by number.
+    /// Names of the creatures, by number, also of those that have left. Those that join later are called `creature N`.
     pub creatures: Vec<String>,
-    /// Names of the fighters, by number.
+    /// Names of the fighters, by number, as those of the creatures.
     pub fighters: Vec<String>,
     /// What the arena was made from, in the caller's own entries: seed, options, files.
     pub settings: BTreeMap<String, String>,
@@ -30,10 +30,10 @@ impl ArenaInfo {
     pub fn of(arena: &Arena) -> Self {
         let named = |what: &str, count| (0..count).map(|n| format!("{what} {n}")).collect();
         Self {
-            assets: arena.assets(),
+            config: arena.config_hash(),
             tick_seconds: arena.config().tick,
-            creatures: named("creature", arena.creatures().len()),
-            fighters: named("fighter", arena.fighters().len()),
+            creatures: named("creature", arena.next_creature().0),
+            fighters: named("fighter", arena.next_fighter().0),
             settings: BTreeMap::new(),
             version: RecordingInfo::VERSION.to_owned(),
         }
@@ -55,11 +55,11 @@ impl ArenaInfo {
     /// channels are told apart by them.
     pub(crate) fn check_names(&self, arena: &Arena) -> Result<(), RecordError> {
         let counts = [
-            ("creatures", self.creatures.len(), arena.creatures().len()),
-            ("fighters", self.fighters.len(), arena.fighters().len()),
+            ("creatures", self.creatures.len(), arena.next_creature().0),
+            ("fighters", self.fighters.len(), arena.next_fighter().0),
         ];
         for (what, names, found) in counts {
-            if names != found {
+            if names != found as usize {
                 let problem = format!("there are {names} names for {found} {what}");
                 return Err(RecordError::Names(problem));
             }
@@ -76,7 +76,7 @@ impl ArenaInfo {
     pub(crate) fn to_metadata(&self) -> BTreeMap<String, String> {
         let own = [
             ("version".to_owned(), RecordingInfo::VERSION.to_owned()),
-            ("assets".to_owned(), format!("{:016x}", self.assets)),
+            ("config".to_owned(), format!("{:016x}", self.config)),
             (
                 "tick_seconds".to_owned(),
                 format!("{:?}", self.tick_seconds),
@@ -98,7 +98,7 @@ impl ArenaInfo {
         metadata: &BTreeMap<String, String>,
         settings: BTreeMap<String, String>,
     ) -> Result<Self, RecordError> {
-        let assets = text(metadata, "assets")?;
+        let config = text(metadata, "config")?;
         let tick_seconds = parse::<f64>(metadata, "tick_seconds")?;
         if !(tick_seconds > 0.0 && tick_seconds.is_finite()) {
             return Err(RecordError::TickSeconds(tick_seconds));
@@ -108,8 +108,8 @@ impl ArenaInfo {
             (0u32..).map_while(name).collect()
         };
         Ok(Self {
-            assets: u64::from_str_radix(assets, 16)
-                .map_err(|error| bad("assets", assets, &error.to_string()))?,
+            config: u64::from_str_radix(config, 16)
+                .map_err(|error| bad("config", config, &error.to_string()))?,
             tick_seconds,
             creatures: names("creature"),
             fighters: names("fighter"),

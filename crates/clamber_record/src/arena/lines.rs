@@ -1,6 +1,6 @@
 //! Events of an arena in words.
 
-use clamber_fight::{Arena, ArenaEvent, CreatureId, FighterId, Weapon, creature_obstacle};
+use clamber_fight::{Arena, ArenaEvent, CreatureId, FighterId, Order, Weapon, creature_obstacle};
 use clamber_surface::mesh::TriangleId;
 use clamber_world::ObstacleId;
 use foxglove::messages::Log;
@@ -13,6 +13,8 @@ use crate::views::{creature_line, line, log};
 /// What a log line needs to name things.
 pub(super) struct Words<'a> {
     pub(super) arena: &'a Arena,
+    /// Those of the last step.
+    pub(super) orders: &'a [Order],
     pub(super) info: &'a ArenaInfo,
     /// Of creatures, fighters, and of the terrain that the caller has named.
     pub(super) names: &'a ObstacleNames,
@@ -22,9 +24,16 @@ impl Words<'_> {
     /// The log lines of the last step.
     pub(super) fn lines(&self, nanoseconds: u64) -> Vec<Log> {
         let events = self.arena.events().iter();
-        events
-            .filter_map(|event| self.line(nanoseconds, event))
-            .collect()
+        let events = events.filter_map(|event| self.line(nanoseconds, event));
+        let orders = self.orders.iter().filter_map(|order| {
+            let what = match order {
+                // Events tell who has joined.
+                Order::AddFighter { .. } | Order::AddCreature { .. } => return None,
+                order => format!("{order:?}"),
+            };
+            Some(log(nanoseconds, Level::Debug, "order", what))
+        });
+        orders.chain(events).collect()
     }
 
     fn line(&self, now: u64, event: &ArenaEvent) -> Option<Log> {
@@ -97,8 +106,25 @@ impl Words<'_> {
                 "lives again".to_owned(),
             ),
             ArenaEvent::Killed { creature, by } => {
-                let what = format!("was killed by {}", self.fighter(*by));
+                let by = by.map(|by| format!(" by {}", self.fighter(by)));
+                let what = format!("was killed{}", by.unwrap_or_default());
                 (Level::Error, self.creature(*creature), what)
+            }
+            ArenaEvent::CreatureJoined { creature } => {
+                (Level::Info, self.creature(*creature), "joined".to_owned())
+            }
+            ArenaEvent::CreatureLeft { creature } => {
+                (Level::Info, self.creature(*creature), "left".to_owned())
+            }
+            ArenaEvent::FighterJoined { fighter } => {
+                (Level::Info, self.fighter(*fighter), "joined".to_owned())
+            }
+            ArenaEvent::FighterLeft { fighter } => {
+                (Level::Info, self.fighter(*fighter), "left".to_owned())
+            }
+            ArenaEvent::Unheard { order } => {
+                let what = format!("order {order} was for somebody who is not there");
+                (Level::Warning, "arena".to_owned(), what)
             }
             // An event that is newer than this list.
             other => (Level::Info, "arena".to_owned(), format!("{other:?}")),
@@ -133,9 +159,8 @@ impl Words<'_> {
     fn obstacle(&self, fighter: FighterId, obstacle: ObstacleId) -> String {
         let name = name_of(self.names, obstacle);
         let on = || {
-            let mut creatures = self.arena.creatures().iter().zip(0..);
-            let (creature, _) =
-                creatures.find(|(_, id)| creature_obstacle(CreatureId(*id)) == obstacle)?;
+            let mut creatures = self.arena.creatures();
+            let (_, creature) = creatures.find(|(id, _)| creature_obstacle(*id) == obstacle)?;
             let state = self.arena.fighter(fighter)?.climber().state();
             let part = Part::of(state, creature.surface().mesh())?;
             part.is_on(obstacle).then(|| {

@@ -11,4 +11,4 @@ mod writing;
 pub use info::ArenaInfo;
 pub use recorder::ArenaRecorder;
 pub use recording::{ArenaRecording, RecordedArenaTick};
-pub use replay::{ArenaDifference, ArenaPart, ArenaReplay};
+pub use replay::{ArenaDifference, ArenaReplay};

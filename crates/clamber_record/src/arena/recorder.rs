@@ -1,10 +1,11 @@
+use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::Path;
 use std::sync::Arc;
 
 use clamber_climber::ClimberInput;
-use clamber_fight::{Arena, CreatureId, creature_obstacle, fighter_obstacle};
+use clamber_fight::{Arena, CreatureId, FighterId, Order, creature_obstacle, fighter_obstacle};
 use clamber_world::{Obstacle, ObstacleId};
 
 use super::ArenaInfo;
@@ -28,7 +29,12 @@ pub struct ArenaRecorder<W: Write> {
     options: RecordOptions,
     info: ArenaInfo,
     names: ObstacleNames,
-    joints: Vec<Arc<FigureJoints>>,
+    /// Of the creatures that were seen.
+    joints: BTreeMap<CreatureId, Arc<FigureJoints>>,
+    /// Fighters at the end of the tick recorded last.
+    fighters: usize,
+    /// The numbers that the next creature and the next fighter got then: those below have names.
+    named: [u32; 2],
     scenery: SceneryNames,
     chunks: Chunks<TakenArena, W>,
 }
@@ -62,41 +68,24 @@ impl<W: Write + Send + 'static> ArenaRecorder<W> {
         options: RecordOptions,
     ) -> Result<Self, RecordError> {
         info.check_names(arena)?;
-        let joints: Vec<_> = arena
-            .creatures()
-            .iter()
-            .enumerate()
-            .map(|(number, creature)| {
-                let name = info.creature(number);
-                Arc::new(FigureJoints::new(&name, creature.kind().skeleton()))
-            })
-            .collect();
-        let climbers = arena.fighters().iter();
-        let climbers = climbers.map(|fighter| fighter.climber().config());
-        let writing = ArenaWriting::new(out, info, climbers, options.skin_points)?;
-        let creatures = (0..arena.creatures().len() as u32).map(|number| {
-            let name = info.creature(number as usize);
-            (creature_obstacle(CreatureId(number)), name)
-        });
-        let fighters = arena.fighters().iter().map(|fighter| {
-            let name = info.fighter(fighter.id().0 as usize);
-            (fighter_obstacle(fighter.id()), name)
-        });
+        let writing = ArenaWriting::new(out, info, options.skin_points)?;
         let mut recorder = Self {
             options,
-            names: Arc::new(creatures.chain(fighters).collect()),
+            names: ObstacleNames::default(),
             info: info.clone(),
-            joints,
+            joints: BTreeMap::new(),
+            fighters: 0,
+            named: [0; 2],
             scenery: SceneryNames::default(),
             chunks: Chunks::start(writing, options.chunk_ticks)?,
         };
-        recorder.take(arena, &[], &[])?;
+        recorder.take(arena, (&[], &[]), &[])?;
         Ok(recorder)
     }
 }
 
 impl<W: Write> ArenaRecorder<W> {
-    /// Records the arena after a step, with the inputs and the terrain of that step.
+    /// Records the arena after a step, with the inputs, the orders and the terrain of that step.
     ///
     /// # Errors
     /// [`RecordError::Order`] unless it was stepped once since the last call, [`RecordError::Inputs`] for a wrong number of
@@ -110,35 +99,64 @@ impl<W: Write> ArenaRecorder<W> {
         &mut self,
         arena: &Arena,
         inputs: &[ClimberInput],
+        orders: &[Order],
         terrain: &[(ObstacleId, &dyn Obstacle)],
     ) -> Result<(), RecordError> {
-        let (fighters, found) = (arena.fighters().len(), inputs.len());
+        let (fighters, found) = (self.fighters, inputs.len());
         if fighters != found {
             return Err(RecordError::Inputs { fighters, found });
         }
-        self.take(arena, inputs, terrain)
+        self.take(arena, (inputs, orders), terrain)
+    }
+
+    /// Gives names to who has joined.
+    fn name_all(&mut self, arena: &Arena) {
+        let next = [arena.next_creature().0, arena.next_fighter().0];
+        let creatures = (self.named[0]..next[0]).map(|number| {
+            let name = self.info.creature(number as usize);
+            (creature_obstacle(CreatureId(number)), name)
+        });
+        let fighters = (self.named[1]..next[1]).map(|number| {
+            let name = self.info.fighter(number as usize);
+            (fighter_obstacle(FighterId(number)), name)
+        });
+        let new: Vec<(ObstacleId, String)> = creatures.chain(fighters).collect();
+        if !new.is_empty() {
+            Arc::make_mut(&mut self.names).extend(new);
+        }
+        self.named = next;
+        for (id, creature) in arena.creatures() {
+            let joints = || {
+                let name = self.info.creature(id.0 as usize);
+                Arc::new(FigureJoints::new(&name, creature.kind().skeleton()))
+            };
+            self.joints.entry(id).or_insert_with(joints);
+        }
     }
 
     fn take(
         &mut self,
         arena: &Arena,
-        inputs: &[ClimberInput],
+        inputs: (&[ClimberInput], &[Order]),
         terrain: &[(ObstacleId, &dyn Obstacle)],
     ) -> Result<(), RecordError> {
-        let (recorded, found) = (self.info.assets, arena.assets());
+        let (recorded, found) = (self.info.config, arena.config_hash());
         if recorded != found {
             return Err(RecordError::OtherArena { recorded, found });
         }
         let tick = arena.tick();
         self.chunks.check(tick)?;
+        self.name_all(arena);
+        self.fighters = arena.fighters().len();
         let is_due = |every: u32| every > 0 && tick.is_multiple_of(u64::from(every));
         let due = Due {
             views: is_due(self.options.transforms_every),
             skin: is_due(self.options.skin_every),
         };
-        let mut taken = TakenArena::new(arena, inputs, terrain, &self.joints, due);
+        let mut taken = TakenArena::new(arena, inputs, terrain, &self.joints, due)?;
         let words = Words {
             arena,
+            orders: inputs.1,
             info: &self.info,
             names: &self.names,
         };

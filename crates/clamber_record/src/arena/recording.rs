@@ -2,6 +2,7 @@ use std::ops::Range;
 use std::path::Path;
 
 use clamber_climber::ClimberInput;
+use clamber_fight::{ArenaPart, CreatureId, FighterId, Order};
 
 use super::ArenaInfo;
 use crate::file::{self, Contents, Kind};
@@ -17,10 +18,22 @@ pub struct RecordedArenaTick {
     pub tick: u64,
     /// The inputs of the step that led to it, by fighter; none for the first tick of a recording.
     pub inputs: Vec<ClimberInput>,
+    /// The orders of that step.
+    pub orders: Vec<Order>,
     /// [`Arena::fingerprint`](clamber_fight::Arena::fingerprint) at its end.
     pub fingerprint: u64,
     /// [`Arena::part_fingerprints`](clamber_fight::Arena::part_fingerprints) at its end.
-    pub parts: Vec<u64>,
+    pub parts: Vec<(ArenaPart, u64)>,
+}
+
+impl RecordedArenaTick {
+    /// The numbers of the fighters at its end, to whom the inputs of the next step belong.
+    pub fn fighters(&self) -> impl Iterator<Item = usize> + '_ {
+        self.parts.iter().filter_map(|(part, _)| match part {
+            ArenaPart::Fighter(FighterId(number)) => Some(*number as usize),
+            _ => None,
+        })
+    }
 }
 
 /// A recording of an arena that was read: its metadata, and all ticks up to where the file ends or is damaged.
@@ -156,11 +169,21 @@ impl ArenaRecording {
 
     fn decode_tick(&self, place: &Range<usize>) -> Result<RecordedArenaTick, RecordError> {
         let tick: ArenaTick = decode(&self.bytes, place, topics::ARENA)?;
+        let orders = match &tick.orders[..] {
+            [] => Vec::new(),
+            orders => Order::from_bytes(orders)?,
+        };
+        let creatures = tick.creatures.iter().copied().map(CreatureId);
+        let fighters = tick.fighters.iter().copied().map(FighterId);
+        let parts = creatures.map(ArenaPart::Creature);
+        let parts = parts.chain(fighters.map(ArenaPart::Fighter));
+        let parts = parts.chain([ArenaPart::Rest]).zip(tick.parts);
         Ok(RecordedArenaTick {
             tick: tick.tick,
             inputs: tick.inputs.into_iter().map(Into::into).collect(),
+            orders,
             fingerprint: tick.fingerprint,
-            parts: tick.parts,
+            parts: parts.collect(),
         })
     }
 

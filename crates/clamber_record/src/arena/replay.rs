@@ -1,22 +1,10 @@
 use std::fmt;
 
 use clamber_climber::ClimberInput;
-use clamber_fight::{Arena, ArenaError};
+use clamber_fight::{Arena, ArenaError, ArenaPart, Order};
 
 use super::{ArenaInfo, ArenaRecording, RecordedArenaTick};
 use crate::RecordError;
-
-/// A part of an arena.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum ArenaPart {
-    /// A creature, by its number.
-    Creature(usize),
-    /// A fighter, by its number.
-    Fighter(usize),
-    /// Projectiles, noises and counters.
-    Rest,
-}
 
 /// A tick at which a replay differs from the recording.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,20 +25,26 @@ impl ArenaDifference {
         info: &ArenaInfo,
         recorded: &RecordedArenaTick,
         fingerprint: u64,
-        parts: &[u64],
+        parts: &[(ArenaPart, u64)],
     ) -> Option<Self> {
-        let (creatures, fighters) = (info.creatures.len(), info.fighters.len());
-        let part = |index: usize| match index.checked_sub(creatures) {
-            None => (ArenaPart::Creature(index), info.creature(index)),
-            Some(index) if index < fighters => (ArenaPart::Fighter(index), info.fighter(index)),
-            Some(_) => (ArenaPart::Rest, "projectiles or noises".to_owned()),
+        let name = |part: ArenaPart| match part {
+            ArenaPart::Creature(id) => info.creature(id.0 as usize),
+            ArenaPart::Fighter(id) => info.fighter(id.0 as usize),
+            _ => "projectiles or noises".to_owned(),
         };
-        let both = parts.iter().zip(&recorded.parts).enumerate();
-        let differ = both.filter(|(_, (ours, theirs))| ours != theirs);
+        // Also those that are only in one of them.
+        let [ours, theirs] = [parts, &recorded.parts];
+        let mut differ: Vec<ArenaPart> = Vec::new();
+        for (one, other) in [(ours, theirs), (theirs, ours)] {
+            let missing = one.iter().filter(|part| !other.contains(part));
+            differ.extend(missing.map(|(part, _)| *part));
+        }
+        differ.sort_unstable();
+        differ.dedup();
         (fingerprint != recorded.fingerprint).then(|| Self {
             recorded: recorded.clone(),
             fingerprint,
-            parts: differ.map(|(index, _)| part(index)).collect(),
+            parts: differ.into_iter().map(|part| (part, name(part))).collect(),
         })
     }
 }
@@ -84,9 +78,9 @@ pub struct ArenaReplay {
 impl ArenaRecording {
     /// Plays a recording again and compares every tick, up to the first one that differs.
     ///
-    /// `arena` is made as it was for the recording. It is brought to the last saved state at or before the tick `from`,
-    /// or to the first tick. Then `step` is called with the inputs of one tick after another, and steps it over the
-    /// same terrain.
+    /// `arena` is made with the configuration of the recorded one, and knows the kinds of its creatures. It is brought to the
+    /// last saved state at or before the tick `from`, or to the first tick. Then `step` is called with the inputs and
+    /// orders of one tick after another, and steps it over the same terrain.
     ///
     /// # Errors
     /// [`RecordError::OtherArena`] if the arena is another one, [`RecordError::NoTick`] and [`RecordError::NoSnapshot`] if there
@@ -96,9 +90,9 @@ impl ArenaRecording {
         &self,
         arena: &mut Arena,
         from: Option<u64>,
-        mut step: impl FnMut(&mut Arena, &[ClimberInput]) -> Result<(), ArenaError>,
+        mut step: impl FnMut(&mut Arena, &[ClimberInput], &[Order]) -> Result<(), ArenaError>,
     ) -> Result<ArenaReplay, RecordError> {
-        let (recorded, found) = (self.info().assets, arena.assets());
+        let (recorded, found) = (self.info().config, arena.config_hash());
         if recorded != found {
             return Err(RecordError::OtherArena { recorded, found });
         }
@@ -113,7 +107,7 @@ impl ArenaRecording {
         for recorded in self.ticks_from(from) {
             let recorded = recorded?;
             if recorded.tick > from {
-                step(arena, &recorded.inputs)?;
+                step(arena, &recorded.inputs, &recorded.orders)?;
             }
             if arena.fingerprint() != recorded.fingerprint {
                 let (all, parts) = (arena.fingerprint(), arena.part_fingerprints());

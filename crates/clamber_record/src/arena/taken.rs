@@ -1,15 +1,17 @@
 //! The copy of an arena's tick that is made while the game waits.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use clamber_climber::{ClimberInput, ClimberState};
+use clamber_climber::{ClimberConfig, ClimberInput, ClimberState};
 use clamber_colossus::Creature;
-use clamber_fight::{Arena, Blade, ProjectilePlace};
+use clamber_fight::{Arena, ArenaPart, Blade, CreatureId, FighterId, Order, ProjectilePlace};
 use clamber_surface::geometry::Affine;
 use clamber_surface::mesh::ColliderMesh;
 use clamber_world::{Obstacle, ObstacleId};
 use foxglove::messages::Log;
 
+use crate::RecordError;
 use crate::messages::{ArenaTick, Brain};
 use crate::views::{FigureJoints, TakenFigure, TakenScenery, brain};
 
@@ -30,6 +32,7 @@ pub(crate) struct TakenArena {
 
 #[derive(Debug)]
 pub(crate) struct TakenCreature {
+    pub(crate) id: CreatureId,
     pub(crate) figure: TakenFigure,
     pub(crate) brain: Brain,
     pub(crate) skin: Option<(Arc<ColliderMesh>, Vec<Affine>)>,
@@ -37,6 +40,8 @@ pub(crate) struct TakenCreature {
 
 #[derive(Clone, Debug)]
 pub(crate) struct TakenFighter {
+    pub(crate) id: FighterId,
+    pub(crate) config: ClimberConfig,
     pub(crate) state: ClimberState,
     pub(crate) blade: Option<Blade>,
 }
@@ -51,17 +56,34 @@ pub(super) struct Due {
 impl TakenArena {
     pub(super) fn new(
         arena: &Arena,
-        inputs: &[ClimberInput],
+        (inputs, orders): (&[ClimberInput], &[Order]),
         terrain: &[(ObstacleId, &dyn Obstacle)],
-        joints: &[Arc<FigureJoints>],
+        joints: &BTreeMap<CreatureId, Arc<FigureJoints>>,
         due: Due,
-    ) -> Self {
+    ) -> Result<Self, RecordError> {
+        let parts = arena.part_fingerprints();
+        let orders = match orders {
+            [] => Vec::new(),
+            orders => Order::to_bytes(orders)?,
+        };
+        let mut creatures = Vec::new();
+        let mut fighters = Vec::new();
+        for (part, _) in &parts {
+            match part {
+                ArenaPart::Creature(id) => creatures.push(id.0),
+                ArenaPart::Fighter(id) => fighters.push(id.0),
+                _ => {}
+            }
+        }
         let mut taken = Self {
             message: ArenaTick {
                 tick: arena.tick(),
                 inputs: inputs.iter().map(Into::into).collect(),
                 fingerprint: arena.fingerprint(),
-                parts: arena.part_fingerprints(),
+                parts: parts.into_iter().map(|(_, part)| part).collect(),
+                creatures,
+                fighters,
+                orders: orders.into(),
             },
             lines: Vec::new(),
             is_due: due.views,
@@ -72,13 +94,16 @@ impl TakenArena {
             saved: None,
         };
         if due.views {
-            let creatures = arena.creatures().iter().zip(joints);
-            taken.creatures = creatures
-                .map(|(creature, joints)| TakenCreature::new(creature, joints, due.skin))
-                .collect();
+            let creatures = arena.creatures().filter_map(|(id, creature)| {
+                let joints = joints.get(&id)?;
+                Some(TakenCreature::new((id, creature), joints, due.skin))
+            });
+            taken.creatures = creatures.collect();
             let fighters = arena.fighters().iter();
             taken.fighters = fighters
                 .map(|fighter| TakenFighter {
+                    id: fighter.id(),
+                    config: fighter.config().climber,
                     state: *fighter.climber().state(),
                     blade: fighter.blade(),
                 })
@@ -88,14 +113,19 @@ impl TakenArena {
                 .filter_map(|projectile| arena.place(projectile, terrain))
                 .collect();
         }
-        taken
+        Ok(taken)
     }
 }
 
 impl TakenCreature {
-    fn new(creature: &Creature, joints: &Arc<FigureJoints>, with_skin: bool) -> Self {
+    fn new(
+        (id, creature): (CreatureId, &Creature),
+        joints: &Arc<FigureJoints>,
+        with_skin: bool,
+    ) -> Self {
         let (surface, palette) = (creature.surface(), creature.palette());
         Self {
+            id,
             figure: TakenFigure::new(Arc::clone(joints), palette, *surface.world_from_model()),
             brain: brain(creature),
             skin: with_skin.then(|| (Arc::clone(surface.mesh()), palette.matrices().to_vec())),

@@ -1,7 +1,7 @@
+use std::collections::BTreeMap;
 use std::io::Write;
 
-use clamber_climber::ClimberConfig;
-use clamber_fight::{Blade, ProjectilePlace};
+use clamber_fight::{Blade, CreatureId, FighterId, ProjectilePlace};
 use clamber_surface::skin::skin_into;
 use foxglove::messages::{
     ArrowPrimitive, FrameTransforms, Log, PointCloud, Pose, SceneEntity, SceneUpdate,
@@ -30,10 +30,11 @@ pub(super) struct ArenaWriting<W: Write> {
     scene: Channel,
     scenery: Channel,
     log: Channel,
-    /// Brain and skin of each creature.
-    creatures: Vec<(Channel, Channel)>,
-    /// Name of each fighter, and how its body is drawn.
-    fighters: Vec<(String, Scene)>,
+    /// Brain and skin of each creature that was seen.
+    creatures: BTreeMap<CreatureId, (Channel, Channel)>,
+    /// Name of each fighter that was seen, and how its body is drawn.
+    fighters: BTreeMap<FighterId, (String, Scene)>,
+    info: ArenaInfo,
     skin: Skin,
     meshes: Sceneries,
     /// Kept for its memory.
@@ -41,27 +42,12 @@ pub(super) struct ArenaWriting<W: Write> {
 }
 
 impl<W: Write> ArenaWriting<W> {
-    pub(super) fn new<'a>(
-        out: W,
-        info: &ArenaInfo,
-        climbers: impl Iterator<Item = &'a ClimberConfig>,
-        skin_points: usize,
-    ) -> Result<Self, RecordError> {
+    pub(super) fn new(out: W, info: &ArenaInfo, skin_points: usize) -> Result<Self, RecordError> {
         let metadata = [
             (ArenaInfo::METADATA, info.to_metadata()),
             (RecordingInfo::SETTINGS, info.settings.clone()),
         ];
         let mut output = Output::new(out, info.tick_seconds, metadata)?;
-        let mut creatures = Vec::new();
-        for number in 0..info.creatures.len() {
-            let [brain, skin] =
-                [topics::BRAIN, topics::SKIN].map(|topic| format!("{topic}/{number}"));
-            creatures.push((
-                output.channel_named::<Brain>(topics::BRAIN, &brain)?,
-                output.channel_named::<PointCloud>(topics::SKIN, &skin)?,
-            ));
-        }
-        let fighters = climbers.enumerate();
         Ok(Self {
             tick: output.channel::<ArenaTick>(topics::ARENA)?,
             snapshot: output.channel::<ArenaSnapshot>(topics::ARENA_SNAPSHOT)?,
@@ -70,12 +56,9 @@ impl<W: Write> ArenaWriting<W> {
             scenery: output.channel::<SceneUpdate>(topics::SCENERY)?,
             log: output.channel::<Log>(topics::LOG)?,
             output,
-            creatures,
-            fighters: fighters
-                .map(|(number, config)| {
-                    (info.fighter(number), Scene::new(config, info.tick_seconds))
-                })
-                .collect(),
+            creatures: BTreeMap::new(),
+            fighters: BTreeMap::new(),
+            info: info.clone(),
             skin: Skin::new(skin_points),
             meshes: Sceneries::default(),
             positions: Vec::new(),
@@ -114,25 +97,43 @@ impl<W: Write> ArenaWriting<W> {
         for creature in &taken.creatures {
             transforms.extend(creature.figure.message(now).transforms);
         }
-        for ((name, _), fighter) in self.fighters.iter().zip(&taken.fighters) {
+        let mut entities: Vec<SceneEntity> = Vec::new();
+        for fighter in &taken.fighters {
+            let (name, scene) = self.fighters.entry(fighter.id).or_insert_with(|| {
+                let name = self.info.fighter(fighter.id.0 as usize);
+                (name, Scene::new(&fighter.config, self.info.tick_seconds))
+            });
             transforms.push(frame_of_climber(now, name, &fighter.state));
+            entities.push(body(now, name, scene, fighter));
         }
         self.output
             .send(self.transforms, now, &FrameTransforms { transforms })?;
-        let bodies = self.fighters.iter().zip(&taken.fighters);
-        let mut entities: Vec<SceneEntity> = bodies
-            .map(|((name, scene), fighter)| body(now, name, scene, fighter))
-            .collect();
         entities.push(arrows(now, &taken.projectiles));
         let scene = SceneUpdate {
             deletions: Vec::new(),
             entities,
         };
         self.output.send(self.scene, now, &scene)?;
-        for (creature, channels) in taken.creatures.drain(..).zip(self.creatures.clone()) {
+        for creature in taken.creatures.drain(..) {
+            let channels = self.channels(creature.id)?;
             self.creature(&creature, channels, now)?;
         }
         Ok(())
+    }
+
+    /// The channels of a creature, which are added when it is seen first.
+    fn channels(&mut self, creature: CreatureId) -> Result<(Channel, Channel), RecordError> {
+        if let Some(known) = self.creatures.get(&creature) {
+            return Ok(*known);
+        }
+        let [brain, skin] =
+            [topics::BRAIN, topics::SKIN].map(|topic| format!("{topic}/{}", creature.0));
+        let brain = self.output.channel_named::<Brain>(topics::BRAIN, &brain)?;
+        let skin = self
+            .output
+            .channel_named::<PointCloud>(topics::SKIN, &skin)?;
+        self.creatures.insert(creature, (brain, skin));
+        Ok((brain, skin))
     }
 
     fn creature(

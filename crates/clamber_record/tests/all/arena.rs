@@ -11,12 +11,14 @@ use std::path::Path;
 use std::process::Command;
 use std::sync::{Arc, OnceLock};
 
-use clamber_climber::ClimberInput;
+use clamber_climber::{Blow, ClimberInput, StepRules};
 use clamber_colossus::{CreatureConfig, CreatureKind};
-use clamber_fight::{Arena, ArenaConfig, FighterConfig};
+use clamber_fight::{
+    Arena, ArenaConfig, ArenaError, ArenaPart, CreatureId, FighterConfig, FighterId, Order,
+};
 use clamber_record::{
-    ArenaInfo, ArenaPart, ArenaRecorder, ArenaRecording, Ending, RecordError, RecordOptions,
-    Recording, SceneryView,
+    ArenaInfo, ArenaRecorder, ArenaRecording, Ending, RecordError, RecordOptions, Recording,
+    SceneryView,
 };
 use clamber_scenes::duel::Duel;
 use clamber_surface::geometry::Similarity;
@@ -56,10 +58,11 @@ fn inputs(tick: u64) -> Vec<ClimberInput> {
     (0..3).map(player).collect()
 }
 
-fn step(arena: &mut Arena, inputs: &[ClimberInput]) -> Result<(), clamber_fight::ArenaError> {
+fn step(arena: &mut Arena, inputs: &[ClimberInput], orders: &[Order]) -> Result<(), ArenaError> {
     let ground = HalfSpace::below(0.0);
     let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &ground)];
-    arena.step(inputs, &terrain).map(drop)
+    let rules = StepRules::default();
+    arena.step_with(inputs, orders, &terrain, &rules).map(drop)
 }
 
 fn file() -> &'static [u8] {
@@ -89,7 +92,7 @@ fn file() -> &'static [u8] {
                 .unwrap();
             let inputs = inputs(tick);
             arena.step(&inputs, &terrain).unwrap();
-            recorder.tick(&arena, &inputs, &terrain).unwrap();
+            recorder.tick(&arena, &inputs, &[], &terrain).unwrap();
         }
         recorder.finish().unwrap()
     })
@@ -123,24 +126,24 @@ fn a_difference_names_who_is_different() {
     let mut arena = arena();
     // Another input of the archer in one tick.
     let replay = recording
-        .replay(&mut arena, None, |arena, inputs| {
+        .replay(&mut arena, None, |arena, inputs, orders| {
             let mut inputs = inputs.to_vec();
             if arena.tick() == 120 {
                 inputs[1].aim.x += 1e-9;
                 inputs[1].actions ^= clamber_fight::actions::BOW;
             }
-            step(arena, &inputs)
+            step(arena, &inputs, orders)
         })
         .unwrap();
     let difference = replay.difference.unwrap();
     assert_eq!((difference.recorded.tick, replay.agreed), (121, 121));
-    let archer = (ArenaPart::Fighter(1), "archer".to_owned());
+    let archer = (ArenaPart::Fighter(FighterId(1)), "archer".to_owned());
     assert_eq!(difference.parts.first(), Some(&archer), "{difference}");
     assert!(difference.to_string().contains("not the same archer"));
 
     // Ground that is a nanometre lower.
     let replay = recording
-        .replay(&mut arena, None, |arena, inputs| {
+        .replay(&mut arena, None, |arena, inputs, _| {
             let ground = HalfSpace::below(-1e-9);
             let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &ground)];
             arena.step(inputs, &terrain).map(drop)
@@ -152,10 +155,12 @@ fn a_difference_names_who_is_different() {
 #[test]
 fn other_arenas_orders_and_recordings_are_refused() {
     let recording = ArenaRecording::from_bytes(file().to_vec()).unwrap();
-    let mut other = arena();
-    other
-        .add_fighter(FighterConfig::hero(), DVec3::Y * 100.0)
-        .unwrap();
+    let mut other = Arena::new(ArenaConfig {
+        stuck_arrows: 7,
+        ..ArenaConfig::default()
+    })
+    .unwrap();
+    other.add_kind(Arc::clone(kind())).unwrap();
     let before = other.fingerprint();
     let refused = recording.replay(&mut other, None, step).unwrap_err();
     assert!(
@@ -163,6 +168,13 @@ fn other_arenas_orders_and_recordings_are_refused() {
         "{refused}"
     );
     assert_eq!(other.fingerprint(), before);
+    // An arena that does not know the giant.
+    let mut other = Arena::new(ArenaConfig::default()).unwrap();
+    let refused = recording.replay(&mut other, None, step).unwrap_err();
+    let unknown = ArenaError::Kind {
+        kind: clamber_fight::KindId(kind().fingerprint()),
+    };
+    assert_eq!(refused.to_string(), unknown.to_string());
     let beyond = recording.replay(&mut arena(), Some(TICKS + 1), step);
     assert!(matches!(beyond, Err(RecordError::NoTick { .. })));
 
@@ -177,15 +189,15 @@ fn other_arenas_orders_and_recordings_are_refused() {
     assert!(ArenaRecorder::new(Vec::new(), &info, &other, options).is_err());
     let mut recorder = ArenaRecorder::new(Vec::new(), &info, &arena, options).unwrap();
     let idle = [ClimberInput::IDLE; 3];
-    let none = recorder.tick(&arena, &[], &[]).unwrap_err();
+    let none = recorder.tick(&arena, &[], &[], &[]).unwrap_err();
     assert!(matches!(none, RecordError::Inputs { .. }), "{none}");
     // Not stepped.
-    let again = recorder.tick(&arena, &idle, &[]).unwrap_err();
+    let again = recorder.tick(&arena, &idle, &[], &[]).unwrap_err();
     assert!(matches!(again, RecordError::Order { .. }), "{again}");
     for _ in 0..2 {
-        step(&mut arena, &idle).unwrap();
+        step(&mut arena, &idle, &[]).unwrap();
     }
-    let twice = recorder.tick(&arena, &idle, &[]).unwrap_err();
+    let twice = recorder.tick(&arena, &idle, &[], &[]).unwrap_err();
     assert!(matches!(twice, RecordError::Order { .. }), "{twice}");
 }
 
@@ -311,5 +323,126 @@ fn names_are_one_each() {
         let error = recorder.map(|_| ()).unwrap_err();
         assert!(matches!(error, RecordError::Names(_)), "{error}");
         assert!(error.to_string().contains(words), "{error}");
+    }
+}
+
+/// What a game does to the arena in the step to a tick.
+fn orders(tick: u64, arena: &Arena) -> Vec<Order> {
+    let (fighter, creature) = (FighterId(1), CreatureId(0));
+    let kind = clamber_fight::KindId(kind().fingerprint());
+    match tick {
+        20 => vec![Order::Send {
+            creature,
+            to: Some(DVec3::new(-0.0, 0.0, 90.0)),
+        }],
+        40 => vec![
+            Order::Strike {
+                fighter,
+                blow: Blow {
+                    velocity: DVec3::new(3.0, 9.0, -0.0),
+                    damage: 0.25,
+                    by: None,
+                },
+            },
+            Order::AddFighter {
+                config: Box::new(FighterConfig::hero()),
+                position: DVec3::new(-5.0, 1.0, 20.0),
+            },
+        ],
+        70 => vec![
+            Order::RemoveFighter {
+                fighter: FighterId(0),
+            },
+            Order::AddCreature {
+                kind,
+                config: CreatureConfig {
+                    position: DVec3::X * 150.0,
+                    scale: 0.3,
+                    ..CreatureConfig::default()
+                },
+            },
+        ],
+        // Somebody who has left.
+        90 => vec![Order::Hurt {
+            fighter: FighterId(0),
+            damage: 0.5,
+        }],
+        130 => vec![Order::RemoveCreature {
+            creature: CreatureId(1),
+        }],
+        200 => vec![
+            Order::Heal {
+                fighter,
+                hit_points: 1.0,
+                stamina: 0.1,
+            },
+            Order::RemoveCreature {
+                creature: arena.creatures().last().unwrap().0,
+            },
+        ],
+        _ => Vec::new(),
+    }
+}
+
+/// Orders are recorded, and played again from any tick, by an arena that knows nothing but the kind of creature; who joins
+/// and leaves is told by name, with frames and channels of its own.
+#[test]
+fn orders_are_recorded_and_played_again() {
+    let mut arena = arena();
+    let info = ArenaInfo::of(&arena);
+    let options = RecordOptions::default();
+    let mut recorder = ArenaRecorder::new(Vec::new(), &info, &arena, options).unwrap();
+    for tick in 1..=TICKS {
+        let orders = orders(tick, &arena);
+        let fighters = arena.fighters().iter();
+        let inputs: Vec<ClimberInput> = fighters
+            .map(|fighter| inputs(tick)[fighter.id().0 as usize % 3])
+            .collect();
+        step(&mut arena, &inputs, &orders).unwrap();
+        recorder.tick(&arena, &inputs, &orders, &[]).unwrap();
+    }
+    let file = recorder.finish().unwrap();
+    let recording = ArenaRecording::from_bytes(file.clone()).unwrap();
+    assert_eq!(*recording.ending(), Ending::Whole);
+    for from in [None, Some(61), Some(100), Some(200), Some(TICKS)] {
+        let mut fresh = Arena::new(ArenaConfig::default()).unwrap();
+        fresh.add_kind(Arc::clone(kind())).unwrap();
+        let replay = recording.replay(&mut fresh, from, step).unwrap();
+        assert_eq!(replay.difference, None, "{from:?}");
+        assert_eq!(fresh.fingerprint(), arena.fingerprint());
+    }
+    // Without them it is another fight, from the tick of the first one on.
+    let replay = recording.replay(&mut arena, None, |arena, inputs, _| {
+        step(arena, inputs, &[])
+    });
+    let difference = replay.unwrap().difference.unwrap();
+    assert_eq!(difference.recorded.tick, 20);
+    let part = (ArenaPart::Creature(CreatureId(0)), "creature 0".to_owned());
+    assert_eq!(difference.parts.first(), Some(&part));
+    // A fighter more than was recorded.
+    let replay = recording.replay(&mut arena, None, |arena, inputs, orders| {
+        let mut orders = orders.to_vec();
+        if arena.tick() == 9 {
+            orders.push(Order::AddFighter {
+                config: Box::new(FighterConfig::hero()),
+                position: DVec3::X * 900.0,
+            });
+        }
+        step(arena, inputs, &orders)
+    });
+    let difference = replay.unwrap().difference.unwrap();
+    assert_eq!(difference.recorded.tick, 10);
+    let part = (ArenaPart::Fighter(FighterId(3)), "fighter 3".to_owned());
+    assert_eq!(difference.parts.first(), Some(&part));
+
+    let bytes = String::from_utf8_lossy(&file);
+    for words in [
+        "/brain/2",
+        "joined",
+        "left",
+        "somebody who is not there",
+        "Strike",
+    ] {
+        assert!(bytes.contains(words), "{words}");
     }
 }

@@ -142,7 +142,7 @@ impl<'a> Performer<'a> {
             Part::Fights(arena) => {
                 let mut saved = arena.save();
                 if let Some(fighter) = saved.fighters.first_mut() {
-                    fighter.climber = state;
+                    fighter.state.climber = state;
                 }
                 arena.restore(&saved)?;
             }
@@ -181,7 +181,7 @@ impl<'a> Performer<'a> {
         let rules = StepRules::by(rule);
         match &mut self.part {
             Part::Fights(arena) => {
-                arena.step_with(&[*input], &[(TERRAIN, terrain)], &rules)?;
+                arena.step_with(&[*input], &[], &[(TERRAIN, terrain)], &rules)?;
                 let moved = self.surface().world_from_model().translation - before;
                 self.velocity = moved / TICK;
             }
@@ -243,7 +243,7 @@ impl<'a> Performer<'a> {
     /// The skin, as posed by the last step.
     pub fn surface(&self) -> &SkinnedSurface {
         match &self.part {
-            Part::Fights(arena) => arena.creatures()[0].surface(),
+            Part::Fights(arena) => life(arena).surface(),
             Part::Plays(play) => &play.surface,
         }
     }
@@ -251,7 +251,7 @@ impl<'a> Performer<'a> {
     /// The palette of the last step.
     pub fn palette(&self) -> &Palette {
         match &self.part {
-            Part::Fights(arena) => arena.creatures()[0].palette(),
+            Part::Fights(arena) => life(arena).palette(),
             Part::Plays(play) => play.choreography.palette(),
         }
     }
@@ -265,7 +265,7 @@ impl<'a> Performer<'a> {
     pub fn playing(&self) -> String {
         match &self.part {
             Part::Fights(arena) => {
-                let life = &arena.creatures()[0];
+                let life = life(arena);
                 life.kind().brain().path(life.state().current()).to_owned()
             }
             Part::Plays(play) => play.choreography.playing(),
@@ -283,7 +283,7 @@ impl<'a> Performer<'a> {
     pub(super) fn sight(&self) -> Sight {
         match &self.part {
             Part::Fights(arena) => {
-                let life = &arena.creatures()[0];
+                let life = life(arena);
                 let attack = life.attack().map(|(_, phase)| phase);
                 let act = life.kind().brain().act(life.state().current());
                 let is_quiet =
@@ -364,4 +364,13 @@ fn arena(creature: &Creature, brain: Brain, options: &BattleOptions) -> Result<A
     })?;
     arena.add_creature(Arc::new(kind), config)?;
     Ok(arena)
+}
+
+/// The creature of an arena.
+#[expect(
+    clippy::expect_used,
+    reason = "it is the first that joins, and nobody lets it leave"
+)]
+fn life(arena: &Arena) -> &clamber_colossus::Creature {
+    arena.creature(CreatureId(0)).expect("there is a creature")
 }

@@ -50,7 +50,7 @@ pub fn record(
     let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &ground)];
     for inputs in inputs {
         arena.step(&inputs, &terrain)?;
-        recorder.tick(&arena, &inputs, &terrain)?;
+        recorder.tick(&arena, &inputs, &[], &terrain)?;
     }
     recorder.finish()?;
     Ok(arena.fingerprint())
@@ -74,7 +74,7 @@ pub fn replay(recording: &ArenaRecording, from: Option<u64>) -> Result<ArenaRepl
         return Err(DuelError::OtherScene);
     }
     let Duel { mut arena, ground } = Duel::new(&Duel::kind()?)?;
-    Ok(recording.replay(&mut arena, from, |arena, inputs| {
+    Ok(recording.replay(&mut arena, from, |arena, inputs, _| {
         Duel::step(arena, &ground, inputs)
     })?)
 }

@@ -135,8 +135,10 @@ impl Phase {
             let times = [begin, end].map(|seconds| seconds + self.sword.wind_up);
             let frames = [begin, end].map(|seconds| self.frame(seconds));
             let mut hits = Vec::new();
+            let skins = [(CreatureId(0), &*surface)];
+            let skins = Skins(&skins);
             self.sword
-                .cut_through(times, frames, dt, &[surface], &mut struck, &mut hits);
+                .cut_through(times, frames, dt, skins, &mut struck, &mut hits);
             assert!(hits.is_sorted_by(|a, b| a.time <= b.time));
             for hit in hits {
                 let part = surface.mesh().parts()[hit.hit.hit.part.index()].joint.0;

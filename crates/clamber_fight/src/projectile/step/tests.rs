@@ -2,9 +2,11 @@
 
 use clamber_surface::geometry::{Affine, Similarity, rotation_from_axis_angle};
 use clamber_surface::rig::Palette;
+use clamber_surface::surface::SkinnedSurface;
 use fastrand::Rng;
 
 use super::*;
+use crate::arena::CreatureId;
 use crate::fighter::{BowConfig, FighterId};
 use crate::projectile::{ProjectileId, ProjectilePlace, place_on};
 use crate::testing::limb;
@@ -15,7 +17,7 @@ const GRAVITY: DVec3 = DVec3::new(0.0, -9.81, 0.0);
 const FLIES: f64 = 0.8;
 
 struct Shot {
-    shooter: FighterConfig,
+    bow: BowConfig,
     from: DVec3,
     velocity: DVec3,
     /// Of the limb: where it is in the middle of the flight, how fast, and how it turns.
@@ -36,12 +38,9 @@ impl Shot {
         let middle = vector(50.0);
         let seconds = 0.5 * FLIES;
         Self {
-            shooter: FighterConfig {
-                bow: Some(BowConfig {
-                    depth: 0.1,
-                    ..BowConfig::default()
-                }),
-                ..FighterConfig::hero()
+            bow: BowConfig {
+                depth: 0.1,
+                ..BowConfig::default()
             },
             from: middle + vector(0.5) - velocity * seconds - GRAVITY * (0.5 * seconds * seconds),
             velocity,
@@ -67,6 +66,7 @@ impl Shot {
             id: ProjectileId(0),
             kind: ProjectileKind::Arrow,
             by: FighterId(0),
+            body: self.bow.arrow(),
             seconds: 0.0,
             motion: ProjectileMotion::Flying {
                 position: self.from,
@@ -78,7 +78,7 @@ impl Shot {
     /// When its tip first touches the limb, by a search that never steps farther than gap over speed; and the least
     /// gap.
     fn search(&self, skin: &mut SkinnedSurface, palette: &Palette) -> (Option<f64>, f64) {
-        let radius = self.shooter.bow.unwrap().radius;
+        let radius = self.bow.radius;
         let fastest = self.velocity.length() + 10.0 + self.moves.length() + self.spin.abs() * 2.0;
         let (mut seconds, mut least) = (0.0, f64::INFINITY);
         while seconds <= FLIES {
@@ -109,14 +109,15 @@ fn fly(
     for tick in 0..ticks {
         skin.advance(palette, shot.world(f64::from(tick + 1) * dt))
             .unwrap();
+        let skins = [(CreatureId(0), &*skin)];
         let air = Air {
-            skins: &[skin],
+            skins: Skins(&skins),
             terrain: &[],
             gravity: GRAVITY,
             dt,
         };
         let mut out = Outcome::default();
-        assert_eq!(arrow.step(&shot.shooter, &air, &mut out), Flown::There);
+        assert_eq!(arrow.step(&air, &mut out), Flown::There);
         assert_eq!(
             out.hits.len(),
             usize::from(stuck.is_none() && arrow.is_stuck())
@@ -191,7 +192,7 @@ fn of_ten_thousand_arrows_none_passes_through_a_limb() {
 
 /// How deep the tip gets after it first touches: less than the radius and what the closest point says.
 fn deepest(shot: &Shot, skin: &mut SkinnedSurface, palette: &Palette, from: f64) -> (f64, f64) {
-    let radius = shot.shooter.bow.unwrap().radius;
+    let radius = shot.bow.radius;
     let mut most = (from, 0.0);
     for step in 0..200 {
         let seconds = from + f64::from(step) * 1e-4;

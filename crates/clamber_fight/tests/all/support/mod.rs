@@ -9,10 +9,10 @@
 
 use std::sync::Arc;
 
-use clamber_climber::{ClimberInput, ClimberMode};
+use clamber_climber::{ClimberInput, ClimberMode, StepRules};
 use clamber_colossus::{Brain, CreatureConfig, CreatureKind, CreatureParts};
 use clamber_fight::{
-    Arena, ArenaConfig, ArenaEvent, CreatureId, FighterConfig, FighterId, SwordConfig,
+    Arena, ArenaConfig, ArenaEvent, CreatureId, FighterConfig, FighterId, Order, SwordConfig,
 };
 use clamber_surface::geometry::Affine;
 use clamber_surface::mesh::{
@@ -224,6 +224,19 @@ pub(crate) fn step(arena: &mut Arena, input: &ClimberInput) -> Vec<ArenaEvent> {
     let inputs = vec![*input; arena.fighters().len()];
     let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &ground)];
     arena.step(&inputs, &terrain).unwrap().to_vec()
+}
+
+/// A step with orders, above the same ground.
+pub(crate) fn step_with(
+    arena: &mut Arena,
+    inputs: &[ClimberInput],
+    orders: &[Order],
+) -> Vec<ArenaEvent> {
+    let ground = HalfSpace::below(-100.0);
+    let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &ground)];
+    let rules = StepRules::default();
+    let events = arena.step_with(inputs, orders, &terrain, &rules);
+    events.unwrap().to_vec()
 }
 
 pub(crate) fn mode(arena: &Arena) -> ClimberMode {

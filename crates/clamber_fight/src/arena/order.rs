@@ -1,0 +1,501 @@
+//! Orders: what a game does to an arena between two of its ticks.
+
+use clamber_climber::{Blow, Climber};
+use clamber_colossus::{Creature, CreatureConfig, Noise};
+use clamber_world::{Obstacle, ObstacleId};
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+use super::{Arena, ArenaEvent, CreatureId, KindId, Member, Outcome, Skins};
+use crate::error::ArenaError;
+use crate::fighter::{Fighter, FighterConfig, FighterId};
+use crate::projectile::{Air, ProjectileId};
+
+/// Something that a game does to an arena, beside what players do: falling rocks, fruit, checkpoints, scenes, waves of
+/// creatures. Orders are given to [`Arena::step_with`], and followed at the beginning of that step, one after the other.
+///
+/// They are a part of what led to a tick as the inputs are: record them, and give them again when a tick is stepped
+/// again. Nothing else changes an arena between ticks, but for [`Arena::restore`].
+///
+/// Who is named may be gone by then, as in a game over a network: such an order changes nothing, and
+/// [`ArenaEvent::Unheard`] tells. Places are in world space, metres.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub enum Order {
+    /// A fighter joins, at rest in the air, with the number [`Arena::next_fighter`]; it moves from this step on, without
+    /// input in this one. It goes aside if somebody is there.
+    AddFighter {
+        /// Its body and weapons.
+        config: Box<FighterConfig>,
+        /// The centre of its climber's ball, where it rises after its death, too.
+        position: DVec3,
+    },
+    /// A fighter leaves. Whoever holds it falls; its arrows stay.
+    RemoveFighter {
+        /// The fighter.
+        fighter: FighterId,
+    },
+    /// A creature joins, with the number [`Arena::next_creature`].
+    AddCreature {
+        /// Its kind, which the arena knows by [`Arena::add_kind`].
+        kind: KindId,
+        /// Where it begins, and how large it is.
+        config: CreatureConfig,
+    },
+    /// A creature leaves. Whoever is on it falls, and arrows in it come loose.
+    RemoveCreature {
+        /// The creature.
+        creature: CreatureId,
+    },
+    /// An arrow or a stone is taken away.
+    RemoveProjectile {
+        /// The projectile.
+        projectile: ProjectileId,
+    },
+    /// A fighter loses hit points.
+    Hurt {
+        /// The fighter.
+        fighter: FighterId,
+        /// Hit points, 0 to 1.
+        damage: f64,
+    },
+    /// A fighter who lives gets hit points and stamina, up to what is full.
+    Heal {
+        /// The fighter.
+        fighter: FighterId,
+        /// Hit points, 0 to 1.
+        hit_points: f64,
+        /// Stamina, 0 to 1.
+        stamina: f64,
+    },
+    /// Something strikes a fighter: it is thrown, and loses hit points. Of several blows in a tick the hardest throws it,
+    /// and all do damage.
+    Strike {
+        /// The fighter.
+        fighter: FighterId,
+        /// The blow.
+        blow: Blow,
+    },
+    /// A fighter is put somewhere, at rest in the air, with the hit points that it has; what it did with its weapons is
+    /// over. It goes aside if somebody is there.
+    PlaceFighter {
+        /// The fighter.
+        fighter: FighterId,
+        /// The centre of its climber's ball.
+        position: DVec3,
+    },
+    /// A fighter rises here from its next death on.
+    Checkpoint {
+        /// The fighter.
+        fighter: FighterId,
+        /// The centre of its climber's ball.
+        position: DVec3,
+    },
+    /// A dead fighter rises at once; nothing happens to one who lives.
+    Rise {
+        /// The fighter.
+        fighter: FighterId,
+    },
+    /// A fighter gets arrows, if they are counted.
+    AddArrows {
+        /// The fighter.
+        fighter: FighterId,
+        /// How many more.
+        arrows: u32,
+    },
+    /// Creatures hear something in this step.
+    Noise(Noise),
+    /// One of the game's own senses of a creature is set.
+    Sense {
+        /// The creature.
+        creature: CreatureId,
+        /// Its name in the brain's file.
+        name: String,
+        /// Its value.
+        value: f64,
+    },
+    /// A creature walks somewhere, whatever its brain wants, or does what that wants again: [`Creature::send`].
+    Send {
+        /// The creature.
+        creature: CreatureId,
+        /// Where to; `None` calls it back.
+        to: Option<DVec3>,
+    },
+    /// A creature's brain goes to a state: [`Creature::enter`].
+    Enter {
+        /// The creature.
+        creature: CreatureId,
+        /// The state's name in the brain's file.
+        state: String,
+    },
+    /// A creature is put somewhere, as if it had begun there: [`Creature::put`]. Whoever is on it is left behind.
+    PlaceCreature {
+        /// The creature.
+        creature: CreatureId,
+        /// Where its model's origin is.
+        position: DVec3,
+        /// Its heading, radians about Y.
+        yaw: f64,
+    },
+    /// A weak point of a creature is hurt, open or not: [`Creature::harm`].
+    Harm {
+        /// The creature.
+        creature: CreatureId,
+        /// The weak point, by its index.
+        weak_point: usize,
+        /// Damage, in the weak point's hit points.
+        damage: f64,
+    },
+}
+
+impl Order {
+    /// Orders as bytes, for a file or to send them: in the format of the crate postcard, which only the same version of
+    /// this crate reads.
+    ///
+    /// # Errors
+    /// [`ArenaError::Damaged`] if they cannot be written, which does not happen.
+    pub fn to_bytes(orders: &[Self]) -> Result<Vec<u8>, ArenaError> {
+        postcard::to_stdvec(orders).map_err(|error| ArenaError::Damaged(error.to_string()))
+    }
+
+    /// What [`Order::to_bytes`] gave. Whether they can be followed, the step tells.
+    ///
+    /// # Errors
+    /// [`ArenaError::Damaged`] if these are other bytes.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Vec<Self>, ArenaError> {
+        let read = postcard::take_from_bytes(bytes);
+        let (orders, rest) = read.map_err(|error| ArenaError::Damaged(error.to_string()))?;
+        if rest.is_empty() {
+            Ok(orders)
+        } else {
+            Err(ArenaError::Damaged(
+                "there is something after the orders".to_owned(),
+            ))
+        }
+    }
+}
+
+/// Whoever joins by the orders of a step, in order.
+#[derive(Default)]
+pub(super) struct Joining {
+    fighters: Vec<Fighter>,
+    creatures: Vec<Member>,
+}
+
+/// Places are no further from the origin, metres.
+const FARTHEST: f64 = 1e12;
+
+impl Arena {
+    /// Refuses orders that cannot be followed, and makes who joins. Nothing is changed.
+    pub(super) fn check_orders(&self, orders: &[Order]) -> Result<Joining, ArenaError> {
+        let mut joining = Joining::default();
+        for (index, order) in orders.iter().enumerate() {
+            let refuse = |reason: String| ArenaError::Order { index, reason };
+            match order {
+                Order::AddFighter { config, position } => {
+                    let id = self.next_fighter.checked_add(joining.fighters.len() as u32);
+                    let id = id.filter(|id| *id < u32::MAX);
+                    let id = id.ok_or_else(|| refuse("all numbers were given".to_owned()))?;
+                    let fighter = self.new_fighter(FighterId(id), **config, *position);
+                    let fighter = fighter.map_err(|error| refuse(error.to_string()))?;
+                    joining.fighters.push(fighter);
+                }
+                Order::AddCreature { kind, config } => {
+                    let id = self
+                        .next_creature
+                        .checked_add(joining.creatures.len() as u32);
+                    let id = id.filter(|id| *id < u32::MAX);
+                    let id = id.ok_or_else(|| refuse("all numbers were given".to_owned()))?;
+                    let member = self.new_member(CreatureId(id), *kind, *config);
+                    let member = member.map_err(|error| refuse(error.to_string()))?;
+                    joining.creatures.push(member);
+                }
+                _ => self.check_order(order).map_err(refuse)?,
+            }
+        }
+        Ok(joining)
+    }
+
+    fn check_order(&self, order: &Order) -> Result<(), String> {
+        let share = |what: &str, found: f64| {
+            let is_share = (0.0..=1.0).contains(&found);
+            check(is_share, || format!("{what} {found} is not from 0 to 1"))
+        };
+        let place = |place: DVec3| {
+            let is_near = place.is_finite() && place.abs().max_element() <= FARTHEST;
+            check(is_near, || {
+                format!("the place {place} is not finite, or beyond 1e12 m")
+            })
+        };
+        match order {
+            Order::Hurt { damage, .. } => share("damage", *damage),
+            Order::Heal {
+                hit_points,
+                stamina,
+                ..
+            } => {
+                share("hit points", *hit_points)?;
+                share("stamina", *stamina)
+            }
+            Order::Strike { blow, .. } => {
+                share("damage", blow.damage)?;
+                check(blow.velocity.is_finite(), || {
+                    "its velocity is not finite".to_owned()
+                })
+            }
+            Order::PlaceFighter { fighter, position } => {
+                place(*position)?;
+                // Only a climber knows whether it can be there.
+                let climber = self.fighter(*fighter).map(|one| one.config().climber);
+                let there = climber.map(|config| Climber::new(config, *position));
+                there.transpose().map_err(|error| error.to_string())?;
+                Ok(())
+            }
+            Order::Checkpoint { position, .. } => place(*position),
+            Order::Noise(noise) => {
+                place(noise.place)?;
+                let loudness = noise.loudness;
+                let is_loud = (0.0..=f64::MAX).contains(&loudness);
+                check(is_loud, || {
+                    format!("loudness {loudness} is negative, or not finite")
+                })
+            }
+            Order::Sense {
+                creature,
+                name,
+                value,
+            } => {
+                check(value.is_finite(), || {
+                    format!("the sense `{name}` is not finite")
+                })?;
+                self.check_creature(*creature, |creature| {
+                    let senses = creature.kind().brain().own_senses();
+                    check(senses.contains(name), || {
+                        format!(
+                            "no own sense is called `{name}`; there are {}",
+                            listed(senses)
+                        )
+                    })
+                })
+            }
+            Order::Send { creature, to } => {
+                to.map_or(Ok(()), place)?;
+                self.check_creature(*creature, |creature| {
+                    check(creature.kind().can_walk(), || {
+                        "the creature cannot walk: its brain's file names no gait".to_owned()
+                    })
+                })
+            }
+            Order::Enter { creature, state } => self.check_creature(*creature, |creature| {
+                let brain = creature.kind().brain();
+                check(brain.find(state).is_some(), || {
+                    let paths: Vec<&str> = brain.states().map(|state| brain.path(state)).collect();
+                    format!("no state is called `{state}`; there are {}", listed(&paths))
+                })
+            }),
+            Order::PlaceCreature { position, yaw, .. } => {
+                place(*position)?;
+                let is_angle = yaw.abs() <= FARTHEST;
+                check(is_angle, || {
+                    format!("the heading {yaw} is not finite, or beyond 1e12")
+                })
+            }
+            Order::Harm {
+                creature,
+                weak_point,
+                damage,
+            } => {
+                let is_damage = (0.0..=f64::MAX).contains(damage);
+                check(is_damage, || {
+                    format!("damage {damage} is negative, or not finite")
+                })?;
+                self.check_creature(*creature, |creature| {
+                    let count = creature.kind().weak_points().len();
+                    check(*weak_point < count, || {
+                        format!("there is no weak point {weak_point}: there are {count}")
+                    })
+                })
+            }
+            Order::AddFighter { .. }
+            | Order::AddCreature { .. }
+            | Order::RemoveFighter { .. }
+            | Order::RemoveCreature { .. }
+            | Order::RemoveProjectile { .. }
+            | Order::Rise { .. }
+            | Order::AddArrows { .. } => Ok(()),
+        }
+    }
+
+    /// Checks what is asked of a creature, if it is there.
+    fn check_creature(
+        &self,
+        creature: CreatureId,
+        check: impl FnOnce(&Creature) -> Result<(), String>,
+    ) -> Result<(), String> {
+        self.creature(creature).map_or(Ok(()), check)
+    }
+
+    /// Follows orders that were checked.
+    pub(super) fn follow(
+        &mut self,
+        orders: &[Order],
+        joining: Joining,
+        terrain: &[(ObstacleId, &dyn Obstacle)],
+    ) -> Result<(), ArenaError> {
+        let (mut fighters, mut creatures) =
+            (joining.fighters.into_iter(), joining.creatures.into_iter());
+        for (index, order) in orders.iter().enumerate() {
+            let is_heard = match order {
+                Order::AddFighter { .. } => fighters.next().is_some_and(|one| {
+                    let fighter = self.join_fighter(one);
+                    self.events.push(ArenaEvent::FighterJoined { fighter });
+                    true
+                }),
+                Order::AddCreature { .. } => creatures.next().is_some_and(|one| {
+                    let creature = self.join_creature(one);
+                    self.events.push(ArenaEvent::CreatureJoined { creature });
+                    true
+                }),
+                Order::RemoveCreature { creature } => self.remove_creature(*creature, terrain),
+                Order::Noise(noise) => {
+                    self.noises.push(*noise);
+                    true
+                }
+                Order::RemoveProjectile { projectile } => {
+                    let before = self.projectiles.len();
+                    self.projectiles.retain(|one| one.id != *projectile);
+                    self.projectiles.len() < before
+                }
+                Order::RemoveFighter { fighter }
+                | Order::Hurt { fighter, .. }
+                | Order::Heal { fighter, .. }
+                | Order::Strike { fighter, .. }
+                | Order::PlaceFighter { fighter, .. }
+                | Order::Checkpoint { fighter, .. }
+                | Order::Rise { fighter }
+                | Order::AddArrows { fighter, .. } => self.order_fighter(*fighter, order)?,
+                Order::Sense { creature, .. }
+                | Order::Send { creature, .. }
+                | Order::Enter { creature, .. }
+                | Order::PlaceCreature { creature, .. }
+                | Order::Harm { creature, .. } => self.order_creature(*creature, order)?,
+            };
+            if !is_heard {
+                self.events.push(ArenaEvent::Unheard { order: index });
+            }
+        }
+        Ok(())
+    }
+
+    /// Follows an order to a fighter; false if it is not there.
+    fn order_fighter(&mut self, fighter: FighterId, order: &Order) -> Result<bool, ArenaError> {
+        let Some(index) = self.fighter_index(fighter) else {
+            return Ok(false);
+        };
+        let one = &mut self.fighters[index];
+        match order {
+            Order::RemoveFighter { .. } => {
+                self.fighters.remove(index);
+                self.events.push(ArenaEvent::FighterLeft { fighter });
+            }
+            Order::Hurt { damage, .. } => one.hurt(*damage),
+            Order::Heal {
+                hit_points,
+                stamina,
+                ..
+            } => one.heal(*hit_points, *stamina)?,
+            Order::Strike { blow, .. } => one.take_blow(*blow),
+            Order::PlaceFighter { position, .. } => one.place(*position)?,
+            Order::Checkpoint { position, .. } => one.rest_mut().spawn = *position,
+            Order::Rise { .. } => {
+                let rose = one.rise()?.then_some(ArenaEvent::Rose { fighter });
+                self.events.extend(rose);
+            }
+            Order::AddArrows { arrows, .. } => {
+                let has = one.rest().arrows;
+                one.rest_mut().arrows = has.saturating_add(*arrows);
+            }
+            _ => {}
+        }
+        Ok(true)
+    }
+
+    /// Follows an order to a creature; false if it is not there.
+    fn order_creature(&mut self, id: CreatureId, order: &Order) -> Result<bool, ArenaError> {
+        let Some(creature) = self.creature_mut(id) else {
+            return Ok(false);
+        };
+        match order {
+            Order::Sense { name, value, .. } => {
+                creature.set_sense(name, *value);
+            }
+            Order::Send { to, .. } => {
+                creature.send(*to);
+            }
+            Order::Enter { state, .. } => {
+                creature.enter(state);
+            }
+            Order::PlaceCreature { position, yaw, .. } => creature.put(*position, *yaw)?,
+            Order::Harm {
+                weak_point, damage, ..
+            } => {
+                let was_alive = creature.health() > 0.0;
+                creature.harm(*weak_point, *damage);
+                if was_alive && creature.health() <= 0.0 {
+                    self.events.push(ArenaEvent::Killed {
+                        creature: id,
+                        by: None,
+                    });
+                }
+            }
+            _ => {}
+        }
+        Ok(true)
+    }
+
+    /// Takes a creature away; false if it is not there.
+    fn remove_creature(
+        &mut self,
+        creature: CreatureId,
+        terrain: &[(ObstacleId, &dyn Obstacle)],
+    ) -> bool {
+        let Some(index) = self.creature_index(creature) else {
+            return false;
+        };
+        // Arrows fall from where they are, which only the skin knows.
+        let mut projectiles = std::mem::take(&mut self.projectiles);
+        let mut outcome = Outcome::default();
+        let skins = self.skins();
+        let air = Air {
+            skins: Skins(&skins),
+            terrain,
+            gravity: self.config.gravity,
+            dt: self.config.tick,
+        };
+        let obstacle = super::creature_obstacle(creature);
+        for projectile in projectiles.iter_mut().filter(|one| one.is_in(obstacle)) {
+            projectile.fall(&air, &mut outcome);
+        }
+        self.projectiles = projectiles;
+        self.creatures.remove(index);
+        self.events.push(ArenaEvent::CreatureLeft { creature });
+        self.events.append(&mut outcome.events);
+        true
+    }
+}
+
+fn check(holds: bool, reason: impl FnOnce() -> String) -> Result<(), String> {
+    if holds { Ok(()) } else { Err(reason()) }
+}
+
+/// Names, for a message.
+fn listed(names: &[impl AsRef<str>]) -> String {
+    if names.is_empty() {
+        return "none".to_owned();
+    }
+    let quoted: Vec<String> = names
+        .iter()
+        .map(|name| format!("`{}`", name.as_ref()))
+        .collect();
+    quoted.join(", ")
+}
