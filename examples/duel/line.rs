@@ -1,4 +1,4 @@
-//! A line between two peers of one process that delays messages and loses some.
+//! A line between peers of one process that delays messages and loses some.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -25,8 +25,8 @@ pub(crate) struct Line {
 }
 
 impl Line {
-    /// Both ends.
-    pub(crate) fn pair(round_trip: f64, jitter: f64, lost: f64) -> Result<[Self; 2], String> {
+    /// Its ends.
+    pub(crate) fn ends(round_trip: f64, jitter: f64, lost: f64) -> Result<[Self; 3], String> {
         let is_time = |x: f64| (0.0..=1000.0).contains(&x);
         if !(is_time(round_trip) && is_time(jitter) && (0.0..=50.0).contains(&lost)) {
             return Err("a line takes from 0 to 1000 ms and loses from 0 to 50 %".to_owned());
@@ -38,7 +38,7 @@ impl Line {
             takes: [0.5 * round_trip, 0.5 * jitter],
             lost: lost / 100.0,
         }));
-        Ok([0, 1].map(|ours| Self {
+        Ok([0, 1, 2].map(|ours| Self {
             shared: Rc::clone(&shared),
             ours,
         }))
@@ -47,6 +47,13 @@ impl Line {
     /// Lets time pass, milliseconds.
     pub(crate) fn wait(&self, milliseconds: f64) {
         self.shared.borrow_mut().now += milliseconds;
+    }
+}
+
+impl Line {
+    /// What is under way gets lost: a new session begins.
+    pub(crate) fn clear(&self) {
+        self.shared.borrow_mut().under_way.clear();
     }
 }
 

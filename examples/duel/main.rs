@@ -1,7 +1,10 @@
 //! Two climbers against one giant, by rollback: two peers in one process over a bad line, or two processes over a
 //! network.
 //!
-//! Both peers send each other only their players' inputs, thirteen bytes a tick. Each guesses what has not arrived, goes
+//! With `--joins 10` a third climber joins after ten seconds: ggrs lets nobody join a session that has begun, so all end
+//! theirs at the tick before, the newcomer gets the arena's state from there, and all begin a new one.
+//!
+//! Peers send each other only their players' inputs, thirteen bytes a tick. Each guesses what has not arrived, goes
 //! back when a guess was wrong, and plays again. At the end both have the same fight, tick by tick, and have told of
 //! everything once.
 //!
@@ -59,6 +62,11 @@ struct Options {
     #[arg(long, value_name = "PERCENT", default_value_t = 5.0)]
     lost: f64,
 
+    /// A third climber joins after so many seconds, in a fight in one process.
+    #[arg(long, value_name = "SECONDS", conflicts_with = "player")]
+    #[arg(value_parser = clap::value_parser!(u64).range(1..=3600))]
+    joins: Option<u64>,
+
     /// Record the fight to a file for Foxglove, Rerun and the replay example; needs --features record.
     #[arg(long, value_name = "FILE.mcap")]
     record: Option<PathBuf>,
@@ -79,33 +87,53 @@ fn main() -> ExitCode {
     }
 }
 
-/// Both peers, over a line that delays and loses messages, as fast as they can.
+/// All peers, over a line that delays and loses messages, as fast as they can.
 fn in_one_process(options: &Options) -> Result<(), Box<dyn Error>> {
-    let lines = Line::pair(options.round_trip, options.jitter, options.lost)?;
+    let lines = Line::ends(options.round_trip, options.jitter, options.lost)?;
     let kind = Duel::kind()?;
     let ticks = options.seconds * RATE;
-    let [mut one, mut other] = {
-        let [a, b] = lines.clone();
-        [
-            Peer::new(a, [None, Some(1)], Duel::new(&kind)?)?,
-            Peer::new(b, [Some(0), None], Duel::new(&kind)?)?,
-        ]
+    let joins = match options.joins {
+        Some(seconds) if seconds >= options.seconds => {
+            return Err("nobody can join after the end: --joins is less than --seconds".into());
+        }
+        joins => joins.map(|seconds| seconds * RATE),
     };
-    while one.confirmed() < ticks || other.confirmed() < ticks {
-        for peer in [&mut one, &mut other] {
-            peer.tick(ticks)?;
-        }
-        lines[0].wait(1000.0 / RATE as f64);
-        // Until both know each other, lost messages are sent again by the clock.
-        if !(one.is_running() && other.is_running()) {
-            std::thread::sleep(Duration::from_millis(2));
-        }
+    let of = |number: usize, all: usize| -> Vec<Option<usize>> {
+        (0..all).map(|one| (one != number).then_some(one)).collect()
+    };
+    let mut peers = Vec::new();
+    for (number, line) in lines.iter().enumerate().take(2) {
+        let fight = Duel::new(&kind)?;
+        peers.push(Peer::new(line.clone(), &of(number, 2), fight, joins)?);
     }
-    for (number, peer) in [&one, &other].into_iter().enumerate() {
+    if let Some(tick) = joins {
+        play(&mut peers, &lines[0], tick - 1)?;
+        let saved = peers[0].saved().to_vec();
+        lines[0].clear();
+        for (number, peer) in peers.iter_mut().enumerate() {
+            peer.begin_again(lines[number].clone(), &of(number, 3), &saved)?;
+        }
+        let mut newcomer = Peer::new(lines[2].clone(), &of(2, 3), Duel::empty(&kind)?, joins)?;
+        newcomer.begin_again(lines[2].clone(), &of(2, 3), &saved)?;
+        peers.push(newcomer);
+    }
+    play(&mut peers, &lines[0], ticks)?;
+    for (number, peer) in peers.iter().enumerate() {
         println!("peer {number}: {}", peer.report());
     }
-    let same = one.sums_until(ticks) == other.sums_until(ticks);
-    let told = one.told_before(ticks) == other.told_before(ticks);
+    // Who has joined knows what was after that.
+    let from = joins.map_or(0, |tick| tick - 1);
+    let (mut same, mut told) = (true, true);
+    for (number, peer) in peers.iter().enumerate() {
+        let from = if number < 2 { 0 } else { from };
+        let after = |sums: Vec<(u64, u64)>| -> Vec<_> {
+            sums.into_iter().filter(|(tick, _)| *tick > from).collect()
+        };
+        same &= after(peer.sums_until(ticks)) == after(peers[0].sums_until(ticks));
+        let mut theirs = peers[0].told_before(ticks);
+        theirs.retain(|(tick, _)| *tick > from);
+        told &= peer.told_before(ticks) == theirs;
+    }
     println!(
         "{ticks} ticks: {}, {}",
         if same {
@@ -122,7 +150,22 @@ fn in_one_process(options: &Options) -> Result<(), Box<dyn Error>> {
     if !(same && told) {
         return Err("the peers have different fights".into());
     }
-    record(options, &kind, &one, ticks)
+    record(options, &kind, &peers[0], ticks)
+}
+
+/// Plays until so many ticks are certain to all.
+fn play(peers: &mut [Peer<usize>], line: &Line, ticks: u64) -> Result<(), Box<dyn Error>> {
+    while peers.iter().any(|peer| peer.confirmed() < ticks) {
+        for peer in peers.iter_mut() {
+            peer.tick(ticks)?;
+        }
+        line.wait(1000.0 / RATE as f64);
+        // Until all know each other, lost messages are sent again by the clock.
+        if !peers.iter().all(Peer::is_running) {
+            std::thread::sleep(Duration::from_millis(2));
+        }
+    }
+    Ok(())
 }
 
 /// Records a peer's fight if that was asked for, now that all inputs are certain.
@@ -136,7 +179,7 @@ fn record<A: peer::Address>(
     let Some(path) = &options.record else {
         return Ok(());
     };
-    let sum = clamber_scenes::duel::record(kind, peer.inputs_until(ticks), path)?;
+    let sum = clamber_scenes::duel::record(kind, peer.steps_until(ticks), path)?;
     if peer.sums_until(ticks).last().map(|(_, sum)| *sum) != Some(sum) {
         return Err("the recorded fight is another one than the peer's".into());
     }
@@ -169,7 +212,7 @@ fn over_network(
     let mut players = [Some(address); 2];
     players[player] = None;
     let kind = Duel::kind()?;
-    let mut peer = Peer::new(socket, players, Duel::new(&kind)?)?;
+    let mut peer = Peer::new(socket, &players, Duel::new(&kind)?, None)?;
     println!("waits for {address}");
     let (mut due, mut shown) = (Instant::now(), 0);
     while peer.confirmed() < ticks {

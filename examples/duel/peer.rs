@@ -6,31 +6,44 @@ use std::fmt::Debug;
 use std::hash::Hash;
 
 use clamber::climber::ClimberInput;
-use clamber::fight::ArenaEvent;
 use clamber::fight::rollback::ggrs::{
-    DesyncDetection, GgrsError, GgrsEvent, GgrsRequest, NonBlockingSocket, P2PSession, PlayerType,
+    DesyncDetection, GgrsEvent, GgrsRequest, NonBlockingSocket, P2PSession, PlayerType,
     SessionBuilder, SessionState,
 };
-use clamber::fight::rollback::{ArenaSession, Rollback};
+use clamber::fight::rollback::{AdvanceError, ArenaSession, Rollback, Watch};
+use clamber::fight::{ArenaEvent, Order};
 
 use clamber_scenes::duel::Duel;
 
 /// Ticks from a press of a button until it counts: the less, the more rollbacks.
 const DELAY: usize = 2;
 
+/// Ticks that may be guessed, and played again.
+const WINDOW: usize = 10;
+
 /// Who the other one is, to a line.
 pub(crate) trait Address: Clone + PartialEq + Eq + Hash + Debug + 'static {}
 
 impl<A: Clone + PartialEq + Eq + Hash + Debug + 'static> Address for A {}
 
+/// The inputs of a step, and its orders.
+pub(crate) type Step = (Vec<ClimberInput>, Vec<Order>);
+
 pub(crate) struct Peer<A: Address> {
     session: P2PSession<ArenaSession<A>>,
+    watch: Watch<A>,
+    /// Tick of the arena when the session began.
+    began: u64,
+    /// The tick in whose step a third climber joins.
+    joins: Option<u64>,
+    /// The arena after the tick before that, as it was last.
+    saved: Vec<u8>,
     fight: Duel,
     rollback: Rollback,
     /// Of each tick, the checksum that it had last.
     sums: BTreeMap<u64, u64>,
-    /// Of each tick, the inputs that led to it, as they were last.
-    inputs: BTreeMap<u64, Vec<ClimberInput>>,
+    /// Of each tick, what led to it, as it was last.
+    steps: BTreeMap<u64, Step>,
     told: Vec<(u64, ArenaEvent)>,
     rollbacks: u32,
     longest: u32,
@@ -38,31 +51,53 @@ pub(crate) struct Peer<A: Address> {
 }
 
 impl<A: Address> Peer<A> {
-    /// A peer that plays the players without an address.
+    /// A peer that plays the players without an address. A third one joins in the step to the tick `joins`.
     pub(crate) fn new(
         socket: impl NonBlockingSocket<A> + 'static,
-        players: [Option<A>; 2],
+        players: &[Option<A>],
         fight: Duel,
+        joins: Option<u64>,
     ) -> Result<Self, Box<dyn Error>> {
-        let mut builder = SessionBuilder::<ArenaSession<A>>::new()
-            .with_num_players(2)?
-            .with_input_delay(DELAY)
-            .with_desync_detection_mode(DesyncDetection::On { interval: 30 });
-        for (player, address) in players.into_iter().enumerate() {
-            let kind = address.map_or(PlayerType::Local, PlayerType::Remote);
-            builder = builder.add_player(kind, player)?;
-        }
+        let (socket, watch) = Watch::over(socket);
         Ok(Self {
-            session: builder.start_p2p_session(socket)?,
+            session: session(socket, players)?,
+            watch,
+            began: fight.arena.tick(),
+            joins,
+            saved: Vec::new(),
             rollback: Rollback::new(&fight.arena),
             fight,
             sums: BTreeMap::new(),
-            inputs: BTreeMap::new(),
+            steps: BTreeMap::new(),
             told: Vec::new(),
             rollbacks: 0,
             longest: 0,
             waits: 0,
         })
+    }
+
+    /// Goes on from a saved arena in a new session, with other players: ggrs lets nobody join one that has begun.
+    pub(crate) fn begin_again(
+        &mut self,
+        socket: impl NonBlockingSocket<A> + 'static,
+        players: &[Option<A>],
+        saved: &[u8],
+    ) -> Result<(), Box<dyn Error>> {
+        let arena = &mut self.fight.arena;
+        arena.restore_bytes(saved)?;
+        self.began = arena.tick();
+        self.rollback = Rollback::new(arena);
+        let (socket, watch) = Watch::over(socket);
+        (self.session, self.watch) = (session(socket, players)?, watch);
+        // What was played beyond that was a guess.
+        self.sums.split_off(&(self.began + 1));
+        self.steps.split_off(&(self.began + 1));
+        Ok(())
+    }
+
+    /// The arena before the third climber joins, once that tick is certain.
+    pub(crate) fn saved(&self) -> &[u8] {
+        &self.saved
     }
 
     pub(crate) fn is_running(&self) -> bool {
@@ -71,14 +106,13 @@ impl<A: Address> Peer<A> {
 
     /// Ticks that are certain.
     pub(crate) fn confirmed(&self) -> u64 {
-        // Frame 0 leads to tick 1.
-        u64::try_from(self.session.confirmed_frame() + 1).unwrap_or(0)
+        // Frame 0 leads to the first tick.
+        self.began + u64::try_from(self.session.confirmed_frame() + 1).unwrap_or(0)
     }
 
     /// One tick, if the session lets it pass; none after the last one.
     pub(crate) fn tick(&mut self, last: u64) -> Result<(), Box<dyn Error>> {
-        self.session.poll_remote_clients();
-        for event in self.session.events() {
+        for event in self.watch.poll(&mut self.session) {
             match event {
                 GgrsEvent::DesyncDetected { frame, .. } => {
                     return Err(format!("the peers differ at frame {frame}").into());
@@ -90,7 +124,7 @@ impl<A: Address> Peer<A> {
             }
         }
         // Some ticks beyond the last one: their inputs confirm it.
-        let tick = self.session.current_frame().unsigned_abs().into();
+        let tick = self.began + u64::from(self.session.current_frame().unsigned_abs());
         if !self.is_running() || tick >= last + 30 {
             return Ok(());
         }
@@ -98,10 +132,10 @@ impl<A: Address> Peer<A> {
             self.session
                 .add_local_input(player, Duel::input(player, tick))?;
         }
-        let requests = match self.session.advance_frame() {
+        let requests = match self.watch.advance(&mut self.session) {
             Ok(requests) => requests,
-            // The other one is too far behind.
-            Err(GgrsError::PredictionThreshold) => {
+            // The others are too far behind.
+            Err(AdvanceError::Wait) => {
                 self.waits += 1;
                 return Ok(());
             }
@@ -114,17 +148,31 @@ impl<A: Address> Peer<A> {
         let steps = requests.iter().filter(is_step).count() as u32;
         self.rollbacks += requests.iter().filter(is_load).count() as u32;
         self.longest = self.longest.max(steps.saturating_sub(1));
-        let (sums, taken, ground) = (&mut self.sums, &mut self.inputs, self.fight.ground);
+        let (sums, taken, ground) = (&mut self.sums, &mut self.steps, self.fight.ground);
+        let (joins, saved, began) = (self.joins, &mut self.saved, self.began);
         self.rollback
             .handle(&mut self.fight.arena, requests, |arena, inputs, _| {
-                Duel::step(arena, &ground, inputs)?;
-                sums.insert(arena.tick(), arena.fingerprint());
-                taken.insert(arena.tick(), inputs.to_vec());
+                let next = arena.tick() + 1;
+                // What the session before that one plays beyond its end never happens.
+                let orders: Vec<Order> = match joins {
+                    Some(tick) if tick == next && tick == began + 1 => vec![Duel::joins()],
+                    _ => Vec::new(),
+                };
+                // Who joins in this step has no input in it.
+                let inputs = &inputs[..inputs.len().min(arena.fighters().len())];
+                Duel::step(arena, &ground, inputs, &orders)?;
+                if joins == Some(next + 1) {
+                    *saved = arena.to_bytes()?;
+                }
+                sums.insert(next, arena.fingerprint());
+                taken.insert(next, (inputs.to_vec(), orders));
                 Ok(())
             })?;
         let confirmed = self.session.confirmed_frame();
         // A game plays sounds and shows hits here: each once.
-        self.told.extend(self.rollback.confirmed(confirmed));
+        let certain = self.rollback.confirmed(confirmed);
+        // What was played beyond the last tick never happened.
+        self.told.extend(certain.filter(|(tick, _)| *tick <= last));
         Ok(())
     }
 
@@ -136,9 +184,9 @@ impl<A: Address> Peer<A> {
             .collect()
     }
 
-    /// The inputs of all ticks up to one.
-    pub(crate) fn inputs_until(&self, tick: u64) -> impl Iterator<Item = Vec<ClimberInput>> {
-        self.inputs.range(..=tick).map(|(_, inputs)| inputs.clone())
+    /// What led to all ticks up to one.
+    pub(crate) fn steps_until(&self, tick: u64) -> impl Iterator<Item = Step> {
+        self.steps.range(..=tick).map(|(_, step)| step.clone())
     }
 
     /// What was told of ticks before one.
@@ -156,4 +204,21 @@ impl<A: Address> Peer<A> {
             self.told.len()
         )
     }
+}
+
+/// A session of as many players, of whom those without an address are played here.
+fn session<A: Address>(
+    socket: impl NonBlockingSocket<A> + 'static,
+    players: &[Option<A>],
+) -> Result<P2PSession<ArenaSession<A>>, Box<dyn Error>> {
+    let mut builder = SessionBuilder::<ArenaSession<A>>::new()
+        .with_num_players(players.len())?
+        .with_max_prediction_window(WINDOW)
+        .with_input_delay(DELAY)
+        .with_desync_detection_mode(DesyncDetection::On { interval: 30 });
+    for (player, address) in players.iter().cloned().enumerate() {
+        let kind = address.map_or(PlayerType::Local, PlayerType::Remote);
+        builder = builder.add_player(kind, player)?;
+    }
+    Ok(builder.start_p2p_session(socket)?)
 }

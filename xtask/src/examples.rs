@@ -37,7 +37,7 @@ const ARGUMENTS: [(&str, &[&str]); 9] = [
         ],
     ),
     ("climbs", &["--height", "40", "assets/colossus.glb"]),
-    ("duel", &["--record", DUEL]),
+    ("duel", &["--joins", "10", "--record", DUEL]),
     ("life", &["--minutes", "10"]),
     // What the one above has recorded.
     ("replay", &[DUEL, "--from", "60"]),

@@ -186,7 +186,8 @@ fn recorded_duel(name: &str, aims_otherwise: Option<u64>, ticks: u64) -> String 
         }
         inputs.to_vec()
     });
-    duel::record(&Duel::kind().unwrap(), inputs, Path::new(&file)).unwrap();
+    let steps = inputs.map(|inputs| (inputs, Vec::new()));
+    duel::record(&Duel::kind().unwrap(), steps, Path::new(&file)).unwrap();
     file
 }
 

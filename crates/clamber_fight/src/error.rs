@@ -30,7 +30,7 @@ pub enum ArenaError {
     },
     /// There is not one input for each fighter.
     #[error(
-        "{found} inputs were given for {fighters} fighters: give one for each, in the order in which they were added"
+        "{found} inputs were given for {fighters} fighters: give one for each, by ascending number"
     )]
     Inputs {
         /// Fighters in the arena.

@@ -56,9 +56,9 @@ fn hit_points_are_taken_given_and_end() {
         hit_points: 0.25,
         stamina: 0.0,
     };
-    idle(&mut arena, &[heal.clone()]);
+    idle(&mut arena, std::slice::from_ref(&heal));
     assert_eq!(state(&arena, HERO).hit_points, 0.875);
-    idle(&mut arena, &[heal.clone()]);
+    idle(&mut arena, std::slice::from_ref(&heal));
     assert_eq!(state(&arena, HERO).hit_points, 1.0, "more than full");
     let events = idle(&mut arena, &[hurt(1.0)]);
     assert!(events.contains(&ArenaEvent::Died { fighter: HERO }));

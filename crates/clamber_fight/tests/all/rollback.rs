@@ -14,7 +14,7 @@ use clamber_fight::rollback::ggrs::{
     DesyncDetection, GgrsError, GgrsEvent, GgrsRequest, Message, NonBlockingSocket, P2PSession,
     PlayerType, SessionBuilder, SessionState,
 };
-use clamber_fight::rollback::{ArenaSession, Rollback};
+use clamber_fight::rollback::{AdvanceError, ArenaSession, Rollback, Watch};
 use clamber_fight::{ArenaEvent, Order, PlayerInput};
 
 type Session = ArenaSession<usize>;
@@ -344,5 +344,225 @@ fn two_peers_over_a_bad_line_have_the_same_fight_and_its_events_once() {
             .filter(|(tick, _)| *tick < TICKS)
             .collect();
         assert!(told == known, "{} events for {}", told.len(), known.len());
+    }
+}
+
+/// Three peers, of whom one leaves after its last packets have reached only one of the others. Where the others know
+/// nearly the same of it, they go on and have the same fight in the end; where they do not, both are told that the
+/// session is over, and nobody panics.
+#[test]
+fn three_peers_of_whom_one_leaves_badly_go_on_or_are_told() {
+    // Ticks that packets take, and for which the third reaches only the first before it is gone.
+    for (lag, cut, goes_on) in [
+        (1, 0, true),
+        (3, 0, true),
+        (6, 0, true),
+        (2, 1, false),
+        (4, 8, false),
+        (2, 20, false),
+        (1, 40, false),
+    ] {
+        let mut peers = Peers::new(lag);
+        while !peers.all(|peer| peer.confirmed() >= 60) {
+            peers.tick(3);
+        }
+        peers.net.borrow_mut().cut = cut > 0;
+        for _ in 0..cut {
+            peers.tick(3);
+        }
+        let began = std::time::Instant::now();
+        let end = peers.sides[0].session.current_frame() as u64 + 120;
+        let is_over = |side: &Side| side.left.is_some() || side.confirmed() >= end;
+        while !peers.sides[..2].iter().all(is_over) && began.elapsed().as_secs() < 5 {
+            if !goes_on && peers.sides[0].left.is_some() {
+                break;
+            }
+            peers.tick(2);
+            std::thread::sleep(std::time::Duration::from_millis(2));
+        }
+        let [a, b] = [0, 1].map(|side| &peers.sides[side]);
+        let what = format!("lag {lag}, cut {cut}: {:?} {:?}", a.left, b.left);
+        if !goes_on {
+            // Who knows more cannot go back; the other one waits for it.
+            assert_eq!(a.left, Some(2), "{what}");
+            continue;
+        }
+        assert!(a.confirmed() >= end && b.confirmed() >= end, "{what}");
+        assert!(!a.differs && !b.differs, "{what}: they differ");
+        for (tick, sum) in a.sums.iter().filter(|(tick, _)| **tick <= end) {
+            assert_eq!(b.sums.get(tick), Some(sum), "{what}: tick {tick}");
+        }
+        let told = |side: &Side| {
+            let all = side.told.iter().filter(|(tick, _)| *tick <= end - 20);
+            all.cloned().collect::<Vec<_>>()
+        };
+        assert!(told(a) == told(b), "{what}: other events");
+    }
+}
+
+/// Peers in one process, whose packets take some ticks.
+struct Peers {
+    net: Rc<RefCell<Net>>,
+    sides: Vec<Side>,
+}
+
+#[derive(Default)]
+struct Net {
+    tick: u64,
+    lag: u64,
+    cut: bool,
+    under_way: Vec<(u64, usize, usize, Message)>,
+}
+
+struct End(Rc<RefCell<Net>>, usize);
+
+impl NonBlockingSocket<usize> for End {
+    fn send_to(&mut self, message: &Message, to: &usize) {
+        let mut net = self.0.borrow_mut();
+        if net.cut && (self.1, *to) == (2, 1) {
+            return;
+        }
+        let arrives = net.tick + net.lag;
+        net.under_way.push((arrives, *to, self.1, message.clone()));
+    }
+
+    fn receive_all_messages(&mut self) -> Vec<(usize, Message)> {
+        let mut net = self.0.borrow_mut();
+        let (tick, ours) = (net.tick, self.1);
+        let arrived = |one: &(u64, usize, usize, Message)| one.1 == ours && one.0 <= tick;
+        let (here, rest): (Vec<_>, Vec<_>) = net.under_way.drain(..).partition(arrived);
+        net.under_way = rest;
+        here.into_iter()
+            .map(|(_, _, from, message)| (from, message))
+            .collect()
+    }
+}
+
+struct Side {
+    session: P2PSession<Session>,
+    watch: Watch<usize>,
+    /// Who has left badly.
+    left: Option<usize>,
+    /// True if ggrs has seen that peers differ.
+    differs: bool,
+    arena: clamber_fight::Arena,
+    rollback: Rollback,
+    sums: BTreeMap<u64, u64>,
+    told: Vec<(u64, ArenaEvent)>,
+}
+
+impl Peers {
+    fn new(lag: u64) -> Self {
+        let net = Rc::new(RefCell::new(Net {
+            lag,
+            ..Net::default()
+        }));
+        let timeout = std::time::Duration::from_millis;
+        let sides = (0..3).map(|ours| {
+            let mut builder = SessionBuilder::<Session>::new()
+                .with_num_players(3)
+                .unwrap()
+                .with_max_prediction_window(12)
+                .with_input_delay(DELAY as usize)
+                .with_disconnect_timeout(timeout(300 + 60 * ours as u64))
+                .with_disconnect_notify_delay(timeout(150))
+                .with_desync_detection_mode(DesyncDetection::On { interval: 10 });
+            for player in 0..3 {
+                let kind = if player == ours {
+                    PlayerType::Local
+                } else {
+                    PlayerType::Remote(player)
+                };
+                builder = builder.add_player(kind, player).unwrap();
+            }
+            let config = clamber_fight::ArenaConfig::default();
+            let mut arena = clamber_fight::Arena::new(config).unwrap();
+            for number in 0..3 {
+                let place = glam::DVec3::new(4.0 * f64::from(number), 1.0, 0.0);
+                let hero = clamber_fight::FighterConfig::hero();
+                arena.add_fighter(hero, place).unwrap();
+            }
+            let (socket, watch) = Watch::over(End(net.clone(), ours));
+            Side {
+                session: builder.start_p2p_session(socket).unwrap(),
+                watch,
+                left: None,
+                differs: false,
+                rollback: Rollback::new(&arena),
+                arena,
+                sums: BTreeMap::new(),
+                told: Vec::new(),
+            }
+        });
+        Self {
+            sides: sides.collect(),
+            net,
+        }
+    }
+
+    fn all(&self, is: impl Fn(&Side) -> bool) -> bool {
+        self.sides.iter().all(is)
+    }
+
+    /// A tick of the first peers.
+    fn tick(&mut self, count: usize) {
+        self.net.borrow_mut().tick += 1;
+        for side in &mut self.sides[..count] {
+            side.tick();
+        }
+        if !self.all(|side| side.session.current_state() == SessionState::Running) {
+            std::thread::sleep(std::time::Duration::from_millis(2));
+        }
+    }
+}
+
+impl Side {
+    fn confirmed(&self) -> u64 {
+        u64::try_from(self.session.confirmed_frame()).unwrap_or(0)
+    }
+
+    fn tick(&mut self) {
+        for event in self.watch.poll(&mut self.session) {
+            self.differs |= matches!(event, GgrsEvent::DesyncDetected { .. });
+        }
+        if self.left.is_some() || self.session.current_state() != SessionState::Running {
+            return;
+        }
+        let tick = self.session.current_frame() as u64;
+        for player in self.session.local_player_handles() {
+            // Walks to and fro, jumps, and throws stones, in turns that nobody guesses.
+            let lot = fastrand::Rng::with_seed(tick * 3 + player as u64).u64(..);
+            let input = clamber_climber::ClimberInput {
+                walk: glam::DVec3::X * if lot & 1 == 0 { 1.0 } else { -1.0 },
+                jump: lot.is_multiple_of(5),
+                actions: if lot.is_multiple_of(7) {
+                    clamber_fight::actions::THROW
+                } else {
+                    0
+                },
+                aim: glam::DVec3::new(0.0, 0.3, 1.0),
+                ..clamber_climber::ClimberInput::IDLE
+            };
+            let input = PlayerInput::from_input(&input);
+            self.session.add_local_input(player, input).unwrap();
+        }
+        let requests = match self.watch.advance(&mut self.session) {
+            Err(AdvanceError::Wait) => return,
+            Err(AdvanceError::LeftBadly { player }) => {
+                self.left = Some(player);
+                return;
+            }
+            requests => requests.unwrap(),
+        };
+        let sums = &mut self.sums;
+        self.rollback
+            .handle(&mut self.arena, requests, |arena, inputs, asked| {
+                melee_step(arena, inputs, asked)?;
+                sums.insert(arena.tick(), arena.fingerprint());
+                Ok(())
+            })
+            .unwrap();
+        let confirmed = self.session.confirmed_frame();
+        self.told.extend(self.rollback.confirmed(confirmed));
     }
 }

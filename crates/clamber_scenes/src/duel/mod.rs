@@ -5,12 +5,12 @@ mod record;
 
 use std::sync::Arc;
 
-use clamber_climber::ClimberInput;
+use clamber_climber::{ClimberInput, StepRules};
 use clamber_colossus::{
     Brain, BrainError, ColossusError, CreatureConfig, CreatureKind, CreatureParts,
 };
 use clamber_fight::actions::{BOW, STAB};
-use clamber_fight::{Arena, ArenaConfig, ArenaError, FighterConfig, PlayerInput};
+use clamber_fight::{Arena, ArenaConfig, ArenaError, FighterConfig, Order, PlayerInput};
 use clamber_gltf::GltfError;
 use clamber_world::{HalfSpace, Obstacle, ObstacleId};
 use glam::DVec3;
@@ -94,6 +94,25 @@ impl Duel {
         Ok(Self { arena, ground })
     }
 
+    /// An arena that knows the giant, and nobody in it yet: for a late joiner, who gets its state from the others.
+    ///
+    /// # Errors
+    /// [`DuelError::Arena`], which does not happen.
+    pub fn empty(kind: &Arc<CreatureKind>) -> Result<Self, DuelError> {
+        let mut arena = Arena::new(ArenaConfig::default())?;
+        arena.add_kind(Arc::clone(kind))?;
+        let ground = HalfSpace::below(0.0);
+        Ok(Self { arena, ground })
+    }
+
+    /// A third climber joins in the step in which this is given: behind the giant.
+    pub fn joins() -> Order {
+        Order::AddFighter {
+            config: Box::new(FighterConfig::hero()),
+            position: DVec3::new(-4.0, 1.0, -25.0),
+        }
+    }
+
     /// What a player does in a tick: a game reads keyboard and mouse here.
     pub fn input(player: usize, tick: u64) -> PlayerInput {
         let seconds = tick as f64 / RATE as f64;
@@ -127,14 +146,16 @@ impl Duel {
     /// Steps the arena over the ground.
     ///
     /// # Errors
-    /// As of [`Arena::step`].
+    /// As of [`Arena::step_with`].
     pub fn step(
         arena: &mut Arena,
         ground: &HalfSpace,
         inputs: &[ClimberInput],
+        orders: &[Order],
     ) -> Result<(), ArenaError> {
         let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, ground)];
-        arena.step(inputs, &terrain).map(drop)
+        let rules = StepRules::default();
+        arena.step_with(inputs, orders, &terrain, &rules).map(drop)
     }
 }
 

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use clamber_climber::ClimberInput;
 use clamber_colossus::CreatureKind;
+use clamber_fight::Order;
 use clamber_record::{
     ArenaInfo, ArenaRecorder, ArenaRecording, ArenaReplay, RecordOptions, SceneryView,
 };
@@ -20,7 +21,7 @@ const PLAYERS: [&str; 2] = ["rider", "archer"];
 /// Half the length of the drawn ground's sides, metres.
 const DRAWN: f32 = 100.0;
 
-/// Steps a duel anew with the inputs of all its ticks, and records it to a file. Gives the fingerprint of the last
+/// Steps a duel anew with the inputs and orders of all its ticks, and records it to a file. Gives the fingerprint of the last
 /// tick.
 ///
 /// A peer of a rollback session calls it at the end: only then all of its inputs are certain.
@@ -29,7 +30,7 @@ const DRAWN: f32 = 100.0;
 /// [`DuelError`].
 pub fn record(
     kind: &Arc<CreatureKind>,
-    inputs: impl IntoIterator<Item = Vec<ClimberInput>>,
+    steps: impl IntoIterator<Item = (Vec<ClimberInput>, Vec<Order>)>,
     path: &Path,
 ) -> Result<u64, DuelError> {
     let Duel { mut arena, ground } = Duel::new(kind)?;
@@ -48,9 +49,9 @@ pub fn record(
         color: [0.45, 0.5, 0.35],
     })?;
     let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &ground)];
-    for inputs in inputs {
-        arena.step(&inputs, &terrain)?;
-        recorder.tick(&arena, &inputs, &[], &terrain)?;
+    for (inputs, orders) in steps {
+        Duel::step(&mut arena, &ground, &inputs, &orders)?;
+        recorder.tick(&arena, &inputs, &orders, &terrain)?;
     }
     recorder.finish()?;
     Ok(arena.fingerprint())
@@ -74,7 +75,7 @@ pub fn replay(recording: &ArenaRecording, from: Option<u64>) -> Result<ArenaRepl
         return Err(DuelError::OtherScene);
     }
     let Duel { mut arena, ground } = Duel::new(&Duel::kind()?)?;
-    Ok(recording.replay(&mut arena, from, |arena, inputs, _| {
-        Duel::step(arena, &ground, inputs)
+    Ok(recording.replay(&mut arena, from, |arena, inputs, orders| {
+        Duel::step(arena, &ground, inputs, orders)
     })?)
 }

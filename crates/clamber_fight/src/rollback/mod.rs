@@ -5,33 +5,36 @@
 //! happened until it is certain.
 //!
 //! ```no_run
-//! use clamber_fight::rollback::{ArenaSession, Rollback};
+//! use clamber_fight::rollback::{AdvanceError, ArenaSession, Rollback, Watch};
 //! use clamber_climber::StepRules;
 //! use clamber_fight::{Arena, Order, PlayerInput};
 //! use clamber_world::{HalfSpace, Obstacle, ObstacleId};
-//! use ggrs::{DesyncDetection, GgrsError, PlayerType, SessionBuilder, UdpNonBlockingSocket};
+//! use ggrs::{DesyncDetection, PlayerType, SessionBuilder, UdpNonBlockingSocket};
 //!
 //! # fn fight(mut arena: Arena, input: PlayerInput) -> Result<(), Box<dyn std::error::Error>> {
+//! let (socket, mut watch) = Watch::over(UdpNonBlockingSocket::bind_to_port(7000)?);
 //! let mut session = SessionBuilder::<ArenaSession<std::net::SocketAddr>>::new()
 //!     .with_num_players(2)?
 //!     .with_desync_detection_mode(DesyncDetection::On { interval: 60 })
 //!     .add_player(PlayerType::Local, 0)? // fighter 0 is ours
 //!     .add_player(PlayerType::Remote("192.168.0.2:7000".parse()?), 1)?
-//!     .start_p2p_session(UdpNonBlockingSocket::bind_to_port(7000)?)?;
+//!     .start_p2p_session(socket)?;
 //! let mut rollback = Rollback::new(&arena);
 //! let ground = HalfSpace::below(0.0);
 //! let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(0), &ground)];
 //! loop {
 //!     // One fixed tick.
-//!     session.poll_remote_clients();
+//!     for event in watch.poll(&mut session) {
+//!         println!("{event:?}"); // who is there, and who is gone
+//!     }
 //!     if session.current_state() == ggrs::SessionState::Running {
 //!         session.add_local_input(0, input)?;
-//!         match session.advance_frame() {
+//!         match watch.advance(&mut session) {
 //!             Ok(requests) => rollback.handle(&mut arena, requests, |arena, inputs, asked| {
 //!                 let orders = orders_of(arena, asked); // the game's own: see below
 //!                 arena.step_with(inputs, &orders, &terrain, &StepRules::default()).map(drop)
 //!             })?,
-//!             Err(GgrsError::PredictionThreshold) => {} // the other one is too far behind: wait
+//!             Err(AdvanceError::Wait) => {} // the other one is too far behind
 //!             Err(error) => return Err(error.into()),
 //!         }
 //!         for (tick, event) in rollback.confirmed(session.confirmed_frame()) {
@@ -65,6 +68,8 @@
 //! joins by [`Order::AddFighter`](crate::Order) in the first step, and all begin a new session: the example `duel` does
 //! it.
 
+mod watch;
+
 use std::collections::BTreeMap;
 use std::fmt::Debug;
 use std::hash::Hash;
@@ -78,6 +83,7 @@ use ggrs::{Config, Frame, GgrsRequest, InputPredictor, InputStatus};
 use crate::actions::PlayerInput;
 use crate::arena::{Arena, ArenaEvent, ArenaState};
 use crate::error::ArenaError;
+pub use watch::{AdvanceError, Watch, Watched};
 
 /// ggrs's configuration for an arena, with the peers' kind of address:
 /// `SessionBuilder::<ArenaSession<SocketAddr>>::new()`.
