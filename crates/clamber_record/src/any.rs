@@ -1,6 +1,5 @@
 use std::path::Path;
 
-use crate::places::read_file;
 use crate::{ArenaInfo, ArenaRecording, Ending, RecordError, Recording, file};
 
 /// A recording of either kind, for programs that are given a file.
@@ -18,12 +17,11 @@ impl AnyRecording {
     /// # Errors
     /// As [`Recording::open`].
     pub fn open(path: impl AsRef<Path>) -> Result<Self, RecordError> {
-        let bytes = read_file(path.as_ref())?;
-        let contents = file::read(&bytes)?;
+        let contents = file::open(path.as_ref())?;
         Ok(if contents.metadata.contains_key(ArenaInfo::METADATA) {
-            Self::Arena(Box::new(ArenaRecording::from_contents(bytes, contents)?))
+            Self::Arena(Box::new(ArenaRecording::from_contents(contents)?))
         } else {
-            Self::Climber(Box::new(Recording::from_contents(bytes, contents)?))
+            Self::Climber(Box::new(Recording::from_contents(contents)?))
         })
     }
 

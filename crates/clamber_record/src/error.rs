@@ -92,22 +92,14 @@ pub enum RecordError {
         "not an MCAP file: it does not begin with MCAP's magic bytes; open a file made by a recorder"
     )]
     NotMcap,
-    /// The file is larger than the reader loads into memory, 1 GiB.
-    #[error("the file has more than the {limit} bytes that can be read; record shorter runs")]
-    TooLarge {
-        /// Bytes that were read before the reader gave up: `limit` + 1.
-        bytes: u64,
-        /// The largest size that is read, bytes.
-        limit: u64,
-    },
     /// An MCAP file without the metadata that a recorder writes first: another program's file, or cut or damaged there.
     #[error("not a recording of clamber: {0}")]
     NotARecording(String),
     /// The contents of a message are wrong, although the checksum of its chunk is right.
     #[error("the message at byte {at} on {topic} cannot be read: {reason}; record the run again")]
     Message {
-        /// Offset of the message in the file, bytes.
-        at: usize,
+        /// Offset of the message in the file, bytes; of one in a compressed chunk, as if that was not compressed.
+        at: u64,
         /// Topic of the message.
         topic: &'static str,
         /// Why.

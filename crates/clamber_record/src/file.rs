@@ -1,37 +1,45 @@
 //! Walks the records of an MCAP file from the front. So a file can be read up to where a crash or damage ends
 //! it, and neither footer nor summary is needed.
 //!
-//! Lengths are checked against the bytes that are left before anything is read. A chunk counts only if its
-//! checksum is right. The records are walked in one pass.
+//! A file of any length is read in bounded memory: one record at a time, of which the places of the messages that matter
+//! are kept. Lengths are checked before anything is read. A chunk counts only if its checksum is right, or if it has none.
 
 use std::collections::BTreeMap;
-use std::ops::Range;
+use std::io::Read;
+use std::path::Path;
+use std::sync::PoisonError;
 
 use mcap::records::{Record, op};
 use mcap::{MAGIC, parse_record};
+use prost::Message;
 
-use crate::{Ending, RecordError, topics};
+use crate::messages::{ArenaSnapshot, Snapshot};
+use crate::places::Places;
+use crate::source::{Bytes, CHUNK_HEADER, ChunkPlace, LARGEST, Place, Source, data_of};
+use crate::{Ending, RecordError, RecordedArenaTick, RecordedTick, topics};
 
 /// Bytes of a record before its body: its kind and its length.
 const PREFIX: usize = 9;
 
-/// Bytes of the header of a chunk that is not compressed.
-const CHUNK_HEADER: usize = 40;
+/// The largest metadata record that is read, bytes.
+const METADATA: u64 = 1 << 24;
 
 /// The contents of an MCAP file that recorders write.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct Contents {
     /// Metadata records by name; the first of those with the same name.
     pub(crate) metadata: BTreeMap<String, BTreeMap<String, String>>,
-    /// The kind and the bytes of each message, in order.
-    pub(crate) messages: Vec<(Kind, Range<usize>)>,
+    /// Ticks and snapshots of one climber, and those of an arena.
+    pub(crate) climber: Places,
+    pub(crate) arena: Places,
     /// How the file ends.
     pub(crate) ending: Ending,
+    pub(crate) source: Source,
 }
 
 /// Messages that are read back.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Kind {
+enum Kind {
     Tick,
     Snapshot,
     Arena,
@@ -41,120 +49,300 @@ pub(crate) enum Kind {
 /// Why the walk stopped.
 enum Stop {
     Early,
-    Damaged(usize, String),
+    Damaged(u64, String),
+    Failed(std::io::Error),
+}
+
+impl From<std::io::Error> for Stop {
+    fn from(error: std::io::Error) -> Self {
+        Self::Failed(error)
+    }
 }
 
 /// Walks a file.
-pub(crate) fn read(bytes: &[u8]) -> Result<Contents, RecordError> {
-    if !bytes.starts_with(MAGIC) {
-        return Err(RecordError::NotMcap);
+pub(crate) fn open(path: &Path) -> Result<Contents, RecordError> {
+    let bytes = Bytes::open(path)?;
+    read(bytes).map_err(|error| match error {
+        RecordError::Io { source, .. } => RecordError::Io {
+            what: format!("cannot read {}", path.display()),
+            source,
+        },
+        other => other,
+    })
+}
+
+/// Walks the bytes of a file.
+pub(crate) fn read(bytes: Bytes) -> Result<Contents, RecordError> {
+    let mut found = Found::default();
+    let walked = match &bytes {
+        Bytes::Memory(bytes) => walk(&bytes[..], &mut found),
+        Bytes::File(file) => {
+            let file = file.lock().unwrap_or_else(PoisonError::into_inner);
+            walk(std::io::BufReader::new(&*file), &mut found)
+        }
+    };
+    if !found.is_mcap {
+        return match walked {
+            Err(Stop::Failed(source)) => Err(failed(source)),
+            _ => Err(RecordError::NotMcap),
+        };
     }
-    let mut contents = Contents::default();
-    contents.ending = match walk(bytes, &mut contents) {
+    let ending = match walked {
         Ok(()) => Ending::Whole,
         Err(Stop::Early) => Ending::Early,
         Err(Stop::Damaged(at, reason)) => Ending::Damaged { at, reason },
+        Err(Stop::Failed(source)) => return Err(failed(source)),
     };
-    Ok(contents)
+    Ok(Contents {
+        metadata: found.metadata,
+        climber: found.climber,
+        arena: found.arena,
+        ending,
+        source: Source::new(bytes, found.chunks),
+    })
 }
 
-fn walk(bytes: &[u8], contents: &mut Contents) -> Result<(), Stop> {
-    let mut topics = BTreeMap::new();
-    let mut at = MAGIC.len();
+fn failed(source: std::io::Error) -> RecordError {
+    RecordError::Io {
+        what: "the recording cannot be read".to_owned(),
+        source,
+    }
+}
+
+/// What was found so far.
+#[derive(Default)]
+struct Found {
+    is_mcap: bool,
+    metadata: BTreeMap<String, BTreeMap<String, String>>,
+    topics: BTreeMap<u16, Kind>,
+    chunks: Vec<ChunkPlace>,
+    climber: Places,
+    arena: Places,
+}
+
+/// Reads a file from its front to its end, with a checksum of all that was read.
+struct Reader<R> {
+    inner: R,
+    at: u64,
+    sum: crc32fast::Hasher,
+}
+
+impl<R: Read> Reader<R> {
+    /// Reads so many bytes; [`Stop::Early`] if the file ends before.
+    fn take(&mut self, count: u64, into: &mut Vec<u8>) -> Result<(), Stop> {
+        into.clear();
+        let read = self.inner.by_ref().take(count).read_to_end(into)? as u64;
+        self.at += read;
+        self.sum.update(into);
+        if read == count {
+            Ok(())
+        } else {
+            Err(Stop::Early)
+        }
+    }
+
+    /// Passes over so many bytes.
+    fn skip(&mut self, mut count: u64, buffer: &mut Vec<u8>) -> Result<(), Stop> {
+        const PIECE: u64 = 1 << 16;
+        while count > 0 {
+            let piece = count.min(PIECE);
+            self.take(piece, buffer)?;
+            count -= piece;
+        }
+        Ok(())
+    }
+}
+
+fn walk(file: impl Read, found: &mut Found) -> Result<(), Stop> {
+    let mut reader = Reader {
+        inner: file,
+        at: 0,
+        sum: crc32fast::Hasher::new(),
+    };
+    let mut buffer = Vec::new();
+    reader.take(MAGIC.len() as u64, &mut buffer)?;
+    found.is_mcap = buffer == MAGIC;
+    if !found.is_mcap {
+        return Err(Stop::Early);
+    }
     loop {
-        let (opcode, body) = record(bytes, at, bytes.len()).ok_or(Stop::Early)?;
-        let damaged = |reason: String| Stop::Damaged(at, reason);
+        let (at, before) = (reader.at, reader.sum.clone());
+        reader.take(PREFIX as u64, &mut buffer)?;
+        let opcode = buffer[0];
+        let length = buffer[1..].try_into().map_or(0, u64::from_le_bytes);
+        let body = reader.at;
+        let damaged = |reason: &str| Stop::Damaged(at, reason.to_owned());
         match opcode {
             op::METADATA => {
-                let parsed = parse_record(opcode, &bytes[body.clone()]);
-                let Ok(Record::Metadata(metadata)) = parsed else {
-                    return Err(damaged("metadata that cannot be read".to_owned()));
+                if length > METADATA {
+                    return Err(damaged("metadata of more than 16 MiB"));
+                }
+                reader.take(length, &mut buffer)?;
+                let Ok(Record::Metadata(metadata)) = parse_record(opcode, &buffer) else {
+                    return Err(damaged("metadata that cannot be read"));
                 };
-                let known = contents.metadata.entry(metadata.name);
+                let known = found.metadata.entry(metadata.name);
                 known.or_insert(metadata.metadata);
             }
-            op::CHUNK => walk_chunk(bytes, body.clone(), &mut topics, contents)?,
+            op::CHUNK => {
+                if length > LARGEST {
+                    return Err(damaged("a chunk of more than 512 MiB"));
+                }
+                reader.take(length, &mut buffer)?;
+                let place = ChunkPlace { at: body, length };
+                found.chunk(place, &buffer)?;
+            }
             op::DATA_END => {
-                check_data(bytes, at, body.clone())?;
-                let whole = bytes[body.end..].ends_with(MAGIC);
-                return if whole { Ok(()) } else { Err(Stop::Early) };
+                if length > METADATA {
+                    return Err(damaged("a broken data end record"));
+                }
+                reader.take(length, &mut buffer)?;
+                let Ok(Record::DataEnd(end)) = parse_record(opcode, &buffer) else {
+                    return Err(damaged("a broken data end record"));
+                };
+                // Zero stands for no checksum.
+                if ![0, before.finalize()].contains(&end.data_section_crc) {
+                    let reason =
+                        "the checksum of all data is wrong: metadata or an index has changed";
+                    return Err(damaged(reason));
+                }
+                return end_of(&mut reader);
             }
             // Message indices, and records that other programs add.
-            op::HEADER | op::MESSAGE_INDEX | op::ATTACHMENT | 0x80.. => {}
+            op::HEADER | op::MESSAGE_INDEX | op::ATTACHMENT | 0x80.. => {
+                reader.skip(length, &mut buffer)?;
+            }
             other => {
-                return Err(damaged(format!(
+                return Err(damaged(&format!(
                     "a record of kind {other:#04x} out of place"
                 )));
             }
         }
-        at = body.end;
     }
 }
 
-/// The kind and the body of the record at `at`; `None` if it reaches beyond `end`.
-fn record(bytes: &[u8], at: usize, end: usize) -> Option<(u8, Range<usize>)> {
-    let start = at.checked_add(PREFIX).filter(|start| *start <= end)?;
+/// What follows the data: a summary, which is not needed, and the end of the file.
+fn end_of<R: Read>(reader: &mut Reader<R>) -> Result<(), Stop> {
+    let mut last: Vec<u8> = Vec::new();
+    let mut piece = vec![0; 1 << 16];
+    loop {
+        let count = match reader.inner.read(&mut piece) {
+            Ok(0) => break,
+            Ok(count) => count,
+            Err(error) if error.kind() == std::io::ErrorKind::Interrupted => continue,
+            Err(error) => return Err(error.into()),
+        };
+        last.extend_from_slice(&piece[..count]);
+        let kept = last.len().saturating_sub(MAGIC.len());
+        last.drain(..kept);
+    }
+    if last == MAGIC {
+        Ok(())
+    } else {
+        Err(Stop::Early)
+    }
+}
+
+/// The kind and the body of the record at `at`; `None` if it reaches beyond the end.
+fn record(bytes: &[u8], at: usize) -> Option<(u8, core::ops::Range<usize>)> {
+    let start = at
+        .checked_add(PREFIX)
+        .filter(|start| *start <= bytes.len())?;
     let length = bytes.get(at + 1..start)?.try_into().ok()?;
     let length = usize::try_from(u64::from_le_bytes(length)).ok()?;
-    let stop = start.checked_add(length).filter(|stop| *stop <= end)?;
+    let stop = start
+        .checked_add(length)
+        .filter(|stop| *stop <= bytes.len())?;
     Some((bytes[at], start..stop))
 }
 
-fn walk_chunk(
-    bytes: &[u8],
-    chunk: Range<usize>,
-    topics: &mut BTreeMap<u16, Kind>,
-    contents: &mut Contents,
-) -> Result<(), Stop> {
-    let damaged = |reason: &str| Stop::Damaged(chunk.start, reason.to_owned());
-    let parsed = parse_record(op::CHUNK, &bytes[chunk.clone()]);
-    let Ok(Record::Chunk { header, data }) = parsed else {
-        return Err(damaged("a chunk without a header"));
-    };
-    if !header.compression.is_empty() {
-        return Err(damaged("a compressed chunk; recorders write none"));
-    }
-    let sizes = (header.uncompressed_size, chunk.len());
-    // The data must end where the chunk ends, since its place is computed from the chunk's end.
-    if sizes != (data.len() as u64, CHUNK_HEADER + data.len()) {
-        return Err(damaged("a chunk whose size is not as its header says"));
-    }
-    let data = chunk.start + CHUNK_HEADER..chunk.end;
-    if crc32fast::hash(&bytes[data.clone()]) != header.uncompressed_crc {
-        return Err(damaged("a chunk whose checksum is wrong"));
-    }
-    let mut at = data.start;
-    while at < data.end {
-        let Some((opcode, body)) = record(bytes, at, data.end) else {
-            return Err(damaged("a record that reaches beyond its chunk"));
-        };
-        match (opcode, parse_inner(opcode, &bytes[body.clone()])) {
-            (_, Some(Record::Channel(channel))) => {
-                let kind = match channel.topic.as_str() {
-                    topics::TICK => Some(Kind::Tick),
-                    topics::SNAPSHOT => Some(Kind::Snapshot),
-                    topics::ARENA => Some(Kind::Arena),
-                    topics::ARENA_SNAPSHOT => Some(Kind::ArenaSnapshot),
-                    _ => None,
-                };
-                if let Some(kind) = kind {
-                    topics.insert(channel.id, kind);
+impl Found {
+    fn chunk(&mut self, place: ChunkPlace, body: &[u8]) -> Result<(), Stop> {
+        let damaged = |reason: &str| Stop::Damaged(place.at, reason.to_owned());
+        let data = data_of(body).map_err(damaged)?;
+        let index = u32::try_from(self.chunks.len());
+        let chunk = index.map_err(|_| damaged("more chunks than are read"))?;
+        self.chunks.push(place);
+        let mut at = 0;
+        while at < data.len() {
+            let Some((opcode, body)) = record(&data, at) else {
+                return Err(damaged("a record that reaches beyond its chunk"));
+            };
+            match (opcode, parse_inner(opcode, &data[body.clone()])) {
+                (_, Some(Record::Channel(channel))) => {
+                    let kind = match channel.topic.as_str() {
+                        topics::TICK => Some(Kind::Tick),
+                        topics::SNAPSHOT => Some(Kind::Snapshot),
+                        topics::ARENA => Some(Kind::Arena),
+                        topics::ARENA_SNAPSHOT => Some(Kind::ArenaSnapshot),
+                        _ => None,
+                    };
+                    if let Some(kind) = kind {
+                        self.topics.insert(channel.id, kind);
+                    }
                 }
-            }
-            (_, Some(Record::Message { header, data })) => {
-                if let Some(kind) = topics.get(&header.channel_id) {
-                    let message = body.end - data.len()..body.end;
-                    contents.messages.push((*kind, message));
+                (
+                    _,
+                    Some(Record::Message {
+                        header,
+                        data: message,
+                    }),
+                ) => {
+                    let from = body.end - message.len();
+                    // Both are within a chunk, which is not that long.
+                    let within = Place {
+                        chunk,
+                        from: from as u32,
+                        to: body.end as u32,
+                    };
+                    if let Some(kind) = self.topics.get(&header.channel_id).copied() {
+                        let at = place.at + CHUNK_HEADER + u64::from(within.from);
+                        self.message((kind, within), &message, at)
+                            .map_err(|error| Stop::Damaged(at, error.to_string()))?;
+                    }
                 }
+                (op::CHANNEL | op::MESSAGE, _) => {
+                    return Err(damaged("a chunk with a record that cannot be read"));
+                }
+                _ => {}
             }
-            (op::CHANNEL | op::MESSAGE, _) => {
-                return Err(damaged("a chunk with a record that cannot be read"));
-            }
-            _ => {}
+            at = body.end;
         }
-        at = body.end;
+        Ok(())
     }
-    Ok(())
+
+    /// Checks a message, which is at a byte of the file, and stores its place.
+    fn message(
+        &mut self,
+        (kind, place): (Kind, Place),
+        message: &[u8],
+        at: u64,
+    ) -> Result<(), RecordError> {
+        let broken =
+            |topic: &'static str, reason: String| RecordError::Message { at, topic, reason };
+        match kind {
+            Kind::Tick => {
+                let tick = RecordedTick::decode(message);
+                let tick = tick.map_err(|reason| broken(topics::TICK, reason))?;
+                self.climber.add_tick(tick.tick, place)
+            }
+            Kind::Snapshot => {
+                let saved = Snapshot::decode(message);
+                let saved = saved.map_err(|e| broken(topics::SNAPSHOT, e.to_string()))?;
+                self.climber.add_saved(saved.tick, place)
+            }
+            Kind::Arena => {
+                let tick = RecordedArenaTick::decode(message);
+                let tick = tick.map_err(|reason| broken(topics::ARENA, reason))?;
+                self.arena.add_tick(tick.tick, place)
+            }
+            Kind::ArenaSnapshot => {
+                let saved = ArenaSnapshot::decode(message);
+                let saved = saved.map_err(|e| broken(topics::ARENA_SNAPSHOT, e.to_string()))?;
+                self.arena.add_saved(saved.tick, place)
+            }
+        }
+    }
 }
 
 /// Parses only the kinds that are needed: the parser of the others is not made for arbitrary bytes.
@@ -163,18 +351,5 @@ fn parse_inner(opcode: u8, body: &[u8]) -> Option<Record<'_>> {
         parse_record(opcode, body).ok()
     } else {
         None
-    }
-}
-
-/// Compares the checksum of everything before the record that ends the data with the checksum in that record.
-fn check_data(bytes: &[u8], at: usize, body: Range<usize>) -> Result<(), Stop> {
-    let Ok(Record::DataEnd(end)) = parse_record(op::DATA_END, &bytes[body]) else {
-        return Err(Stop::Damaged(at, "a broken data end record".to_owned()));
-    };
-    if end.data_section_crc == crc32fast::hash(&bytes[..at]) {
-        Ok(())
-    } else {
-        let reason = "the checksum of all data is wrong: metadata or an index has changed";
-        Err(Stop::Damaged(at, reason.to_owned()))
     }
 }

@@ -14,6 +14,7 @@ mod places;
 mod recorder;
 mod recording;
 mod replay;
+mod source;
 mod taken;
 pub mod topics;
 mod views;

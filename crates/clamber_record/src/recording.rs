@@ -1,10 +1,10 @@
 use std::fmt;
-use std::ops::Range;
 use std::path::Path;
 
-use crate::file::{self, Contents, Kind};
+use crate::file::{self, Contents};
 use crate::messages::{Snapshot, Tick};
-use crate::places::{Places, decode, read_file};
+use crate::places::Places;
+use crate::source::{Bytes, Place, Source};
 use crate::{ArenaInfo, RecordError, RecordingInfo, topics};
 use clamber_climber::{ClimberInput, ClimberState};
 
@@ -20,7 +20,7 @@ pub enum Ending {
     /// The file is damaged from a byte on; everything before it is whole.
     Damaged {
         /// Offset of that byte in the file.
-        at: usize,
+        at: u64,
         /// What is wrong there.
         reason: String,
     },
@@ -68,18 +68,19 @@ pub struct RecordedSnapshot {
 #[derive(Clone, Debug)]
 pub struct Recording {
     info: RecordingInfo,
-    bytes: Vec<u8>,
+    source: Source,
     places: Places,
     ending: Ending,
 }
 
 impl Recording {
-    /// Reads a recording from a file of at most 1 GiB.
+    /// Reads a recording from a file of any length: only where its ticks are is kept in memory, and one chunk at a time.
+    /// Chunks may be compressed by zstd or lz4, as other programs write them, and checksums may be left out.
     ///
     /// # Errors
-    /// [`RecordError::Io`] if the file cannot be read, [`RecordError::TooLarge`], and as [`Recording::from_bytes`].
+    /// [`RecordError::Io`] if the file cannot be read, and as [`Recording::from_bytes`].
     pub fn open(path: impl AsRef<Path>) -> Result<Self, RecordError> {
-        Self::from_bytes(read_file(path.as_ref())?)
+        Self::from_contents(file::open(path.as_ref())?)
     }
 
     /// Reads a recording from the bytes of its file.
@@ -91,14 +92,10 @@ impl Recording {
     /// metadata is missing or cannot be read, [`RecordError::TickSeconds`] if its duration of a tick is not positive or
     /// not finite.
     pub fn from_bytes(bytes: Vec<u8>) -> Result<Self, RecordError> {
-        let contents = file::read(&bytes)?;
-        Self::from_contents(bytes, contents)
+        Self::from_contents(file::read(Bytes::Memory(bytes))?)
     }
 
-    pub(crate) fn from_contents(
-        bytes: Vec<u8>,
-        mut contents: Contents,
-    ) -> Result<Self, RecordError> {
+    pub(crate) fn from_contents(mut contents: Contents) -> Result<Self, RecordError> {
         if contents.metadata.contains_key(ArenaInfo::METADATA) {
             let kind = "it is a recording of an arena; read it with ArenaRecording".to_owned();
             return Err(RecordError::NotARecording(kind));
@@ -111,37 +108,12 @@ impl Recording {
         };
         let metadata = take(RecordingInfo::METADATA)?;
         let info = RecordingInfo::from_metadata(&metadata, take(RecordingInfo::SETTINGS)?)?;
-        let mut recording = Self {
+        Ok(Self {
             info,
-            bytes,
-            places: Places::default(),
+            source: contents.source,
+            places: contents.climber,
             ending: contents.ending,
-        };
-        for (kind, place) in contents.messages {
-            let at = place.start;
-            if let Err(error) = recording.add(kind, place) {
-                let reason = error.to_string();
-                recording.ending = Ending::Damaged { at, reason };
-                break;
-            }
-        }
-        Ok(recording)
-    }
-
-    /// Checks a message and stores its place.
-    fn add(&mut self, kind: Kind, place: Range<usize>) -> Result<(), RecordError> {
-        match kind {
-            Kind::Tick => {
-                let tick = self.decode_tick(&place)?.tick;
-                self.places.add_tick(tick, place)
-            }
-            Kind::Snapshot => {
-                let tick = self.decode_snapshot(&place)?.tick;
-                self.places.add_saved(tick, place)
-            }
-            // Only recordings of arenas have these.
-            Kind::Arena | Kind::ArenaSnapshot => Ok(()),
-        }
+        })
     }
 
     /// The metadata of the recording.
@@ -211,19 +183,34 @@ impl Recording {
         })
     }
 
-    fn decode_tick(&self, place: &Range<usize>) -> Result<RecordedTick, RecordError> {
-        let failed = |reason: String| RecordError::Message {
-            at: place.start,
+    fn decode_tick(&self, place: &Place) -> Result<RecordedTick, RecordError> {
+        let tick: Tick = self.source.decode(place, topics::TICK)?;
+        RecordedTick::from_message(tick).map_err(|reason| RecordError::Message {
+            at: self.source.offset(place),
             topic: topics::TICK,
             reason,
-        };
-        let tick: Tick = decode(&self.bytes, place, topics::TICK)?;
+        })
+    }
+
+    fn decode_snapshot(&self, place: &Place) -> Result<Snapshot, RecordError> {
+        self.source.decode(place, topics::SNAPSHOT)
+    }
+}
+
+impl RecordedTick {
+    /// What a message says, or what is wrong with it.
+    pub(crate) fn decode(message: &[u8]) -> Result<Self, String> {
+        let tick = prost::Message::decode(message);
+        Self::from_message(tick.map_err(|error| error.to_string())?)
+    }
+
+    fn from_message(tick: Tick) -> Result<Self, String> {
         let state = tick.state.to_climber();
-        let state = state.map_err(|mode| failed(format!("unknown climber mode {mode}")))?;
+        let state = state.map_err(|mode| format!("unknown climber mode {mode}"))?;
         if state.fingerprint() != tick.state_fingerprint {
-            return Err(failed("its state and fingerprint do not match".to_owned()));
+            return Err("its state and fingerprint do not match".to_owned());
         }
-        Ok(RecordedTick {
+        Ok(Self {
             tick: tick.tick,
             input: tick.input.into(),
             state,
@@ -231,9 +218,5 @@ impl Recording {
             palette_fingerprint: tick.palette_fingerprint,
             scene_fingerprint: tick.scene_fingerprint,
         })
-    }
-
-    fn decode_snapshot(&self, place: &Range<usize>) -> Result<Snapshot, RecordError> {
-        decode(&self.bytes, place, topics::SNAPSHOT)
     }
 }

@@ -1,13 +1,13 @@
-use std::ops::Range;
 use std::path::Path;
 
 use clamber_climber::ClimberInput;
 use clamber_fight::{ArenaPart, CreatureId, FighterId, Order};
 
 use super::ArenaInfo;
-use crate::file::{self, Contents, Kind};
+use crate::file::{self, Contents};
 use crate::messages::{ArenaSnapshot, ArenaTick};
-use crate::places::{Places, decode, read_file};
+use crate::places::Places;
+use crate::source::{Bytes, Place, Source};
 use crate::{Ending, RecordError, RecordingInfo, topics};
 
 /// A tick of an arena as it was recorded.
@@ -27,6 +27,31 @@ pub struct RecordedArenaTick {
 }
 
 impl RecordedArenaTick {
+    /// What a message says, or what is wrong with it.
+    pub(crate) fn decode(message: &[u8]) -> Result<Self, String> {
+        let tick = prost::Message::decode(message);
+        Self::from_message(tick.map_err(|error| error.to_string())?)
+    }
+
+    fn from_message(tick: ArenaTick) -> Result<Self, String> {
+        let orders = match &tick.orders[..] {
+            [] => Vec::new(),
+            orders => Order::from_bytes(orders).map_err(|error| error.to_string())?,
+        };
+        let creatures = tick.creatures.iter().copied().map(CreatureId);
+        let fighters = tick.fighters.iter().copied().map(FighterId);
+        let parts = creatures.map(ArenaPart::Creature);
+        let parts = parts.chain(fighters.map(ArenaPart::Fighter));
+        let parts = parts.chain([ArenaPart::Rest]).zip(tick.parts);
+        Ok(Self {
+            tick: tick.tick,
+            inputs: tick.inputs.into_iter().map(Into::into).collect(),
+            orders,
+            fingerprint: tick.fingerprint,
+            parts: parts.collect(),
+        })
+    }
+
     /// The numbers of the fighters at its end, to whom the inputs of the next step belong.
     pub fn fighters(&self) -> impl Iterator<Item = usize> + '_ {
         self.parts.iter().filter_map(|(part, _)| match part {
@@ -40,18 +65,18 @@ impl RecordedArenaTick {
 #[derive(Clone, Debug)]
 pub struct ArenaRecording {
     info: ArenaInfo,
-    bytes: Vec<u8>,
+    source: Source,
     places: Places,
     ending: Ending,
 }
 
 impl ArenaRecording {
-    /// Reads a recording from a file of at most 1 GiB.
+    /// Reads a recording from a file of any length, as [`Recording::open`](crate::Recording::open) does.
     ///
     /// # Errors
-    /// [`RecordError::Io`] if the file cannot be read, [`RecordError::TooLarge`], and as [`ArenaRecording::from_bytes`].
+    /// [`RecordError::Io`] if the file cannot be read, and as [`ArenaRecording::from_bytes`].
     pub fn open(path: impl AsRef<Path>) -> Result<Self, RecordError> {
-        Self::from_bytes(read_file(path.as_ref())?)
+        Self::from_contents(file::open(path.as_ref())?)
     }
 
     /// Reads a recording from the bytes of its file.
@@ -63,14 +88,10 @@ impl ArenaRecording {
     /// metadata is missing or cannot be read, [`RecordError::TickSeconds`] if its duration of a tick is not positive or
     /// not finite.
     pub fn from_bytes(bytes: Vec<u8>) -> Result<Self, RecordError> {
-        let contents = file::read(&bytes)?;
-        Self::from_contents(bytes, contents)
+        Self::from_contents(file::read(Bytes::Memory(bytes))?)
     }
 
-    pub(crate) fn from_contents(
-        bytes: Vec<u8>,
-        mut contents: Contents,
-    ) -> Result<Self, RecordError> {
+    pub(crate) fn from_contents(mut contents: Contents) -> Result<Self, RecordError> {
         let of_one = contents.metadata.contains_key(RecordingInfo::METADATA);
         let mut take = |name: &str| {
             contents.metadata.remove(name).ok_or_else(|| {
@@ -83,37 +104,12 @@ impl ArenaRecording {
         };
         let metadata = take(ArenaInfo::METADATA)?;
         let info = ArenaInfo::from_metadata(&metadata, take(RecordingInfo::SETTINGS)?)?;
-        let mut recording = Self {
+        Ok(Self {
             info,
-            bytes,
-            places: Places::default(),
+            source: contents.source,
+            places: contents.arena,
             ending: contents.ending,
-        };
-        for (kind, place) in contents.messages {
-            let at = place.start;
-            if let Err(error) = recording.add(kind, place) {
-                let reason = error.to_string();
-                recording.ending = Ending::Damaged { at, reason };
-                break;
-            }
-        }
-        Ok(recording)
-    }
-
-    /// Checks a message and stores its place.
-    fn add(&mut self, kind: Kind, place: Range<usize>) -> Result<(), RecordError> {
-        match kind {
-            Kind::Arena => {
-                let tick = self.decode_tick(&place)?.tick;
-                self.places.add_tick(tick, place)
-            }
-            Kind::ArenaSnapshot => {
-                let tick = self.decode_saved(&place)?.tick;
-                self.places.add_saved(tick, place)
-            }
-            // Only recordings of one climber have these.
-            Kind::Tick | Kind::Snapshot => Ok(()),
-        }
+        })
     }
 
     /// The metadata of the recording.
@@ -167,27 +163,16 @@ impl ArenaRecording {
         Ok((at, self.decode_saved(place)?.state.to_vec()))
     }
 
-    fn decode_tick(&self, place: &Range<usize>) -> Result<RecordedArenaTick, RecordError> {
-        let tick: ArenaTick = decode(&self.bytes, place, topics::ARENA)?;
-        let orders = match &tick.orders[..] {
-            [] => Vec::new(),
-            orders => Order::from_bytes(orders)?,
-        };
-        let creatures = tick.creatures.iter().copied().map(CreatureId);
-        let fighters = tick.fighters.iter().copied().map(FighterId);
-        let parts = creatures.map(ArenaPart::Creature);
-        let parts = parts.chain(fighters.map(ArenaPart::Fighter));
-        let parts = parts.chain([ArenaPart::Rest]).zip(tick.parts);
-        Ok(RecordedArenaTick {
-            tick: tick.tick,
-            inputs: tick.inputs.into_iter().map(Into::into).collect(),
-            orders,
-            fingerprint: tick.fingerprint,
-            parts: parts.collect(),
+    fn decode_tick(&self, place: &Place) -> Result<RecordedArenaTick, RecordError> {
+        let tick: ArenaTick = self.source.decode(place, topics::ARENA)?;
+        RecordedArenaTick::from_message(tick).map_err(|reason| RecordError::Message {
+            at: self.source.offset(place),
+            topic: topics::ARENA,
+            reason,
         })
     }
 
-    fn decode_saved(&self, place: &Range<usize>) -> Result<ArenaSnapshot, RecordError> {
-        decode(&self.bytes, place, topics::ARENA_SNAPSHOT)
+    fn decode_saved(&self, place: &Place) -> Result<ArenaSnapshot, RecordError> {
+        self.source.decode(place, topics::ARENA_SNAPSHOT)
     }
 }

@@ -3,5 +3,6 @@
 mod arena;
 mod battle;
 mod damage;
+mod elsewhere;
 mod figure;
 mod python;

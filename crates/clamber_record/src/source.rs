@@ -1,0 +1,170 @@
+//! Where the bytes of a recording are: in memory, or in a file of which one chunk is read at a time.
+
+use std::fs::File;
+use std::io::{Read, Seek, SeekFrom};
+use std::ops::Deref;
+use std::path::Path;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use mcap::parse_record;
+use mcap::records::{Record, op};
+use prost::Message;
+
+use crate::RecordError;
+
+/// The largest chunk that is read, bytes, compressed and not: a recorder's has a second of ticks, some megabytes.
+pub(crate) const LARGEST: u64 = 1 << 29;
+
+/// Bytes of the header of a chunk that is not compressed. Places in others are told as if they were not, too.
+pub(crate) const CHUNK_HEADER: u64 = 40;
+
+/// A recording's bytes.
+#[derive(Clone, Debug)]
+pub(crate) struct Source(Arc<Inner>);
+
+#[derive(Debug)]
+struct Inner {
+    bytes: Bytes,
+    chunks: Vec<ChunkPlace>,
+    /// The chunk that was read last, with its index.
+    last: Mutex<Option<(u32, Arc<[u8]>)>>,
+}
+
+#[derive(Debug)]
+pub(crate) enum Bytes {
+    Memory(Vec<u8>),
+    File(Mutex<File>),
+}
+
+/// Where the body of a chunk record is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct ChunkPlace {
+    pub(crate) at: u64,
+    pub(crate) length: u64,
+}
+
+/// Where a message is: in a chunk, whose data may be compressed in the file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Place {
+    pub(crate) chunk: u32,
+    pub(crate) from: u32,
+    pub(crate) to: u32,
+}
+
+impl Bytes {
+    pub(crate) fn open(path: &Path) -> Result<Self, RecordError> {
+        let file = File::open(path).map_err(|source| RecordError::Io {
+            what: format!("cannot read {}", path.display()),
+            source,
+        })?;
+        Ok(Self::File(Mutex::new(file)))
+    }
+
+    fn read(&self, place: ChunkPlace) -> std::io::Result<Vec<u8>> {
+        let mut body = Vec::new();
+        match self {
+            Self::Memory(bytes) => {
+                let at = usize::try_from(place.at).unwrap_or(usize::MAX);
+                let rest = bytes.get(at..).unwrap_or_default();
+                rest.take(place.length).read_to_end(&mut body)?;
+            }
+            Self::File(file) => {
+                let mut file = file.lock().unwrap_or_else(PoisonError::into_inner);
+                file.seek(SeekFrom::Start(place.at))?;
+                (&mut *file).take(place.length).read_to_end(&mut body)?;
+            }
+        }
+        Ok(body)
+    }
+}
+
+impl Source {
+    pub(crate) fn new(bytes: Bytes, chunks: Vec<ChunkPlace>) -> Self {
+        Self(Arc::new(Inner {
+            bytes,
+            chunks,
+            last: Mutex::new(None),
+        }))
+    }
+
+    /// The message at a place.
+    pub(crate) fn decode<M: Message + Default>(
+        &self,
+        place: &Place,
+        topic: &'static str,
+    ) -> Result<M, RecordError> {
+        let failed = |reason: String| RecordError::Message {
+            at: self.offset(place),
+            topic,
+            reason,
+        };
+        let chunk = self.chunk(place.chunk)?;
+        let message = chunk.get(place.from as usize..place.to as usize);
+        let message = message.ok_or_else(|| failed("its chunk has changed".to_owned()))?;
+        M::decode(message).map_err(|error| failed(error.to_string()))
+    }
+
+    /// Where a message is in the file, if its chunk is not compressed.
+    pub(crate) fn offset(&self, place: &Place) -> u64 {
+        let chunk = self.0.chunks.get(place.chunk as usize);
+        chunk.map_or(0, |chunk| chunk.at + CHUNK_HEADER + u64::from(place.from))
+    }
+
+    fn chunk(&self, index: u32) -> Result<Arc<[u8]>, RecordError> {
+        let mut last = self.0.last.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((known, chunk)) = last.deref()
+            && *known == index
+        {
+            return Ok(Arc::clone(chunk));
+        }
+        let changed = |source| RecordError::Io {
+            what: "the recording cannot be read any more".to_owned(),
+            source,
+        };
+        let place = self.0.chunks.get(index as usize).copied();
+        let place = place.unwrap_or(ChunkPlace { at: 0, length: 0 });
+        let body = self.0.bytes.read(place).map_err(changed)?;
+        let data = data_of(&body).map_err(|reason| changed(std::io::Error::other(reason)))?;
+        let data: Arc<[u8]> = data.into();
+        *last = Some((index, Arc::clone(&data)));
+        Ok(data)
+    }
+}
+
+/// The data of a chunk record, decompressed and checked.
+pub(crate) fn data_of(body: &[u8]) -> Result<Vec<u8>, &'static str> {
+    let Ok(Record::Chunk { header, data }) = parse_record(op::CHUNK, body) else {
+        return Err("a chunk without a header");
+    };
+    if header.uncompressed_size > LARGEST {
+        return Err("a chunk of more than 512 MiB");
+    }
+    let (size, compressed) = (header.uncompressed_size, &data[..]);
+    // One byte more than it should have shows that it has more.
+    let mut plain = Vec::new();
+    let read = match header.compression.as_str() {
+        "" => {
+            plain.extend_from_slice(compressed);
+            Ok(0)
+        }
+        "zstd" => match ruzstd::decoding::StreamingDecoder::new(compressed) {
+            Ok(decoder) => decoder.take(size + 1).read_to_end(&mut plain),
+            Err(_) => return Err("a chunk that zstd cannot decompress"),
+        },
+        "lz4" => lz4_flex::frame::FrameDecoder::new(compressed)
+            .take(size + 1)
+            .read_to_end(&mut plain),
+        _ => return Err("a chunk with a compression that is neither zstd nor lz4"),
+    };
+    if read.is_err() {
+        return Err("a chunk that cannot be decompressed");
+    }
+    if plain.len() as u64 != size {
+        return Err("a chunk whose size is not as its header says");
+    }
+    // Zero stands for no checksum.
+    if ![0, crc32fast::hash(&plain)].contains(&header.uncompressed_crc) {
+        return Err("a chunk whose checksum is wrong");
+    }
+    Ok(plain)
+}

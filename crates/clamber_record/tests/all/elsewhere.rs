@@ -1,0 +1,230 @@
+//! Files as other programs write them: compressed chunks, no checksums; and files that are longer than memory.
+
+#![expect(
+    clippy::unwrap_used,
+    reason = "a test's helpers may fail like the test"
+)]
+
+use std::io::{Read, Seek, SeekFrom, Write};
+use std::sync::OnceLock;
+
+use clamber_climber::ClimberInput;
+use clamber_fight::{Arena, ArenaConfig, FighterConfig};
+use clamber_record::{
+    AnyRecording, ArenaInfo, ArenaRecorder, ArenaRecording, Ending, RecordOptions,
+};
+use clamber_world::{HalfSpace, Obstacle, ObstacleId};
+use glam::DVec3;
+
+const TICKS: u64 = 200;
+
+fn arena() -> Arena {
+    let mut arena = Arena::new(ArenaConfig::default()).unwrap();
+    for x in [0.0, 3.0] {
+        arena
+            .add_fighter(FighterConfig::hero(), DVec3::new(x, 1.0, 0.0))
+            .unwrap();
+    }
+    arena
+}
+
+fn inputs(tick: u64) -> [ClimberInput; 2] {
+    [0, 1].map(|player| ClimberInput {
+        walk: if (tick / 20 + player) % 2 == 0 {
+            DVec3::X
+        } else {
+            DVec3::NEG_Z
+        },
+        jump: tick % 50 == 7 * player,
+        ..ClimberInput::IDLE
+    })
+}
+
+fn file() -> &'static [u8] {
+    static FILE: OnceLock<Vec<u8>> = OnceLock::new();
+    FILE.get_or_init(|| {
+        let mut arena = arena();
+        let info = ArenaInfo::of(&arena);
+        let options = RecordOptions::default();
+        let mut recorder = ArenaRecorder::new(Vec::new(), &info, &arena, options).unwrap();
+        let ground = HalfSpace::below(0.0);
+        let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(0), &ground)];
+        for tick in 0..TICKS {
+            arena.step(&inputs(tick), &terrain).unwrap();
+            recorder.tick(&arena, &inputs(tick), &[], &terrain).unwrap();
+        }
+        recorder.finish().unwrap()
+    })
+}
+
+/// Kinds of records.
+const CHUNK: u8 = 0x06;
+const ATTACHMENT: u8 = 0x09;
+const DATA_END: u8 = 0x0f;
+
+/// A file's records up to the end of its data: what each is, and its body.
+fn records(file: &[u8]) -> Vec<(u8, Vec<u8>)> {
+    let (mut at, mut all) = (8, Vec::new());
+    loop {
+        let length = u64::from_le_bytes(file[at + 1..at + 9].try_into().unwrap()) as usize;
+        all.push((file[at], file[at + 9..at + 9 + length].to_vec()));
+        if file[at] == DATA_END {
+            return all;
+        }
+        at += 9 + length;
+    }
+}
+
+fn written(records: &[(u8, Vec<u8>)]) -> Vec<u8> {
+    let mut file = b"\x89MCAP0\r\n".to_vec();
+    for (kind, body) in records {
+        file.push(*kind);
+        file.extend((body.len() as u64).to_le_bytes());
+        file.extend(body);
+    }
+    file.extend(b"\x89MCAP0\r\n");
+    file
+}
+
+/// A chunk's body with its data compressed, with its checksum or without.
+fn compressed(body: &[u8], how: &str, has_checksum: bool) -> Vec<u8> {
+    // Times of its first and last message, size, checksum; name of the compression; length of the data.
+    let (head, data) = (&body[..28], &body[40..]);
+    let data = match how {
+        "zstd" => {
+            let level = ruzstd::encoding::CompressionLevel::Fastest;
+            ruzstd::encoding::compress_to_vec(data, level)
+        }
+        "lz4" => {
+            let mut encoder = lz4_flex::frame::FrameEncoder::new(Vec::new());
+            encoder.write_all(data).unwrap();
+            encoder.finish().unwrap()
+        }
+        _ => data.to_vec(),
+    };
+    let mut new = head.to_vec();
+    if !has_checksum {
+        new[24..28].fill(0);
+    }
+    new.extend((how.len() as u32).to_le_bytes());
+    new.extend(how.as_bytes());
+    new.extend((data.len() as u64).to_le_bytes());
+    new.extend(data);
+    new
+}
+
+/// The file with other chunks, and without the checksum of all data.
+fn rewritten(how: &str, has_checksum: bool) -> Vec<u8> {
+    let mut all = records(file());
+    for (kind, body) in &mut all {
+        match *kind {
+            CHUNK => *body = compressed(body, how, has_checksum),
+            DATA_END => body.fill(0),
+            _ => {}
+        }
+    }
+    written(&all)
+}
+
+fn replays(recording: &ArenaRecording, what: &str) {
+    assert_eq!(*recording.ending(), Ending::Whole, "{what}");
+    assert_eq!(recording.len() as u64, TICKS + 1, "{what}");
+    let ground = HalfSpace::below(0.0);
+    let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(0), &ground)];
+    // Backwards, so that chunks are read again.
+    for from in [TICKS, 130, 61, 0] {
+        let replay = recording.replay(&mut arena(), Some(from), |arena, inputs, _| {
+            arena.step(inputs, &terrain).map(drop)
+        });
+        let replay = replay.unwrap();
+        assert_eq!(replay.difference, None, "{what} from {from}");
+        assert_eq!(replay.from + replay.agreed, TICKS + 1, "{what}");
+    }
+}
+
+#[test]
+fn compressed_chunks_and_files_without_checksums_are_read() {
+    for how in ["", "zstd", "lz4"] {
+        for has_checksum in [true, false] {
+            let file = rewritten(how, has_checksum);
+            let what = format!("{how:?}, checksums {has_checksum}");
+            replays(&ArenaRecording::from_bytes(file).unwrap(), &what);
+        }
+    }
+}
+
+/// Compressed files that were changed or cut are refused from there on, whatever their headers claim.
+#[test]
+fn damaged_compressed_files_give_what_is_whole() {
+    let mut rng = fastrand::Rng::with_seed(11);
+    for how in ["zstd", "lz4", "brotli"] {
+        let whole = rewritten(if how == "brotli" { "" } else { how }, true);
+        let mut shorter = 0;
+        for round in 0..150 {
+            let mut file = whole.clone();
+            if how == "brotli" {
+                // A compression that nobody knows.
+                let mut all = records(&file);
+                let chunk = all.iter_mut().find(|(kind, _)| *kind == CHUNK).unwrap();
+                chunk.1 = [&chunk.1[..28], &[6, 0, 0, 0], b"brotli", &chunk.1[32..]].concat();
+                file = written(&all);
+            } else if round % 3 == 0 {
+                file.truncate(rng.usize(..file.len()));
+            } else {
+                let at = rng.usize(..file.len());
+                file[at] ^= 1 << rng.u8(..8);
+            }
+            if let Ok(recording) = ArenaRecording::from_bytes(file) {
+                shorter += u64::from((recording.len() as u64) < TICKS + 1);
+                for tick in recording.ticks_from(0) {
+                    tick.unwrap();
+                }
+            }
+        }
+        assert!(shorter > 50, "{how}: {shorter}");
+    }
+    // A chunk that claims to be small, and one that claims to be large.
+    for size in [100u64, 1 << 40] {
+        let mut all = records(&rewritten("zstd", false));
+        let chunk = all.iter_mut().find(|(kind, _)| *kind == CHUNK).unwrap();
+        chunk.1[16..24].copy_from_slice(&size.to_le_bytes());
+        let recording = ArenaRecording::from_bytes(written(&all)).unwrap();
+        assert!(matches!(recording.ending(), Ending::Damaged { .. }));
+        assert!(recording.is_empty());
+    }
+}
+
+/// A file of more than 4 GiB, most of which is somebody's attachment (and no disk: it is sparse), is read in little memory.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_file_of_any_length_is_read() {
+    const LONG: u64 = (1 << 32) + 12_345;
+    let path = format!("{}/long.mcap", env!("CARGO_TARGET_TMPDIR"));
+    let all = records(&rewritten("zstd", true));
+    let first = all.iter().position(|(kind, _)| *kind == CHUNK).unwrap();
+    let mut file = std::fs::File::create(&path).unwrap();
+    let before = written(&all[..first]);
+    file.write_all(&before[..before.len() - 8]).unwrap();
+    file.write_all(&[ATTACHMENT]).unwrap();
+    file.write_all(&LONG.to_le_bytes()).unwrap();
+    file.seek(SeekFrom::Current(LONG as i64)).unwrap();
+    file.write_all(&written(&all[first..])[8..]).unwrap();
+    drop(file);
+    let peak = |what: &str| -> u64 {
+        let mut status = String::new();
+        let mut file = std::fs::File::open("/proc/self/status").unwrap();
+        file.read_to_string(&mut status).unwrap();
+        let line = status.lines().find(|line| line.starts_with(what)).unwrap();
+        let number = line.split_whitespace().nth(1).unwrap();
+        number.parse().unwrap()
+    };
+    let resident = peak("VmRSS:");
+    let AnyRecording::Arena(recording) = AnyRecording::open(&path).unwrap() else {
+        unreachable!("it is an arena's");
+    };
+    // Other tests run beside this one.
+    let most = peak("VmHWM:").saturating_sub(resident);
+    assert!(most < 1 << 20, "{most} kB more");
+    replays(&recording, "a long file");
+    std::fs::remove_file(&path).unwrap();
+}
