@@ -36,11 +36,11 @@ fn run(brief: bool) -> Result<(), Box<dyn Error>> {
     let no_views = RecordOptions {
         transforms_every: 0,
         skin_every: 0,
-        ..RecordOptions::default()
+        ..RecordOptions::waiting()
     };
     for rocks in [24, 0] {
         let name = format!("{rocks} rocks");
-        measure(&name, rocks, RecordOptions::default(), brief, &mut cells)?;
+        measure(&name, rocks, RecordOptions::waiting(), brief, &mut cells)?;
         let name = format!("{rocks} rocks, only the data for a replay");
         measure(&name, rocks, no_views, brief, &mut cells)?;
     }

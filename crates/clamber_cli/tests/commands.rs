@@ -142,7 +142,7 @@ fn recorded(name: &str, seed: u64, ticks: u64) -> String {
     let options = BattleOptions::ride(0, seed);
     let creature = giant::giant().unwrap();
     let mut battle = Battle::new(&creature, &options).unwrap();
-    let how = RecordOptions::default();
+    let how = RecordOptions::waiting();
     let mut recorder = BattleRecorder::new(Vec::new(), &battle, &options, how).unwrap();
     for tick in 0..ticks {
         battle.step(options.input_at(tick)).unwrap();

@@ -8,6 +8,15 @@ use std::time::Duration;
 
 use crate::RecordError;
 
+/// A tick on its way to the file.
+pub(crate) trait TakenTick {
+    /// True if a replay can begin with it: something is saved of it.
+    fn is_saved(&self) -> bool;
+
+    /// So many ticks before it were left out.
+    fn follows_gap(&mut self, ticks: u64);
+}
+
 /// Encodes ticks and writes them.
 pub(crate) trait WriteTicks<T, W>: Send + 'static {
     /// Writes a chunk of ticks.
@@ -22,6 +31,11 @@ pub(crate) struct Chunks<T, W> {
     /// Ticks in a chunk.
     size: usize,
     last: Option<u64>,
+    /// True if the game waits for a slow disk; otherwise chunks are left out.
+    waits: bool,
+    /// Ticks that were left out so far, and since the last chunk that was handed over.
+    dropped: u64,
+    gap: u64,
     /// The first `gathered` of these are the ticks of the chunk that is being gathered. The others are kept for
     /// their memory.
     chunk: Vec<T>,
@@ -40,11 +54,11 @@ struct WriterThread<T, W> {
 /// Ticks, and how many of them from the front belong to the chunk.
 type Chunk<T> = (Vec<T>, usize);
 
-impl<T: Send + 'static, W: Send + 'static> Chunks<T, W> {
+impl<T: TakenTick + Send + 'static, W: Send + 'static> Chunks<T, W> {
     /// Starts the thread.
     pub(crate) fn start(
         mut writing: impl WriteTicks<T, W>,
-        chunk_ticks: u32,
+        (chunk_ticks, waits): (u32, bool),
     ) -> Result<Self, RecordError> {
         // One chunk is gathered, some wait, one is written.
         let (to_thread, chunks) = sync_channel::<Chunk<T>>(WAITING);
@@ -65,6 +79,9 @@ impl<T: Send + 'static, W: Send + 'static> Chunks<T, W> {
         Ok(Self {
             size: chunk_ticks.max(1) as usize,
             last: None,
+            waits,
+            dropped: 0,
+            gap: 0,
             chunk: Vec::new(),
             gathered: 0,
             thread: Some(WriterThread {
@@ -76,8 +93,8 @@ impl<T: Send + 'static, W: Send + 'static> Chunks<T, W> {
     }
 }
 
-/// Most chunks that wait to be written before the game waits for them.
-const WAITING: usize = 3;
+/// Most chunks that wait to be written before the game waits for them, or leaves the next one out.
+const WAITING: usize = 8;
 
 /// How long the thread sleeps before it looks for the next chunk: first, and at most. Handing a chunk over does not
 /// wake it, since that takes longer than all else that the game's thread does for a chunk.
@@ -96,15 +113,30 @@ fn next<T>(chunks: &Receiver<T>) -> Option<T> {
     }
 }
 
+/// What became of a chunk.
+enum Passed<T> {
+    On,
+    /// There is no room for it now.
+    Back(Vec<T>),
+    /// The thread has ended with an error.
+    Ended,
+}
+
 impl<T, W> WriterThread<T, W> {
-    /// Passes a chunk to the thread; false if it has ended with an error. Waits only if too many others wait.
-    fn pass(&self, chunk: Chunk<T>) -> bool {
+    /// Passes a chunk to the thread. If too many others wait, waits for them, or gives it back.
+    fn pass(&self, chunk: Chunk<T>, waits: bool) -> Passed<T> {
         match self.chunks.try_send(chunk) {
-            Ok(()) => true,
-            Err(TrySendError::Disconnected(_)) => false,
+            Ok(()) => Passed::On,
+            Err(TrySendError::Disconnected(_)) => Passed::Ended,
             Err(TrySendError::Full(chunk)) => {
                 self.handle.thread().unpark();
-                self.chunks.send(chunk).is_ok()
+                if !waits {
+                    return Passed::Back(chunk.0);
+                }
+                match self.chunks.send(chunk) {
+                    Ok(()) => Passed::On,
+                    Err(_) => Passed::Ended,
+                }
             }
         }
     }
@@ -117,7 +149,12 @@ impl<T, W> WriterThread<T, W> {
     }
 }
 
-impl<T, W> Chunks<T, W> {
+impl<T: TakenTick, W> Chunks<T, W> {
+    /// Ticks that were left out so far, since the disk was too slow.
+    pub(crate) fn dropped(&self) -> u64 {
+        self.dropped
+    }
+
     /// Refuses a tick that does not follow the last one, and every tick once writing has failed.
     pub(crate) fn check(&self, tick: u64) -> Result<(), RecordError> {
         if self.thread.is_none() {
@@ -167,6 +204,8 @@ impl<T, W> Chunks<T, W> {
 
     /// Writes what is left.
     pub(crate) fn finish(&mut self) -> Result<W, RecordError> {
+        // Nothing is lost at the end: the game is over.
+        self.waits = true;
         self.hand_over()?;
         self.end()
     }
@@ -174,14 +213,35 @@ impl<T, W> Chunks<T, W> {
     /// Passes the gathered ticks to the thread.
     fn hand_over(&mut self) -> Result<(), RecordError> {
         let thread = self.thread.as_ref().ok_or(RecordError::Ended)?;
+        let mut count = core::mem::take(&mut self.gathered);
+        if self.gap > 0 {
+            // A gap ends where a replay can begin.
+            let ticks = &mut self.chunk[..count];
+            let first = ticks.iter().position(TakenTick::is_saved).unwrap_or(count);
+            ticks.rotate_left(first);
+            count -= first;
+            self.dropped += first as u64;
+            self.gap += first as u64;
+            if count == 0 {
+                return Ok(());
+            }
+            self.chunk[0].follows_gap(self.gap);
+        }
         let next = thread.written.try_recv().unwrap_or_default();
         let chunk = core::mem::replace(&mut self.chunk, next);
-        let count = core::mem::take(&mut self.gathered);
-        if thread.pass((chunk, count)) {
-            return Ok(());
+        match thread.pass((chunk, count), self.waits) {
+            Passed::On => {
+                self.gap = 0;
+                Ok(())
+            }
+            Passed::Back(chunk) => {
+                self.dropped += count as u64;
+                self.gap += count as u64;
+                self.chunk = chunk;
+                Ok(())
+            }
+            Passed::Ended => self.end().and(Err(RecordError::Ended)),
         }
-        // The thread takes no more chunks: it has ended with an error.
-        self.end().and(Err(RecordError::Ended))
     }
 
     /// Waits for the thread to end. If it panicked, resumes the panic.
@@ -199,7 +259,10 @@ impl<T, W> Drop for Chunks<T, W> {
         if let Some(thread) = self.thread.take() {
             // Errors are ignored: a drop cannot return them.
             let chunk = core::mem::take(&mut self.chunk);
-            thread.pass((chunk, self.gathered));
+            // What is left, unless it would begin in a gap.
+            if self.gap == 0 {
+                thread.pass((chunk, self.gathered), true);
+            }
             let _ = thread.join();
         }
     }
@@ -209,38 +272,96 @@ impl<T, W> Drop for Chunks<T, W> {
 mod tests {
     use super::*;
 
-    /// Stores the ticks that it is given, slower than the test makes them.
-    struct Slow(Vec<u64>);
+    /// Ticks, with how many were left out before them.
+    type Ticks = Vec<(u64, u64)>;
 
-    impl WriteTicks<u64, Vec<u64>> for Slow {
-        fn chunk(&mut self, ticks: &mut [u64]) -> Result<(), RecordError> {
-            std::thread::sleep(Duration::from_millis(2));
+    /// A tick of which something is saved if its number is a multiple of 5.
+    impl TakenTick for (u64, u64) {
+        fn is_saved(&self) -> bool {
+            self.0.is_multiple_of(5)
+        }
+
+        fn follows_gap(&mut self, ticks: u64) {
+            self.1 = ticks;
+        }
+    }
+
+    /// Stores the ticks that it is given, slower than the test makes them.
+    struct Slow(Ticks, Duration);
+
+    impl WriteTicks<(u64, u64), Ticks> for Slow {
+        fn chunk(&mut self, ticks: &mut [(u64, u64)]) -> Result<(), RecordError> {
+            std::thread::sleep(self.1);
             self.0.extend(ticks.iter());
             Ok(())
         }
 
-        fn finish(self) -> Result<Vec<u64>, RecordError> {
+        fn finish(self) -> Result<Ticks, RecordError> {
             Ok(self.0)
         }
     }
 
+    fn play(chunks: &mut Chunks<(u64, u64), Ticks>, tick: u64) {
+        let take = |known: Option<&mut (u64, u64)>| match known {
+            Some(known) => {
+                *known = (tick, 0);
+                None
+            }
+            None => Some((tick, 0)),
+        };
+        chunks.push(tick, take).unwrap();
+    }
+
     #[test]
-    fn a_game_that_is_faster_than_the_thread_loses_no_tick() {
+    fn a_game_that_waits_and_is_faster_than_the_thread_loses_no_tick() {
         for (ticks, pause) in [(0, 0), (1, 0), (61, 0), (10, 3)] {
-            let mut chunks = Chunks::start(Slow(Vec::new()), 3).unwrap();
+            let slow = Slow(Vec::new(), Duration::from_millis(2));
+            let mut chunks = Chunks::start(slow, (3, true)).unwrap();
             for tick in 0..ticks {
-                let take = |known: Option<&mut u64>| match known {
-                    Some(known) => {
-                        *known = tick;
-                        None
-                    }
-                    None => Some(tick),
-                };
-                chunks.push(tick, take).unwrap();
+                play(&mut chunks, tick);
                 std::thread::sleep(Duration::from_millis(pause));
             }
+            assert_eq!(chunks.dropped(), 0);
             let written = chunks.finish().unwrap();
-            assert_eq!(written, (0..ticks).collect::<Vec<_>>());
+            assert_eq!(
+                written,
+                (0..ticks).map(|tick| (tick, 0)).collect::<Vec<_>>()
+            );
+        }
+    }
+
+    /// A game that does not wait goes on at once, and what was left out is counted and told; after a gap the first tick is
+    /// one of which something is saved.
+    #[test]
+    fn a_game_that_does_not_wait_loses_ticks_and_no_time() {
+        // Chunks with a saved tick in each, in some, and at other places in each.
+        for size in [5, 3, 7] {
+            let slow = Slow(Vec::new(), Duration::from_millis(20));
+            let mut chunks = Chunks::start(slow, (size, false)).unwrap();
+            let mut waits = 0;
+            for tick in 0..600 {
+                let began = std::time::Instant::now();
+                play(&mut chunks, tick);
+                waits += u32::from(began.elapsed() >= Duration::from_millis(10));
+                std::thread::sleep(Duration::from_micros(200));
+            }
+            let dropped = chunks.dropped();
+            let written = chunks.finish().unwrap();
+            // One that waits does so for most of its chunks; a busy machine may hold it up a few times.
+            assert!(waits < 20, "{waits} waits");
+            assert!(dropped > 100, "{dropped}");
+            // The last chunk may have lost some more.
+            let lost = 600 - written.len() as u64;
+            assert!(
+                (dropped..dropped + 7).contains(&lost),
+                "size {size}: {lost} of {dropped}"
+            );
+            let mut next = 0;
+            for (tick, gap) in written {
+                assert_eq!(tick, next + gap, "size {size}");
+                assert!(gap == 0 || tick.is_multiple_of(5), "size {size}");
+                next = tick + 1;
+            }
         }
     }
 }

@@ -1,28 +1,46 @@
 //! Where the messages of a recording are.
 
+use std::ops::RangeInclusive;
+
 use crate::RecordError;
 use crate::source::Place;
 
-/// The places of consecutive ticks, and of what was saved after some of them.
+/// The places of ticks, and of what was saved after some of them.
+///
+/// Ticks follow each other, but for gaps, where the recorder has left some out. The first tick after a gap has something
+/// saved.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Places {
-    first: u64,
+    /// Ticks without a gap between them: the number of the first one, and its index.
+    runs: Vec<(u64, usize)>,
     ticks: Vec<Place>,
     /// Ascending ticks.
     saved: Vec<(u64, Place)>,
 }
 
 impl Places {
-    /// Adds the tick that follows the last one.
+    /// Adds a tick after the last one.
     pub(crate) fn add_tick(&mut self, tick: u64, place: Place) -> Result<(), RecordError> {
-        if self.ticks.is_empty() {
-            self.first = tick;
+        let last = self.last();
+        let follows = last.is_none_or(|last| last.checked_add(1) == Some(tick));
+        if !follows && (last >= Some(tick) || self.lacks_saved()) {
+            return Err(self.order(tick));
         }
-        if self.first.checked_add(self.ticks.len() as u64) != Some(tick) {
+        if self.runs.is_empty() || !follows {
+            self.runs.push((tick, self.ticks.len()));
+        } else if self.lacks_saved() {
             return Err(self.order(tick));
         }
         self.ticks.push(place);
         Ok(())
+    }
+
+    /// True if the last tick is the first one after a gap, and nothing is saved of it.
+    fn lacks_saved(&self) -> bool {
+        let Some((first, _)) = self.runs.last().filter(|_| self.runs.len() > 1) else {
+            return false;
+        };
+        self.saved.last().is_none_or(|(saved, _)| saved < first)
     }
 
     /// Adds what was saved after the last tick.
@@ -44,26 +62,47 @@ impl Places {
     }
 
     pub(crate) fn first(&self) -> Option<u64> {
-        (!self.ticks.is_empty()).then_some(self.first)
+        self.runs.first().map(|(first, _)| *first)
     }
 
     pub(crate) fn last(&self) -> Option<u64> {
-        Some(self.first()? + (self.ticks.len() as u64 - 1))
+        let (first, index) = self.runs.last()?;
+        Some(first + (self.ticks.len() - index) as u64 - 1)
+    }
+
+    /// The ticks that are there: ranges with a gap between each two of them.
+    pub(crate) fn runs(&self) -> impl Iterator<Item = RangeInclusive<u64>> + '_ {
+        let ends = self.runs.iter().skip(1).map(|(_, index)| *index);
+        let ends = ends.chain([self.ticks.len()]);
+        self.runs.iter().zip(ends).map(|((first, index), end)| {
+            let last = first + (end - index) as u64 - 1;
+            *first..=last
+        })
+    }
+
+    /// The index of the first tick that is not before a number.
+    fn index_from(&self, tick: u64) -> usize {
+        let after = self.runs.partition_point(|(first, _)| *first <= tick);
+        let end = self.runs.get(after).map_or(self.ticks.len(), |run| run.1);
+        let Some((first, index)) = after.checked_sub(1).map(|run| self.runs[run]) else {
+            return 0;
+        };
+        let offset = usize::try_from(tick - first).unwrap_or(usize::MAX);
+        index.saturating_add(offset).min(end)
     }
 
     /// The place of a tick.
     pub(crate) fn tick(&self, tick: u64) -> Result<&Place, RecordError> {
-        let index = tick.checked_sub(self.first).map(usize::try_from);
-        let place = index.and_then(|index| self.ticks.get(index.ok()?));
+        let is_there = self.runs().any(|run| run.contains(&tick));
+        let place = self.ticks.get(self.index_from(tick));
         let ticks = self.first().zip(self.last());
-        place.ok_or(RecordError::NoTick { asked: tick, ticks })
+        let none = RecordError::NoTick { asked: tick, ticks };
+        place.filter(|_| is_there).ok_or(none)
     }
 
     /// The places of the ticks from one on.
     pub(crate) fn from(&self, tick: u64) -> impl Iterator<Item = &Place> {
-        let skipped = tick.saturating_sub(self.first);
-        let skipped = usize::try_from(skipped).unwrap_or(usize::MAX);
-        self.ticks.iter().skip(skipped)
+        self.ticks.iter().skip(self.index_from(tick))
     }
 
     /// The last tick at or before one after which something was saved, and the place of that.
@@ -73,5 +112,54 @@ impl Places {
         let nearest = after.checked_sub(1).map(|index| &self.saved[index]);
         let (at, place) = nearest.ok_or(RecordError::NoSnapshot(tick))?;
         Ok((*at, place))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ticks_with_gaps_are_found_by_their_numbers() {
+        let place = |at: u32| Place {
+            chunk: at,
+            from: 0,
+            to: 0,
+        };
+        let mut places = Places::default();
+        assert_eq!(
+            (places.first(), places.last(), places.len()),
+            (None, None, 0)
+        );
+        for tick in [5, 6, 7] {
+            places.add_tick(tick, place(tick as u32)).unwrap();
+        }
+        // Back, and twice.
+        assert!(places.add_tick(7, place(0)).is_err() && places.add_tick(3, place(0)).is_err());
+        places.add_tick(20, place(20)).unwrap();
+        // After a gap there is something saved first.
+        assert!(places.add_tick(21, place(21)).is_err());
+        assert!(places.add_tick(40, place(40)).is_err());
+        places.add_saved(20, place(120)).unwrap();
+        places.add_tick(21, place(21)).unwrap();
+        let runs: Vec<_> = places.runs().collect();
+        assert_eq!(runs, [5..=7, 20..=21]);
+        assert_eq!(
+            (places.first(), places.last(), places.len()),
+            (Some(5), Some(21), 5)
+        );
+        for tick in [5, 6, 7, 20, 21] {
+            assert_eq!(places.tick(tick).unwrap(), &place(tick as u32));
+        }
+        for tick in [0, 4, 8, 19, 22, u64::MAX] {
+            assert!(places.tick(tick).is_err(), "{tick}");
+        }
+        let from = |tick: u64| places.from(tick).map(|one| one.chunk).collect::<Vec<_>>();
+        assert_eq!(from(0), [5, 6, 7, 20, 21]);
+        assert_eq!(from(7), [7, 20, 21]);
+        assert_eq!(from(8), [20, 21]);
+        assert_eq!((from(21), from(22)), (vec![21], vec![]));
+        assert!(places.saved(7).is_err());
+        assert_eq!(places.saved(21).unwrap(), (20, &place(120)));
     }
 }

@@ -41,9 +41,24 @@ pub struct RecordOptions {
     /// Largest number of points in a view of the skin. Default 1000; 0 means 1.
     pub skin_points: usize,
     /// Ticks in a chunk. Default 60; 0 means 1. A crash loses the chunk being gathered and those not yet written:
-    /// up to five in all, one or two if the disk keeps up. Raise it for fewer, larger writes. Each tick of a chunk
+    /// up to ten in all, one or two if the disk keeps up. Raise it for fewer, larger writes. Each tick of a chunk
     /// waits in memory with its palette.
     pub chunk_ticks: u32,
+    /// What happens when the disk is slower than the game for some seconds. If false, which is the default, the game is
+    /// never held up: ticks are left out, from a chunk's beginning to where a replay can begin again
+    /// ([`Recorder::dropped`] and the log tell). If true, it waits and nothing is lost: for programs that do not play in
+    /// real time.
+    pub waits: bool,
+}
+
+impl RecordOptions {
+    /// The default, but it waits for the disk, so that nothing is lost.
+    pub fn waiting() -> Self {
+        Self {
+            waits: true,
+            ..Self::default()
+        }
+    }
 }
 
 impl Default for RecordOptions {
@@ -54,6 +69,7 @@ impl Default for RecordOptions {
             touched_every: 60,
             skin_points: 1000,
             chunk_ticks: 60,
+            waits: false,
         }
     }
 }
@@ -154,7 +170,7 @@ impl<W: Write + Send + 'static> Recorder<W> {
             names: ObstacleNames::default(),
             figures: Vec::new(),
             scenery: SceneryNames::default(),
-            chunks: Chunks::start(writing, options.chunk_ticks)?,
+            chunks: Chunks::start(writing, (options.chunk_ticks, options.waits))?,
         })
     }
 }
@@ -263,6 +279,12 @@ impl<W: Write> Recorder<W> {
         let taken = self.chunks.last()?;
         taken.brain = Some(TakenBrain::new(creature, taken.transforms_due));
         Ok(())
+    }
+
+    /// Ticks that were left out so far, since the disk was too slow: [`RecordOptions::waits`]. A gap ends at a tick with a
+    /// snapshot.
+    pub fn dropped(&self) -> u64 {
+        self.chunks.dropped()
     }
 
     /// Records a snapshot of the scene after the tick recorded last.

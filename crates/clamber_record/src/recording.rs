@@ -1,4 +1,5 @@
 use std::fmt;
+use std::ops::RangeInclusive;
 use std::path::Path;
 
 use crate::file::{self, Contents};
@@ -124,6 +125,12 @@ impl Recording {
     /// How the file ends.
     pub fn ending(&self) -> &Ending {
         &self.ending
+    }
+
+    /// The ticks that it has: ranges, and between each two of them a gap, where the recorder has left ticks out since its disk
+    /// was too slow. A range after a gap begins with a saved state.
+    pub fn runs(&self) -> impl Iterator<Item = RangeInclusive<u64>> + '_ {
+        self.places.runs()
     }
 
     /// Number of ticks.

@@ -43,6 +43,18 @@ pub(crate) struct Taken {
     pub(crate) brain: Option<TakenBrain>,
     /// Snapshots of the scene after this tick.
     pub(crate) snapshots: Vec<TakenSnapshot>,
+    /// How many ticks before this one were left out.
+    pub(crate) gap: u64,
+}
+
+impl crate::chunks::TakenTick for Taken {
+    fn is_saved(&self) -> bool {
+        !self.snapshots.is_empty()
+    }
+
+    fn follows_gap(&mut self, ticks: u64) {
+        self.gap = ticks;
+    }
 }
 
 /// What makes the text of a snapshot, or tells why there is none.
@@ -85,6 +97,7 @@ impl Taken {
             scenery: Vec::new(),
             brain: None,
             snapshots: Vec::new(),
+            gap: 0,
         };
         taken.take(view, options, names);
         taken
@@ -129,6 +142,7 @@ impl Taken {
         self.scenery.clear();
         self.brain = None;
         self.snapshots.clear();
+        self.gap = 0;
     }
     /// The name of an obstacle; for the creature, which has its name, with the part of it that the climber is on.
     pub(crate) fn name_of(

@@ -10,7 +10,7 @@ use crate::chunks::WriteTicks;
 use crate::messages::{Brain, Snapshot, Tick, Touched};
 use crate::output::{Channel, Output};
 use crate::taken::{Taken, TakenSkin, TakenSnapshot};
-use crate::views::{Frames, Scene, Sceneries, Skin, line};
+use crate::views::{Frames, Scene, Sceneries, Skin, gap_line, line};
 use crate::{RecordError, RecordingInfo, topics};
 
 /// The channel of each topic.
@@ -91,6 +91,9 @@ impl<W: Write> Writing<W> {
             scene_fingerprint: taken.scene_fingerprint,
         };
         let now = self.output.begin(taken.tick);
+        if let Some(line) = gap_line(now, taken.gap) {
+            self.output.send(self.channels.log, now, &line)?;
+        }
         let write = |buffer: &mut Vec<u8>| message.write(buffer);
         self.output.send_as(self.channels.tick, now, write)?;
         for event in &taken.events {

@@ -77,7 +77,7 @@ impl<W: Write + Send + 'static> ArenaRecorder<W> {
             fighters: 0,
             named: [0; 2],
             scenery: SceneryNames::default(),
-            chunks: Chunks::start(writing, options.chunk_ticks)?,
+            chunks: Chunks::start(writing, (options.chunk_ticks, options.waits))?,
         };
         recorder.take(arena, (&[], &[]), &[])?;
         Ok(recorder)
@@ -179,6 +179,11 @@ impl<W: Write> ArenaRecorder<W> {
         let names = Arc::make_mut(&mut self.names);
         names.retain(|(id, _)| *id != obstacle);
         names.push((obstacle, name.to_owned()));
+    }
+
+    /// Ticks that were left out so far, since the disk was too slow: [`RecordOptions::waits`].
+    pub fn dropped(&self) -> u64 {
+        self.chunks.dropped()
     }
 
     /// [`Recorder::is_due`](crate::Recorder::is_due).

@@ -1,3 +1,4 @@
+use std::ops::RangeInclusive;
 use std::path::Path;
 
 use clamber_climber::ClimberInput;
@@ -120,6 +121,12 @@ impl ArenaRecording {
     /// How the file ends.
     pub fn ending(&self) -> &Ending {
         &self.ending
+    }
+
+    /// The ticks that it has: ranges, and between each two of them a gap, where the recorder has left ticks out since its disk
+    /// was too slow. A range after a gap begins with a saved state.
+    pub fn runs(&self) -> impl Iterator<Item = RangeInclusive<u64>> + '_ {
+        self.places.runs()
     }
 
     /// Number of ticks.

@@ -80,7 +80,8 @@ impl ArenaRecording {
     ///
     /// `arena` is made with the configuration of the recorded one, and knows the kinds of its creatures. It is brought to the
     /// last saved state at or before the tick `from`, or to the first tick. Then `step` is called with the inputs and
-    /// orders of one tick after another, and steps it over the same terrain.
+    /// orders of one tick after another, and steps it over the same terrain. After a gap ([`ArenaRecording::runs`]) it goes
+    /// on from the state that was saved there.
     ///
     /// # Errors
     /// [`RecordError::OtherArena`] if the arena is another one, [`RecordError::NoTick`] and [`RecordError::NoSnapshot`] if there
@@ -104,11 +105,17 @@ impl ArenaRecording {
             agreed: 0,
             difference: None,
         };
+        let mut last = from;
         for recorded in self.ticks_from(from) {
             let recorded = recorded?;
-            if recorded.tick > from {
+            if recorded.tick > last + 1 {
+                // After a gap it goes on from what was saved there.
+                let (_, saved) = self.saved(recorded.tick)?;
+                arena.restore_bytes(&saved)?;
+            } else if recorded.tick > from {
                 step(arena, &recorded.inputs, &recorded.orders)?;
             }
+            last = recorded.tick;
             if arena.fingerprint() != recorded.fingerprint {
                 let (all, parts) = (arena.fingerprint(), arena.part_fingerprints());
                 replay.difference = ArenaDifference::between(self.info(), &recorded, all, &parts);

@@ -12,6 +12,7 @@ use clamber_world::{Obstacle, ObstacleId};
 use foxglove::messages::Log;
 
 use crate::RecordError;
+use crate::chunks::TakenTick;
 use crate::messages::{ArenaTick, Brain};
 use crate::views::{FigureJoints, TakenFigure, TakenScenery, brain};
 
@@ -28,6 +29,8 @@ pub(crate) struct TakenArena {
     pub(crate) scenery: Vec<TakenScenery>,
     /// [`Arena::to_bytes`].
     pub(crate) saved: Option<Vec<u8>>,
+    /// How many ticks before this one were left out.
+    pub(crate) gap: u64,
 }
 
 #[derive(Debug)]
@@ -92,6 +95,7 @@ impl TakenArena {
             projectiles: Vec::new(),
             scenery: Vec::new(),
             saved: None,
+            gap: 0,
         };
         if due.views {
             let creatures = arena.creatures().filter_map(|(id, creature)| {
@@ -114,6 +118,16 @@ impl TakenArena {
                 .collect();
         }
         Ok(taken)
+    }
+}
+
+impl TakenTick for TakenArena {
+    fn is_saved(&self) -> bool {
+        self.saved.is_some()
+    }
+
+    fn follows_gap(&mut self, ticks: u64) {
+        self.gap = ticks;
     }
 }
 

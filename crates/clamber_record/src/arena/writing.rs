@@ -14,7 +14,8 @@ use crate::chunks::WriteTicks;
 use crate::messages::{ArenaSnapshot, ArenaTick, Brain};
 use crate::output::{Channel, Output};
 use crate::views::{
-    Scene, Sceneries, Skin, color, entity, frame_of_climber, from_z_to, rotation, vector, z_up,
+    Scene, Sceneries, Skin, color, entity, frame_of_climber, from_z_to, gap_line, rotation, vector,
+    z_up,
 };
 use crate::{RecordError, RecordingInfo, topics};
 
@@ -68,6 +69,9 @@ impl<W: Write> ArenaWriting<W> {
     fn write(&mut self, taken: &mut TakenArena) -> Result<(), RecordError> {
         let tick = taken.message.tick;
         let now = self.output.begin(tick);
+        if let Some(line) = gap_line(now, taken.gap) {
+            self.output.send(self.log, now, &line)?;
+        }
         let message = &taken.message;
         self.output
             .send_as(self.tick, now, |buffer| message.write(buffer))?;

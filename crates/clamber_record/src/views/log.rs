@@ -104,3 +104,9 @@ pub(crate) fn log(nanoseconds: u64, level: Level, name: &str, message: String) -
         line: 0,
     }
 }
+
+/// Tells that ticks were left out before this one, if there were some.
+pub(crate) fn gap_line(nanoseconds: u64, ticks: u64) -> Option<Log> {
+    let what = format!("{ticks} ticks before this one are not recorded: the disk was too slow");
+    (ticks > 0).then(|| log(nanoseconds, Level::Warning, "recorder", what))
+}

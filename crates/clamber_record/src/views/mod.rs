@@ -11,7 +11,7 @@ mod skin;
 pub(crate) use brain::{TakenBrain, brain, line as creature_line};
 pub(crate) use figure::{FigureJoints, TakenFigure};
 pub(crate) use frames::{Frames, frame_of_climber, z_up};
-pub(crate) use log::{line, log};
+pub(crate) use log::{gap_line, line, log};
 pub(crate) use scene::{Scene, from_z_to};
 pub use scenery::SceneryView;
 pub(crate) use scenery::{Sceneries, SceneryNames, TakenScenery};

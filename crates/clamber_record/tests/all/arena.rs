@@ -73,7 +73,7 @@ fn file() -> &'static [u8] {
         info.creatures = vec!["grey".to_owned(), "brown".to_owned()];
         info.fighters[1] = "archer".to_owned();
         info.settings = [("seed".to_owned(), "1".to_owned())].into();
-        let options = RecordOptions::default();
+        let options = RecordOptions::waiting();
         let mut recorder = ArenaRecorder::new(Vec::new(), &info, &arena, options).unwrap();
         recorder.name(GROUND, "ground");
         let corners = [(-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)];
@@ -185,7 +185,7 @@ fn other_arenas_orders_and_recordings_are_refused() {
 
     let mut arena = arena();
     let info = ArenaInfo::of(&arena);
-    let options = RecordOptions::default();
+    let options = RecordOptions::waiting();
     assert!(ArenaRecorder::new(Vec::new(), &info, &other, options).is_err());
     let mut recorder = ArenaRecorder::new(Vec::new(), &info, &arena, options).unwrap();
     let idle = [ClimberInput::IDLE; 3];
@@ -318,7 +318,7 @@ fn names_are_one_each() {
     for (change, words) in wrong {
         let mut info = ArenaInfo::of(&arena);
         change(&mut info);
-        let options = RecordOptions::default();
+        let options = RecordOptions::waiting();
         let recorder = ArenaRecorder::new(Vec::new(), &info, &arena, options);
         let error = recorder.map(|_| ()).unwrap_err();
         assert!(matches!(error, RecordError::Names(_)), "{error}");
@@ -390,7 +390,7 @@ fn orders(tick: u64, arena: &Arena) -> Vec<Order> {
 fn orders_are_recorded_and_played_again() {
     let mut arena = arena();
     let info = ArenaInfo::of(&arena);
-    let options = RecordOptions::default();
+    let options = RecordOptions::waiting();
     let mut recorder = ArenaRecorder::new(Vec::new(), &info, &arena, options).unwrap();
     for tick in 1..=TICKS {
         let orders = orders(tick, &arena);

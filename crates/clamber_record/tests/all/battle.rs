@@ -38,7 +38,7 @@ fn record(options: &BattleOptions) -> Vec<u8> {
 fn record_ticks(options: &BattleOptions, ticks: u64) -> Vec<u8> {
     let creature = giant().unwrap();
     let mut battle = Battle::new(&creature, options).unwrap();
-    let how = RecordOptions::default();
+    let how = RecordOptions::waiting();
     let mut recorder = BattleRecorder::new(Vec::new(), &battle, options, how).unwrap();
     recorder.tick(&battle).unwrap();
     for tick in 0..ticks {
@@ -160,7 +160,7 @@ fn a_climb_has_the_brain_of_its_giant() {
     let mut battle = Battle::new(&creature, &options).unwrap();
     let how = RecordOptions {
         transforms_every: 4,
-        ..RecordOptions::default()
+        ..RecordOptions::waiting()
     };
     let mut recorder = BattleRecorder::new(Vec::new(), &battle, &options, how).unwrap();
     recorder.tick(&battle).unwrap();
@@ -374,7 +374,7 @@ fn recording_does_not_change_the_battle() {
         transforms_every: 1,
         skin_every: 1,
         touched_every: 1,
-        ..RecordOptions::default()
+        ..RecordOptions::waiting()
     };
     let mut recorder = BattleRecorder::new(Vec::new(), &recorded, &options, how).unwrap();
     for tick in 0..TICKS {
@@ -394,7 +394,7 @@ fn a_tick_that_is_refused_changes_nothing() {
     let battle = Battle::new(&creature, &options).unwrap();
     let whole = Recording::from_bytes(record(&options)).unwrap();
     let out = Vec::new();
-    let how = RecordOptions::default();
+    let how = RecordOptions::waiting();
     let mut recorder = Recorder::new(out, whole.info(), &creature.skeleton, how).unwrap();
     let stranger = Palette::default();
     let view = |tick, palette| TickView {

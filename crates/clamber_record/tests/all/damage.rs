@@ -23,7 +23,7 @@ fn file() -> &'static [u8] {
         let mut battle = Battle::new(&creature, &options).unwrap();
         let how = RecordOptions {
             skin_points: 50,
-            ..RecordOptions::default()
+            ..RecordOptions::waiting()
         };
         let mut recorder = BattleRecorder::new(Vec::new(), &battle, &options, how).unwrap();
         recorder.tick(&battle).unwrap();
@@ -195,7 +195,7 @@ fn a_writer_that_fails_gives_its_error() {
     // The first run goes on long after the disk is full; the second ends before a tick can return the error.
     for ticks in [600, 50] {
         let mut battle = Battle::new(&creature, &options).unwrap();
-        let (how, out) = (RecordOptions::default(), Full(50_000));
+        let (how, out) = (RecordOptions::waiting(), Full(50_000));
         let mut recorder = BattleRecorder::new(out, &battle, &options, how).unwrap();
         let mut told = Vec::new();
         for tick in 0..ticks {
@@ -217,7 +217,7 @@ fn a_run_that_is_killed_leaves_its_whole_chunks() {
     let creature = giant().unwrap();
     let options = BattleOptions::ride(0, 1);
     let mut battle = Battle::new(&creature, &options).unwrap();
-    let how = RecordOptions::default();
+    let how = RecordOptions::waiting();
     let path = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("killed.mcap");
     let file = std::io::BufWriter::new(std::fs::File::create(&path).unwrap());
     let mut recorder = BattleRecorder::new(file, &battle, &options, how).unwrap();
@@ -270,7 +270,7 @@ fn record_into<W: std::io::Write + Send + 'static>(
     let how = RecordOptions {
         chunk_ticks,
         skin_points: 50,
-        ..RecordOptions::default()
+        ..RecordOptions::waiting()
     };
     let mut recorder = BattleRecorder::new(out, &battle, &options, how).unwrap();
     for tick in 0..70 {

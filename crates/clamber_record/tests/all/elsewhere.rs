@@ -1,4 +1,5 @@
-//! Files as other programs write them: compressed chunks, no checksums; and files that are longer than memory.
+//! Files as other programs write them: compressed chunks, no checksums; files that are longer than memory, and disks that are
+//! slower than the game.
 
 #![expect(
     clippy::unwrap_used,
@@ -30,7 +31,7 @@ fn arena() -> Arena {
 
 fn inputs(tick: u64) -> [ClimberInput; 2] {
     [0, 1].map(|player| ClimberInput {
-        walk: if (tick / 20 + player) % 2 == 0 {
+        walk: if (tick / 20 + player).is_multiple_of(2) {
             DVec3::X
         } else {
             DVec3::NEG_Z
@@ -45,7 +46,7 @@ fn file() -> &'static [u8] {
     FILE.get_or_init(|| {
         let mut arena = arena();
         let info = ArenaInfo::of(&arena);
-        let options = RecordOptions::default();
+        let options = RecordOptions::waiting();
         let mut recorder = ArenaRecorder::new(Vec::new(), &info, &arena, options).unwrap();
         let ground = HalfSpace::below(0.0);
         let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(0), &ground)];
@@ -227,4 +228,72 @@ fn a_file_of_any_length_is_read() {
     assert!(most < 1 << 20, "{most} kB more");
     replays(&recording, "a long file");
     std::fs::remove_file(&path).unwrap();
+}
+
+/// A file on a disk that takes its time.
+struct Slow(Vec<u8>, std::time::Duration);
+
+impl Write for Slow {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        if bytes.len() > 1000 {
+            std::thread::sleep(self.1);
+        }
+        self.0.extend_from_slice(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        Ok(())
+    }
+}
+
+/// On a slow disk the game goes on, what is lost is counted and told, and a replay of what is there works from any tick.
+#[test]
+fn a_slow_disk_leaves_gaps_and_never_holds_up_the_game() {
+    const TICKS: u64 = 2000;
+    let ground = HalfSpace::below(0.0);
+    let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(0), &ground)];
+    let mut arena = arena();
+    let options = RecordOptions {
+        chunk_ticks: 20,
+        ..RecordOptions::default()
+    };
+    let disk = Slow(Vec::new(), std::time::Duration::from_millis(30));
+    let info = ArenaInfo::of(&arena);
+    let mut recorder = ArenaRecorder::new(disk, &info, &arena, options).unwrap();
+    let mut waits = 0;
+    for tick in 0..TICKS {
+        arena.step(&inputs(tick), &terrain).unwrap();
+        let began = std::time::Instant::now();
+        recorder.tick(&arena, &inputs(tick), &[], &terrain).unwrap();
+        waits += u32::from(began.elapsed().as_millis() >= 25);
+    }
+    let dropped = recorder.dropped();
+    let file = recorder.finish().unwrap().0;
+    // One that waits does so for most of its 100 chunks; a busy machine may hold it up a few times.
+    assert!(waits < 20, "{waits} waits");
+    let recording = ArenaRecording::from_bytes(file.clone()).unwrap();
+    assert_eq!(*recording.ending(), Ending::Whole);
+    let runs: Vec<_> = recording.runs().collect();
+    assert!(runs.len() > 1 && dropped > 100, "{runs:?}, {dropped} lost");
+    let lost = TICKS + 1 - recording.len() as u64;
+    assert!(
+        (dropped..dropped + 20).contains(&lost),
+        "{lost}, {dropped} told"
+    );
+    assert!(String::from_utf8_lossy(&file).contains("the disk was too slow"));
+    let from = runs.iter().flat_map(|run| [*run.start(), *run.end()]);
+    for from in from {
+        let replay = recording.replay(&mut self::arena(), Some(from), |arena, inputs, _| {
+            arena.step(inputs, &terrain).map(drop)
+        });
+        let replay = replay.unwrap();
+        assert_eq!(replay.difference, None, "from {from}");
+        let ticks = recording.ticks_from(replay.from).count() as u64;
+        assert_eq!(replay.agreed, ticks, "from {from}");
+    }
+    // Of a tick that is not there nothing can be told.
+    let gap = runs[0].end() + 1;
+    let none = recording.replay(&mut self::arena(), Some(gap), |_, _, _| Ok(()));
+    assert!(none.is_err());
 }

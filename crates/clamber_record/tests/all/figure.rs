@@ -66,7 +66,7 @@ fn recorder(battle: &Battle<'_>) -> Recorder<Vec<u8>> {
         Vec::new(),
         &info,
         &creature.skeleton,
-        RecordOptions::default(),
+        RecordOptions::waiting(),
     )
     .unwrap()
 }

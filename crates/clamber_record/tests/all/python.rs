@@ -27,7 +27,7 @@ fn python_decodes_a_recording() {
     let creature = giant().unwrap();
     let options = BattleOptions::ride(4, 1);
     let mut battle = Battle::new(&creature, &options).unwrap();
-    let how = RecordOptions::default();
+    let how = RecordOptions::waiting();
     let recorder = BattleRecorder::new(Vec::new(), &battle, &options, how).unwrap();
     let mut recorder = recorder.with_hero(Hero::load().unwrap());
     recorder.tick(&battle).unwrap();

@@ -38,7 +38,7 @@ pub fn record(
     info.creatures = vec!["giant".to_owned()];
     info.fighters = PLAYERS.map(str::to_owned).to_vec();
     info.settings = [("scene".to_owned(), "duel".to_owned())].into();
-    let mut recorder = ArenaRecorder::create(path, &info, &arena, RecordOptions::default())?;
+    let mut recorder = ArenaRecorder::create(path, &info, &arena, RecordOptions::waiting())?;
     recorder.name(GROUND, "ground");
     let corners = [(-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0), (1.0, -1.0)];
     recorder.scenery(&SceneryView {

@@ -148,7 +148,7 @@ pub(super) fn run(
     let summary = fight(options, &progress, |battle| {
         watch(battle)?;
         if let Some(out) = out.take() {
-            let how = RecordOptions::default();
+            let how = RecordOptions::waiting();
             let plain = BattleRecorder::new(out, battle, options, how)?;
             recorder = Some(plain.with_hero(Hero::load()?));
         }
