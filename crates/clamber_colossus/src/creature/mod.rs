@@ -34,6 +34,7 @@ pub use config::CreatureConfig;
 pub use foresee::Foresight;
 pub use report::{AttackPhase, Blow, CreatureEvent, CreatureReport};
 pub use state::CreatureState;
+use state::Sound;
 pub use world::{Noise, Person, Riding, Surroundings, Wound};
 
 use self::legs::PutLeg;
@@ -157,6 +158,7 @@ impl Creature {
             self.place()?;
             return Err(error);
         }
+        self.state.sound = Sound(self.kind.number());
         self.hide_broken_plates();
         self.is_still = false;
         Ok(())

@@ -15,6 +15,7 @@ mod sole;
 mod strikes;
 
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use clamber_animation::ik::{IkError, LookAt, LookLimits};
 use clamber_animation::rig::{Channel, Clip, JointId, Keyframes, Playback, Skeleton, WeakPoint};
@@ -75,7 +76,12 @@ pub struct CreatureKind {
     girth: f64,
     /// Height of the skin at rest, in the model's units.
     height: f64,
+    /// Its own in this process, to know states of it again.
+    number: u64,
 }
+
+/// The number of the next kind.
+static NEXT: AtomicU64 = AtomicU64::new(1);
 
 /// The clip of a state's act, and what it strikes with.
 #[derive(Clone, Debug, Default)]
@@ -206,6 +212,7 @@ impl CreatureKind {
             .transpose()?
             .unzip();
         Ok(Self {
+            number: NEXT.fetch_add(1, Ordering::Relaxed),
             acts,
             regions,
             hips: common_parent(&skeleton, &legs),
@@ -225,6 +232,11 @@ impl CreatureKind {
             weak_points,
             brain,
         })
+    }
+
+    /// Another one for each kind that was made in this process; not 0.
+    pub(crate) fn number(&self) -> u64 {
+        self.number
     }
 
     /// True if it walks: its brain's file names the clips of a gait.
