@@ -106,9 +106,8 @@ fn climbers(
         return Err(CompareError::Scene("first ticks"));
     }
     let mut equal = 0;
-    for (ours, theirs) in first.ticks().zip(second.ticks()) {
-        let ours = ours.map_err(|error| failed(&options.first, error))?;
-        let theirs = theirs.map_err(|error| failed(&options.second, error))?;
+    let (mut one, mut other) = (first.ticks(), second.ticks());
+    while let Some((ours, theirs)) = both([&mut one, &mut other], options, |tick| tick.tick)? {
         let replayed = Replayed {
             state: theirs.state,
             palette_fingerprint: theirs.palette_fingerprint,
@@ -135,11 +134,10 @@ fn arenas(
     let mut equal = 0;
     // Whose inputs a step has.
     let mut fighters: Vec<usize> = Vec::new();
-    for (ours, theirs) in first.ticks_from(0).zip(second.ticks_from(0)) {
-        let ours = ours.map_err(|error| failed(&options.first, error))?;
-        let theirs = theirs.map_err(|error| failed(&options.second, error))?;
-        let mut both = ours.inputs.iter().zip(&theirs.inputs);
-        if let Some(fighter) = both.position(|(one, other)| one != other) {
+    let (mut one, mut other) = (first.ticks_from(0), second.ticks_from(0));
+    while let Some((ours, theirs)) = both([&mut one, &mut other], options, |tick| tick.tick)? {
+        let mut inputs = ours.inputs.iter().zip(&theirs.inputs);
+        if let Some(fighter) = inputs.position(|(one, other)| one != other) {
             return Ok(Comparison::InputsDiffer {
                 tick: ours.tick,
                 fighter: match fighters.get(fighter) {
@@ -160,6 +158,31 @@ fn arenas(
         equal += 1;
     }
     Ok(ended(equal, first.len() == second.len()))
+}
+
+/// The next tick that both recordings have: either may have gaps.
+fn both<T>(
+    [first, second]: [&mut dyn Iterator<Item = Result<T, RecordError>>; 2],
+    options: &CompareOptions,
+    number: impl Fn(&T) -> u64,
+) -> Result<Option<(T, T)>, CompareError> {
+    let mut one = || {
+        let tick = first.next().transpose();
+        tick.map_err(|error| failed(&options.first, error))
+    };
+    let mut other = || {
+        let tick = second.next().transpose();
+        tick.map_err(|error| failed(&options.second, error))
+    };
+    let (mut ours, mut theirs) = (one()?, other()?);
+    loop {
+        match (ours, theirs) {
+            (Some(a), Some(b)) if number(&a) == number(&b) => return Ok(Some((a, b))),
+            (Some(a), Some(b)) if number(&a) < number(&b) => (ours, theirs) = (one()?, Some(b)),
+            (Some(a), Some(_)) => (ours, theirs) = (Some(a), other()?),
+            _ => return Ok(None),
+        }
+    }
 }
 
 /// After so many ticks that are equal, both end, or one of them.

@@ -22,12 +22,15 @@ pub(crate) trait WriteTicks<T, W>: Send + 'static {
     /// Writes a chunk of ticks.
     fn chunk(&mut self, ticks: &mut [T]) -> Result<(), RecordError>;
 
+    /// So many ticks were left out at the end of the recording.
+    fn ends_in_gap(&mut self, ticks: u64) -> Result<(), RecordError>;
+
     /// Writes the index and gives back the output.
     fn finish(self) -> Result<W, RecordError>;
 }
 
 /// Copies of ticks on their way to the file.
-pub(crate) struct Chunks<T, W> {
+pub(crate) struct Chunks<T: TakenTick, W> {
     /// Ticks in a chunk.
     size: usize,
     last: Option<u64>,
@@ -36,6 +39,8 @@ pub(crate) struct Chunks<T, W> {
     /// Ticks that were left out so far, and since the last chunk that was handed over.
     dropped: u64,
     gap: u64,
+    /// Ticks so far of which something is saved: a gap may begin once there are two.
+    saved: u32,
     /// The first `gathered` of these are the ticks of the chunk that is being gathered. The others are kept for
     /// their memory.
     chunk: Vec<T>,
@@ -51,8 +56,8 @@ struct WriterThread<T, W> {
     handle: JoinHandle<Result<W, RecordError>>,
 }
 
-/// Ticks, and how many of them from the front belong to the chunk.
-type Chunk<T> = (Vec<T>, usize);
+/// Ticks, how many of them from the front belong to the chunk, and how many were left out at the end of the recording.
+type Chunk<T> = (Vec<T>, usize, u64);
 
 impl<T: TakenTick + Send + 'static, W: Send + 'static> Chunks<T, W> {
     /// Starts the thread.
@@ -64,8 +69,11 @@ impl<T: TakenTick + Send + 'static, W: Send + 'static> Chunks<T, W> {
         let (to_thread, chunks) = sync_channel::<Chunk<T>>(WAITING);
         let (back, written): (Sender<Vec<T>>, _) = channel();
         let work = move || {
-            while let Some((mut chunk, count)) = next(&chunks) {
+            while let Some((mut chunk, count, lost)) = next(&chunks) {
                 writing.chunk(&mut chunk[..count])?;
+                if lost > 0 {
+                    writing.ends_in_gap(lost)?;
+                }
                 // Fails once the recorder waits for the end: then it takes no chunk back.
                 let _ = back.send(chunk);
             }
@@ -82,6 +90,7 @@ impl<T: TakenTick + Send + 'static, W: Send + 'static> Chunks<T, W> {
             waits,
             dropped: 0,
             gap: 0,
+            saved: 0,
             chunk: Vec::new(),
             gathered: 0,
             thread: Some(WriterThread {
@@ -212,35 +221,53 @@ impl<T: TakenTick, W> Chunks<T, W> {
 
     /// Passes the gathered ticks to the thread.
     fn hand_over(&mut self) -> Result<(), RecordError> {
-        let thread = self.thread.as_ref().ok_or(RecordError::Ended)?;
+        let waits = self.waits || self.saved < 2;
+        match self.pass_on(waits) {
+            Some(true) => Ok(()),
+            Some(false) => self.end().and(Err(RecordError::Ended)),
+            None => Err(RecordError::Ended),
+        }
+    }
+}
+
+impl<T: TakenTick, W> Chunks<T, W> {
+    /// Passes the gathered ticks to the thread, or leaves them out. False if the thread has ended with an error, `None` if
+    /// there is none.
+    fn pass_on(&mut self, waits: bool) -> Option<bool> {
+        let thread = self.thread.as_ref()?;
         let mut count = core::mem::take(&mut self.gathered);
+        let ticks = &mut self.chunk[..count];
+        let saved = ticks.iter().filter(|tick| tick.is_saved()).count();
+        self.saved = self.saved.saturating_add(saved as u32);
         if self.gap > 0 {
             // A gap ends where a replay can begin.
-            let ticks = &mut self.chunk[..count];
             let first = ticks.iter().position(TakenTick::is_saved).unwrap_or(count);
             ticks.rotate_left(first);
             count -= first;
             self.dropped += first as u64;
             self.gap += first as u64;
-            if count == 0 {
-                return Ok(());
+            if count > 0 {
+                self.chunk[0].follows_gap(self.gap);
+            } else if !waits {
+                return Some(true);
             }
-            self.chunk[0].follows_gap(self.gap);
         }
+        // At the end what is missing there is told.
+        let lost = if count == 0 { self.gap } else { 0 };
         let next = thread.written.try_recv().unwrap_or_default();
         let chunk = core::mem::replace(&mut self.chunk, next);
-        match thread.pass((chunk, count), self.waits) {
+        match thread.pass((chunk, count, lost), waits) {
             Passed::On => {
                 self.gap = 0;
-                Ok(())
+                Some(true)
             }
             Passed::Back(chunk) => {
                 self.dropped += count as u64;
                 self.gap += count as u64;
                 self.chunk = chunk;
-                Ok(())
+                Some(true)
             }
-            Passed::Ended => self.end().and(Err(RecordError::Ended)),
+            Passed::Ended => Some(false),
         }
     }
 
@@ -254,15 +281,11 @@ impl<T: TakenTick, W> Chunks<T, W> {
     }
 }
 
-impl<T, W> Drop for Chunks<T, W> {
+impl<T: TakenTick, W> Drop for Chunks<T, W> {
     fn drop(&mut self) {
+        // Errors are ignored: a drop cannot return them.
+        self.pass_on(true);
         if let Some(thread) = self.thread.take() {
-            // Errors are ignored: a drop cannot return them.
-            let chunk = core::mem::take(&mut self.chunk);
-            // What is left, unless it would begin in a gap.
-            if self.gap == 0 {
-                thread.pass((chunk, self.gathered), true);
-            }
             let _ = thread.join();
         }
     }
@@ -293,6 +316,10 @@ mod tests {
         fn chunk(&mut self, ticks: &mut [(u64, u64)]) -> Result<(), RecordError> {
             std::thread::sleep(self.1);
             self.0.extend(ticks.iter());
+            Ok(())
+        }
+
+        fn ends_in_gap(&mut self, _: u64) -> Result<(), RecordError> {
             Ok(())
         }
 

@@ -16,10 +16,19 @@ use prost::Message;
 use crate::messages::{ArenaSnapshot, Snapshot};
 use crate::places::Places;
 use crate::source::{Bytes, CHUNK_HEADER, ChunkPlace, LARGEST, Place, Source, data_of};
-use crate::{Ending, RecordError, RecordedArenaTick, RecordedTick, topics};
+use crate::{
+    ArenaInfo, Ending, RecordError, RecordedArenaTick, RecordedTick, RecordingInfo, topics,
+};
 
 /// Bytes of a record before its body: its kind and its length.
 const PREFIX: usize = 9;
+
+/// Names of the metadata records that are read.
+const NAMES: [&str; 3] = [
+    ArenaInfo::METADATA,
+    RecordingInfo::METADATA,
+    RecordingInfo::SETTINGS,
+];
 
 /// The largest metadata record that is read, bytes.
 const METADATA: u64 = 1 << 24;
@@ -181,8 +190,11 @@ fn walk(file: impl Read, found: &mut Found) -> Result<(), Stop> {
                 let Ok(Record::Metadata(metadata)) = parse_record(opcode, &buffer) else {
                     return Err(damaged("metadata that cannot be read"));
                 };
-                let known = found.metadata.entry(metadata.name);
-                known.or_insert(metadata.metadata);
+                // Other programs may add any number of them.
+                if NAMES.contains(&metadata.name.as_str()) {
+                    let known = found.metadata.entry(metadata.name);
+                    known.or_insert(metadata.metadata);
+                }
             }
             op::CHUNK => {
                 if length > LARGEST {

@@ -21,6 +21,7 @@ pub(crate) struct Output<W: Write> {
     writer: Writer<NoSeek<W>>,
     tick_seconds: f64,
     sequence: u32,
+    now: u64,
     /// Kept for its memory.
     buffer: Vec<u8>,
 }
@@ -51,6 +52,7 @@ impl<W: Write> Output<W> {
             writer,
             tick_seconds,
             sequence: 0,
+            now: 0,
             buffer: Vec::new(),
         })
     }
@@ -86,7 +88,13 @@ impl<W: Write> Output<W> {
     /// Begins a tick, and returns its time since tick 0, nanoseconds.
     pub(crate) fn begin(&mut self, tick: u64) -> u64 {
         self.sequence = self.sequence.wrapping_add(1);
-        time(tick, self.tick_seconds)
+        self.now = time(tick, self.tick_seconds);
+        self.now
+    }
+
+    /// The time of the tick that was begun last.
+    pub(crate) fn now(&self) -> u64 {
+        self.now
     }
 
     pub(crate) fn send(

@@ -67,7 +67,7 @@ impl Places {
 
     pub(crate) fn last(&self) -> Option<u64> {
         let (first, index) = self.runs.last()?;
-        Some(first + (self.ticks.len() - index) as u64 - 1)
+        Some(first + ((self.ticks.len() - index) as u64 - 1))
     }
 
     /// The ticks that are there: ranges with a gap between each two of them.
@@ -75,7 +75,7 @@ impl Places {
         let ends = self.runs.iter().skip(1).map(|(_, index)| *index);
         let ends = ends.chain([self.ticks.len()]);
         self.runs.iter().zip(ends).map(|((first, index), end)| {
-            let last = first + (end - index) as u64 - 1;
+            let last = first + ((end - index) as u64 - 1);
             *first..=last
         })
     }
@@ -93,8 +93,13 @@ impl Places {
 
     /// The place of a tick.
     pub(crate) fn tick(&self, tick: u64) -> Result<&Place, RecordError> {
-        let is_there = self.runs().any(|run| run.contains(&tick));
-        let place = self.ticks.get(self.index_from(tick));
+        let index = self.index_from(tick);
+        // The run of that index begins at or before it; in a gap it is the next one's first.
+        let run = self.runs.partition_point(|(_, first)| *first <= index);
+        let number = run.checked_sub(1).map(|run| self.runs[run]);
+        let number = number.map(|(first, at)| first + (index - at) as u64);
+        let is_there = number == Some(tick);
+        let place = self.ticks.get(index);
         let ticks = self.first().zip(self.last());
         let none = RecordError::NoTick { asked: tick, ticks };
         place.filter(|_| is_there).ok_or(none)
@@ -159,6 +164,11 @@ mod tests {
         assert_eq!(from(7), [7, 20, 21]);
         assert_eq!(from(8), [20, 21]);
         assert_eq!((from(21), from(22)), (vec![21], vec![]));
+        // The last number there is.
+        let mut last = Places::default();
+        last.add_tick(u64::MAX, place(1)).unwrap();
+        assert_eq!(last.last(), Some(u64::MAX));
+        assert!(last.add_tick(0, place(2)).is_err() && last.tick(u64::MAX).is_ok());
         assert!(places.saved(7).is_err());
         assert_eq!(places.saved(21).unwrap(), (20, &place(120)));
     }

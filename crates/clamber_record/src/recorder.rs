@@ -48,6 +48,9 @@ pub struct RecordOptions {
     /// never held up: ticks are left out, from a chunk's beginning to where a replay can begin again
     /// ([`Recorder::dropped`] and the log tell). If true, it waits and nothing is lost: for programs that do not play in
     /// real time.
+    ///
+    /// Ticks are left out only if the recorder was given snapshots of the scene at least twice: without any, no replay could
+    /// go on after a gap, and it waits. An arena's recorder makes them itself.
     pub waits: bool,
 }
 
@@ -111,8 +114,8 @@ pub struct FigureView<'a> {
 /// Writes a recording, chunk by chunk, on a thread of its own.
 ///
 /// [`Recorder::tick`] only copies the tick. Once a chunk is complete, the thread skins, encodes and writes its
-/// ticks, in their order, while the game goes on. If the thread falls behind, the game waits: no tick is left
-/// out.
+/// ticks, in their order, while the game goes on. If the thread falls behind for some seconds, ticks are left out, and
+/// counted and told, or the game waits: see [`RecordOptions::waits`].
 ///
 /// A chunk is held in memory and written as a whole, so the file is readable up to the last written chunk
 /// whenever writing stops. A recorder that is dropped without [`Recorder::finish`] finishes the file too, but

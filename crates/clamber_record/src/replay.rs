@@ -155,6 +155,9 @@ pub enum ReplayError<E> {
 /// `step` is called for one recorded tick after another. It brings its scene to that tick with the recorded input, and
 /// returns the result. If all ticks agree, their number is returned.
 ///
+/// The ticks must follow each other: of a recording with gaps ([`Recording::runs`](crate::Recording::runs)) replay each run
+/// by itself, from its first tick's snapshot on.
+///
 /// # Errors
 /// [`ReplayError::Differs`] at the first tick that differs, [`ReplayError::Record`] for a tick that cannot be read, and
 /// [`ReplayError::Scene`] if `step` fails.

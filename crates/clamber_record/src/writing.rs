@@ -167,6 +167,14 @@ impl<W: Write + Send + 'static> WriteTicks<Taken, W> for Writing<W> {
         self.output.flush()
     }
 
+    fn ends_in_gap(&mut self, ticks: u64) -> Result<(), RecordError> {
+        let now = self.output.now();
+        if let Some(line) = gap_line(now, ticks) {
+            self.output.send(self.channels.log, now, &line)?;
+        }
+        Ok(())
+    }
+
     fn finish(self) -> Result<W, RecordError> {
         self.output.finish()
     }

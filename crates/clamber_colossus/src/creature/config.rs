@@ -56,9 +56,9 @@ impl CreatureConfig {
             }
         };
         for found in self.position.to_array() {
-            within("position", "finite", found, f64::MIN, f64::MAX)?;
+            within("position", "finite, and at most 1e12", found, -1e12, 1e12)?;
         }
-        within("yaw", "finite, in radians", self.yaw, f64::MIN, f64::MAX)?;
+        within("yaw", "at most 1,000,000, in radians", self.yaw, -1e6, 1e6)?;
         within("scale", "from 0.000001 to 1,000,000", self.scale, 1e-6, 1e6)?;
         if let Some(height) = self.made_for {
             within(

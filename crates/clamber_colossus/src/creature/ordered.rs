@@ -25,24 +25,15 @@ impl Creature {
     /// its clips and its wounds stay. Its skin stands there without motion, so that whoever is on it is left behind.
     ///
     /// # Errors
-    /// [`ColossusError::OutOfRange`] for numbers that are not finite or beyond 1e12 m, and those of posing. Nothing is
-    /// changed then.
+    /// [`ColossusError::OutOfRange`] for a place that is not finite or beyond 1e12 m, or a heading beyond 1e6, and those of
+    /// posing. Nothing is changed then.
     pub fn put(&mut self, position: DVec3, yaw: f64) -> Result<(), ColossusError> {
-        let numbers = position.to_array().into_iter().chain([yaw]);
-        for found in numbers {
-            if found.is_nan() || found.abs() > FARTHEST {
-                return Err(ColossusError::OutOfRange {
-                    what: "place",
-                    range: "finite, and at most 1e12",
-                    found,
-                });
-            }
-        }
         let config = CreatureConfig {
             position,
             yaw,
             ..self.config
         };
+        config.check()?;
         let fresh = CreatureState::new(&self.kind, &config, self.size.rate);
         let mut state = CreatureState {
             position: fresh.position,
@@ -62,6 +53,8 @@ impl Creature {
             gaze_weight: fresh.gaze_weight,
             home: fresh.home,
             patrol: fresh.patrol,
+            sleeps: fresh.sleeps,
+            ticks: fresh.ticks,
             ..self.state.clone()
         };
         self.swap_state(&mut state)
@@ -73,7 +66,8 @@ impl Creature {
     /// changed, if it cannot walk, or if the place is not finite or beyond 1e12 m.
     pub fn send(&mut self, to: Option<DVec3>) -> bool {
         let is_far = |place: DVec3| !place.is_finite() || place.abs().max_element() > FARTHEST;
-        if self.kind.gait().is_none() || to.is_some_and(is_far) {
+        let cannot = self.kind.gait().is_none() && to.is_some();
+        if cannot || to.is_some_and(is_far) {
             return false;
         }
         // What it did, or where it went, is over.

@@ -355,7 +355,7 @@ impl CreatureState {
         self.plates.get(index).map_or(0, |plate| plate.left)
     }
 
-    /// Ticks so far.
+    /// Ticks since it began, or was put somewhere.
     pub fn ticks(&self) -> u64 {
         self.ticks
     }
@@ -410,6 +410,9 @@ impl CreatureState {
                 .all(|(state, plate)| fits(state, plate))
         {
             return Err(ColossusError::OtherKind("it has other plates"));
+        }
+        if self.errand.is_some() && kind.gait().is_none() {
+            return Err(ColossusError::OtherKind("it was sent, and cannot walk"));
         }
         let states = brain.len();
         let acting = self.acting.is_none_or(|state| state.index() < states);

@@ -105,6 +105,7 @@ impl Creature {
     fn act(&mut self, around: &Surroundings<'_>) -> Result<(), ColossusError> {
         if let Some(errand) = &mut self.state.errand {
             errand.has_begun = true;
+            self.state.halts = false;
             return Ok(());
         }
         let state = self.state.brain.current();

@@ -81,6 +81,47 @@ fn goes_where_it_is_sent_whatever_its_brain_wants() {
     }
 }
 
+/// A state that interrupts does not make it glide on its way: its clip of walking goes on.
+#[test]
+fn walks_on_when_its_brain_is_interrupted() {
+    let ground = HalfSpace::below(0.0);
+    let kind = giant(&brain_file());
+    let mut one = creature(&kind, at(DVec3::ZERO, 0.0));
+    assert!(one.send(Some(DVec3::Z * 120.0)));
+    go(&mut one, &ground, 240);
+    let clip = one.state().animator().layers()[0].clip;
+    let mut before = one.state().position().z;
+    for _ in 0..5 {
+        assert!(one.enter("roar"));
+        go(&mut one, &ground, 30);
+        let now = one.state().position().z;
+        assert!(now - before > 1.0, "it stands");
+        assert_eq!(one.state().animator().layers()[0].clip, clip, "it glides");
+        before = now;
+    }
+}
+
+/// Who sleeps and is put on other ground lies there as whoever began there, at any height above it.
+#[test]
+fn put_asleep_it_lies_on_its_new_ground() {
+    let ground = HalfSpace::below(3.0);
+    let kind = giant(&brain_file());
+    let mut began = creature(&kind, at(DVec3::new(40.0, 5.0, 0.0), 1.0));
+    let mut one = creature(&kind, at(DVec3::ZERO, 0.0));
+    go(&mut one, &HalfSpace::below(0.0), 600);
+    // Turned round many times: its heading is kept small.
+    one.put(
+        DVec3::new(40.0, 5.0, 0.0),
+        1.0 + core::f64::consts::TAU * 1000.0,
+    )
+    .unwrap();
+    go(&mut began, &ground, 300);
+    go(&mut one, &ground, 300);
+    let [a, b] = [&began, &one].map(|one| one.state().position());
+    assert!(a.distance(b) < 0.01, "{a} {b}");
+    assert!((a.y - 3.0).abs() < 0.2, "{a}");
+}
+
 #[test]
 fn goes_beyond_its_arena_and_can_be_called_back() {
     let ground = HalfSpace::below(0.0);

@@ -36,6 +36,9 @@ use crate::error::ArenaError;
 use crate::fighter::{Fighter, FighterConfig, FighterId};
 use crate::projectile::{Projectile, ProjectileId, ProjectileMotion, ProjectilePlace, place_on};
 
+/// Numbers of creatures and fighters are less than this.
+const LAST: u32 = u32::MAX - 1024;
+
 /// Where the obstacle ids of creatures and of fighters begin. Terrain has smaller ones, such as the bits of an engine's
 /// entities.
 const CREATURES: u64 = 1 << 62;
@@ -151,11 +154,13 @@ impl Arena {
     }
 
     fn check_new(&self) -> Result<(), ArenaError> {
-        if self.tick == 0 {
-            Ok(())
-        } else {
-            Err(ArenaError::Begun)
+        if self.tick > 0 {
+            return Err(ArenaError::Begun);
         }
+        if self.next_fighter.max(self.next_creature) >= LAST {
+            return Err(ArenaError::OtherArena("all numbers were given"));
+        }
+        Ok(())
     }
 
     fn new_member(

@@ -2,14 +2,13 @@
 
 use clamber_climber::{Blow, Climber};
 use clamber_colossus::{Creature, CreatureConfig, Noise};
-use clamber_world::{Obstacle, ObstacleId};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::{Arena, ArenaEvent, CreatureId, KindId, Member, Outcome, Skins};
+use super::{Arena, ArenaEvent, CreatureId, KindId, LAST, Member, Outcome};
 use crate::error::ArenaError;
 use crate::fighter::{Fighter, FighterConfig, FighterId};
-use crate::projectile::{Air, ProjectileId};
+use crate::projectile::ProjectileId;
 
 /// Something that a game does to an arena, beside what players do: falling rocks, fruit, checkpoints, scenes, waves of
 /// creatures. Orders are given to [`Arena::step_with`], and followed at the beginning of that step, one after the other.
@@ -182,8 +181,26 @@ pub(super) struct Joining {
     creatures: Vec<Member>,
 }
 
+/// No more join in one step: each takes far more memory than the order for it.
+const MOST_JOINS: usize = 256;
+
+impl Joining {
+    /// Refuses one more.
+    fn check(&self, arena: &Arena) -> Result<(), String> {
+        let (fighters, creatures) = (self.fighters.len(), self.creatures.len());
+        check(fighters + creatures < MOST_JOINS, || {
+            format!("more than {MOST_JOINS} would join in one step")
+        })?;
+        let is_left = arena.next_fighter.max(arena.next_creature) < LAST;
+        check(is_left, || "all numbers were given".to_owned())
+    }
+}
+
 /// Places are no further from the origin, metres.
 const FARTHEST: f64 = 1e12;
+
+/// Headings are no larger, radians.
+const MOST_YAW: f64 = 1e6;
 
 impl Arena {
     /// Refuses orders that cannot be followed, and makes who joins. Nothing is changed.
@@ -193,30 +210,26 @@ impl Arena {
             let refuse = |reason: String| ArenaError::Order { index, reason };
             match order {
                 Order::AddFighter { config, position } => {
-                    let id = self.next_fighter.checked_add(joining.fighters.len() as u32);
-                    let id = id.filter(|id| *id < u32::MAX);
-                    let id = id.ok_or_else(|| refuse("all numbers were given".to_owned()))?;
-                    let fighter = self.new_fighter(FighterId(id), **config, *position);
+                    joining.check(self).map_err(refuse)?;
+                    let id = FighterId(self.next_fighter + joining.fighters.len() as u32);
+                    let fighter = self.new_fighter(id, **config, *position);
                     let fighter = fighter.map_err(|error| refuse(error.to_string()))?;
                     joining.fighters.push(fighter);
                 }
                 Order::AddCreature { kind, config } => {
-                    let id = self
-                        .next_creature
-                        .checked_add(joining.creatures.len() as u32);
-                    let id = id.filter(|id| *id < u32::MAX);
-                    let id = id.ok_or_else(|| refuse("all numbers were given".to_owned()))?;
-                    let member = self.new_member(CreatureId(id), *kind, *config);
+                    joining.check(self).map_err(refuse)?;
+                    let id = CreatureId(self.next_creature + joining.creatures.len() as u32);
+                    let member = self.new_member(id, *kind, *config);
                     let member = member.map_err(|error| refuse(error.to_string()))?;
                     joining.creatures.push(member);
                 }
-                _ => self.check_order(order).map_err(refuse)?,
+                _ => self.check_order(order, &joining).map_err(refuse)?,
             }
         }
         Ok(joining)
     }
 
-    fn check_order(&self, order: &Order) -> Result<(), String> {
+    fn check_order(&self, order: &Order, joining: &Joining) -> Result<(), String> {
         let share = |what: &str, found: f64| {
             let is_share = (0.0..=1.0).contains(&found);
             check(is_share, || format!("{what} {found} is not from 0 to 1"))
@@ -268,7 +281,7 @@ impl Arena {
                 check(value.is_finite(), || {
                     format!("the sense `{name}` is not finite")
                 })?;
-                self.check_creature(*creature, |creature| {
+                self.check_creature((*creature, joining), |creature| {
                     let senses = creature.kind().brain().own_senses();
                     check(senses.contains(name), || {
                         format!(
@@ -280,24 +293,27 @@ impl Arena {
             }
             Order::Send { creature, to } => {
                 to.map_or(Ok(()), place)?;
-                self.check_creature(*creature, |creature| {
-                    check(creature.kind().can_walk(), || {
+                self.check_creature((*creature, joining), |creature| {
+                    check(to.is_none() || creature.kind().can_walk(), || {
                         "the creature cannot walk: its brain's file names no gait".to_owned()
                     })
                 })
             }
-            Order::Enter { creature, state } => self.check_creature(*creature, |creature| {
-                let brain = creature.kind().brain();
-                check(brain.find(state).is_some(), || {
-                    let paths: Vec<&str> = brain.states().map(|state| brain.path(state)).collect();
-                    format!("no state is called `{state}`; there are {}", listed(&paths))
+            Order::Enter { creature, state } => {
+                self.check_creature((*creature, joining), |creature| {
+                    let brain = creature.kind().brain();
+                    check(brain.find(state).is_some(), || {
+                        let paths: Vec<&str> =
+                            brain.states().map(|state| brain.path(state)).collect();
+                        format!("no state is called `{state}`; there are {}", listed(&paths))
+                    })
                 })
-            }),
+            }
             Order::PlaceCreature { position, yaw, .. } => {
                 place(*position)?;
-                let is_angle = yaw.abs() <= FARTHEST;
+                let is_angle = yaw.abs() <= MOST_YAW;
                 check(is_angle, || {
-                    format!("the heading {yaw} is not finite, or beyond 1e12")
+                    format!("the heading {yaw} is not finite, or beyond 1e6")
                 })
             }
             Order::Harm {
@@ -309,7 +325,7 @@ impl Arena {
                 check(is_damage, || {
                     format!("damage {damage} is negative, or not finite")
                 })?;
-                self.check_creature(*creature, |creature| {
+                self.check_creature((*creature, joining), |creature| {
                     let count = creature.kind().weak_points().len();
                     check(*weak_point < count, || {
                         format!("there is no weak point {weak_point}: there are {count}")
@@ -326,22 +342,21 @@ impl Arena {
         }
     }
 
-    /// Checks what is asked of a creature, if it is there.
+    /// Checks what is asked of a creature, if it is there or joins before.
     fn check_creature(
         &self,
-        creature: CreatureId,
+        (creature, joining): (CreatureId, &Joining),
         check: impl FnOnce(&Creature) -> Result<(), String>,
     ) -> Result<(), String> {
-        self.creature(creature).map_or(Ok(()), check)
+        let joins = || {
+            let joins = joining.creatures.iter().find(|one| one.id == creature)?;
+            Some(&joins.creature)
+        };
+        self.creature(creature).or_else(joins).map_or(Ok(()), check)
     }
 
     /// Follows orders that were checked.
-    pub(super) fn follow(
-        &mut self,
-        orders: &[Order],
-        joining: Joining,
-        terrain: &[(ObstacleId, &dyn Obstacle)],
-    ) -> Result<(), ArenaError> {
+    pub(super) fn follow(&mut self, orders: &[Order], joining: Joining) -> Result<(), ArenaError> {
         let (mut fighters, mut creatures) =
             (joining.fighters.into_iter(), joining.creatures.into_iter());
         for (index, order) in orders.iter().enumerate() {
@@ -356,7 +371,7 @@ impl Arena {
                     self.events.push(ArenaEvent::CreatureJoined { creature });
                     true
                 }),
-                Order::RemoveCreature { creature } => self.remove_creature(*creature, terrain),
+                Order::RemoveCreature { creature } => self.remove_creature(*creature),
                 Order::Noise(noise) => {
                     self.noises.push(*noise);
                     true
@@ -398,7 +413,7 @@ impl Arena {
                 self.fighters.remove(index);
                 self.events.push(ArenaEvent::FighterLeft { fighter });
             }
-            Order::Hurt { damage, .. } => one.hurt(*damage),
+            Order::Hurt { damage, .. } => one.hurt(*damage)?,
             Order::Heal {
                 hit_points,
                 stamina,
@@ -425,22 +440,18 @@ impl Arena {
         let Some(creature) = self.creature_mut(id) else {
             return Ok(false);
         };
+        // What was checked is done; else it would be told.
+        let mut is_done = true;
         match order {
-            Order::Sense { name, value, .. } => {
-                creature.set_sense(name, *value);
-            }
-            Order::Send { to, .. } => {
-                creature.send(*to);
-            }
-            Order::Enter { state, .. } => {
-                creature.enter(state);
-            }
+            Order::Sense { name, value, .. } => is_done = creature.set_sense(name, *value),
+            Order::Send { to, .. } => is_done = creature.send(*to),
+            Order::Enter { state, .. } => is_done = creature.enter(state),
             Order::PlaceCreature { position, yaw, .. } => creature.put(*position, *yaw)?,
             Order::Harm {
                 weak_point, damage, ..
             } => {
                 let was_alive = creature.health() > 0.0;
-                creature.harm(*weak_point, *damage);
+                is_done = creature.harm(*weak_point, *damage).is_some();
                 if was_alive && creature.health() <= 0.0 {
                     self.events.push(ArenaEvent::Killed {
                         creature: id,
@@ -450,33 +461,23 @@ impl Arena {
             }
             _ => {}
         }
-        Ok(true)
+        Ok(is_done)
     }
 
     /// Takes a creature away; false if it is not there.
-    fn remove_creature(
-        &mut self,
-        creature: CreatureId,
-        terrain: &[(ObstacleId, &dyn Obstacle)],
-    ) -> bool {
+    fn remove_creature(&mut self, creature: CreatureId) -> bool {
         let Some(index) = self.creature_index(creature) else {
             return false;
         };
         // Arrows fall from where they are, which only the skin knows.
-        let mut projectiles = std::mem::take(&mut self.projectiles);
         let mut outcome = Outcome::default();
-        let skins = self.skins();
-        let air = Air {
-            skins: Skins(&skins),
-            terrain,
-            gravity: self.config.gravity,
-            dt: self.config.tick,
-        };
         let obstacle = super::creature_obstacle(creature);
-        for projectile in projectiles.iter_mut().filter(|one| one.is_in(obstacle)) {
-            projectile.fall(&air, &mut outcome);
-        }
-        self.projectiles = projectiles;
+        let skin = self.creatures[index].creature.surface();
+        let stuck = self
+            .projectiles
+            .iter_mut()
+            .filter(|one| one.is_in(obstacle));
+        stuck.for_each(|projectile| projectile.drop_from(skin, &mut outcome));
         self.creatures.remove(index);
         self.events.push(ArenaEvent::CreatureLeft { creature });
         self.events.append(&mut outcome.events);

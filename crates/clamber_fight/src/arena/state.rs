@@ -1,7 +1,7 @@
 use clamber_colossus::{CreatureConfig, CreatureState, Noise};
 use serde::{Deserialize, Serialize};
 
-use super::{Arena, CreatureId, KindId, Member};
+use super::{Arena, CreatureId, KindId, LAST, Member};
 use crate::error::ArenaError;
 use crate::fighter::{Fighter, FighterConfig, FighterId, FighterState};
 use crate::projectile::Projectile;
@@ -176,6 +176,11 @@ impl Arena {
             return Err(ArenaError::Config { found, expected });
         }
         let other = |reason| Err(ArenaError::OtherArena(reason));
+        // So many are never reached, and there is room to count on.
+        let far = state.tick.max(state.next_projectile) > u64::MAX / 2;
+        if far || state.next_creature.max(state.next_fighter) > LAST {
+            return other("its counters are further than an arena counts");
+        }
         let creatures = state.creatures.iter().map(|one| one.id.0);
         let fighters = state.fighters.iter().map(|one| one.id.0);
         if !are_in_order(creatures, state.next_creature)

@@ -53,7 +53,7 @@ impl Arena {
     /// [`fighter_obstacle`] as [`StepRules::id`], whatever the rules say.
     ///
     /// # Errors
-    /// As [`Arena::step`], and [`ArenaError::Order`] for an order that cannot be followed. Nothing is changed then.
+    /// As [`Arena::step`], and [`ArenaError::Order`] for an order that cannot be followed: nothing is changed then.
     pub fn step_with(
         &mut self,
         inputs: &[ClimberInput],
@@ -74,7 +74,7 @@ impl Arena {
             .zip(inputs.iter().copied());
         scratch.inputs.extend(given);
         let stepped = self
-            .follow(orders, joining, terrain)
+            .follow(orders, joining)
             .and_then(|()| self.step_checked(terrain, rules, &mut scratch));
         self.scratch = scratch;
         stepped?;

@@ -27,9 +27,14 @@ impl Fighter {
         Ok(())
     }
 
-    /// Takes hit points in this step.
-    pub(crate) fn hurt(&mut self, damage: f64) {
-        self.state.harm += damage;
+    /// Loses hit points. Without any left it dies in this step.
+    pub(crate) fn hurt(&mut self, damage: f64) -> Result<(), ClimberError> {
+        if self.is_dead() {
+            return Ok(());
+        }
+        let mut state = *self.climber.state();
+        state.hit_points = (state.hit_points - damage).max(0.0);
+        self.climber.restore(state)
     }
 
     /// Gives hit points and stamina back, unless it is dead.

@@ -6,8 +6,10 @@ use clamber_surface::surface::TargetMotion;
 use clamber_world::{Obstacle, ObstacleId, SweepContact};
 use glam::DVec3;
 
-use super::stuck::stick;
-use super::{Flight, Projectile, ProjectileBody, ProjectileKind, ProjectileMotion};
+use super::stuck::{place_on, stick};
+use super::{
+    Flight, Projectile, ProjectileBody, ProjectileKind, ProjectileMotion, ProjectilePlace,
+};
 use crate::arena::{ArenaEvent, Hit, Outcome, Skins, Weapon, creature_obstacle, creature_of};
 
 /// Seconds after which an arrow that has met nothing is gone, and one that falls.
@@ -205,6 +207,27 @@ impl Projectile {
             let _ = direction;
             self.fall(air, out);
         }
+    }
+
+    /// Comes loose from skin that is gone with the next step: it falls from where it is, from rest. The skin's motion is no
+    /// part of what is saved, so that nothing may depend on it here.
+    pub(crate) fn drop_from(&mut self, skin: &dyn Obstacle, out: &mut Outcome) {
+        let ProjectileMotion::Stuck { at, direction } = self.motion else {
+            return;
+        };
+        let place = place_on(&at, direction, skin).unwrap_or(ProjectilePlace {
+            tip: at.position(),
+            direction: at.frame * direction,
+        });
+        self.motion = ProjectileMotion::Falling {
+            position: place.tip,
+            velocity: DVec3::ZERO,
+            direction: place.direction,
+        };
+        self.seconds = 0.0;
+        out.events.push(ArenaEvent::CameLoose {
+            projectile: self.id,
+        });
     }
 
     /// Comes loose, with the velocity of what it stuck in.

@@ -30,15 +30,17 @@
 //!     if session.current_state() == ggrs::SessionState::Running {
 //!         session.add_local_input(0, input)?;
 //!         match watch.advance(&mut session) {
-//!             Ok(requests) => rollback.handle(&mut arena, requests, |arena, inputs, asked| {
-//!                 let orders = orders_of(arena, asked); // the game's own: see below
-//!                 arena.step_with(inputs, &orders, &terrain, &StepRules::default()).map(drop)
-//!             })?,
-//!             Err(AdvanceError::Wait) => {} // the other one is too far behind
+//!             Ok(requests) => {
+//!                 rollback.handle(&mut arena, requests, |arena, inputs, asked| {
+//!                     let orders = orders_of(arena, asked); // the game's own: see below
+//!                     arena.step_with(inputs, &orders, &terrain, &StepRules::default()).map(drop)
+//!                 })?;
+//!                 for (tick, event) in rollback.confirmed(session.confirmed_frame()) {
+//!                     println!("{tick}: {event:?}"); // each once, and none of a tick that is taken back
+//!                 }
+//!             }
+//!             Err(AdvanceError::Wait) => {} // for what others know of somebody who is gone
 //!             Err(error) => return Err(error.into()),
-//!         }
-//!         for (tick, event) in rollback.confirmed(session.confirmed_frame()) {
-//!             println!("{tick}: {event:?}"); // each once, and none of a tick that is taken back
 //!         }
 //!     }
 //!     # return Ok(());
@@ -178,7 +180,8 @@ impl Rollback {
     }
 
     /// What has happened for certain since the last call, with its ticks, in order. `frame` is the session's
-    /// `confirmed_frame` after [`Rollback::handle`]: all inputs up to there are known, and were played.
+    /// `confirmed_frame` after [`Rollback::handle`]: all inputs up to there are known, and were played. Do not ask while the
+    /// session waits: what is certain by then was not yet played.
     pub fn confirmed(&mut self, frame: Frame) -> impl Iterator<Item = (u64, ArenaEvent)> + use<> {
         let certain = u64::try_from(frame).map_or(0, |frame| self.began + frame + 1);
         let later = self.events.split_off(&(certain + 1));

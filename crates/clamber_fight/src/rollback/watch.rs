@@ -33,15 +33,19 @@ pub struct Watched<S, A> {
     heard: Arc<Mutex<Heard<A>>>,
 }
 
-/// What each peer has told last: of each player, whether it is gone, and the last of its frames that the peer has.
-type Heard<A> = Vec<(A, Vec<(bool, Frame)>)>;
+/// What each peer has told last, with the number of its session: of each player, whether it is gone, and the last of its
+/// frames that the peer has.
+type Heard<A> = Vec<(A, u16, Vec<(bool, Frame)>)>;
+
+/// No more peers are listened to: anybody may send something.
+const MOST_PEERS: usize = 64;
 
 /// Why there are no requests.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum AdvanceError {
-    /// This peer is too far ahead of the others, or waits until all of them know that somebody is gone: poll again in the
-    /// next tick.
+    /// This peer waits until the others say what they know of somebody who is gone: poll again in the next tick, and tell
+    /// nothing as certain meanwhile.
     #[error("this peer waits for the others")]
     Wait,
     /// Somebody has left, and another peer knows less of its inputs than this one. This session is at its end.
@@ -90,7 +94,8 @@ impl<A: Clone + PartialEq + Eq + Hash + Debug + 'static> Watch<A> {
         events
     }
 
-    /// What the session asks for, for [`Rollback::handle`](super::Rollback::handle). Add this peer's inputs before.
+    /// What the session asks for, for [`Rollback::handle`](super::Rollback::handle). Add this peer's inputs before. A peer
+    /// that is too far ahead of the others is asked for no step.
     ///
     /// # Errors
     /// [`AdvanceError`].
@@ -115,15 +120,15 @@ impl<A: Clone + PartialEq + Eq + Hash + Debug + 'static> Watch<A> {
             let is_theirs = |peer: &A| session.handles_by_address(peer.clone()).contains(&player);
             let of = |players: &[(bool, Frame)]| players.get(player).copied();
             // Whoever has gone sent all that this peer has of it, and told up to where.
-            let theirs = heard.iter().find(|(peer, _)| is_theirs(peer));
-            let Some((_, ours)) = theirs.and_then(|(_, players)| of(players)) else {
+            let theirs = heard.iter().find(|(peer, ..)| is_theirs(peer));
+            let Some((_, ours)) = theirs.and_then(|(.., players)| of(players)) else {
                 continue;
             };
-            let others = heard.iter().filter(|(peer, _)| {
-                let is_gone = self.gone.contains(peer);
-                !is_gone && !is_theirs(peer)
+            let others = heard.iter().filter(|(peer, ..)| {
+                let is_peer = !session.handles_by_address(peer.clone()).is_empty();
+                is_peer && !self.gone.contains(peer) && !is_theirs(peer)
             });
-            let others: Vec<_> = others.filter_map(|(_, players)| of(players)).collect();
+            let others: Vec<_> = others.filter_map(|(.., players)| of(players)).collect();
             let Some(least) = others.iter().map(|(_, last)| *last).min() else {
                 continue;
             };
@@ -161,18 +166,20 @@ impl<S: NonBlockingSocket<A>, A: Clone + PartialEq + Eq + Hash + Debug> NonBlock
         let messages = self.socket.receive_all_messages();
         let mut heard = self.heard.lock().unwrap_or_else(PoisonError::into_inner);
         for (from, message) in &messages {
-            let Some(players) = told(message) else {
+            let has_room = heard.len() < MOST_PEERS;
+            let Some((session, players)) = told(message) else {
                 continue;
             };
-            match heard.iter_mut().find(|(peer, _)| peer == from) {
+            match heard.iter_mut().find(|(peer, ..)| peer == from) {
                 // They come in any order: nobody comes back, and nobody knows less than before.
-                Some((_, known)) if known.len() == players.len() => {
-                    for (known, told) in known.iter_mut().zip(players) {
+                Some((_, known, before)) if *known == session && before.len() == players.len() => {
+                    for (known, told) in before.iter_mut().zip(players) {
                         *known = (known.0 || told.0, known.1.max(told.1));
                     }
                 }
-                Some((_, known)) => *known = players,
-                None => heard.push((from.clone(), players)),
+                Some(other) => (other.1, other.2) = (session, players),
+                None if has_room => heard.push((from.clone(), session, players)),
+                None => {}
             }
         }
         messages
@@ -181,13 +188,13 @@ impl<S: NonBlockingSocket<A>, A: Clone + PartialEq + Eq + Hash + Debug> NonBlock
 
 /// What a message tells of all players; `None` if it is of another kind. ggrs shows messages only as what they are
 /// serialised to.
-fn told(message: &Message) -> Option<Vec<(bool, Frame)>> {
+fn told(message: &Message) -> Option<(u16, Vec<(bool, Frame)>)> {
     let bytes = postcard::to_stdvec(message).ok()?;
     // The session's number, and which message it is.
-    let ((_, kind), rest) = postcard::take_from_bytes::<(u16, u32)>(&bytes).ok()?;
+    let ((session, kind), rest) = postcard::take_from_bytes::<(u16, u32)>(&bytes).ok()?;
     if kind != INPUT {
         return None;
     }
     let (players, _) = postcard::take_from_bytes(rest).ok()?;
-    Some(players)
+    Some((session, players))
 }

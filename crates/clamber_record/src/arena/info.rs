@@ -12,7 +12,8 @@ pub struct ArenaInfo {
     pub config: u64,
     /// Duration of a tick, seconds.
     pub tick_seconds: f64,
-    /// Names of the creatures, by number, also of those that have left. Those that join later are called `creature N`.
+    /// Names of the creatures, by number, also of those that have left; of 1,000 at most. Others, and those that join later,
+    /// are called `creature N`.
     pub creatures: Vec<String>,
     /// Names of the fighters, by number, as those of the creatures.
     pub fighters: Vec<String>,
@@ -32,8 +33,8 @@ impl ArenaInfo {
         Self {
             config: arena.config_hash(),
             tick_seconds: arena.config().tick,
-            creatures: named("creature", arena.next_creature().0),
-            fighters: named("fighter", arena.next_fighter().0),
+            creatures: named("creature", named_of(arena.next_creature().0)),
+            fighters: named("fighter", named_of(arena.next_fighter().0)),
             settings: BTreeMap::new(),
             version: RecordingInfo::VERSION.to_owned(),
         }
@@ -55,8 +56,16 @@ impl ArenaInfo {
     /// channels are told apart by them.
     pub(crate) fn check_names(&self, arena: &Arena) -> Result<(), RecordError> {
         let counts = [
-            ("creatures", self.creatures.len(), arena.next_creature().0),
-            ("fighters", self.fighters.len(), arena.next_fighter().0),
+            (
+                "creatures",
+                self.creatures.len(),
+                named_of(arena.next_creature().0),
+            ),
+            (
+                "fighters",
+                self.fighters.len(),
+                named_of(arena.next_fighter().0),
+            ),
         ];
         for (what, names, found) in counts {
             if names != found as usize {
@@ -117,4 +126,9 @@ impl ArenaInfo {
             version: text(metadata, "version")?.clone(),
         })
     }
+}
+
+/// How many of those that were given numbers have names of their own.
+fn named_of(next: u32) -> u32 {
+    next.min(1000)
 }

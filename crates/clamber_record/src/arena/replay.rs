@@ -108,7 +108,7 @@ impl ArenaRecording {
         let mut last = from;
         for recorded in self.ticks_from(from) {
             let recorded = recorded?;
-            if recorded.tick > last + 1 {
+            if recorded.tick > last && recorded.tick - last > 1 {
                 // After a gap it goes on from what was saved there.
                 let (_, saved) = self.saved(recorded.tick)?;
                 arena.restore_bytes(&saved)?;

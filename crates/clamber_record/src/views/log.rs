@@ -105,8 +105,8 @@ pub(crate) fn log(nanoseconds: u64, level: Level, name: &str, message: String) -
     }
 }
 
-/// Tells that ticks were left out before this one, if there were some.
+/// Tells that ticks were left out here, if there were some.
 pub(crate) fn gap_line(nanoseconds: u64, ticks: u64) -> Option<Log> {
-    let what = format!("{ticks} ticks before this one are not recorded: the disk was too slow");
+    let what = format!("{ticks} ticks are not recorded here: the disk was too slow");
     (ticks > 0).then(|| log(nanoseconds, Level::Warning, "recorder", what))
 }
