@@ -60,17 +60,16 @@ impl Creature {
         self.swap_state(&mut state)
     }
 
-    /// Sends the creature to a place, whatever its brain wants, or lets it do what that wants again. It walks round what
-    /// is in its way, also beyond its arena. Its brain goes on meanwhile, but its acts wait; what it does now ends at
-    /// once. [`CreatureEvent::Arrived`] or [`CreatureEvent::Stopped`] tells of the end. Returns false, and nothing is
-    /// changed, if it cannot walk, or if the place is not finite or beyond 1e12 m.
+    /// Sends the creature to a place, whatever its brain wants; `None` calls it back. The act that it is at ends at once.
+    /// It walks round obstacles, and may leave its arena. Its brain still changes states on the way, but their acts begin
+    /// only at the end, of which [`CreatureEvent::Arrived`] or [`CreatureEvent::Stopped`] tells. Returns false, and
+    /// nothing is changed, if it cannot walk, or if the place is not finite or beyond 1e12 m.
     pub fn send(&mut self, to: Option<DVec3>) -> bool {
         let is_far = |place: DVec3| !place.is_finite() || place.abs().max_element() > FARTHEST;
         let cannot = self.kind.gait().is_none() && to.is_some();
         if cannot || to.is_some_and(is_far) {
             return false;
         }
-        // What it did, or where it went, is over.
         self.leave_act();
         self.state.errand = to.map(|to| Errand {
             to,

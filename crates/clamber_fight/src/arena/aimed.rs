@@ -3,6 +3,7 @@
 use clamber_world::{MaterialPoint, Obstacle, ObstacleId};
 use glam::DVec3;
 
+use super::member::skins_of;
 use super::{Arena, CreatureId, Skins, creature_of};
 use crate::fighter::{Around, FighterId, Target};
 
@@ -30,7 +31,7 @@ impl Arena {
         terrain: &[(ObstacleId, &dyn Obstacle)],
     ) -> Option<Aimed> {
         let fighter = self.fighter(fighter)?;
-        let skins = self.skins();
+        let skins = skins_of(&self.creatures);
         let around = Around {
             skins: Skins(&skins),
             terrain,

@@ -47,6 +47,12 @@ pub(super) fn mark(id: CreatureId, kind: KindId, config: &CreatureConfig) -> u64
     hash_of(1, &(id, kind, config))
 }
 
+/// The skins of creatures, for [`Skins`].
+pub(super) fn skins_of(creatures: &[Member]) -> Vec<(CreatureId, &SkinnedSurface)> {
+    let skins = creatures.iter();
+    skins.map(|one| (one.id, one.creature.surface())).collect()
+}
+
 /// The skins of all creatures, by ascending number.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Skins<'a>(pub(crate) &'a [(CreatureId, &'a SkinnedSurface)]);

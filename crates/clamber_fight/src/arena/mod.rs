@@ -13,7 +13,6 @@ mod state;
 mod step;
 
 use clamber_colossus::{Creature, CreatureConfig, CreatureKind};
-use clamber_surface::surface::SkinnedSurface;
 use clamber_world::{Obstacle, ObstacleId};
 use glam::DVec3;
 use std::collections::BTreeMap;
@@ -158,7 +157,11 @@ impl Arena {
             return Err(ArenaError::Begun);
         }
         if self.next_fighter.max(self.next_creature) >= LAST {
-            return Err(ArenaError::OtherArena("all numbers were given"));
+            return Err(ArenaError::OutOfRange {
+                name: "the next number",
+                range: "one that is left: this many were never given",
+                found: f64::from(self.next_fighter.max(self.next_creature)),
+            });
         }
         Ok(())
     }
@@ -253,13 +256,6 @@ impl Arena {
 
     fn fighter_index(&self, id: FighterId) -> Option<usize> {
         self.fighters.binary_search_by_key(&id, Fighter::id).ok()
-    }
-
-    fn skins(&self) -> Vec<(CreatureId, &SkinnedSurface)> {
-        let skins = self.creatures();
-        skins
-            .map(|(id, creature)| (id, creature.surface()))
-            .collect()
     }
 
     /// Arrows and stones, by ascending number.

@@ -2,11 +2,11 @@
 
 use clamber_climber::{Blow, ClimberGroup, ClimberInput, ClimberMode, StepRules};
 use clamber_colossus::{Person, Riding, Surroundings, Wound};
-use clamber_surface::surface::SkinnedSurface;
 use clamber_world::{Obstacle, ObstacleId};
 
+use super::member::skins_of;
 use super::{
-    Arena, ArenaEvent, CREATURES, CreatureId, Member, Order, Outcome, Skins, creature_obstacle,
+    Arena, ArenaEvent, CREATURES, Member, Order, Outcome, Skins, creature_obstacle,
     fighter_obstacle,
 };
 use crate::error::ArenaError;
@@ -204,9 +204,7 @@ impl Arena {
         let climbers = living.map(|fighter| (fighter_obstacle(fighter.id()), fighter.climber()));
         scratch.group.update(climbers, &obstacles, dt);
         let fixed = obstacles.len();
-        let skins = self.creatures.iter();
-        let skins = skins.map(|member| (member.id, member.creature.surface()));
-        let skins: Vec<(CreatureId, &SkinnedSurface)> = skins.collect();
+        let skins = skins_of(&self.creatures);
         for index in 0..self.fighters.len() {
             obstacles.truncate(fixed);
             let ours = &self.fighters[index];
@@ -265,9 +263,7 @@ impl Arena {
     }
 
     fn step_projectiles(&mut self, terrain: &[(ObstacleId, &dyn Obstacle)], outcome: &mut Outcome) {
-        let skins = self.creatures.iter();
-        let skins = skins.map(|member| (member.id, member.creature.surface()));
-        let skins: Vec<(CreatureId, &SkinnedSurface)> = skins.collect();
+        let skins = skins_of(&self.creatures);
         let air = Air {
             skins: Skins(&skins),
             terrain,

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use clamber_climber::ClimberInput;
-use clamber_fight::{Arena, CreatureId, FighterId, Order, creature_obstacle, fighter_obstacle};
+use clamber_fight::{Arena, CreatureId, Order, creature_obstacle, fighter_obstacle};
 use clamber_world::{Obstacle, ObstacleId};
 
 use super::ArenaInfo;
@@ -112,13 +112,18 @@ impl<W: Write> ArenaRecorder<W> {
     /// Gives names to who has joined.
     fn name_all(&mut self, arena: &Arena) {
         let next = [arena.next_creature().0, arena.next_fighter().0];
-        let creatures = (self.named[0]..next[0]).map(|number| {
-            let name = self.info.creature(number as usize);
-            (creature_obstacle(CreatureId(number)), name)
+        // Only those who are there: a state may count further than there is memory for names.
+        let creatures = arena.creatures().map(|(id, _)| id);
+        let creatures = creatures.filter(|id| id.0 >= self.named[0]);
+        let creatures = creatures.map(|id| {
+            let name = self.info.creature(id.0 as usize);
+            (creature_obstacle(id), name)
         });
-        let fighters = (self.named[1]..next[1]).map(|number| {
-            let name = self.info.fighter(number as usize);
-            (fighter_obstacle(FighterId(number)), name)
+        let fighters = arena.fighters().iter().map(|fighter| fighter.id());
+        let fighters = fighters.filter(|id| id.0 >= self.named[1]);
+        let fighters = fighters.map(|id| {
+            let name = self.info.fighter(id.0 as usize);
+            (fighter_obstacle(id), name)
         });
         let new: Vec<(ObstacleId, String)> = creatures.chain(fighters).collect();
         if !new.is_empty() {

@@ -446,3 +446,20 @@ fn orders_are_recorded_and_played_again() {
         assert!(bytes.contains(words), "{words}");
     }
 }
+
+/// An arena whose numbers are far on, as of a forged or a very old state, is recorded in as little memory as another one.
+#[test]
+fn numbers_that_are_far_on_cost_nothing() {
+    let mut arena = arena();
+    let mut state = arena.save();
+    (state.next_creature, state.next_fighter) = (1 << 31, 1 << 31);
+    arena.restore(&state).unwrap();
+    let info = ArenaInfo::of(&arena);
+    assert_eq!(info.creatures.len(), 1000);
+    let options = RecordOptions::waiting();
+    let mut recorder = ArenaRecorder::new(Vec::new(), &info, &arena, options).unwrap();
+    let inputs = inputs(1);
+    step(&mut arena, &inputs, &[]).unwrap();
+    recorder.tick(&arena, &inputs, &[], &[]).unwrap();
+    assert!(recorder.finish().unwrap().len() < 1 << 20);
+}
