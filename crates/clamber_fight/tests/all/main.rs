@@ -5,6 +5,7 @@ mod arrows;
 mod behind;
 mod debris;
 mod fair;
+mod joining;
 mod orders;
 mod people;
 #[cfg(feature = "ggrs")]
