@@ -100,6 +100,7 @@ fn graph(rig: &Arc<Rig>, config: &GraphConfig) -> Result<Arc<ClimbGraph>, Failur
             skeleton: &rig.skeleton,
             mesh: &rig.collider,
             clips: &rig.clips,
+            rate: 1.0,
             plates: &[],
             weak_points: &rig.weak_points,
             world_from_model: Similarity::IDENTITY,

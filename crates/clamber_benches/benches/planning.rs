@@ -51,7 +51,7 @@ fn run(brief: bool) -> Result<(), Failure> {
     let mut cells = Cells::default();
     let creature = giant::giant()?;
     let start = Instant::now();
-    let graph = creature.graph(&ClimberConfig::colossus_climber(), HEIGHT, &[])?;
+    let graph = creature.graph(&ClimberConfig::colossus_climber(), HEIGHT, 1.0, &[])?;
     let seconds = start.elapsed().as_secs_f64();
     cells.push("the graph of the giant, s", seconds, Bound::Most(20.0));
     cells.value("patches", graph.patches().len() as f64);
@@ -74,6 +74,7 @@ fn read(creature: &Creature) -> Result<f64, Failure> {
         skeleton: &creature.skeleton,
         mesh: &creature.collider,
         clips: &creature.clips,
+        rate: 1.0,
         plates: &[],
         weak_points: &creature.weak_points,
         world_from_model,

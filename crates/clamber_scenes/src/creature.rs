@@ -35,9 +35,14 @@ pub struct Creature {
     pub(crate) graphs: Graphs,
 }
 
-/// Graphs, by mesh, climber and height.
+/// Graphs, by mesh, climber, height and the rate of clips.
 pub(crate) type Graphs = Arc<Mutex<Vec<(GraphKey, Arc<ClimbGraph>)>>>;
-type GraphKey = (Arc<ColliderMesh>, ClimberConfig, f64, Vec<Vec<TriangleId>>);
+type GraphKey = (
+    Arc<ColliderMesh>,
+    ClimberConfig,
+    (f64, f64),
+    Vec<Vec<TriangleId>>,
+);
 
 /// Why a creature cannot be loaded, built or posed.
 #[derive(Debug, Error)]
@@ -92,8 +97,8 @@ impl Creature {
         })
     }
 
-    /// The graph of its skin for a climber, when it is so many metres tall, stands on the ground, and has plates. A
-    /// climber grips fur and stone, or all of it if it has no fur. It is made once for each size: clones share it.
+    /// The graph of its skin for a climber, when it is so many metres tall, stands on the ground, plays its clips at
+    /// this rate, and has plates. A climber grips fur and stone, or all of it if it has no fur. It is made once for each size: clones share it.
     ///
     /// # Errors
     /// As [`ClimbGraph::build`].
@@ -101,11 +106,12 @@ impl Creature {
         &self,
         climber: &ClimberConfig,
         height: f64,
+        rate: f64,
         plates: &[Vec<TriangleId>],
     ) -> Result<Arc<ClimbGraph>, NavigationError> {
         let mut known = self.graphs.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((_, graph)) = known.iter().find(|((mesh, other, tall, parts), _)| {
-            let is_same = other == climber && *tall == height && parts == plates;
+        if let Some((_, graph)) = known.iter().find(|((mesh, other, size, parts), _)| {
+            let is_same = other == climber && *size == (height, rate) && parts == plates;
             is_same && Arc::ptr_eq(mesh, &self.collider)
         }) {
             return Ok(Arc::clone(graph));
@@ -115,6 +121,7 @@ impl Creature {
             skeleton: &self.skeleton,
             mesh: &self.collider,
             clips: &self.clips,
+            rate,
             plates,
             weak_points: &self.weak_points,
             world_from_model,
@@ -135,7 +142,7 @@ impl Creature {
         let key = (
             Arc::clone(&self.collider),
             *climber,
-            height,
+            (height, rate),
             plates.to_vec(),
         );
         known.push((key, Arc::clone(&graph)));

@@ -1,5 +1,6 @@
 //! Tells where a climber can get to on a creature.
 
+mod creature;
 mod picture;
 mod require;
 mod table;
@@ -8,6 +9,7 @@ use std::ops::ControlFlow;
 use std::path::PathBuf;
 
 use clamber_climber::ClimberConfig;
+use clamber_colossus::{BrainError, ColossusError};
 use clamber_gltf::GltfError;
 use clamber_navigation::{
     ClimbReport, GraphConfig, GraphSource, NavigationError, Progress as Built, Stage,
@@ -17,6 +19,7 @@ use clamber_surface::mesh::SurfaceKind;
 use clap::Args;
 use thiserror::Error;
 
+use creature::Creature;
 pub use require::Requirement;
 
 use crate::progress::Progress;
@@ -31,7 +34,17 @@ pub struct ClimbabilityOptions {
     /// A .glb or .gltf file.
     pub file: PathBuf,
 
-    /// Height of the creature, metres [default: as in the file].
+    /// The creature's brain file: its plates come off, its weak points count, and its `height` and `made_for` hold where the
+    /// options do not say otherwise.
+    #[arg(long, value_name = "FILE.json")]
+    pub brain: Option<PathBuf>,
+
+    /// Height for which the clips were made, metres: of another height, the creature plays them slower or faster by
+    /// Froude's law, as it does in a game [default: as the brain says; without one, clips keep their speed].
+    #[arg(long, value_name = "METRES", value_parser = positive, allow_negative_numbers = true)]
+    pub made_for: Option<f64>,
+
+    /// Height of the creature, metres [default: as the brain says, or as in the file].
     #[arg(long, value_name = "METRES", value_parser = positive, allow_negative_numbers = true)]
     pub height: Option<f64>,
 
@@ -105,6 +118,30 @@ pub enum ClimbabilityError {
     /// The creature is flat, and cannot be scaled to a height.
     #[error("the creature has no height, so it cannot be scaled to {0} m")]
     NoHeight(f64),
+    /// The brain's file cannot be read.
+    #[error("cannot read {file}: {error}")]
+    Read {
+        /// The file.
+        file: PathBuf,
+        /// The reason.
+        error: std::io::Error,
+    },
+    /// The brain has a mistake.
+    #[error("{file}: {error}")]
+    Brain {
+        /// The file.
+        file: PathBuf,
+        /// The mistake.
+        error: BrainError,
+    },
+    /// The brain does not fit the creature.
+    #[error("{file}: {error}")]
+    Colossus {
+        /// The brain's file.
+        file: PathBuf,
+        /// What does not fit.
+        error: ColossusError,
+    },
     /// The picture cannot be written.
     #[error("cannot write {path}: {error}")]
     Picture {
@@ -123,23 +160,25 @@ pub enum ClimbabilityError {
 /// # Errors
 /// [`ClimbabilityError`] if the file cannot be loaded, or no graph can be built.
 pub fn print(options: &ClimbabilityOptions) -> Result<bool, ClimbabilityError> {
-    let rig = clamber_gltf::load(&options.file)?;
-    let palette = rig.skeleton.palette(&rig.skeleton.rest_pose());
+    let creature = Creature::load(options)?;
+    let palette = creature.skeleton.palette(&creature.skeleton.rest_pose());
     let palette = palette.map_err(NavigationError::from)?;
-    let skin = clamber_surface::skin::skin(&rig.collider, palette.matrices()).unwrap_or_default();
+    let skin = clamber_surface::skin::skin(&creature.mesh, palette.matrices()).unwrap_or_default();
     let low = skin.iter().map(|p| p.y).fold(f32::INFINITY, f32::min);
     let high = skin.iter().map(|p| p.y).fold(f32::NEG_INFINITY, f32::max);
     let own = f64::from(high - low);
-    let scale = options.height.map_or(1.0, |height| height / own);
+    let scale = creature.height.map_or(1.0, |height| height / own);
     if !(scale.is_normal() && scale > 0.0) {
-        return Err(ClimbabilityError::NoHeight(options.height.unwrap_or(own)));
+        return Err(ClimbabilityError::NoHeight(creature.height.unwrap_or(own)));
     }
+    let made_for = creature.made_for;
     let source = GraphSource {
-        skeleton: &rig.skeleton,
-        mesh: &rig.collider,
-        clips: &rig.clips,
-        plates: &[],
-        weak_points: &rig.weak_points,
+        skeleton: &creature.skeleton,
+        mesh: &creature.mesh,
+        clips: &creature.clips,
+        rate: made_for.map_or(1.0, |made_for| (made_for / (own * scale)).sqrt()),
+        plates: &creature.plates,
+        weak_points: &creature.weak_points,
         world_from_model: Similarity::from_scale(scale),
         ground: f64::from(low) * scale,
     };
@@ -173,7 +212,7 @@ pub fn print(options: &ClimbabilityOptions) -> Result<bool, ClimbabilityError> {
     if let Some(path) = &options.picture {
         let place = |p: &glam::Vec3| source.world_from_model.transform_point(p.as_dvec3());
         let skin: Vec<glam::DVec3> = skin.iter().map(place).collect();
-        let longest = picture::draw(path, &rig.collider, &skin, &graph, &report);
+        let longest = picture::draw(path, &creature.mesh, &skin, &graph, &report);
         let longest = longest.map_err(|error| ClimbabilityError::Picture {
             path: path.clone(),
             error,

@@ -68,7 +68,13 @@ fn how(point: &PointReport) -> String {
 }
 
 fn treats(clip: &ClipReport) -> String {
-    let mut text = format!("shakes up to {:4.1} m/s2", clip.hardest_shake);
+    // Harder shakes are not told apart.
+    let least = if clip.hardest_shake >= ClipReport::HARDEST {
+        "shakes by at least"
+    } else {
+        "shakes up to"
+    };
+    let mut text = format!("{least} {:4.1} m/s2", clip.hardest_shake);
     if clip.slips_from > 0.0 {
         let _ = write!(text, ", tips {:.0} m2 too far to stand on", clip.slips_from);
     }

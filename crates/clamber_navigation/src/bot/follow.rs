@@ -28,10 +28,12 @@ pub(super) struct Progress {
     seen: (f64, DVec3),
     /// Where it passes on its way to its target: memory that is used again.
     passed: Vec<DVec3>,
+    /// It was made for the strength that there is, in the weather that is expected.
+    lasts: bool,
 }
 
 impl Progress {
-    pub(super) fn new(plan: Plan, seconds: f64) -> Self {
+    pub(super) fn new(plan: Plan, lasts: bool, seconds: f64) -> Self {
         Self {
             plan,
             at: 0,
@@ -42,7 +44,14 @@ impl Progress {
             tries_until: f64::NEG_INFINITY,
             seen: (seconds, DVec3::ZERO),
             passed: Vec::new(),
+            lasts,
         }
+    }
+
+    /// True if this much stamina is enough to go on as planned.
+    pub(super) fn is_enough(&self, stamina: f64) -> bool {
+        let planned = self.plan.steps.get(self.at).map(|step| step.stamina);
+        self.lasts && planned.is_some_and(|planned| stamina >= planned)
     }
 
     /// Finds the step that it is on. False if it is off its way.

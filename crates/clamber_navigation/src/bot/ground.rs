@@ -25,6 +25,12 @@ const BETWEEN_JUMPS: f64 = 1.2;
 const TRIES: u32 = 3;
 const AVOIDS: f64 = 20.0;
 
+/// Who falls within so many seconds after it got on avoids that limb.
+const SOON: f64 = 8.0;
+
+/// An entry that is faster than this share of the speed at which hands catch swings.
+const SWINGS: f64 = 0.4;
+
 /// It chooses an entry anew every so many seconds.
 const CHOOSES: f64 = 0.5;
 
@@ -45,6 +51,12 @@ pub(super) struct Approach {
     free: f64,
     /// Since when it sees an attack.
     attacked: Option<f64>,
+    /// The entry by which it got on last, and when.
+    rode: Option<(usize, f64)>,
+    /// Where the entry that it goes to was, and when.
+    seen: Option<(usize, DVec3, f64)>,
+    /// It has let go, and holds on to nothing before it stands.
+    drops: bool,
 }
 
 impl Default for Approach {
@@ -57,13 +69,20 @@ impl Default for Approach {
             jumped: f64::NEG_INFINITY,
             free: 0.0,
             attacked: None,
+            rode: None,
+            seen: None,
+            drops: false,
         }
     }
 }
 
 impl Approach {
-    pub(super) fn got_on(&mut self) {
-        self.entry = None;
+    pub(super) fn got_on(&mut self, seconds: f64) {
+        self.rode = self
+            .entry
+            .take()
+            .map(|entry| (entry, seconds))
+            .or(self.rode);
         self.tries = 0;
         self.attacked = None;
     }
@@ -112,12 +131,19 @@ impl Approach {
                 ..grip
             };
         }
+        if self.drops && state.mode != ClimberMode::Standing {
+            return ClimberInput::IDLE;
+        }
+        self.drops = false;
+        self.fell_off(graph, view);
         if seconds - self.chosen >= CHOOSES && state.mode == ClimberMode::Standing {
-            self.choose(graph, view);
+            self.choose(graph, config, view);
         }
         let Some(entry) = self.entry else {
             self.free = seconds;
-            return grip;
+            // Nothing that it could hold leads on.
+            let stands = state.mode == ClimberMode::Standing;
+            return if stands { ClimberInput::IDLE } else { grip };
         };
         let patch = &graph.patches()[graph.entries()[entry].patch];
         let toward = level(view.spot(patch).point - state.position);
@@ -137,7 +163,8 @@ impl Approach {
             self.free = seconds;
         }
         let near = toward.length() < NEAR * view.climber.config().body.radius;
-        let wants = keeps == 0.0 && (near || seconds - self.free > PUZZLED);
+        let swings = self.swings(entry, view.spot(patch).point, view);
+        let wants = keeps == 0.0 && !swings && (near || seconds - self.free > PUZZLED);
         let jump = state.mode == ClimberMode::Standing && wants && self.jumps(seconds);
         if jump {
             self.tries += 1;
@@ -148,8 +175,55 @@ impl Approach {
         ClimberInput { walk, jump, ..grip }
     }
 
+    /// It has fallen soon after it had got on: the limb by which it did is avoided for a while.
+    fn fell_off(&mut self, graph: &ClimbGraph, view: &View<'_>) {
+        let Some((entry, since)) = self.rode.take() else {
+            return;
+        };
+        if view.seconds - since > SOON {
+            return;
+        }
+        let mesh = view.surface.mesh();
+        let joint = |entry: usize| {
+            let entry = graph.entries().get(entry)?;
+            mesh.joint_of(graph.patches().get(entry.patch)?.triangle)
+        };
+        let limb = joint(entry);
+        let until = view.seconds + AVOIDS;
+        let all = 0..graph.entries().len();
+        let same = all.filter(|other| *other == entry || limb.is_some() && joint(*other) == limb);
+        self.avoided.extend(same.map(|entry| (entry, until)));
+        self.chosen = f64::NEG_INFINITY;
+    }
+
+    /// No way leads on from a patch: all entries that lead to it are avoided for a while.
+    pub(super) fn gives_up_limb(&mut self, graph: &ClimbGraph, view: &View<'_>, patch: usize) {
+        (self.rode, self.drops) = (None, true);
+        self.gives_up(view.seconds);
+        let reached = graph.flood([patch]);
+        let until = view.seconds + AVOIDS;
+        let all = graph.entries().iter().enumerate();
+        let same = all.filter(|(_, entry)| reached.has(entry.patch));
+        self.avoided.extend(same.map(|(entry, _)| (entry, until)));
+    }
+
+    /// True while an entry moves too fast for hands to catch it: a foot that swings is none until it stands.
+    fn swings(&mut self, entry: usize, place: DVec3, view: &View<'_>) -> bool {
+        let before = self.seen.replace((entry, place, view.seconds));
+        let Some((_, from, since)) = before.filter(|(seen, ..)| *seen == entry) else {
+            return true;
+        };
+        let lasted = view.seconds - since;
+        let catches = view
+            .climber
+            .config()
+            .grip
+            .map_or(0.0, |grip| grip.catch_speed);
+        lasted > 0.0 && place.distance(from) > SWINGS * catches * lasted
+    }
+
     /// Chooses the entry from which it comes to the goal first.
-    fn choose(&mut self, graph: &ClimbGraph, view: &View<'_>) {
+    fn choose(&mut self, graph: &ClimbGraph, config: &BotConfig, view: &View<'_>) {
         let seconds = view.seconds;
         self.chosen = seconds;
         self.avoided.retain(|(_, until)| *until > seconds);
@@ -171,7 +245,11 @@ impl Approach {
             }
             let way = place - state.position;
             let way = (way - climber.up() * way.dot(climber.up())).length();
-            way / climber.ground.walk_speed.max(1e-3) + left
+            let comes = way / climber.ground.walk_speed.max(1e-3);
+            // A foot that swings is no entry until it stands.
+            let most = config.climbs_in * climber.grip.map_or(0.0, |grip| grip.hang_acceleration);
+            let waits = view.forecast.calms_after(graph, at.patch, comes, most);
+            comes + waits + left
         };
         let all = (0..graph.entries().len()).map(|entry| (cost(entry), entry));
         let best = all

@@ -3,6 +3,7 @@
 mod config;
 mod follow;
 mod ground;
+mod limbs;
 mod room;
 mod view;
 
@@ -13,10 +14,12 @@ use std::sync::Arc;
 pub use config::BotConfig;
 pub use view::{Danger, View};
 
+use crate::plan::Around;
 use crate::report::LEVEL;
 use crate::{ClimbGraph, Footing, Forecast, Goal, Plan, Start};
 use follow::Progress;
 use ground::Approach;
+use limbs::Limbs;
 use room::Room;
 
 /// Drives a climber to a goal on a creature, by its input alone.
@@ -42,6 +45,10 @@ pub struct Bot {
     level: Arc<Goal>,
     /// It rests before it goes on.
     rests: bool,
+    /// Limbs that threw it off.
+    limbs: Limbs,
+    /// Since when it is on the creature and finds no way, seconds.
+    lost: Option<f64>,
 }
 
 impl Bot {
@@ -65,6 +72,8 @@ impl Bot {
             planned: f64::NEG_INFINITY,
             hangs: None,
             plans: 0,
+            limbs: Limbs::default(),
+            lost: None,
         }
     }
 
@@ -76,6 +85,12 @@ impl Bot {
     /// What it is about to do; `None` on the ground, and when no way leads to the goal.
     pub fn plan(&self) -> Option<&Plan> {
         self.plan.as_ref().map(|progress| &progress.plan)
+    }
+
+    /// True if it has been on the creature for some seconds and finds no way from where it is, with whatever strength. It
+    /// then lets go and tries to get on elsewhere.
+    pub fn is_lost(&self, seconds: f64) -> bool {
+        self.lost.is_some_and(|since| seconds - since > LOST)
     }
 
     /// How often it has planned.
@@ -106,7 +121,9 @@ impl Bot {
         self.planned = f64::NEG_INFINITY;
         self.approach = Approach::default();
         self.blocked.clear();
+        self.limbs = Limbs::default();
         self.hangs = None;
+        self.lost = None;
     }
 
     /// True if it has to rest before it goes on, or does anything that costs strength.
@@ -123,15 +140,19 @@ impl Bot {
             .config()
             .stamina
             .is_some_and(|stamina| stamina.refill > 0.0);
-        // Where no shakes are expected it goes on if its strength is enough.
+        // It goes on as planned, or if its strength is enough where no shakes are expected.
         let goes_on = || {
-            !before
-                && view.forecast.is_still()
-                && self.patch_below(view).is_some_and(|patch| {
-                    let footings = [Footing::Stands, Footing::Holds];
-                    let needs = footings.map(|footing| view.goal.least_stamina(patch, footing));
-                    state.stamina >= needs[0].min(needs[1]) + SPARE
-                })
+            if before {
+                return false;
+            }
+            let as_planned = self.plan.as_ref();
+            as_planned.is_some_and(|plan| plan.is_enough(state.stamina))
+                || view.forecast.is_still()
+                    && self.patch_below(view).is_some_and(|patch| {
+                        let footings = [Footing::Stands, Footing::Holds];
+                        let needs = footings.map(|footing| view.goal.least_stamina(patch, footing));
+                        state.stamina >= needs[0].min(needs[1]) + SPARE
+                    })
         };
         self.rests = costs && view.is_on_creature() && state.stamina < least && !goes_on();
         if self.rests != before {
@@ -145,6 +166,7 @@ impl Bot {
     pub fn input(&mut self, view: &View<'_>) -> ClimberInput {
         self.wants_rest(view);
         let state = view.climber.state();
+        self.limbs.watch(&self.config, view);
         if !matches!(state.mode, ClimberMode::Hanging | ClimberMode::LedgeHanging) {
             self.hangs = None;
         }
@@ -195,7 +217,7 @@ impl Bot {
     }
 
     fn climb(&mut self, view: &View<'_>, patch: usize) -> ClimberInput {
-        self.approach.got_on();
+        self.approach.got_on(view.seconds);
         let state = view.climber.state();
         let stands = state.mode == ClimberMode::Standing;
         let hold = ClimberInput {
@@ -209,7 +231,8 @@ impl Bot {
             .grip
             .map_or(0.0, |grip| grip.hang_acceleration);
         let throws = view.climber.config().ground.throw_acceleration;
-        let rests_here = self.rests && (stands || view.is_level());
+        let calm = view.forecast.is_calm_at(&self.graph, patch, RESTS);
+        let rests_here = self.rests && calm && (stands || view.is_level());
         let is_shaken = if stands || rests_here {
             // Before it comes: hands are slower than feet.
             state.shake.length().max(view.shake_ahead) > self.config.stands_in * throws
@@ -226,10 +249,20 @@ impl Bot {
             return rest;
         }
         self.follow_or_plan(view, patch);
-        let Some(progress) = &mut self.plan else {
-            // No way, or not enough strength for any: it rests if it can.
+        if self.plan.is_none() {
+            // No way, or not enough strength for any: it rests if it can, and else tries another way.
             let is_level = self.graph.patches[patch].can_stand || stands;
-            return if is_level { rest } else { hold };
+            let since = *self.lost.get_or_insert(view.seconds);
+            let is_lost = view.seconds - since > LOST;
+            if is_lost {
+                self.approach.gives_up_limb(&self.graph, view, patch);
+            }
+            let lets_go = is_level || is_lost;
+            return if lets_go { rest } else { hold };
+        }
+        self.lost = None;
+        let Some(progress) = &mut self.plan else {
+            return hold;
         };
         if let Some(wanted) = progress.rests_until() {
             let level = view.is_level();
@@ -293,6 +326,12 @@ impl Bot {
                 && self.graph.is_there(to, view.surface)
                 && room.is_there(&self.graph.patches[to], to)
         };
+        let limbs = &self.limbs;
+        let is_safe = |from: usize, to: usize| {
+            is_open(from, to) && !limbs.lead_onto(&self.graph, view, [from, to])
+        };
+        let rests = self.rests;
+        let arrives = |patch: usize| !rests || view.forecast.is_calm_at(&self.graph, patch, RESTS);
         let start = |patch: usize, footing, later: f64| Start {
             patch,
             footing,
@@ -308,9 +347,6 @@ impl Bot {
                 }
             }
         }
-        let plan = self
-            .graph
-            .plan_around(&starts, goal, view.forecast, &is_open);
         // Without the strength for it: as far as it gets.
         let tireless: Vec<Start> = starts
             .iter()
@@ -320,18 +356,42 @@ impl Bot {
             })
             .collect();
         let still = Forecast::still();
-        let plan = plan
-            .or_else(|| self.graph.plan_around(&tireless, goal, &still, &is_open))
-            // Nowhere to rest.
-            .or_else(|| {
-                self.graph
-                    .plan_around(&tireless, view.goal, &still, &is_open)
-            });
-        self.plan = plan.map(|plan| Progress::new(plan, seconds));
+        let all = Around {
+            is_open: &is_open,
+            ..Around::default()
+        };
+        let calm = Around {
+            arrives: &arrives,
+            ..all
+        };
+        let safe = Around {
+            is_open: &is_safe,
+            ..calm
+        };
+        let find = |starts: &[Start], goal, forecast, around| {
+            self.graph.plan_around(starts, goal, forecast, around)
+        };
+        let lasts = (!limbs.is_empty())
+            .then(|| find(&starts, goal, view.forecast, &safe))
+            .flatten()
+            .or_else(|| find(&starts, goal, view.forecast, &calm));
+        let (lasts, plan) = match lasts {
+            Some(plan) => (true, Some(plan)),
+            // Where nothing is calm, on what is level; where nothing is, on to the goal.
+            None => {
+                let plan = find(&tireless, goal, &still, &all);
+                (
+                    false,
+                    plan.or_else(|| find(&tireless, view.goal, &still, &all)),
+                )
+            }
+        };
+        self.plan = plan.map(|plan| Progress::new(plan, lasts, seconds));
     }
 
     fn come(&mut self, view: &View<'_>) -> ClimberInput {
         self.plan = None;
+        self.lost = None;
         self.planned = f64::NEG_INFINITY;
         self.approach.input(&self.graph, &self.config, view)
     }
@@ -342,6 +402,12 @@ const THERE: f64 = 0.5;
 
 /// In shakes beyond this share of the one in which it can only hang it waits before it lets go.
 const STILL: f64 = 0.2;
+
+/// It rests where it is calm for so long, seconds.
+const RESTS: f64 = 8.0;
+
+/// Who finds no way for so long lets go, seconds.
+const LOST: f64 = 3.0;
 
 /// Stamina that it has to spare where it goes on without a rest.
 const SPARE: f64 = 0.05;

@@ -7,7 +7,7 @@ use xxhash_rust::xxh3::Xxh3;
 use crate::{GraphConfig, GraphSource};
 
 /// To be raised when graphs of the same creature change.
-const FORMAT: u32 = 2;
+const FORMAT: u32 = 3;
 
 /// Takes text.
 struct Digest(Xxh3);
@@ -26,6 +26,7 @@ pub(super) fn key(source: &GraphSource<'_>, config: &GraphConfig) -> u128 {
         skeleton,
         mesh,
         clips,
+        rate,
         plates,
         weak_points: _,
         world_from_model,
@@ -38,7 +39,7 @@ pub(super) fn key(source: &GraphSource<'_>, config: &GraphConfig) -> u128 {
         digest,
         "{version} {FORMAT} {config:?} {world_from_model:?} {ground:?} "
     );
-    let _ = write!(digest, "{skeleton:?} {clips:?} {plates:?} ");
+    let _ = write!(digest, "{skeleton:?} {clips:?} {rate:?} {plates:?} ");
     let _ = write!(digest, "{:?} {:?} ", mesh.triangles(), mesh.tags());
     for (vertex, position) in (0..).zip(mesh.positions()) {
         let vertex = clamber_surface::mesh::VertexId(vertex);

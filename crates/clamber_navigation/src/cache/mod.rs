@@ -67,6 +67,7 @@ impl ClimbGraph {
     ///         skeleton: &rig.skeleton,
     ///         mesh: &rig.collider,
     ///         clips: &rig.clips,
+    ///         rate: 1.0,
     ///         plates: &[],
     ///         weak_points: &rig.weak_points,
     ///         world_from_model: Similarity::IDENTITY,

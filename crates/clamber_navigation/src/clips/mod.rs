@@ -1,6 +1,6 @@
 //! How hard each clip shakes each patch, and how it tilts it.
 
-use clamber_surface::rig::{Clip, Playback};
+use clamber_surface::rig::{Clip, Palette, Playback, Pose};
 use clamber_surface::surface::SurfaceError;
 use glam::{DVec3, Vec3};
 
@@ -13,6 +13,9 @@ pub(crate) const SLICE: f64 = 0.5;
 
 /// The clips are played in ticks of this length, seconds.
 const TICK: f64 = 1.0 / 60.0;
+
+/// Rates at which clips are played.
+const RATES: std::ops::RangeInclusive<f64> = 0.01..=100.0;
 
 /// Shakes are stored in steps of this size, metres a second squared; the largest stands for all larger ones.
 const STEP: f64 = 0.25;
@@ -48,21 +51,31 @@ pub(crate) struct Moment {
 #[cfg_attr(feature = "cache", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct ClipFacts {
     pub(crate) clips: Vec<ClipSlices>,
+    /// How fast they are played.
+    rate: f64,
     patches: usize,
     /// Shake, excess and slope of each patch in each slice: `slice * patches + patch`.
     moments: Vec<[u8; 3]>,
 }
 
 impl ClipFacts {
-    /// Plays all clips of a creature, each from its beginning to its end.
+    /// Plays all clips of a creature, each from its beginning to its end; what is a loop, through its seam as well.
     pub(crate) fn measure(
         source: &GraphSource<'_>,
         config: &GraphConfig,
         patches: &[Patch],
         tell: &mut Tell<'_>,
     ) -> Result<Self, NavigationError> {
+        if !RATES.contains(&source.rate) {
+            return Err(NavigationError::OutOfRange {
+                name: "rate",
+                range: "from 0.01 to 100",
+                found: source.rate,
+            });
+        }
         let mut facts = Self {
             clips: Vec::new(),
+            rate: source.rate,
             patches: patches.len(),
             moments: Vec::new(),
         };
@@ -80,7 +93,8 @@ impl ClipFacts {
         config: &GraphConfig,
         patches: &[Patch],
     ) -> Result<(), NavigationError> {
-        let count = ((clip.duration() / SLICE).ceil() as usize).max(1);
+        let lasts = clip.duration() / self.rate;
+        let count = ((lasts / SLICE).ceil() as usize).max(1);
         let last = self.clips.last();
         let first = last.map_or(0, |last| last.first + last.count);
         self.clips.push(ClipSlices {
@@ -89,24 +103,39 @@ impl ClipFacts {
             count,
         });
         let per_slice = (SLICE / TICK).round() as usize;
-        let ticks = ((clip.duration() / TICK).ceil() as usize).max(1);
+        let ticks = ((lasts / TICK).ceil() as usize).max(1);
         let rules = Rules::new(source, config);
         let seats: Vec<Seat> = patches
             .iter()
             .map(|patch| Seat::new(source, patch))
             .collect();
         let mut riders = vec![Rider::default(); patches.len()];
-        let mut pose = source.skeleton.rest_pose();
-        let mut palette = source.skeleton.palette(&pose)?;
-        let mut skin: Vec<Vec3> = Vec::new();
-        for tick in 0..=ticks {
-            let time = (tick as f64 * TICK).min(clip.duration());
-            clip.sample_into(time, Playback::Clamp, &mut pose)?;
-            source.skeleton.palette_into(&pose, &mut palette)?;
-            clamber_surface::skin::skin_into(source.mesh, palette.matrices(), &mut skin)
-                .map_err(SurfaceError::from)?;
+        let mut played = Played::new(source, clip)?;
+        // What comes before the beginning of a loop is its end.
+        let lead = if played.is_loop(&seats, lasts, self.rate)? {
+            ticks.min(LEAD)
+        } else {
+            0
+        };
+        for tick in 0..=ticks + lead {
+            let seconds = (tick as f64 - lead as f64) * TICK;
+            let time = if lead > 0 {
+                (seconds * self.rate).rem_euclid(clip.duration().max(f64::MIN_POSITIVE))
+            } else {
+                (seconds * self.rate).min(clip.duration())
+            };
+            let skin = played.at(time)?;
             for (rider, seat) in riders.iter_mut().zip(&seats) {
-                rider.tick(seat.at(&skin), tick, &rules);
+                rider.tick(seat.at(skin), tick, &rules);
+            }
+            let Some(tick) = tick.checked_sub(lead) else {
+                continue;
+            };
+            if tick == 0 && lead > 0 {
+                // Only the motion counts that it has had.
+                riders.iter_mut().for_each(|rider| {
+                    rider.moment(&rules);
+                });
             }
             let is_full = (tick + 1).is_multiple_of(per_slice);
             let wanted = (first + count) * patches.len();
@@ -116,6 +145,11 @@ impl ClipFacts {
             }
         }
         Ok(())
+    }
+
+    /// How fast the clips are played.
+    pub(crate) fn rate(&self) -> f64 {
+        self.rate
     }
 
     /// The number of a slice of a clip among those of all clips; the clip goes on from its beginning.
@@ -160,6 +194,83 @@ impl ClipFacts {
     /// The clip of a name.
     pub(crate) fn find(&self, name: &str) -> Option<usize> {
         self.clips.iter().position(|clip| clip.name == name)
+    }
+}
+
+/// A loop is played for so many ticks before its beginning: some times longer than shakes last.
+const LEAD: usize = 60;
+
+/// Skin that is so many times as fast at the seam of a clip as anywhere within it jumps there: the clip is no loop. So is
+/// what is slower than this share of the creature's height a second.
+const JUMP: f64 = 1.5;
+const SLOW: f64 = 0.01;
+
+/// A clip, and the skin as it is in it.
+struct Played<'a> {
+    source: &'a GraphSource<'a>,
+    clip: &'a Clip,
+    pose: Pose,
+    palette: Palette,
+    skin: Vec<Vec3>,
+}
+
+impl<'a> Played<'a> {
+    fn new(source: &'a GraphSource<'a>, clip: &'a Clip) -> Result<Self, NavigationError> {
+        let pose = source.skeleton.rest_pose();
+        Ok(Self {
+            palette: source.skeleton.palette(&pose)?,
+            source,
+            clip,
+            pose,
+            skin: Vec::new(),
+        })
+    }
+
+    /// The skin at a time of the clip, in the space of the model.
+    fn at(&mut self, time: f64) -> Result<&[Vec3], NavigationError> {
+        let source = self.source;
+        self.clip
+            .sample_into(time, Playback::Clamp, &mut self.pose)?;
+        source
+            .skeleton
+            .palette_into(&self.pose, &mut self.palette)?;
+        clamber_surface::skin::skin_into(source.mesh, self.palette.matrices(), &mut self.skin)
+            .map_err(SurfaceError::from)?;
+        Ok(&self.skin)
+    }
+
+    fn places(&mut self, seats: &[Seat], time: f64) -> Result<Vec<DVec3>, NavigationError> {
+        let skin = self.at(time)?;
+        Ok(seats.iter().map(|seat| seat.at(skin).0).collect())
+    }
+
+    /// True if no seat is much faster from the clip's end to its beginning than within it.
+    fn is_loop(&mut self, seats: &[Seat], lasts: f64, rate: f64) -> Result<bool, NavigationError> {
+        let duration = self.clip.duration();
+        let ticks = (lasts / TICK) as usize;
+        if ticks < 2 {
+            return Ok(false);
+        }
+        let mut before = self.places(seats, 0.0)?;
+        let mut within = vec![0.0f64; seats.len()];
+        for tick in 1..=ticks {
+            let now = self.places(seats, (tick as f64 * TICK * rate).min(duration))?;
+            for ((fastest, a), b) in within.iter_mut().zip(&before).zip(&now) {
+                *fastest = fastest.max(a.distance(*b));
+            }
+            before = now;
+        }
+        // A tick with the seam in its middle.
+        let half = 0.5 * TICK * rate;
+        let end = self.places(seats, duration - half)?;
+        let start = self.places(seats, half)?;
+        let tall = end.iter().map(|place| place.y);
+        let [low, high] = tall.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], y| {
+            [low.min(y), high.max(y)]
+        });
+        let slow = SLOW * (high - low).max(0.0) * TICK;
+        let mut seams = end.iter().zip(&start).zip(&within);
+        Ok(seams.all(|((a, b), within)| a.distance(*b) <= (JUMP * within).max(slow)))
     }
 }
 

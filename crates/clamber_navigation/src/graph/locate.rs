@@ -29,11 +29,13 @@ impl Locator {
     pub(super) fn new(survey: &Survey, patch_of: &[u32], mesh: &ColliderMesh) -> Self {
         let nearest = nearest(survey, patch_of);
         let mut of: Vec<Vec<Place>> = vec![Vec::new(); mesh.triangles().len()];
-        for ((piece, patch), own) in survey.pieces.iter().zip(&nearest).zip(patch_of) {
-            if *patch != NONE {
-                of[piece.triangle.index()].push(Place {
-                    weights: piece.barycentric.map(|weight| weight as f32),
-                    patch: *patch,
+        for bit in &survey.bits {
+            let piece = bit.piece as usize;
+            let (patch, own) = (nearest[piece], patch_of[piece]);
+            if patch != NONE {
+                of[bit.triangle.index()].push(Place {
+                    weights: bit.barycentric,
+                    patch,
                     is_on_it: own == patch,
                 });
             }

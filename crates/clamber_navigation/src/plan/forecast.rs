@@ -2,6 +2,7 @@
 
 use crate::ClimbGraph;
 use crate::clips::{Moment, SLICE};
+use crate::plan::{slips, throws};
 
 /// What the creature is expected to do from the beginning of a plan on: clips, one after the other, and all of them
 /// again and again.
@@ -14,6 +15,9 @@ pub struct Forecast {
 /// A clip is expected for no longer than this, seconds.
 const LONGEST: f64 = 3600.0;
 
+/// Getting on takes so many slices.
+const GETS_ON: usize = 3;
+
 impl Forecast {
     /// It keeps still.
     pub fn still() -> Self {
@@ -25,7 +29,7 @@ impl Forecast {
         self.slices.is_empty()
     }
 
-    /// And then it plays a clip, from a time of it on and for so long, both in seconds and rounded to halves of one; an
+    /// And then it plays a clip, from a time of the clip on and for so long, both in seconds and rounded to halves of one; an
     /// hour at most. The clip is looped, with its length rounded up to half seconds. A clip that the graph does not
     /// know, and a time that is not positive, change nothing. A forecast is of use on its own graph only: another one
     /// takes it for something else.
@@ -36,13 +40,47 @@ impl Forecast {
             && (0.0..f64::INFINITY).contains(&from)
             && seconds > 0.0
         {
-            let from = from % graph.clips.seconds(clip);
+            // Times of the clip pass at its rate.
+            let from = from / graph.clips.rate() % graph.clips.seconds(clip);
             let first = in_slices(from);
             let slices = first..first + in_slices(seconds).max(1);
             let slices = slices.filter_map(|slice| graph.clips.slice(clip, slice));
             self.slices.extend(slices.map(|slice| slice as u32));
         }
         self
+    }
+
+    /// True if a climber that stands on a patch in the next seconds, or holds on there, feels no shake that costs strength,
+    /// is not thrown, and does not slip.
+    pub(crate) fn is_calm_at(&self, graph: &ClimbGraph, patch: usize, seconds: f64) -> bool {
+        let climber = &graph.config.climber;
+        let slices = ((seconds / SLICE).ceil() as usize).clamp(1, self.len().max(1));
+        let is_calm = |slice: usize| {
+            let moment = self.at(graph, slice, patch);
+            moment.excess == 0.0 && !throws(climber, &moment) && !slips(climber, &moment)
+        };
+        self.is_still() || (0..slices).all(is_calm)
+    }
+
+    /// After how many seconds from a time on a patch shakes no harder than `most` metres a second squared for as long as it
+    /// takes to get on; the length of the forecast if it never does.
+    pub(crate) fn calms_after(
+        &self,
+        graph: &ClimbGraph,
+        patch: usize,
+        from: f64,
+        most: f64,
+    ) -> f64 {
+        let first = (from / SLICE) as usize;
+        let is_calm = |slice: &usize| {
+            let mut while_on = *slice..slice + GETS_ON;
+            while_on.all(|slice| self.at(graph, slice, patch).shake <= most)
+        };
+        let mut slices = first..first + self.len();
+        let waits = slices
+            .find(is_calm)
+            .map_or(self.len(), |slice| slice - first);
+        waits as f64 * SLICE
     }
 
     /// Number of slices after which it begins again.

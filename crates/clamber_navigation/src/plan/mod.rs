@@ -6,5 +6,5 @@ mod search;
 
 pub use forecast::Forecast;
 pub use goal::Goal;
+pub(crate) use search::{Around, slips, throws};
 pub use search::{Plan, PlanStep, Start};
-pub(crate) use search::{slips, throws};

@@ -97,16 +97,16 @@ impl ClimbGraph {
     /// Starts whose numbers are not finite or that are later than a million seconds are left out. A search gives up
     /// after two million ways. A goal of another graph is never reached.
     pub fn plan(&self, starts: &[Start], goal: &Goal, forecast: &Forecast) -> Option<Plan> {
-        self.plan_around(starts, goal, forecast, &|_, _| true)
+        self.plan_around(starts, goal, forecast, &Around::default())
     }
 
-    /// [`ClimbGraph::plan`] on those ways only that are open, from a patch to another.
+    /// [`ClimbGraph::plan`] on some ways only, to some patches of the goal.
     pub(crate) fn plan_around(
         &self,
         starts: &[Start],
         goal: &Goal,
         forecast: &Forecast,
-        is_open: &dyn Fn(usize, usize) -> bool,
+        around: &Around<'_>,
     ) -> Option<Plan> {
         if !goal.is_of(self) {
             return None;
@@ -115,7 +115,7 @@ impl ClimbGraph {
             graph: self,
             goal,
             forecast,
-            is_open,
+            around: *around,
             labels: Vec::new(),
             best: vec![[f32::INFINITY; LEVELS]; 2 * self.patches.len()],
             open: BinaryHeap::new(),
@@ -140,11 +140,29 @@ impl ClimbGraph {
     }
 }
 
+/// What a search goes round.
+#[derive(Clone, Copy)]
+pub(crate) struct Around<'a> {
+    /// True if a way is open, from a patch to another.
+    pub(crate) is_open: &'a dyn Fn(usize, usize) -> bool,
+    /// True if a patch of the goal counts.
+    pub(crate) arrives: &'a dyn Fn(usize) -> bool,
+}
+
+impl Default for Around<'_> {
+    fn default() -> Self {
+        Self {
+            is_open: &|_, _| true,
+            arrives: &|_| true,
+        }
+    }
+}
+
 struct Search<'a> {
     graph: &'a ClimbGraph,
     goal: &'a Goal,
     forecast: &'a Forecast,
-    is_open: &'a dyn Fn(usize, usize) -> bool,
+    around: Around<'a>,
     labels: Vec<Label>,
     /// Of each node and each level of stamina, when it is reached with that much or more.
     best: Vec<[f32; LEVELS]>,
@@ -191,7 +209,7 @@ impl Search<'_> {
                 continue;
             }
             let (patch, footing) = of_node(at);
-            if self.goal.has(at) {
+            if self.goal.has(at) && (self.around.arrives)(patch) {
                 return Some(self.plan(index));
             }
             let graph = self.graph;
@@ -213,7 +231,7 @@ impl Search<'_> {
                     Footing::Stands => way.walks,
                     Footing::Holds => way.climbs,
                 };
-                if !leads || !(self.is_open)(patch, beside) {
+                if !leads || !(self.around.is_open)(patch, beside) {
                     continue;
                 }
                 let went = if footing == Footing::Stands && !graph.patches[beside].can_hold {

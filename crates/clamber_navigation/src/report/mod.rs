@@ -91,7 +91,7 @@ pub enum Missing {
 pub struct ClipReport {
     /// Its name.
     pub name: String,
-    /// The hardest shake, metres a second squared; 63.75 stands for all harder ones.
+    /// The hardest shake, metres a second squared; [`ClipReport::HARDEST`] stands for all harder ones.
     pub hardest_shake: f64,
     /// Area from which whoever stands there slips, since it gets too steep, square metres.
     pub slips_from: f64,
@@ -103,6 +103,11 @@ pub struct ClipReport {
     pub exhausts_on: f64,
     /// When that happens at the earliest, seconds from the clip's beginning.
     pub exhausts_at: Option<f64>,
+}
+
+impl ClipReport {
+    /// Shakes of at least so many metres a second squared are not told apart: 63.75.
+    pub const HARDEST: f64 = HARDEST;
 }
 
 /// A weak point is reached from seats on pieces within its radius and so many radii of the climber.
@@ -177,7 +182,8 @@ impl View<'_> {
     fn sum(&self, counts: impl Fn(usize) -> bool) -> f64 {
         let pieces = self.survey.pieces.iter().enumerate();
         let counted = pieces.filter(|(index, _)| counts(*index));
-        counted.map(|(_, piece)| piece.area).sum()
+        // An empty sum of floats is -0.
+        0.0 + counted.map(|(_, piece)| piece.area).sum::<f64>()
     }
 
     fn look_at(&self, point: &WeakPoint, place: DVec3, source: &GraphSource<'_>) -> PointReport {

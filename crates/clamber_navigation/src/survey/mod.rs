@@ -15,7 +15,8 @@ use crate::progress::{Stage, Tell};
 use crate::{GraphConfig, GraphSource, NavigationError};
 pub(crate) use arms::EXACT;
 use links::Links;
-pub(crate) use pieces::Piece;
+use pieces::Division;
+pub(crate) use pieces::{Bit, Piece};
 
 /// The ball's middle is at least so high above the ground, as a share of its radius.
 const LOWEST: f64 = 0.98;
@@ -40,6 +41,8 @@ pub(crate) struct Survey {
     pub(crate) ground: f64,
     /// The pieces, sorted by place.
     pub(crate) pieces: Vec<Piece>,
+    /// The parts of triangles that they are of.
+    pub(crate) bits: Vec<Bit>,
     pub(crate) links: Links,
     /// Of each piece, how far a hand has to reach from the ball's seat for something to grip, metres; infinite if there
     /// is nothing near.
@@ -66,7 +69,20 @@ impl Survey {
                 holds.disable_triangle(TriangleId(index as u32))?;
             }
         }
-        let mut pieces = pieces::divide(&surface, config)?;
+        let mut plate_of = vec![NO_PLATE; source.mesh.triangles().len()];
+        for (plate, triangles) in (0..).zip(source.plates) {
+            for triangle in triangles {
+                if let Some(of) = plate_of.get_mut(triangle.index()) {
+                    *of = plate;
+                }
+            }
+        }
+        let plate = |triangle: TriangleId| plate_of[triangle.index()];
+        let Division {
+            mut pieces,
+            bits,
+            others,
+        } = pieces::divide(&surface, config, &plate)?;
         let of = pieces.len();
         let lowest = source.ground + LOWEST * config.radius();
         let above = |seat: &DVec3| seat.dot(config.climber.up()) >= lowest;
@@ -76,7 +92,7 @@ impl Survey {
         let mut arms = vec![f64::INFINITY; of];
         for (done, piece) in pieces.iter_mut().enumerate() {
             tell.at(Stage::Seats, done, of)?;
-            piece.seat = find(&surface, piece);
+            settle(piece, &others[done], |bit| find(&surface, bit));
         }
         for (done, piece) in pieces.iter().enumerate() {
             tell.at(Stage::Arms, done, of)?;
@@ -87,12 +103,13 @@ impl Survey {
         for (plate, triangles) in source.plates.iter().enumerate() {
             let bare = without(&surface, triangles)?;
             let held = without(&holds, triangles)?;
-            for (piece, arm) in pieces.iter_mut().zip(&mut arms) {
+            for ((piece, arm), others) in pieces.iter_mut().zip(&mut arms).zip(&others) {
                 if piece.seat.is_some() || !bare.is_enabled(piece.triangle) {
                     continue;
                 }
-                if let Some(seat) = find(&bare, piece) {
-                    (piece.seat, piece.below) = (Some(seat), Some(plate as u16));
+                settle(piece, others, |bit| find(&bare, bit));
+                if let Some(seat) = piece.seat {
+                    piece.below = Some(plate as u16);
                     *arm = arms::arm(&held, seat, config);
                 }
             }
@@ -102,6 +119,7 @@ impl Survey {
             ground: source.ground,
             links: Links::new(&pieces, config.link()),
             pieces,
+            bits,
             arms,
             surface,
             holds,
@@ -203,6 +221,25 @@ impl Survey {
     fn slope(&self, piece: &Piece) -> f64 {
         let cosine = piece.normal.dot(self.config.climber.up());
         libm::acos(cosine.clamp(-1.0, 1.0))
+    }
+}
+
+/// Of a triangle that is of no plate.
+const NO_PLATE: u32 = u32::MAX;
+
+/// Finds where the ball rests on a piece: on its own bit, or on another one of it.
+fn settle(piece: &mut Piece, others: &[Piece], find: impl Fn(&Piece) -> Option<DVec3>) {
+    piece.seat = find(piece);
+    for other in others {
+        if piece.seat.is_some() {
+            return;
+        }
+        if let Some(seat) = find(other) {
+            *piece = Piece {
+                seat: Some(seat),
+                ..*other
+            };
+        }
     }
 }
 

@@ -1,4 +1,7 @@
 //! The skin, divided into pieces at rest, and where the climber's ball rests on each.
+//!
+//! Triangles are cut into bits; bits beside each other that face the same way are one piece. So the number of pieces
+//! grows as the area of the skin, however finely it is divided into triangles.
 
 use clamber_surface::mesh::{ColliderMesh, SurfaceTag, TriangleId, VertexId};
 use clamber_surface::surface::SkinnedSurface;
@@ -13,18 +16,18 @@ const MOST: u64 = 4_000_000;
 /// Where skin bends outwards by more than this angle, radians, the ball rolls over the edge through seats of its own.
 const SHARP: f64 = 0.35;
 
-/// A piece of skin: a part of one triangle.
+/// A piece of skin: one or more bits that face the same way, of which one stands for all.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Piece {
-    /// The triangle.
+    /// The triangle of that bit.
     pub(crate) triangle: TriangleId,
-    /// Weights of the triangle's corners for the middle of the piece.
+    /// Weights of the triangle's corners for its middle.
     pub(crate) barycentric: [f64; 3],
     /// Area at rest, square metres. Zero for a seat on an edge.
     pub(crate) area: f64,
     /// The material.
     pub(crate) tag: SurfaceTag,
-    /// The middle at rest, in the world.
+    /// That middle at rest, in the world.
     pub(crate) point: DVec3,
     /// Outward unit normal at rest. On an edge, a direction between those of both sides.
     pub(crate) normal: DVec3,
@@ -34,12 +37,34 @@ pub(crate) struct Piece {
     pub(crate) below: Option<u16>,
 }
 
+/// A part of a triangle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Bit {
+    /// The triangle.
+    pub(crate) triangle: TriangleId,
+    /// Weights of the triangle's corners for its middle.
+    pub(crate) barycentric: [f32; 3],
+    /// The piece that it is of.
+    pub(crate) piece: u32,
+}
+
+/// The skin, divided.
+#[derive(Clone, Debug)]
+pub(super) struct Division {
+    pub(super) pieces: Vec<Piece>,
+    /// All bits, by their pieces.
+    pub(super) bits: Vec<Bit>,
+    /// Of each piece, other bits of it on which a ball may have room if it has none on the piece's own.
+    pub(super) others: Vec<Vec<Piece>>,
+}
+
 /// Divides a surface, which stands at rest, into pieces. They are sorted by place, so that the numbers of triangles do
-/// not matter, and what is near in space is near in memory.
-pub(crate) fn divide(
+/// not matter, and what is near in space is near in memory. `plate` tells of which plate a triangle is.
+pub(super) fn divide(
     surface: &SkinnedSurface,
     config: &GraphConfig,
-) -> Result<Vec<Piece>, NavigationError> {
+    plate: &dyn Fn(TriangleId) -> u32,
+) -> Result<Division, NavigationError> {
     let mesh = surface.mesh();
     let mut positions = Vec::new();
     surface.skin_all(&mut positions);
@@ -64,21 +89,108 @@ pub(crate) fn divide(
             spacing: config.spacing,
         });
     }
-    let mut pieces = Vec::with_capacity(found as usize);
+    let mut bits = Vec::with_capacity(found as usize);
     for face in &there {
-        face.add_pieces(config.spacing, &mut pieces);
-        face.add_edges(mesh, &places, config, &mut pieces);
+        face.add_bits(config.spacing, &mut bits);
+        face.add_edges(mesh, &places, config, &mut bits);
     }
-    if pieces.is_empty() {
+    if bits.is_empty() {
         return Err(NavigationError::NoSkin);
     }
-    let lowest = pieces
+    Ok(gather(bits, CELL * config.spacing, plate))
+}
+
+/// Bits are of one piece within a cell of this size, as a share of the largest side of a patch; if their normals have
+/// no lower cosine than this; and if they lie no farther off each other's plane than this share of the cell.
+const CELL: f64 = 0.5;
+const ALIKE: f64 = 0.94;
+const LEVEL: f64 = 0.3;
+
+/// A ball is tried on no more bits of a piece than this.
+const TRIED: usize = 4;
+
+/// Gathers bits into pieces.
+fn gather(mut bits: Vec<Piece>, size: f64, plate: &dyn Fn(TriangleId) -> u32) -> Division {
+    let lowest = bits
         .iter()
-        .fold(DVec3::INFINITY, |low, piece| low.min(piece.point));
-    let cell = |piece: &Piece| morton((piece.point - lowest) / config.spacing);
-    let mut sorted: Vec<(u64, Piece)> = pieces.iter().map(|piece| (cell(piece), *piece)).collect();
-    sorted.sort_by(|a, b| a.0.cmp(&b.0).then_with(|| order(&a.1, &b.1)));
-    Ok(sorted.into_iter().map(|(_, piece)| piece).collect())
+        .fold(DVec3::INFINITY, |low, bit| low.min(bit.point));
+    let cell = |bit: &Piece| morton((bit.point - lowest) / size);
+    bits.sort_by_cached_key(|bit| Key(cell(bit), *bit));
+    let mut division = Division {
+        pieces: Vec::new(),
+        bits: Vec::with_capacity(bits.len()),
+        others: Vec::new(),
+    };
+    let mut groups: Vec<Vec<&Piece>> = Vec::new();
+    for cell in bits.chunk_by(|a, b| cell(a) == cell(b)) {
+        groups.clear();
+        for bit in cell {
+            let is_alike = |group: &&mut Vec<&Piece>| {
+                group.first().is_some_and(|first| {
+                    let off = (bit.point - first.point).dot(first.normal);
+                    first.tag == bit.tag
+                        && first.normal.dot(bit.normal) >= ALIKE
+                        && off.abs() <= LEVEL * size
+                        && plate(first.triangle) == plate(bit.triangle)
+                })
+            };
+            match groups.iter_mut().find(is_alike) {
+                Some(group) => group.push(bit),
+                None => groups.push(vec![bit]),
+            }
+        }
+        for group in &groups {
+            division.add(group);
+        }
+    }
+    division
+}
+
+impl Division {
+    /// Adds a piece of some bits.
+    fn add(&mut self, group: &[&Piece]) {
+        let middle = group.iter().map(|bit| bit.point).sum::<DVec3>() / group.len() as f64;
+        let apart = |bit: &&Piece| bit.point.distance_squared(middle);
+        let mut nearest = group.to_vec();
+        nearest.sort_by(|a, b| apart(a).total_cmp(&apart(b)));
+        let Some((first, others)) = nearest.split_first() else {
+            return;
+        };
+        let piece = self.pieces.len() as u32;
+        self.bits.extend(group.iter().map(|bit| Bit {
+            triangle: bit.triangle,
+            barycentric: bit.barycentric.map(|weight| weight as f32),
+            piece,
+        }));
+        let area = group.iter().map(|bit| bit.area).sum();
+        self.pieces.push(Piece { area, ..**first });
+        let others = others.iter().take(TRIED - 1);
+        let others = others.map(|bit| Piece { area, ..**bit });
+        self.others.push(others.collect());
+    }
+}
+
+/// What bits are sorted by: their cells, and then their places.
+struct Key(u64, Piece);
+
+impl PartialEq for Key {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+
+impl Eq for Key {}
+
+impl PartialOrd for Key {
+    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Key {
+    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
+        self.0.cmp(&other.0).then_with(|| order(&self.1, &other.1))
+    }
 }
 
 /// The bits of a place's coordinates, whole and not negative, in turn: the order of numbers that are near each other
@@ -129,9 +241,9 @@ impl Face {
         })
     }
 
-    fn add_pieces(&self, spacing: f64, pieces: &mut Vec<Piece>) {
+    fn add_bits(&self, spacing: f64, bits: &mut Vec<Piece>) {
         let split = split::pieces(split::parts(&self.corners, spacing));
-        pieces.extend(split.map(|piece| Piece {
+        bits.extend(split.map(|piece| Piece {
             area: self.area * piece.share,
             ..self.at(piece.barycentric, self.normal)
         }));

@@ -4,5 +4,6 @@ mod areas;
 #[cfg(feature = "cache")]
 mod cache;
 mod jumps;
+mod moving;
 mod plans;
 mod support;

@@ -30,7 +30,7 @@ const TURN: f64 = 0.25;
 
 /// How a clip goes on after its end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Repeat {
+pub(crate) enum Repeat {
     /// The clip begins again.
     Loop,
     /// The clip runs backwards to its beginning, and forwards again.
@@ -41,7 +41,7 @@ pub(super) enum Repeat {
 
 impl Repeat {
     /// The time within a clip of length `duration`, `time` seconds after the clip was first played. All in seconds.
-    pub(super) fn time(self, time: f64, duration: f64) -> f64 {
+    pub(crate) fn time(self, time: f64, duration: f64) -> f64 {
         if duration <= 0.0 || self == Self::Hold {
             return 0.0;
         }
@@ -71,7 +71,7 @@ impl Repeat {
 
 /// Speeds of the vertex that jumps most between a clip's end and its beginning.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Seam {
+pub(crate) struct Seam {
     /// The vertex's speed across the seam, heights of the creature a second.
     pub(super) speed: f64,
     /// The vertex's largest speed within the clip, heights of the creature a second.
@@ -86,7 +86,7 @@ impl Seam {
     }
 
     /// How a clip with this seam is repeated.
-    pub(super) fn repeat(self) -> Repeat {
+    pub(crate) fn repeat(self) -> Repeat {
         if self.excess() > 0.0 {
             Repeat::BackAndForth
         } else {
@@ -96,7 +96,7 @@ impl Seam {
 }
 
 /// Measures the seams of a creature's clips.
-pub(super) struct SeamProbe<'a> {
+pub(crate) struct SeamProbe<'a> {
     creature: &'a Creature,
     /// Height of the creature in model units.
     height: f64,
@@ -106,7 +106,7 @@ pub(super) struct SeamProbe<'a> {
 
 impl<'a> SeamProbe<'a> {
     /// A probe for a creature that is `height` model units tall.
-    pub(super) fn new(creature: &'a Creature, height: f64) -> Self {
+    pub(crate) fn new(creature: &'a Creature, height: f64) -> Self {
         Self {
             creature,
             height,
@@ -118,7 +118,7 @@ impl<'a> SeamProbe<'a> {
     ///
     /// # Errors
     /// [`BattleError::Creature`] if the clip does not fit the skeleton.
-    pub(super) fn measure(&self, clip: &Clip) -> Result<Seam, BattleError> {
+    pub(crate) fn measure(&self, clip: &Clip) -> Result<Seam, BattleError> {
         let duration = clip.duration();
         let per_second = 1.0 / (self.height * TICK);
         let speeds = |from: &[DVec3], to: &[DVec3]| -> Vec<f64> {

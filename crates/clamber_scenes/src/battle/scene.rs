@@ -101,7 +101,8 @@ impl<'a> Battle<'a> {
                 outcrop::insert(&mut world)?;
                 let climber = climber_before_the_outcrop(seed)?;
                 let plates = performer.plates();
-                let graph = creature.graph(climber.config(), height, &plates)?;
+                let rate = performer.life().map_or(1.0, |life| life.rate());
+                let graph = creature.graph(climber.config(), height, rate, &plates)?;
                 let planner = Planner::new(&performer, graph)?;
                 (climber, Some(Box::new(planner)))
             }

@@ -1,23 +1,31 @@
 //! A bot climbs many models, from the ground to the highest place that their graph calls reachable.
 
+mod moves;
 mod options;
 mod table;
 
 use std::path::Path;
 
 use clamber_climber::{Climber, ClimberConfig, ClimberEvent, ContactQuery, StepRules};
-use clamber_navigation::{Bot, BotConfig, ClimbGraph, Danger, Forecast, NavigationError, View};
+use clamber_navigation::{
+    Bot, BotConfig, ClimbGraph, Danger, Forecast, FutureSkin, NavigationError, View,
+};
 use clamber_surface::geometry::Similarity;
-use clamber_surface::rig::Playback;
+use clamber_surface::rig::Palette;
 use clamber_surface::surface::{SkinnedSurface, SurfaceError};
 use clamber_world::{HalfSpace, Obstacle, ObstacleId};
 use glam::DVec3;
 use thiserror::Error;
 
+use moves::Moves;
 pub use options::ClimbsOptions;
 pub use table::table;
 
 use crate::{Creature, CreatureError};
+
+/// How far the bot looks ahead for shakes, and in which steps, seconds.
+const LOOKS: f64 = 0.5;
+const AHEAD: f64 = 0.1;
 
 const GROUND: ObstacleId = ObstacleId(0);
 const CREATURE: ObstacleId = ObstacleId(1);
@@ -29,6 +37,9 @@ pub enum ClimbError {
     /// The model cannot be loaded or posed.
     #[error(transparent)]
     Creature(#[from] CreatureError),
+    /// Its clips cannot be measured.
+    #[error(transparent)]
+    Battle(#[from] crate::battle::BattleError),
     /// Its skin cannot be divided into a graph.
     #[error(transparent)]
     Navigation(#[from] NavigationError),
@@ -128,8 +139,9 @@ pub fn climb_by(
     options: &ClimbsOptions,
 ) -> Result<Climbed, ClimbError> {
     let tick_length = 1.0 / options.rate;
-    let graph = creature.graph(&config, options.height, &[])?;
     let mut scene = Scene::new(creature, options)?;
+    let rate = scene.moves.as_ref().map_or(1.0, |moves| moves.rate);
+    let graph = creature.graph(&config, options.height, rate, &[])?;
     let reached = graph.reachable();
     let height = |patch: usize| graph.patches()[patch].seat.y - scene.ground;
     let best = (0..reached.len()).filter(|patch| reached[*patch]);
@@ -161,10 +173,28 @@ pub fn climb_by(
     climbed.least = least(first);
     let mut bot = Bot::new(std::sync::Arc::clone(&graph), BotConfig::default());
     let mut climber = scene.climber(config, &graph, first)?;
-    let forecast = Forecast::still();
+    let mut future = FutureSkin::new(std::sync::Arc::clone(&creature.collider));
     for tick in 0..(options.seconds * options.rate) as u64 {
         let seconds = tick as f64 * tick_length;
-        scene.advance(creature, seconds, options)?;
+        scene.advance(creature, seconds)?;
+        let told = scene.moves.as_ref().filter(|_| options.forecast);
+        let forecast = told.map_or_else(Forecast::still, |moves| {
+            moves.forecast(creature, &graph, seconds)
+        });
+        let shake_ahead = match &scene.moves {
+            Some(moves) => {
+                let mut pose = creature.skeleton.rest_pose();
+                let place = scene.place;
+                let mut ahead = |later: f64, palette: &mut Palette| {
+                    let posed = moves.pose(creature, seconds + later, &mut pose);
+                    posed.ok()?;
+                    creature.skeleton.palette_into(&pose, palette).ok()?;
+                    Some(place)
+                };
+                future.shake_ahead(&climber, CREATURE, &mut ahead, AHEAD, LOOKS)?
+            }
+            None => 0.0,
+        };
         let view = View {
             seconds,
             climber: &climber,
@@ -173,7 +203,7 @@ pub fn climb_by(
             goal: &goal,
             forecast: &forecast,
             danger: Danger::None,
-            shake_ahead: 0.0,
+            shake_ahead,
         };
         if view.is_on_creature() {
             climbed.times[0].get_or_insert(seconds);
@@ -200,6 +230,8 @@ struct Scene {
     floor: HalfSpace,
     ground: f64,
     place: Similarity,
+    /// What it does; `None` at rest.
+    moves: Option<Moves>,
 }
 
 impl Scene {
@@ -213,6 +245,10 @@ impl Scene {
             floor: HalfSpace::below(ground),
             ground,
             place,
+            moves: match options.moving {
+                true => Some(Moves::new(creature, options.height)?),
+                false => None,
+            },
         })
     }
 
@@ -243,17 +279,10 @@ impl Scene {
     }
 
     /// Poses the creature: at rest, or by its clips in turn.
-    fn advance(
-        &mut self,
-        creature: &Creature,
-        seconds: f64,
-        options: &ClimbsOptions,
-    ) -> Result<(), ClimbError> {
+    fn advance(&mut self, creature: &Creature, seconds: f64) -> Result<(), ClimbError> {
         let mut pose = creature.skeleton.rest_pose();
-        if options.moving
-            && let Some(clip) = creature.clips.first()
-        {
-            clip.sample_into(seconds, Playback::Loop, &mut pose)?;
+        if let Some(moves) = &self.moves {
+            moves.pose(creature, seconds, &mut pose)?;
         }
         let palette = creature.skeleton.palette(&pose)?;
         self.surface.advance(&palette, self.place)?;

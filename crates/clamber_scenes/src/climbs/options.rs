@@ -30,9 +30,14 @@ pub struct ClimbsOptions {
     #[arg(value_parser = crate::battle::positive, allow_negative_numbers = true)]
     pub rate: f64,
 
-    /// Play each model's first clip meanwhile [default: it stands at rest].
+    /// Each model idles and walks by turns, 30 s each, slowed by Froude's law to its height; with neither it plays what
+    /// else it has [default: it stands at rest].
     #[arg(long)]
     pub moving: bool,
+
+    /// The bot is told what the model is about to do.
+    #[arg(long, requires = "moving")]
+    pub forecast: bool,
 }
 
 impl Default for ClimbsOptions {

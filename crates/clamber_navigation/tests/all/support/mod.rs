@@ -125,6 +125,7 @@ impl Body {
             skeleton: &skeleton,
             mesh: &mesh,
             clips: &[],
+            rate: 1.0,
             plates: &[],
             weak_points: &self.weak_points,
             world_from_model: Similarity::IDENTITY,
@@ -133,7 +134,7 @@ impl Body {
     }
 }
 
-fn skeleton() -> Skeleton {
+pub(crate) fn skeleton() -> Skeleton {
     let root = Joint {
         name: "root".to_owned(),
         parent: None,

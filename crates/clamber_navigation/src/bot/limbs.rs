@@ -1,0 +1,58 @@
+//! Limbs that threw a bot off.
+
+use clamber_surface::rig::JointId;
+
+use super::{BotConfig, View};
+use crate::ClimbGraph;
+
+/// A limb is avoided for so long, seconds.
+const AVOIDS: f64 = 60.0;
+
+/// The limbs that threw a bot off lately: it plans its ways round them, where there is one.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Limbs {
+    /// The joints that move them, and until when they are avoided.
+    avoided: Vec<(JointId, f64)>,
+    /// The limb that it was on in the tick before, if that shook.
+    shaken_on: Option<JointId>,
+}
+
+impl Limbs {
+    /// Remembers the limb that has thrown it off.
+    pub(super) fn watch(&mut self, config: &BotConfig, view: &View<'_>) {
+        self.avoided.retain(|(_, until)| *until > view.seconds);
+        let before = self.shaken_on.take();
+        let state = view.climber.state();
+        if let Some((triangle, _)) = view.material() {
+            let throws = view.climber.config().ground.throw_acceleration;
+            let is_shaken = state.shake.length() > config.stands_in * throws;
+            let limb = view.surface.mesh().joint_of(triangle);
+            self.shaken_on = limb.filter(|_| is_shaken);
+        } else if let Some(limb) = before {
+            self.avoided.retain(|(other, _)| *other != limb);
+            self.avoided.push((limb, view.seconds + AVOIDS));
+        }
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.avoided.is_empty()
+    }
+
+    /// True if a way leads onto one of them from elsewhere.
+    pub(super) fn lead_onto(
+        &self,
+        graph: &ClimbGraph,
+        view: &View<'_>,
+        [from, to]: [usize; 2],
+    ) -> bool {
+        let [from, to] = [from, to].map(|patch| self.has(graph, view, patch));
+        to && !from
+    }
+
+    /// True if a patch is on one of them.
+    pub(super) fn has(&self, graph: &ClimbGraph, view: &View<'_>, patch: usize) -> bool {
+        let triangle = graph.patches().get(patch).map(|patch| patch.triangle);
+        let limb = triangle.and_then(|triangle| view.surface.mesh().joint_of(triangle));
+        limb.is_some_and(|limb| self.avoided.iter().any(|(other, _)| *other == limb))
+    }
+}

@@ -1,0 +1,175 @@
+//! Clips at their rates, and a bot on skin that moves.
+
+#![allow(clippy::unwrap_used, reason = "a test whose body does not fit fails")]
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use crate::support::{Body, climber, skeleton};
+use clamber_climber::{Climber, ContactQuery, StepRules};
+use clamber_navigation::{
+    Bot, BotConfig, ClimbGraph, ClimbReport, Danger, Forecast, GraphSource, NavigationError, View,
+};
+use clamber_surface::geometry::Similarity;
+use clamber_surface::mesh::SurfaceKind::Fur;
+use clamber_surface::rig::{Channel, Clip, Interpolation, JointId, Keyframes};
+use clamber_world::{HalfSpace, Obstacle, ObstacleId};
+use glam::{DVec3, Vec3};
+
+/// A wall of fur with a ledge on top.
+fn wall(height: f32) -> Body {
+    let front = Body::grid(
+        [10, 20],
+        |u, v| Vec3::new(4.0 * (u - 0.5), height * v, 0.0),
+        |_, _| Fur,
+    );
+    let top = Body::grid(
+        [10, 10],
+        |u, v| Vec3::new(4.0 * (u - 0.5), height, -4.0 * v),
+        |_, _| Fur,
+    );
+    front.and(&top)
+}
+
+/// A clip that moves everything along x, as a function of the time says.
+fn sways(seconds: f32, x: impl Fn(f32) -> f32) -> Clip {
+    let times: Vec<f32> = (0..=600).map(|k| seconds * k as f32 / 600.0).collect();
+    let places = times.iter().map(|time| Vec3::X * x(*time)).collect();
+    let channel = Channel::new(
+        JointId(0),
+        Interpolation::Linear,
+        times,
+        Keyframes::Translation(places),
+    );
+    Clip::new("sways", vec![channel.unwrap()])
+}
+
+/// The hardest shake of a clip that is played at some rate.
+fn shake(clip: &Clip, rate: f64) -> Result<f64, NavigationError> {
+    let (mesh, skeleton) = (wall(4.0).mesh(), skeleton());
+    let source = GraphSource {
+        skeleton: &skeleton,
+        mesh: &mesh,
+        clips: std::slice::from_ref(clip),
+        rate,
+        plates: &[],
+        weak_points: &[],
+        world_from_model: Similarity::IDENTITY,
+        ground: 0.0,
+    };
+    let (report, _) = ClimbReport::new(&source, &climber(), |_| ControlFlow::Continue(()))?;
+    Ok(report.clips[0].hardest_shake)
+}
+
+#[test]
+fn shakes_go_with_the_square_of_the_rate() {
+    let clip = sways(2.0, |t| libm::sinf(std::f32::consts::PI * t));
+    for rate in [0.25, 0.5, 1.0, 2.0] {
+        let found = shake(&clip, rate).unwrap();
+        // A climber feels shakes after a low pass of the first order; they are stored in steps of 0.25, rounded up.
+        let turns = std::f64::consts::PI * rate;
+        let smooth = turns * climber().climber.shake_time;
+        let wanted = turns * turns / (1.0 + smooth * smooth).sqrt();
+        assert!(
+            (-0.02 * wanted..0.3).contains(&(found - wanted)),
+            "{rate}: {found} for {wanted}"
+        );
+    }
+    for wrong in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e-9, 1e9] {
+        let found = shake(&clip, wrong);
+        let is_rate = matches!(found, Err(NavigationError::OutOfRange { name: "rate", .. }));
+        assert!(is_rate, "{wrong}: {found:?}");
+    }
+}
+
+#[test]
+fn the_seam_of_a_loop_is_felt_and_that_of_another_clip_is_not() {
+    // At the seam it turns back at once, and nowhere else.
+    let turns_back = sways(2.0, |t| (t - 1.0) * (t - 1.0));
+    let found = shake(&turns_back, 1.0).unwrap();
+    assert!(found > 15.0, "{found}");
+    // It goes on at a steady speed, and would jump.
+    let goes_on = sways(2.0, |t| 3.0 * t);
+    let found = shake(&goes_on, 1.0).unwrap();
+    assert!(found <= 0.25, "{found}");
+}
+
+/// A ball in so many times as many triangles has as many pieces.
+#[test]
+fn what_is_looked_at_grows_with_the_skin_and_not_with_its_triangles() {
+    let round = |cells: [u32; 2]| {
+        let place = |u: f32, v: f32| {
+            let (a, b) = (u * std::f32::consts::TAU, v * std::f32::consts::PI);
+            let out = 6.0 * libm::sinf(b);
+            let up = 6.5 - 6.0 * libm::cosf(b);
+            Vec3::new(out * libm::cosf(a), up, -out * libm::sinf(a))
+        };
+        Body::grid(cells, place, |_, _| Fur)
+    };
+    let built = |cells: [u32; 2]| {
+        let mut looked = 0;
+        let graph = round(cells).with_source(|source| {
+            ClimbGraph::build(source, &climber(), |progress| {
+                looked = looked.max(progress.of);
+                ControlFlow::Continue(())
+            })
+        });
+        let graph = graph.unwrap();
+        (looked, graph.patches().len(), graph.ways())
+    };
+    let coarse = built([60, 30]);
+    let fine = built([270, 134]);
+    let grows = |fine: usize, coarse: usize| fine as f64 / coarse as f64;
+    assert!(grows(fine.0, coarse.0) <= 1.5, "{coarse:?} {fine:?}");
+    assert!(grows(fine.1, coarse.1) <= 1.5, "{coarse:?} {fine:?}");
+    assert!(grows(fine.2, coarse.2) <= 2.0, "{coarse:?} {fine:?}");
+}
+
+/// Two walls that no way joins: who holds on to one of them and means to come onto the other says so, lets go, and
+/// goes there.
+#[test]
+fn who_finds_no_way_says_so_and_tries_another_one() {
+    let mut other = wall(8.0);
+    other
+        .positions
+        .iter_mut()
+        .for_each(|place| *place += Vec3::X * 12.0);
+    let body = wall(8.0).and(&other);
+    let (graph, _) = body.report(&climber());
+    let surface = body.surface();
+    let goal = graph.goal(&graph.patches_near(DVec3::new(12.0, 8.0, -1.0), 1.0));
+    let mut bot = Bot::new(Arc::new(graph), BotConfig::default());
+    let radius = climber().climber.body.radius;
+    let mut who = Climber::new(climber().climber, DVec3::new(0.0, 3.0, 1.02 * radius)).unwrap();
+    let floor = HalfSpace::below(0.0);
+    let obstacles: [(ObstacleId, &dyn Obstacle); 2] =
+        [(ObstacleId(0), &floor), (ObstacleId(1), &surface)];
+    let rule = |query: &ContactQuery<'_>| query.usual().with_grip(query.id == ObstacleId(1));
+    let (mut lost, mut there) = (None, None);
+    for tick in 0..2400 {
+        let seconds = f64::from(tick) / 60.0;
+        let view = View {
+            seconds,
+            climber: &who,
+            creature: ObstacleId(1),
+            surface: &surface,
+            goal: &goal,
+            forecast: &Forecast::still(),
+            danger: Danger::None,
+            shake_ahead: 0.0,
+        };
+        if bot.is_there(&view) {
+            there = Some(seconds);
+            break;
+        }
+        let input = bot.input(&view);
+        if bot.is_lost(seconds) {
+            lost.get_or_insert(seconds);
+        }
+        who.step_with(&input, &obstacles, &StepRules::by(&rule), 1.0 / 60.0)
+            .unwrap();
+    }
+    let lost = lost.expect("it never says so");
+    assert!((3.0..4.5).contains(&lost), "{lost}");
+    assert!(there.is_some(), "{:?}", who.state());
+}
