@@ -16,7 +16,7 @@ use clamber_scenes::giant::giant;
 const RIDE: u64 = 0x1a24_53f9_17c8_3503;
 
 /// Hash of the climb.
-const CLIMB: u64 = 0x9c3a_ce3c_a1a8_a999;
+const CLIMB: u64 = 0x9a16_f50b_ed66_9ffd;
 
 /// A tick of a battle: the climber's fields, the creature's pose and the rocks.
 fn add(run: &mut GoldenRun, battle: &Battle<'_>) {

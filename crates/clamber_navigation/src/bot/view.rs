@@ -5,7 +5,7 @@ use clamber_world::ObstacleId;
 use glam::DVec3;
 
 use super::Target;
-use crate::graph::{Corner, Patch};
+use crate::graph::{Corner, Patch, axes, corners};
 use crate::{Forecast, Goal};
 
 /// What a creature is about to do to somebody on the ground.
@@ -87,28 +87,28 @@ impl View<'_> {
 
     /// A patch, as the creature is now.
     pub(super) fn spot(&self, patch: &Patch) -> Spot {
-        let weights = patch.barycentric;
-        self.spot_on(patch.triangle, weights).unwrap_or(Spot {
-            point: patch.point,
-            normal: DVec3::ZERO,
-            seat: patch.seat,
-        })
-    }
-
-    /// A point of the skin, by a triangle and the weights of its corners.
-    fn spot_on(&self, triangle: TriangleId, weights: [f64; 3]) -> Option<Spot> {
-        let vertices = *self.surface.mesh().triangles().get(triangle.index())?;
-        let [a, b, c] = vertices.map(|vertex| self.surface.in_model().position(vertex));
-        let [a, b, c] = [a?, b?, c?].map(|corner| corner.as_dvec3());
-        let place = self.surface.world_from_model();
-        let [u, v, w] = weights;
-        let point = place.transform_point(a * u + b * v + c * w);
-        let normal = (place.rotation * (b - a).cross(c - a)).normalize_or_zero();
-        Some(Spot {
+        let known = self.spot_on(patch.triangle, patch.barycentric);
+        let Some((point, [along, across, normal])) = known else {
+            return Spot {
+                point: patch.point,
+                normal: DVec3::ZERO,
+                seat: patch.seat,
+            };
+        };
+        let [x, y, z] = patch.away;
+        Spot {
             point,
             normal,
-            seat: point + normal * self.climber.config().body.radius,
-        })
+            seat: point + along * x + across * y + normal * z,
+        }
+    }
+
+    /// A point of the skin, by a triangle and the weights of its corners, and the triangle's axes. `None` if it has no area.
+    fn spot_on(&self, triangle: TriangleId, weights: [f64; 3]) -> Option<(DVec3, [DVec3; 3])> {
+        let corners = corners(self.surface, triangle)?;
+        let [u, v, w] = weights;
+        let point = corners[0] * u + corners[1] * v + corners[2] * w;
+        Some((point, axes(corners)?))
     }
 
     /// True if a ball at a place is no deeper in the skin than a share of its radius.
@@ -123,9 +123,9 @@ impl View<'_> {
 
     /// The place in a corner, as the creature is now.
     pub(super) fn corner(&self, corner: &Corner) -> Option<DVec3> {
-        let here = self.spot_on(corner.triangle, corner.barycentric)?;
-        let there = self.spot_on(corner.other, [1.0, 0.0, 0.0])?;
-        Some(here.point + here.normal * corner.apart[0] + there.normal * corner.apart[1])
+        let (point, [.., here]) = self.spot_on(corner.triangle, corner.barycentric)?;
+        let (_, [.., there]) = self.spot_on(corner.other, [1.0, 0.0, 0.0])?;
+        Some(point + here * corner.apart[0] + there * corner.apart[1])
     }
 }
 

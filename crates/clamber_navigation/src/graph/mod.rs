@@ -21,8 +21,8 @@ pub(crate) use entries::highest_entry;
 pub use flood::Footing;
 pub(crate) use flood::Reachable;
 use locate::Locator;
-pub(crate) use patch::NONE;
 pub use patch::Patch;
+pub(crate) use patch::{NONE, axes, corners};
 pub(crate) use ways::{Corner, Ways};
 
 /// Where a climber can be on a creature, and how it gets from one place to another.

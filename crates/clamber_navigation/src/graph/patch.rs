@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use clamber_surface::mesh::{SurfaceTag, TriangleId};
+use clamber_surface::surface::SkinnedSurface;
 use glam::DVec3;
 
 use super::ways::{Corner, Way, Ways};
@@ -33,6 +34,23 @@ pub struct Patch {
     pub can_hold: bool,
     /// The plate that has to be removed for a climber to have room there.
     pub below: Option<u16>,
+    /// From the middle to the seat at rest, along the axes of the triangle, metres.
+    pub(crate) away: [f64; 3],
+}
+
+/// The corners of a triangle as the skin is, in the world.
+pub(crate) fn corners(surface: &SkinnedSurface, triangle: TriangleId) -> Option<[DVec3; 3]> {
+    let vertices = *surface.mesh().triangles().get(triangle.index())?;
+    let [a, b, c] = vertices.map(|vertex| surface.in_model().position(vertex));
+    let place = surface.world_from_model();
+    Some([a?, b?, c?].map(|corner| place.transform_point(corner.as_dvec3())))
+}
+
+/// Axes that go with a triangle: along its first side, across that, and outwards. `None` if it has no area.
+pub(crate) fn axes([a, b, c]: [DVec3; 3]) -> Option<[DVec3; 3]> {
+    let normal = (b - a).cross(c - a).try_normalize()?;
+    let along = (b - a).try_normalize()?;
+    Some([along, normal.cross(along), normal])
 }
 
 /// A piece that belongs to no patch: a climber can neither stand nor hold on there.
@@ -96,7 +114,12 @@ fn patch(survey: &Survey, members: &[usize], [can_stand, can_hold]: [bool; 2]) -
     let nearest = members.iter().min_by(|a, b| apart(a).total_cmp(&apart(b)));
     let nearest = nearest.copied().unwrap_or(0);
     let piece = &survey.pieces[nearest];
+    let away = seat(nearest) - piece.point;
+    let axes = corners(&survey.surface, piece.triangle).and_then(axes);
     Patch {
+        away: axes.map_or([0.0, 0.0, survey.config.radius()], |axes| {
+            axes.map(|axis| away.dot(axis))
+        }),
         triangle: piece.triangle,
         barycentric: piece.barycentric,
         tag: piece.tag,
