@@ -102,7 +102,7 @@ fn all(run: &TestRun) -> Result<(), String> {
             given.push(&[]);
         }
         if name == ON_MODELS && std::env::var_os(DATA).is_some() {
-            given.push(&[]);
+            given.extend([&[][..], &["--moving", "--forecast"]]);
         }
         let files = queries.iter().map(String::as_str);
         let files: Vec<&str> = files.filter(|_| name == "ccd_queries").collect();

@@ -231,8 +231,8 @@ impl Bot {
             .grip
             .map_or(0.0, |grip| grip.hang_acceleration);
         let throws = view.climber.config().ground.throw_acceleration;
-        let calm = view.forecast.is_calm_at(&self.graph, patch, RESTS);
-        let rests_here = self.rests && calm && (stands || view.is_level());
+        let is_calm = || view.forecast.is_calm_at(&self.graph, patch, RESTS);
+        let rests_here = self.rests && (stands || view.is_level()) && is_calm();
         let is_shaken = if stands || rests_here {
             // Before it comes: hands are slower than feet.
             state.shake.length().max(view.shake_ahead) > self.config.stands_in * throws

@@ -205,6 +205,9 @@ const LEAD: usize = 60;
 const JUMP: f64 = 1.5;
 const SLOW: f64 = 0.01;
 
+/// How fast skin is within a clip is looked at every so many ticks.
+const STRIDE: usize = 3;
+
 /// A clip, and the skin as it is in it.
 struct Played<'a> {
     source: &'a GraphSource<'a>,
@@ -248,15 +251,15 @@ impl<'a> Played<'a> {
     fn is_loop(&mut self, seats: &[Seat], lasts: f64, rate: f64) -> Result<bool, NavigationError> {
         let duration = self.clip.duration();
         let ticks = (lasts / TICK) as usize;
-        if ticks < 2 {
+        if ticks < STRIDE {
             return Ok(false);
         }
         let mut before = self.places(seats, 0.0)?;
         let mut within = vec![0.0f64; seats.len()];
-        for tick in 1..=ticks {
+        for tick in (STRIDE..=ticks).step_by(STRIDE) {
             let now = self.places(seats, (tick as f64 * TICK * rate).min(duration))?;
             for ((fastest, a), b) in within.iter_mut().zip(&before).zip(&now) {
-                *fastest = fastest.max(a.distance(*b));
+                *fastest = fastest.max(a.distance(*b) / STRIDE as f64);
             }
             before = now;
         }
