@@ -46,9 +46,11 @@ impl Creature {
             file: file.clone(),
             error,
         })?;
+        // What the kind adds to them is no clip of the file: breath, which it plays on top of others.
+        let of_file = rig.clips.len();
         let parts = CreatureParts {
             skeleton: rig.skeleton,
-            clips: rig.clips.clone(),
+            clips: rig.clips,
             mesh: Arc::clone(&rig.collider),
             weak_points: rig.weak_points,
         };
@@ -62,7 +64,7 @@ impl Creature {
         Ok(Self {
             skeleton: kind.skeleton().clone(),
             mesh: rig.collider,
-            clips: kind.clips().clips().to_vec(),
+            clips: kind.clips().clips().iter().take(of_file).cloned().collect(),
             weak_points: kind.weak_points().to_vec(),
             plates: plates.map(|plate| plate.triangles.clone()).collect(),
             height: options.height.or(body.height),

@@ -12,6 +12,9 @@ use glam::{DVec2, DVec3};
 const ROWS: usize = 720;
 const BORDER: usize = 20;
 
+/// A picture of one side is at most so many times as wide as it is high.
+const WIDEST: f64 = 4.0;
+
 /// Colours of equal steps of time, from the ground to the place that takes longest: matplotlib's viridis.
 const COLORS: [[u8; 3]; 5] = [
     [68, 1, 84],
@@ -109,7 +112,9 @@ pub(super) fn draw(
     let low = skin.iter().copied().fold(DVec3::INFINITY, DVec3::min);
     let high = skin.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
     let (middle, size) = ((low + high) * 0.5, high - low);
-    let scale = (ROWS - 2 * BORDER) as f64 / size.y.max(1e-9);
+    // What is flat is as wide as others are high.
+    let tall = size.y.max(size.max_element() / WIDEST).max(1e-9);
+    let scale = (ROWS - 2 * BORDER) as f64 / tall;
     let width = |side: &DVec3| (size.dot(side.abs()) * scale) as usize + 2 * BORDER;
     let columns: usize = SIDES.iter().map(width).sum();
     let mut picture = Picture {

@@ -55,8 +55,8 @@ pub(super) struct Approach {
     rode: Option<(usize, f64)>,
     /// Where the entry that it goes to was, and when.
     seen: Option<(usize, DVec3, f64)>,
-    /// It has let go, and holds on to nothing before it stands.
-    drops: bool,
+    /// It has let go, and holds on to nothing before it stands on the ground.
+    pub(super) drops: bool,
 }
 
 impl Default for Approach {
@@ -112,6 +112,14 @@ impl Approach {
         view: &View<'_>,
     ) -> ClimberInput {
         let (seconds, state) = (view.seconds, view.climber.state());
+        let stands = state.mode == ClimberMode::Standing;
+        if self.drops && !stands {
+            return ClimberInput::IDLE;
+        }
+        self.drops = false;
+        if stands {
+            self.fell_off(graph, view);
+        }
         let up = view.climber.config().up();
         let level = |way: DVec3| way - up * way.dot(up);
         let attacks = view.danger == Danger::Attacks;
@@ -131,18 +139,12 @@ impl Approach {
                 ..grip
             };
         }
-        if self.drops && state.mode != ClimberMode::Standing {
-            return ClimberInput::IDLE;
-        }
-        self.drops = false;
-        self.fell_off(graph, view);
         if seconds - self.chosen >= CHOOSES && state.mode == ClimberMode::Standing {
             self.choose(graph, config, view);
         }
         let Some(entry) = self.entry else {
             self.free = seconds;
             // Nothing that it could hold leads on.
-            let stands = state.mode == ClimberMode::Standing;
             return if stands { ClimberInput::IDLE } else { grip };
         };
         let patch = &graph.patches()[graph.entries()[entry].patch];
@@ -207,6 +209,20 @@ impl Approach {
         self.avoided.extend(same.map(|(entry, _)| (entry, until)));
     }
 
+    /// The input of somebody who gets off the creature, from wherever that is.
+    pub(super) fn leave(&mut self, view: &View<'_>) -> ClimberInput {
+        let state = view.climber.state();
+        let up = view.climber.config().up();
+        let away = state.position - view.surface.world_from_model().translation;
+        let level = away - up * away.dot(up);
+        let stands = state.mode == ClimberMode::Standing;
+        ClimberInput {
+            walk: level.normalize_or(up.any_orthonormal_vector()),
+            jump: stands && self.jumps(view.seconds),
+            ..ClimberInput::IDLE
+        }
+    }
+
     /// True while an entry moves too fast for hands to catch it: a foot that swings is none until it stands.
     fn swings(&mut self, entry: usize, place: DVec3, view: &View<'_>) -> bool {
         let before = self.seen.replace((entry, place, view.seconds));
@@ -214,11 +230,9 @@ impl Approach {
             return true;
         };
         let lasted = view.seconds - since;
-        let catches = view
-            .climber
-            .config()
-            .grip
-            .map_or(0.0, |grip| grip.catch_speed);
+        // Who has no hands steps on whatever it can stand on.
+        let grip = view.climber.config().grip;
+        let catches = grip.map_or(f64::INFINITY, |grip| grip.catch_speed);
         lasted > 0.0 && place.distance(from) > SWINGS * catches * lasted
     }
 

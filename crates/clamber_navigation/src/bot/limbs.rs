@@ -8,13 +8,16 @@ use crate::ClimbGraph;
 /// A limb is avoided for so long, seconds.
 const AVOIDS: f64 = 60.0;
 
+/// What was this long ago at most, seconds, was in the tick before.
+const JUST: f64 = 0.1;
+
 /// The limbs that threw a bot off lately: it plans its ways round them, where there is one.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Limbs {
     /// The joints that move them, and until when they are avoided.
     avoided: Vec<(JointId, f64)>,
-    /// The limb that it was on in the tick before, if that shook.
-    shaken_on: Option<JointId>,
+    /// The limb that it was on when it was shaken last, and when that was.
+    shaken_on: Option<(JointId, f64)>,
 }
 
 impl Limbs {
@@ -27,8 +30,10 @@ impl Limbs {
             let throws = view.climber.config().ground.throw_acceleration;
             let is_shaken = state.shake.length() > config.stands_in * throws;
             let limb = view.surface.mesh().joint_of(triangle);
-            self.shaken_on = limb.filter(|_| is_shaken);
-        } else if let Some(limb) = before {
+            self.shaken_on = limb.filter(|_| is_shaken).map(|limb| (limb, view.seconds));
+        } else if let Some((limb, since)) = before
+            && view.seconds - since <= JUST
+        {
             self.avoided.retain(|(other, _)| *other != limb);
             self.avoided.push((limb, view.seconds + AVOIDS));
         }

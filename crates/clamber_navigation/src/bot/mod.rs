@@ -47,8 +47,10 @@ pub struct Bot {
     rests: bool,
     /// Limbs that threw it off.
     limbs: Limbs,
-    /// Since when it is on the creature and finds no way, seconds.
-    lost: Option<f64>,
+    /// When it first found no way from where it is, and when it last did, seconds.
+    lost: Option<[f64; 2]>,
+    /// There is a place that stays calm while it rests.
+    finds_calm: bool,
 }
 
 impl Bot {
@@ -74,6 +76,7 @@ impl Bot {
             plans: 0,
             limbs: Limbs::default(),
             lost: None,
+            finds_calm: true,
         }
     }
 
@@ -90,7 +93,8 @@ impl Bot {
     /// True if it has been on the creature for some seconds and finds no way from where it is, with whatever strength. It
     /// then lets go and tries to get on elsewhere.
     pub fn is_lost(&self, seconds: f64) -> bool {
-        self.lost.is_some_and(|since| seconds - since > LOST)
+        let lasts = self.lost.map_or(0.0, |[first, last]| last - first);
+        lasts > LOST && self.lost.is_some_and(|[_, last]| seconds - last <= LOST)
     }
 
     /// How often it has planned.
@@ -158,6 +162,7 @@ impl Bot {
         if self.rests != before {
             self.plan = None;
             self.planned = f64::NEG_INFINITY;
+            self.finds_calm = true;
         }
         self.rests
     }
@@ -231,7 +236,8 @@ impl Bot {
             .grip
             .map_or(0.0, |grip| grip.hang_acceleration);
         let throws = view.climber.config().ground.throw_acceleration;
-        let is_calm = || view.forecast.is_calm_at(&self.graph, patch, RESTS);
+        // Where nothing stays calm it rests wherever it can, between shakes.
+        let is_calm = || !self.finds_calm || view.forecast.is_calm_at(&self.graph, patch, RESTS);
         let rests_here = self.rests && (stands || view.is_level()) && is_calm();
         let is_shaken = if stands || rests_here {
             // Before it comes: hands are slower than feet.
@@ -250,20 +256,20 @@ impl Bot {
         }
         self.follow_or_plan(view, patch);
         if self.plan.is_none() {
-            // No way, or not enough strength for any: it rests if it can, and else tries another way.
-            let is_level = self.graph.patches[patch].can_stand || stands;
-            let since = *self.lost.get_or_insert(view.seconds);
-            let is_lost = view.seconds - since > LOST;
-            if is_lost {
+            if self.is_lost(view.seconds) && !self.approach.drops {
                 self.approach.gives_up_limb(&self.graph, view, patch);
             }
-            let lets_go = is_level || is_lost;
-            return if lets_go { rest } else { hold };
+            if self.approach.drops {
+                return self.approach.leave(view);
+            }
+            // No way for now: it rests if it can.
+            let is_level = self.graph.patches[patch].can_stand || stands;
+            return if is_level { rest } else { hold };
         }
-        self.lost = None;
         let Some(progress) = &mut self.plan else {
             return hold;
         };
+        self.approach.drops = false;
         if let Some(wanted) = progress.rests_until() {
             let level = view.is_level();
             if state.stamina < wanted + self.config.reserve
@@ -339,14 +345,20 @@ impl Bot {
             stamina: (state.stamina - self.config.reserve).max(0.0),
         };
         let footings = [Footing::Stands, Footing::Holds];
-        let mut starts: Vec<Start> = footings.map(|footing| start(patch, footing, 0.0)).to_vec();
-        for (beside, way, length) in self.graph.ways.of(patch) {
-            for (leads, footing) in [way.walks, way.climbs].into_iter().zip(footings) {
-                if leads && is_open(patch, beside) {
-                    starts.push(start(beside, footing, length / self.graph.speed(footing)));
+        let starts = |is_open: &dyn Fn(usize, usize) -> bool| -> Vec<Start> {
+            let mut starts = footings.map(|footing| start(patch, footing, 0.0)).to_vec();
+            for (beside, way, length) in self.graph.ways.of(patch) {
+                for (leads, footing) in [way.walks, way.climbs].into_iter().zip(footings) {
+                    if leads && is_open(patch, beside) {
+                        let later = length / self.graph.speed(footing);
+                        starts.push(start(beside, footing, later));
+                    }
                 }
             }
-        }
+            starts
+        };
+        let safe_starts = starts(&is_safe);
+        let starts = starts(&is_open);
         // Without the strength for it: as far as it gets.
         let tireless: Vec<Start> = starts
             .iter()
@@ -371,11 +383,15 @@ impl Bot {
         let find = |starts: &[Start], goal, forecast, around| {
             self.graph.plan_around(starts, goal, forecast, around)
         };
-        let lasts = (!limbs.is_empty())
-            .then(|| find(&starts, goal, view.forecast, &safe))
-            .flatten()
-            .or_else(|| find(&starts, goal, view.forecast, &calm));
-        let (lasts, plan) = match lasts {
+        // Searches that cannot find anything take longest.
+        let finds_calm = !rests || goal.patches().iter().any(|patch| arrives(*patch));
+        let is_free = |patch: &usize| !limbs.has(&self.graph, view, *patch);
+        let goes_round = !limbs.is_empty() && finds_calm && goal.patches().iter().any(is_free);
+        let safest = goes_round.then(|| find(&safe_starts, goal, view.forecast, &safe));
+        let best = || find(&starts, goal, view.forecast, &calm);
+        let lasting = safest.flatten().or_else(|| finds_calm.then(best).flatten());
+        self.finds_calm = lasting.is_some();
+        let (lasts, plan) = match lasting {
             Some(plan) => (true, Some(plan)),
             // Where nothing is calm, on what is level; where nothing is, on to the goal.
             None => {
@@ -386,6 +402,12 @@ impl Bot {
                 )
             }
         };
+        // A way that is blocked for now is one.
+        let is_lost = plan.is_none() && {
+            let any = Around::default();
+            find(&tireless, view.goal, &still, &any).is_none()
+        };
+        self.lost = is_lost.then(|| [self.lost.map_or(seconds, |[first, _]| first), seconds]);
         self.plan = plan.map(|plan| Progress::new(plan, lasts, seconds));
     }
 

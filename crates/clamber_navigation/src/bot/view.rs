@@ -95,15 +95,18 @@ impl View<'_> {
                 seat: patch.seat,
             };
         };
+        let place = self.surface.world_from_model();
+        let point = place.transform_point(point);
         let [x, y, z] = patch.away;
         Spot {
             point,
-            normal,
-            seat: point + along * x + across * y + normal * z,
+            normal: place.rotation * normal,
+            seat: point + place.rotation * (along * x + across * y + normal * z),
         }
     }
 
-    /// A point of the skin, by a triangle and the weights of its corners, and the triangle's axes. `None` if it has no area.
+    /// A point of the skin, by a triangle and the weights of its corners, and the triangle's axes, all in the space of the
+    /// model. `None` if it has no area.
     fn spot_on(&self, triangle: TriangleId, weights: [f64; 3]) -> Option<(DVec3, [DVec3; 3])> {
         let corners = corners(self.surface, triangle)?;
         let [u, v, w] = weights;
@@ -125,7 +128,9 @@ impl View<'_> {
     pub(super) fn corner(&self, corner: &Corner) -> Option<DVec3> {
         let (point, [.., here]) = self.spot_on(corner.triangle, corner.barycentric)?;
         let (_, [.., there]) = self.spot_on(corner.other, [1.0, 0.0, 0.0])?;
-        Some(point + here * corner.apart[0] + there * corner.apart[1])
+        let place = self.surface.world_from_model();
+        let away = here * corner.apart[0] + there * corner.apart[1];
+        Some(place.transform_point(point) + place.rotation * away)
     }
 }
 

@@ -14,8 +14,14 @@ pub(crate) const SLICE: f64 = 0.5;
 /// The clips are played in ticks of this length, seconds.
 const TICK: f64 = 1.0 / 60.0;
 
-/// Rates at which clips are played.
-const RATES: std::ops::RangeInclusive<f64> = 0.01..=100.0;
+/// Slices times patches of all clips: 300 MB.
+const MOST: f64 = 1e8;
+
+/// Slices of a clip, some 14 hours.
+const LONGEST: f64 = 1e5;
+
+/// Whoever watches is told every so many ticks.
+const TELLS: usize = 256;
 
 /// Shakes are stored in steps of this size, metres a second squared; the largest stands for all larger ones.
 const STEP: f64 = 0.25;
@@ -66,13 +72,6 @@ impl ClipFacts {
         patches: &[Patch],
         tell: &mut Tell<'_>,
     ) -> Result<Self, NavigationError> {
-        if !RATES.contains(&source.rate) {
-            return Err(NavigationError::OutOfRange {
-                name: "rate",
-                range: "from 0.01 to 100",
-                found: source.rate,
-            });
-        }
         let mut facts = Self {
             clips: Vec::new(),
             rate: source.rate,
@@ -81,7 +80,8 @@ impl ClipFacts {
         };
         for (done, clip) in source.clips.iter().enumerate() {
             tell.now(Stage::Clips, done, source.clips.len())?;
-            facts.play(clip, source, config, patches)?;
+            let mut tell = || tell.now(Stage::Clips, done, source.clips.len());
+            facts.play(clip, source, config, patches, &mut tell)?;
         }
         Ok(facts)
     }
@@ -92,8 +92,17 @@ impl ClipFacts {
         source: &GraphSource<'_>,
         config: &GraphConfig,
         patches: &[Patch],
+        tell: &mut dyn FnMut() -> Result<(), NavigationError>,
     ) -> Result<(), NavigationError> {
         let lasts = clip.duration() / self.rate;
+        let slices = lasts / SLICE + 1.0;
+        let all = self.moments.len() as f64 + slices * patches.len() as f64;
+        if !(slices <= LONGEST && all <= MOST) {
+            return Err(NavigationError::TooLong {
+                clip: clip.name.clone(),
+                seconds: lasts,
+            });
+        }
         let count = ((lasts / SLICE).ceil() as usize).max(1);
         let last = self.clips.last();
         let first = last.map_or(0, |last| last.first + last.count);
@@ -112,12 +121,15 @@ impl ClipFacts {
         let mut riders = vec![Rider::default(); patches.len()];
         let mut played = Played::new(source, clip)?;
         // What comes before the beginning of a loop is its end.
-        let lead = if played.is_loop(&seats, lasts, self.rate)? {
+        let lead = if played.is_loop(&seats, lasts, self.rate, tell)? {
             ticks.min(LEAD)
         } else {
             0
         };
         for tick in 0..=ticks + lead {
+            if tick.is_multiple_of(TELLS) {
+                tell()?;
+            }
             let seconds = (tick as f64 - lead as f64) * TICK;
             let time = if lead > 0 {
                 (seconds * self.rate).rem_euclid(clip.duration().max(f64::MIN_POSITIVE))
@@ -205,8 +217,8 @@ const LEAD: usize = 60;
 const JUMP: f64 = 1.5;
 const SLOW: f64 = 0.01;
 
-/// How fast skin is within a clip is looked at every so many ticks.
-const STRIDE: usize = 3;
+/// How fast skin is within a clip is looked at in one of so many ticks.
+const STRIDE: usize = 4;
 
 /// A clip, and the skin as it is in it.
 struct Played<'a> {
@@ -248,20 +260,29 @@ impl<'a> Played<'a> {
     }
 
     /// True if no seat is much faster from the clip's end to its beginning than within it.
-    fn is_loop(&mut self, seats: &[Seat], lasts: f64, rate: f64) -> Result<bool, NavigationError> {
+    fn is_loop(
+        &mut self,
+        seats: &[Seat],
+        lasts: f64,
+        rate: f64,
+        tell: &mut dyn FnMut() -> Result<(), NavigationError>,
+    ) -> Result<bool, NavigationError> {
         let duration = self.clip.duration();
         let ticks = (lasts / TICK) as usize;
         if ticks < STRIDE {
             return Ok(false);
         }
-        let mut before = self.places(seats, 0.0)?;
         let mut within = vec![0.0f64; seats.len()];
-        for tick in (STRIDE..=ticks).step_by(STRIDE) {
-            let now = self.places(seats, (tick as f64 * TICK * rate).min(duration))?;
-            for ((fastest, a), b) in within.iter_mut().zip(&before).zip(&now) {
-                *fastest = fastest.max(a.distance(*b) / STRIDE as f64);
+        for tick in (1..=ticks).step_by(STRIDE) {
+            if tick % TELLS < STRIDE {
+                tell()?;
             }
-            before = now;
+            let time = |tick: usize| (tick as f64 * TICK * rate).min(duration);
+            let before = self.places(seats, time(tick - 1))?;
+            let now = self.places(seats, time(tick))?;
+            for ((fastest, a), b) in within.iter_mut().zip(&before).zip(&now) {
+                *fastest = fastest.max(a.distance(*b));
+            }
         }
         // A tick with the seam in its middle.
         let half = 0.5 * TICK * rate;

@@ -38,12 +38,11 @@ pub struct Patch {
     pub(crate) away: [f64; 3],
 }
 
-/// The corners of a triangle as the skin is, in the world.
+/// The corners of a triangle as the skin is, in the space of the model.
 pub(crate) fn corners(surface: &SkinnedSurface, triangle: TriangleId) -> Option<[DVec3; 3]> {
     let vertices = *surface.mesh().triangles().get(triangle.index())?;
     let [a, b, c] = vertices.map(|vertex| surface.in_model().position(vertex));
-    let place = surface.world_from_model();
-    Some([a?, b?, c?].map(|corner| place.transform_point(corner.as_dvec3())))
+    Some([a?, b?, c?].map(|corner| corner.as_dvec3()))
 }
 
 /// Axes that go with a triangle: along its first side, across that, and outwards. `None` if it has no area.
@@ -90,7 +89,8 @@ pub(super) fn merge(survey: &Survey) -> (Vec<Patch>, Vec<u32>) {
                 let is_alike = patch_of[beside] == NONE
                     && kinds[beside] == kinds[first]
                     && !survey.bends([first, beside])
-                    && pieces[beside].below == pieces[first].below;
+                    && pieces[beside].below == pieces[first].below
+                    && pieces[beside].plate == pieces[first].plate;
                 let [stands, holds] = kinds[first];
                 let ends = ends(piece, beside);
                 let leads =
@@ -118,7 +118,8 @@ fn patch(survey: &Survey, members: &[usize], [can_stand, can_hold]: [bool; 2]) -
     let axes = corners(&survey.surface, piece.triangle).and_then(axes);
     Patch {
         away: axes.map_or([0.0, 0.0, survey.config.radius()], |axes| {
-            axes.map(|axis| away.dot(axis))
+            let turned = survey.surface.world_from_model().rotation.conjugate() * away;
+            axes.map(|axis| turned.dot(axis))
         }),
         triangle: piece.triangle,
         barycentric: piece.barycentric,

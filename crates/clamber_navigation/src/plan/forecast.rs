@@ -15,6 +15,12 @@ pub struct Forecast {
 /// A clip is expected for no longer than this, seconds.
 const LONGEST: f64 = 3600.0;
 
+/// All that is expected is no longer than this, slices: four hours.
+const MOST: usize = 28_800;
+
+/// Who means to get on looks so many slices ahead: a minute.
+const AHEAD: usize = 120;
+
 /// Getting on takes so many slices.
 const GETS_ON: usize = 3;
 
@@ -29,8 +35,8 @@ impl Forecast {
         self.slices.is_empty()
     }
 
-    /// And then it plays a clip, from a time of the clip on and for so long, both in seconds and rounded to halves of one; an
-    /// hour at most. The clip is looped, with its length rounded up to half seconds. A clip that the graph does not
+    /// And then it plays a clip, from a time of the clip on and for so long, both in seconds, the time in those of the file and
+    /// how long it lasts in real ones, and rounded to halves of one; an hour at most, and four hours for all that is expected. The clip is looped, with its length rounded up to half seconds. A clip that the graph does not
     /// know, and a time that is not positive, change nothing. A forecast is of use on its own graph only: another one
     /// takes it for something else.
     #[must_use]
@@ -45,7 +51,9 @@ impl Forecast {
             let first = in_slices(from);
             let slices = first..first + in_slices(seconds).max(1);
             let slices = slices.filter_map(|slice| graph.clips.slice(clip, slice));
-            self.slices.extend(slices.map(|slice| slice as u32));
+            let room = MOST.saturating_sub(self.slices.len());
+            self.slices
+                .extend(slices.take(room).map(|slice| slice as u32));
         }
         self
     }
@@ -63,7 +71,7 @@ impl Forecast {
     }
 
     /// After how many seconds from a time on a patch shakes no harder than `most` metres a second squared for as long as it
-    /// takes to get on; the length of the forecast if it never does.
+    /// takes to get on; the length of the forecast, a minute at most, if it does not until then.
     pub(crate) fn calms_after(
         &self,
         graph: &ClimbGraph,
@@ -76,10 +84,9 @@ impl Forecast {
             let mut while_on = *slice..slice + GETS_ON;
             while_on.all(|slice| self.at(graph, slice, patch).shake <= most)
         };
-        let mut slices = first..first + self.len();
-        let waits = slices
-            .find(is_calm)
-            .map_or(self.len(), |slice| slice - first);
+        let most = self.len().min(AHEAD);
+        let mut slices = first..first + most;
+        let waits = slices.find(is_calm).map_or(most, |slice| slice - first);
         waits as f64 * SLICE
     }
 

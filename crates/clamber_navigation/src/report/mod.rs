@@ -97,7 +97,7 @@ pub struct ClipReport {
     pub slips_from: f64,
     /// Area from which whoever stands there is thrown or knocked down, square metres.
     pub throws_from: f64,
-    /// When that begins, seconds from the clip's beginning.
+    /// When that begins, seconds from the clip's beginning, at the rate at which it is played.
     pub throws_at: Option<f64>,
     /// Area on which whoever holds on in the clip's whole length, rested, loses its hold, square metres.
     pub exhausts_on: f64,

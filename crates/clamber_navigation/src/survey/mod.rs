@@ -60,6 +60,7 @@ impl Survey {
         tell: &mut Tell<'_>,
     ) -> Result<Self, NavigationError> {
         config.check()?;
+        source.check()?;
         let palette = source.skeleton.palette(&source.skeleton.rest_pose())?;
         let mut surface = SkinnedSurface::new(source.mesh.clone());
         surface.place(&palette, source.world_from_model)?;

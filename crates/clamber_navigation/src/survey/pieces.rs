@@ -35,6 +35,8 @@ pub(crate) struct Piece {
     pub(crate) seat: Option<DVec3>,
     /// The plate that has to be removed for the ball to have room.
     pub(crate) below: Option<u16>,
+    /// The plate that it is of, if any.
+    pub(crate) plate: u32,
 }
 
 /// A part of a triangle.
@@ -93,11 +95,21 @@ pub(super) fn divide(
     for face in &there {
         face.add_bits(config.spacing, &mut bits);
         face.add_edges(mesh, &places, config, &mut bits);
+        if bits.len() as u64 > MOST {
+            return Err(NavigationError::TooManyPatches {
+                found: bits.len() as u64,
+                most: MOST,
+                spacing: config.spacing,
+            });
+        }
+    }
+    for bit in &mut bits {
+        bit.plate = plate(bit.triangle);
     }
     if bits.is_empty() {
         return Err(NavigationError::NoSkin);
     }
-    Ok(gather(bits, CELL * config.spacing, plate))
+    Ok(gather(bits, CELL * config.spacing))
 }
 
 /// Bits are of one piece within a cell of this size, as a share of the largest side of a patch; if their normals have
@@ -110,7 +122,7 @@ const LEVEL: f64 = 0.3;
 const TRIED: usize = 4;
 
 /// Gathers bits into pieces.
-fn gather(mut bits: Vec<Piece>, size: f64, plate: &dyn Fn(TriangleId) -> u32) -> Division {
+fn gather(mut bits: Vec<Piece>, size: f64) -> Division {
     let lowest = bits
         .iter()
         .fold(DVec3::INFINITY, |low, bit| low.min(bit.point));
@@ -131,7 +143,7 @@ fn gather(mut bits: Vec<Piece>, size: f64, plate: &dyn Fn(TriangleId) -> u32) ->
                     first.tag == bit.tag
                         && first.normal.dot(bit.normal) >= ALIKE
                         && off.abs() <= LEVEL * size
-                        && plate(first.triangle) == plate(bit.triangle)
+                        && first.plate == bit.plate
                 })
             };
             match groups.iter_mut().find(is_alike) {
@@ -164,7 +176,10 @@ impl Division {
         }));
         let area = group.iter().map(|bit| bit.area).sum();
         self.pieces.push(Piece { area, ..**first });
-        let others = others.iter().take(TRIED - 1);
+        // The outermost first: what lies under other skin has no room.
+        let out = |bit: &&&Piece| (bit.point - middle).dot(first.normal);
+        let outermost = others.iter().max_by(|a, b| out(a).total_cmp(&out(b)));
+        let others = outermost.into_iter().chain(others.iter().take(TRIED - 2));
         let others = others.map(|bit| Piece { area, ..**bit });
         self.others.push(others.collect());
     }
@@ -208,7 +223,7 @@ fn order(a: &Piece, b: &Piece) -> std::cmp::Ordering {
         let (p, n) = (piece.point, piece.normal);
         [p.x, p.y, p.z, n.x, n.y, n.z, piece.area]
     };
-    let (a, b) = ((key(a), a.tag), (key(b), b.tag));
+    let (a, b) = ((key(a), (a.tag, a.plate)), (key(b), (b.tag, b.plate)));
     let by_place = a.0.iter().zip(&b.0).map(|(a, b)| a.total_cmp(b));
     by_place
         .fold(std::cmp::Ordering::Equal, std::cmp::Ordering::then)
@@ -313,6 +328,7 @@ impl Face {
             normal,
             seat: None,
             below: None,
+            plate: 0,
         }
     }
 }

@@ -60,7 +60,7 @@ pub struct BattleOptions {
     pub rocks: u32,
 
     /// Seed for the climber's start and the rocks' places; the same number gives the same battle.
-    #[arg(long, default_value_t = 19)]
+    #[arg(long, default_value_t = 21)]
     pub seed: u64,
 
     /// Who drives the climber in a climb.

@@ -23,9 +23,41 @@ const WAITS: [&str; 3] = ["idle", "survey", "standing"];
 const GOES: [&str; 4] = ["walk", "swimming_normal", "swim", "run"];
 
 /// Words in the names of clips that are no way to live: they are played by no model that has others.
-const ACTS: [&str; 22] = [
-    "death", "die", "dead", "attack", "bite", "punch", "kick", "slash", "sword", "shoot", "jump",
-    "hit", "react", "dance", "fall", "wave", "eat", "sit", "emote", "flip", "cast", "dodge",
+const ACTS: [&str; 34] = [
+    "death",
+    "die",
+    "dying",
+    "dead",
+    "attack",
+    "headbutt",
+    "bite",
+    "punch",
+    "kick",
+    "slash",
+    "swordslash",
+    "sword",
+    "shoot",
+    "gun",
+    "jump",
+    "walkjump",
+    "hit",
+    "hitrecieve",
+    "hitreact",
+    "react",
+    "dance",
+    "fall",
+    "falling",
+    "wave",
+    "eat",
+    "eating",
+    "sit",
+    "sitting",
+    "emote",
+    "flip",
+    "cast",
+    "dodge",
+    "roll",
+    "dashing",
 ];
 
 /// A clip, and how it goes on after its end.
@@ -53,7 +85,11 @@ impl Moves {
         let probe = SeamProbe::new(creature, own);
         let all = || 0..creature.clips.len();
         let name = |clip: usize| creature.clips[clip].name.to_lowercase();
-        let lives = |clip: &usize| !ACTS.iter().any(|word| name(*clip).contains(word));
+        let lives = |clip: &usize| {
+            let name = name(*clip);
+            let mut words = name.split(|letter: char| !letter.is_alphabetic());
+            !words.any(|word| ACTS.contains(&word))
+        };
         // Of several the first of the shortest name: others say what it does meanwhile.
         let plainest = |word: &str| {
             let named = all()
