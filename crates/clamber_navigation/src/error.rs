@@ -32,8 +32,8 @@ pub enum NavigationError {
         /// Their size, metres.
         spacing: f64,
     },
-    /// A clip lasts too long to be looked at: 14 hours, or together with the others and on so many patches it would take more
-    /// than 300 MB.
+    /// A clip lasts too long to be looked at: 14 hours, or together with the others and on so many patches it would
+    /// take more than 300 MB.
     #[error(
         "clip `{clip}` lasts {seconds} s at the rate at which it is played, which is too long for this many patches; shorten it, raise \
          the rate, or choose a larger spacing"

@@ -15,8 +15,9 @@ pub struct GraphSource<'a> {
     pub mesh: &'a Arc<ColliderMesh>,
     /// What it moves by.
     pub clips: &'a [Clip],
-    /// How fast it plays its clips, as a share of what its file says, from 0.0001 to 10,000: 1 for a creature of the size for which it was made, less
-    /// for a larger one. Of a living creature it is `clamber_colossus::Creature::rate`.
+    /// How fast it plays its clips, as a share of what its file says, from 0.0001 to 10,000: 1 for a creature of the
+    /// size for which it was made, less for a larger one. Of a living creature it is
+    /// `clamber_colossus::Creature::rate`.
     pub rate: f64,
     /// Parts of the skin that can be removed one by one, such as plates of armour: the skin below them is divided as
     /// well. None is a good answer; those of a living creature are `clamber_colossus::CreatureKind::plates`.

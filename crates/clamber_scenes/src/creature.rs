@@ -98,7 +98,8 @@ impl Creature {
     }
 
     /// The graph of its skin for a climber, when it is so many metres tall, stands on the ground, plays its clips at
-    /// this rate, and has plates. A climber grips fur and stone, or all of it if it has no fur. It is made once for each size: clones share it.
+    /// this rate, and has plates. A climber grips fur and stone, or all of it if it has no fur. It is made once for
+    /// each size: clones share it.
     ///
     /// # Errors
     /// As [`ClimbGraph::build`].

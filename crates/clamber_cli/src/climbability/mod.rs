@@ -34,8 +34,8 @@ pub struct ClimbabilityOptions {
     /// A .glb or .gltf file.
     pub file: PathBuf,
 
-    /// The creature's brain file: its plates come off, its weak points count, and its `height` and `made_for` hold where the
-    /// options do not say otherwise.
+    /// The creature's brain file: its plates come off, its weak points count, and its `height` and `made_for` hold
+    /// where the options do not say otherwise.
     #[arg(long, value_name = "FILE.json")]
     pub brain: Option<PathBuf>,
 

@@ -112,7 +112,7 @@ pub(super) fn draw(
     let low = skin.iter().copied().fold(DVec3::INFINITY, DVec3::min);
     let high = skin.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
     let (middle, size) = ((low + high) * 0.5, high - low);
-    // What is flat is as wide as others are high.
+    // The scale comes from the height, or for a flat creature from its width.
     let tall = size.y.max(size.max_element() / WIDEST).max(1e-9);
     let scale = (ROWS - 2 * BORDER) as f64 / tall;
     let width = |side: &DVec3| (size.dot(side.abs()) * scale) as usize + 2 * BORDER;

@@ -21,8 +21,9 @@ pub(super) struct Errand {
 }
 
 impl Creature {
-    /// Puts the creature somewhere else, at rest, as if it had begun there: its home is there, too. What its brain thinks,
-    /// its clips and its wounds stay. Its skin stands there without motion, so that whoever is on it is left behind.
+    /// Puts the creature somewhere else, at rest, as if it had begun there: its home is there, too. What its brain
+    /// thinks, its clips and its wounds stay. Its skin stands there without motion, so that whoever is on it is left
+    /// behind.
     ///
     /// # Errors
     /// [`ColossusError::OutOfRange`] for a place that is not finite or beyond 1e12 m, or a heading beyond 1e6, and those of
@@ -60,10 +61,10 @@ impl Creature {
         self.swap_state(&mut state)
     }
 
-    /// Sends the creature to a place, whatever its brain wants; `None` calls it back. The act that it is at ends at once.
-    /// It walks round obstacles, and may leave its arena. Its brain still changes states on the way, but their acts begin
-    /// only at the end, of which [`CreatureEvent::Arrived`] or [`CreatureEvent::Stopped`] tells. Returns false, and
-    /// nothing is changed, if it cannot walk, or if the place is not finite or beyond 1e12 m.
+    /// Sends the creature to a place, whatever its brain wants; `None` calls it back. The act that it is at ends at
+    /// once. It walks round obstacles, and may leave its arena. Its brain still changes states on the way, but their
+    /// acts begin only at the end, of which [`CreatureEvent::Arrived`] or [`CreatureEvent::Stopped`] tells. Returns
+    /// false, and nothing is changed, if it cannot walk, or if the place is not finite or beyond 1e12 m.
     pub fn send(&mut self, to: Option<DVec3>) -> bool {
         let is_far = |place: DVec3| !place.is_finite() || place.abs().max_element() > FARTHEST;
         let cannot = self.kind.gait().is_none() && to.is_some();
@@ -99,9 +100,9 @@ impl Creature {
         true
     }
 
-    /// Does damage to a weak point, open or not, by its index, as a fall onto a rock or a fire does. Returns the damage
-    /// done, which is what it had left at most; `None`, and nothing is changed, if there is no such weak point, or for a
-    /// damage that is negative or not finite.
+    /// Does damage to a weak point, open or not, by its index, as a fall onto a rock or a fire does. Returns the
+    /// damage done, which is what it had left at most; `None`, and nothing is changed, if there is no such weak point,
+    /// or for a damage that is negative or not finite.
     pub fn harm(&mut self, weak_point: usize, damage: f64) -> Option<f64> {
         let left = *self.state.hit_points.get(weak_point)?;
         if !(0.0..=f64::MAX).contains(&damage) {

@@ -219,8 +219,8 @@ fn who_is_held_and_hunted_may_leave() {
     assert!(alone.position.y < 1.0, "{}", alone.position);
 }
 
-/// Of two arenas, one of which has just restored what the other one is, an arrow falls alike out of who leaves; and whoever
-/// joins in a step may be told something in it.
+/// Of two arenas, one of which has just restored what the other one is, an arrow falls alike out of who leaves; and
+/// whoever joins in a step may be told something in it.
 #[test]
 fn a_restored_arena_follows_orders_alike() {
     let moves = Slab {

@@ -4,8 +4,9 @@
 pub struct BotConfig {
     /// It stands and rests in shakes up to this share of the one that throws it off. Default 0.35.
     pub stands_in: f64,
-    /// With less stamina it rests before it goes on, until it has `rested`; but if the forecast is still and its
-    /// stamina is enough for its goal, it goes on. Default 0.3.
+    /// With less stamina it rests before it goes on, until it has `rested`. It goes on all the same if it has the
+    /// stamina that its plan counts on there, or if the forecast is still and its stamina is enough for its goal.
+    /// Default 0.3.
     pub tired: f64,
     /// Default 0.9.
     pub rested: f64,

@@ -230,7 +230,7 @@ impl Approach {
             return true;
         };
         let lasted = view.seconds - since;
-        // Who has no hands steps on whatever it can stand on.
+        // A climber without a grip catches nothing, so no entry is too fast for its hands.
         let grip = view.climber.config().grip;
         let catches = grip.map_or(f64::INFINITY, |grip| grip.catch_speed);
         lasted > 0.0 && place.distance(from) > SWINGS * catches * lasted

@@ -90,8 +90,8 @@ impl Bot {
         self.plan.as_ref().map(|progress| &progress.plan)
     }
 
-    /// True if it has been on the creature for some seconds and finds no way from where it is, with whatever strength. It
-    /// then lets go and tries to get on elsewhere.
+    /// True if it has been on the creature for some seconds and finds no way from where it is, with whatever strength.
+    /// It then lets go and tries to get on elsewhere.
     pub fn is_lost(&self, seconds: f64) -> bool {
         let lasts = self.lost.map_or(0.0, |[first, last]| last - first);
         lasts > LOST && self.lost.is_some_and(|[_, last]| seconds - last <= LOST)
@@ -393,7 +393,7 @@ impl Bot {
         self.finds_calm = lasting.is_some();
         let (lasts, plan) = match lasting {
             Some(plan) => (true, Some(plan)),
-            // Where nothing is calm, on what is level; where nothing is, on to the goal.
+            // No calm place to rest is in reach: to any level place, or else straight to the goal.
             None => {
                 let plan = find(&tireless, goal, &still, &all);
                 (

@@ -105,8 +105,8 @@ impl View<'_> {
         }
     }
 
-    /// A point of the skin, by a triangle and the weights of its corners, and the triangle's axes, all in the space of the
-    /// model. `None` if it has no area.
+    /// A point of the skin, by a triangle and the weights of its corners, and the triangle's axes, all in the space of
+    /// the model. `None` if it has no area.
     fn spot_on(&self, triangle: TriangleId, weights: [f64; 3]) -> Option<(DVec3, [DVec3; 3])> {
         let corners = corners(self.surface, triangle)?;
         let [u, v, w] = weights;

@@ -212,8 +212,8 @@ impl ClipFacts {
 /// A loop is played for so many ticks before its beginning: some times longer than shakes last.
 const LEAD: usize = 60;
 
-/// Skin that is so many times as fast at the seam of a clip as anywhere within it jumps there: the clip is no loop. So is
-/// what is slower than this share of the creature's height a second.
+/// A clip is no loop if some skin is more than `JUMP` times as fast at the seam as anywhere within the clip, and faster
+/// than `SLOW` heights of the creature a second.
 const JUMP: f64 = 1.5;
 const SLOW: f64 = 0.01;
 

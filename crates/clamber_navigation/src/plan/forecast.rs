@@ -35,10 +35,11 @@ impl Forecast {
         self.slices.is_empty()
     }
 
-    /// And then it plays a clip, from a time of the clip on and for so long, both in seconds, the time in those of the file and
-    /// how long it lasts in real ones, and rounded to halves of one; an hour at most, and four hours for all that is expected. The clip is looped, with its length rounded up to half seconds. A clip that the graph does not
-    /// know, and a time that is not positive, change nothing. A forecast is of use on its own graph only: another one
-    /// takes it for something else.
+    /// And then it plays a clip. `from` is where in the clip it begins, in seconds of the file; `seconds` is for how
+    /// long it plays, in seconds of the world, an hour at most. Both are rounded to half seconds. The clip is looped,
+    /// with its length rounded up to half seconds. A forecast ends after four hours. A clip that the graph does not
+    /// know, a negative `from` and `seconds` that are not positive change nothing. A forecast is of use on its own
+    /// graph only: another one takes it for something else.
     #[must_use]
     pub fn then(mut self, graph: &ClimbGraph, clip: &str, from: f64, seconds: f64) -> Self {
         let in_slices = |seconds: f64| (seconds.min(LONGEST) / SLICE).round() as usize;
@@ -58,8 +59,8 @@ impl Forecast {
         self
     }
 
-    /// True if a climber that stands on a patch in the next seconds, or holds on there, feels no shake that costs strength,
-    /// is not thrown, and does not slip.
+    /// True if a climber that stands on a patch in the next seconds, or holds on there, feels no shake that costs
+    /// strength, is not thrown, and does not slip.
     pub(crate) fn is_calm_at(&self, graph: &ClimbGraph, patch: usize, seconds: f64) -> bool {
         let climber = &graph.config.climber;
         let slices = ((seconds / SLICE).ceil() as usize).clamp(1, self.len().max(1));
@@ -70,8 +71,8 @@ impl Forecast {
         self.is_still() || (0..slices).all(is_calm)
     }
 
-    /// After how many seconds from a time on a patch shakes no harder than `most` metres a second squared for as long as it
-    /// takes to get on; the length of the forecast, a minute at most, if it does not until then.
+    /// After how many seconds from a time on a patch shakes no harder than `most` metres a second squared for as long
+    /// as it takes to get on; the length of the forecast, a minute at most, if it does not until then.
     pub(crate) fn calms_after(
         &self,
         graph: &ClimbGraph,

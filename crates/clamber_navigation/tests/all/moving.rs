@@ -94,6 +94,15 @@ fn the_seam_of_a_loop_is_felt_and_that_of_another_clip_is_not() {
     assert!(found <= 0.25, "{found}");
 }
 
+#[test]
+fn clips_of_years_are_refused_at_once() {
+    for (seconds, rate) in [(1e9, 1.0), (1e5, 1e-3), (1e30, 1.0)] {
+        let found = shake(&sways(seconds, |_| 0.0), rate);
+        let is_long = matches!(found, Err(NavigationError::TooLong { .. }));
+        assert!(is_long, "{seconds} s at {rate}: {found:?}");
+    }
+}
+
 /// A ball in so many times as many triangles has as many pieces.
 #[test]
 fn what_is_looked_at_grows_with_the_skin_and_not_with_its_triangles() {

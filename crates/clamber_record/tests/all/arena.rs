@@ -384,8 +384,8 @@ fn orders(tick: u64, arena: &Arena) -> Vec<Order> {
     }
 }
 
-/// Orders are recorded, and played again from any tick, by an arena that knows nothing but the kind of creature; who joins
-/// and leaves is told by name, with frames and channels of its own.
+/// Orders are recorded, and played again from any tick, by an arena that knows nothing but the kind of creature; who
+/// joins and leaves is told by name, with frames and channels of its own.
 #[test]
 fn orders_are_recorded_and_played_again() {
     let mut arena = arena();
@@ -447,7 +447,8 @@ fn orders_are_recorded_and_played_again() {
     }
 }
 
-/// An arena whose numbers are far on, as of a forged or a very old state, is recorded in as little memory as another one.
+/// An arena whose numbers are far on, as of a forged or a very old state, is recorded in as little memory as another
+/// one.
 #[test]
 fn numbers_that_are_far_on_cost_nothing() {
     let mut arena = arena();
