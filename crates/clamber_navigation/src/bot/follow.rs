@@ -48,6 +48,12 @@ impl Progress {
         }
     }
 
+    /// True if it walks where it is.
+    pub(super) fn walks(&self) -> bool {
+        let step = self.plan.steps.get(self.at);
+        step.is_some_and(|step| step.footing == Footing::Stands)
+    }
+
     /// True if this much stamina is enough to go on as planned.
     pub(super) fn is_enough(&self, stamina: f64) -> bool {
         let planned = self.plan.steps.get(self.at).map(|step| step.stamina);

@@ -1,11 +1,13 @@
 //! On the ground: to where it can get on.
 
+use std::collections::BTreeMap;
+
 use clamber_climber::{ClimberInput, ClimberMode};
 use glam::DVec3;
 
 use super::{BotConfig, Danger, View};
-use crate::ClimbGraph;
 use crate::graph::highest_entry;
+use crate::{ClimbGraph, Footing, Start};
 
 /// It jumps within so many radii of where it gets on, seen from above.
 const NEAR: f64 = 2.2;
@@ -34,6 +36,13 @@ const SWINGS: f64 = 0.4;
 /// It chooses an entry anew every so many seconds.
 const CHOOSES: f64 = 0.5;
 
+/// It takes so long to get on, and it waits no longer than this for a good time to do so, seconds.
+const GETS_ON: f64 = 0.5;
+const WAITS: f64 = 60.0;
+
+/// An entry from which its strength is not enough counts as so much farther from the goal, seconds.
+const TIRES: f64 = 600.0;
+
 /// An entry has to be better by so many seconds to be taken instead of the one that it goes to.
 const BETTER: f64 = 1.5;
 
@@ -55,6 +64,11 @@ pub(super) struct Approach {
     rode: Option<(usize, f64)>,
     /// Where the entry that it goes to was, and when.
     seen: Option<(usize, DVec3, f64)>,
+    /// Since when it waits for a time from which its strength is enough, whether that is now, and after how long it has
+    /// seen all that is expected, seconds.
+    waits: Option<f64>,
+    lasts: bool,
+    repeats: f64,
     /// It has let go, and holds on to nothing before it stands on the ground.
     pub(super) drops: bool,
 }
@@ -71,6 +85,9 @@ impl Default for Approach {
             attacked: None,
             rode: None,
             seen: None,
+            waits: None,
+            lasts: false,
+            repeats: WAITS,
             drops: false,
         }
     }
@@ -85,6 +102,10 @@ impl Approach {
             .or(self.rode);
         self.tries = 0;
         self.attacked = None;
+        // Who has waited in vain does not wait again.
+        if self.lasts {
+            self.waits = None;
+        }
     }
 
     /// Tries another entry than the one that it goes to.
@@ -164,9 +185,11 @@ impl Approach {
         if walk == DVec3::ZERO || state.velocity.length() > kept {
             self.free = seconds;
         }
+        let is_ready = is_rested(config, view) && self.is_time(view);
         let near = toward.length() < NEAR * view.climber.config().body.radius;
         let swings = self.swings(entry, view.spot(patch).point, view);
-        let wants = keeps == 0.0 && !swings && (near || seconds - self.free > PUZZLED);
+        let is_blocked = seconds - self.free > PUZZLED;
+        let wants = keeps == 0.0 && !swings && is_ready && (near || is_blocked);
         let jump = state.mode == ClimberMode::Standing && wants && self.jumps(seconds);
         if jump {
             self.tries += 1;
@@ -174,7 +197,13 @@ impl Approach {
                 self.gives_up(seconds);
             }
         }
-        ClimberInput { walk, jump, ..grip }
+        ClimberInput {
+            walk,
+            jump,
+            // Whoever walks into a limb holds on to it.
+            grip: is_ready || !stands,
+            ..ClimberInput::IDLE
+        }
     }
 
     /// It has fallen soon after it had got on: the limb by which it did is avoided for a while.
@@ -236,6 +265,51 @@ impl Approach {
         lasted > 0.0 && place.distance(from) > SWINGS * catches * lasted
     }
 
+    /// True if its strength is enough for what is expected if it gets on now, or if it has waited for that for as long
+    /// as anything is expected.
+    fn is_time(&mut self, view: &View<'_>) -> bool {
+        let since = *self.waits.get_or_insert(view.seconds);
+        view.forecast.is_still() || self.lasts || view.seconds - since >= self.repeats
+    }
+
+    /// How long it waits at a patch from some time on, seconds: a foot that swings is no entry until it stands.
+    fn waits_at(
+        graph: &ClimbGraph,
+        config: &BotConfig,
+        view: &View<'_>,
+        patch: usize,
+        from: f64,
+    ) -> f64 {
+        let grip = view.climber.config().grip;
+        let most = config.climbs_in * grip.map_or(0.0, |grip| grip.hang_acceleration);
+        view.forecast.calms_after(graph, patch, from, most)
+    }
+
+    /// The entry from which its strength is enough for what is expected.
+    fn lasting(
+        &self,
+        graph: &ClimbGraph,
+        config: &BotConfig,
+        view: &View<'_>,
+        comes: impl Fn(usize) -> Option<f64>,
+    ) -> Option<usize> {
+        let reach = 0..graph.entries().len();
+        let known: BTreeMap<usize, (usize, f64)> = reach
+            .filter_map(|entry| Some((graph.entries()[entry].patch, (entry, comes(entry)?))))
+            .collect();
+        let starts = graph.starts_on_ground(1.0 - config.reserve);
+        let starts: Vec<Start> = starts
+            .filter_map(|start| {
+                let comes = known.get(&start.patch)?.1;
+                let is_calm = Self::waits_at(graph, config, view, start.patch, comes) == 0.0;
+                let seconds = comes + GETS_ON;
+                is_calm.then_some(Start { seconds, ..start })
+            })
+            .collect();
+        let plan = graph.plan(&starts, view.goal, view.forecast)?;
+        Some(known.get(&plan.steps.first()?.patch)?.0)
+    }
+
     /// Chooses the entry from which it comes to the goal first.
     fn choose(&mut self, graph: &ClimbGraph, config: &BotConfig, view: &View<'_>) {
         let seconds = view.seconds;
@@ -244,26 +318,53 @@ impl Approach {
         let (state, climber) = (view.climber.state(), view.climber.config());
         let feet = state.position.dot(climber.up()) - climber.body.radius;
         let highest = highest_entry(graph.config());
-        let cost = |entry: usize| {
-            let at = graph.entries()[entry];
-            let patch = &graph.patches()[at.patch];
-            let left = view.goal.least_seconds_from(at.patch);
-            let avoided = self.avoided.iter().any(|(other, _)| *other == entry);
-            if !left.is_finite() || avoided {
-                return f64::INFINITY;
-            }
-            let place = view.spot(patch).point;
-            let height = place.dot(climber.up()) - feet;
-            if height > highest {
-                return f64::INFINITY;
+        let footings = [Footing::Stands, Footing::Holds];
+        let place = |entry: usize| {
+            view.spot(&graph.patches()[graph.entries()[entry].patch])
+                .point
+        };
+        // When it comes to an entry; `None` to one that is too high, or did not work.
+        let comes = |entry: usize| {
+            let is_avoided = self.avoided.iter().any(|(other, _)| *other == entry);
+            let place = place(entry);
+            if is_avoided || place.dot(climber.up()) - feet > highest {
+                return None;
             }
             let way = place - state.position;
             let way = (way - climber.up() * way.dot(climber.up())).length();
-            let comes = way / climber.ground.walk_speed.max(1e-3);
-            // A foot that swings is no entry until it stands.
-            let most = config.climbs_in * climber.grip.map_or(0.0, |grip| grip.hang_acceleration);
-            let waits = view.forecast.calms_after(graph, at.patch, comes, most);
-            comes + waits + left
+            Some(way / climber.ground.walk_speed.max(1e-3))
+        };
+        self.lasts = false;
+        if !view.forecast.is_still() && is_rested(config, view) {
+            let lasting = self.lasting(graph, config, view, comes);
+            self.lasts = lasting.is_some();
+            self.repeats = view.forecast.repeats_after().min(WAITS);
+            if lasting.is_some() {
+                (self.entry, self.tries) =
+                    (lasting, if self.entry == lasting { self.tries } else { 0 });
+                return;
+            }
+        }
+        let cost = |entry: usize| {
+            let Some(comes) = comes(entry) else {
+                return f64::INFINITY;
+            };
+            let at = graph.entries()[entry].patch;
+            // Where its strength is not enough it comes as far as that goes.
+            let [stands, holds] = footings.map(|footing| {
+                view.goal
+                    .least_seconds_with(at, footing, 1.0 - config.reserve)
+            });
+            let lasts = stands.min(holds);
+            let left = if lasts.is_finite() {
+                lasts
+            } else {
+                TIRES + view.goal.least_seconds_from(at)
+            };
+            if !left.is_finite() {
+                return f64::INFINITY;
+            }
+            comes + Self::waits_at(graph, config, view, at, comes) + left
         };
         let all = (0..graph.entries().len()).map(|entry| (cost(entry), entry));
         let best = all
@@ -284,4 +385,11 @@ impl Approach {
             _ => {}
         }
     }
+}
+
+/// True if it has the strength to get on.
+fn is_rested(config: &BotConfig, view: &View<'_>) -> bool {
+    let stamina = view.climber.config().stamina;
+    let rests = stamina.is_some_and(|stamina| stamina.refill > 0.0);
+    !rests || view.climber.state().stamina >= config.rested
 }

@@ -33,8 +33,8 @@ pub struct Bot {
     config: BotConfig,
     plan: Option<Progress>,
     approach: Approach,
-    /// Ways that did not work, and until when they are avoided.
-    blocked: Vec<([usize; 2], f64)>,
+    /// Ways that did not work.
+    blocked: Vec<Blocked>,
     /// When it last planned, seconds.
     planned: f64,
     /// Since when it hangs in calm, seconds.
@@ -51,6 +51,8 @@ pub struct Bot {
     lost: Option<[f64; 2]>,
     /// There is a place that stays calm while it rests.
     finds_calm: bool,
+    /// Where it goes along a ledge, and until when.
+    shimmies: (DVec3, f64),
 }
 
 impl Bot {
@@ -77,6 +79,7 @@ impl Bot {
             limbs: Limbs::default(),
             lost: None,
             finds_calm: true,
+            shimmies: (DVec3::ZERO, f64::NEG_INFINITY),
         }
     }
 
@@ -126,8 +129,9 @@ impl Bot {
         self.approach = Approach::default();
         self.blocked.clear();
         self.limbs = Limbs::default();
-        self.hangs = None;
-        self.lost = None;
+        (self.hangs, self.lost) = (None, None);
+        (self.rests, self.finds_calm) = (false, true);
+        self.shimmies = (DVec3::ZERO, f64::NEG_INFINITY);
     }
 
     /// True if it has to rest before it goes on, or does anything that costs strength.
@@ -175,7 +179,6 @@ impl Bot {
         if !matches!(state.mode, ClimberMode::Hanging | ClimberMode::LedgeHanging) {
             self.hangs = None;
         }
-        let up = view.climber.config().up();
         let holds = ClimberInput {
             grip: true,
             ..ClimberInput::IDLE
@@ -183,7 +186,7 @@ impl Bot {
         match state.mode {
             ClimberMode::Tumbling | ClimberMode::Custom(_) => ClimberInput::IDLE,
             ClimberMode::LedgeHanging => ClimberInput {
-                climb: up,
+                climb: self.over_ledge(view),
                 ..self.hang(view)
             },
             ClimberMode::Hanging => self.hang(view),
@@ -211,14 +214,37 @@ impl Bot {
             self.hangs = None;
         }
         let since = *self.hangs.get_or_insert(seconds);
-        let holds = seconds - since <= self.config.hangs_for;
-        if !holds && state.mode == ClimberMode::LedgeHanging {
+        let is_on_ledge = state.mode == ClimberMode::LedgeHanging;
+        let most = if is_on_ledge { LEDGES } else { 1.0 } * self.config.hangs_for;
+        let holds = seconds - since <= most;
+        if !holds && is_on_ledge {
+            // There is no room above it, nor beside.
+            let way = self.plan.as_ref().and_then(Progress::next_way);
+            if let Some(way) = way {
+                self.block(way, seconds);
+            }
             self.approach.gives_up(seconds);
         }
         ClimberInput {
             grip: holds,
             ..ClimberInput::IDLE
         }
+    }
+
+    /// Up over the ledge that it hangs from; where there is no room it goes along it for a while, to the side where its
+    /// way goes on.
+    fn over_ledge(&mut self, view: &View<'_>) -> DVec3 {
+        let (seconds, state) = (view.seconds, view.climber.state());
+        let up = view.climber.config().up();
+        let aside = state.heading.cross(up);
+        if state.ledge_hanging.gave_up {
+            let ahead = self.plan.as_mut();
+            let ahead = ahead.and_then(|plan| plan.target(&self.graph, view, &self.config));
+            let toward = ahead.map_or(0.0, |target| (target.place - state.position).dot(aside));
+            self.shimmies = (aside * 1f64.copysign(toward), seconds + SHIMMIES);
+        }
+        let (way, until) = self.shimmies;
+        if seconds < until { way } else { up }
     }
 
     fn climb(&mut self, view: &View<'_>, patch: usize) -> ClimberInput {
@@ -271,20 +297,24 @@ impl Bot {
         };
         self.approach.drops = false;
         if let Some(wanted) = progress.rests_until() {
-            let level = view.is_level();
-            if state.stamina < wanted + self.config.reserve
-                && state.stamina < 1.0
-                && (stands || level)
-            {
+            let is_level = stands || view.is_level();
+            let needs = state.stamina < 1.0 && state.stamina < wanted + self.config.reserve;
+            if needs && is_level {
                 progress.waits(view.seconds);
                 return rest;
             }
-            progress.has_rested();
+            // It may still hold on to the slope beside the place.
+            let comes = needs && !progress.is_stuck(view.seconds, self.config.patience);
+            if !comes {
+                progress.has_rested();
+            }
         }
         let Some(target) = progress.target(&self.graph, view, &self.config) else {
             return hold;
         };
         let toward = target.place - state.position;
+        // Where its way can be walked it lets go, and gets strength back.
+        let walks = stands || progress.walks() && view.is_level();
         let tries_else = progress.tries_else(view);
         let jumps = stands && progress.is_stuck(view.seconds, self.config.patience);
         ClimberInput {
@@ -295,8 +325,8 @@ impl Bot {
                 view.against(&target)
                     .normalize_or(view.climber.config().up())
             },
-            walk: toward,
-            grip: target.footing == Footing::Holds || !stands || tries_else,
+            walk: (toward / view.climber.config().body.radius).clamp_length_max(1.0),
+            grip: target.footing == Footing::Holds || !walks || tries_else,
             jump: jumps && self.approach.jumps(view.seconds),
             ..ClimberInput::IDLE
         }
@@ -307,11 +337,13 @@ impl Bot {
         let seconds = view.seconds;
         if let Some(progress) = &mut self.plan {
             let is_on_it = progress.find(&self.graph, view, patch, &self.config);
-            if is_on_it && !progress.is_stuck(seconds, 2.0 * self.config.patience) {
+            // A new plan may begin off where it is, too.
+            let is_new = seconds - self.planned < self.config.plans_every;
+            if is_new || is_on_it && !progress.is_stuck(seconds, 2.0 * self.config.patience) {
                 return;
             }
             if is_on_it && let Some(way) = progress.next_way() {
-                self.blocked.push((way, seconds + self.config.blocked_for));
+                self.block(way, seconds);
             }
             self.plan = None;
             self.planned = f64::NEG_INFINITY;
@@ -321,14 +353,16 @@ impl Bot {
         }
         self.planned = seconds;
         self.plans += 1;
-        self.blocked.retain(|(_, until)| *until > seconds);
+        self.blocked
+            .retain(|blocked| !blocked.is_forgotten(seconds));
         let state = view.climber.state();
         let level = Arc::clone(&self.level);
         let goal = if self.rests { &level } else { view.goal };
         let blocked = &self.blocked;
         let room = Room::new(view);
         let is_open = |from: usize, to: usize| {
-            !blocked.iter().any(|(way, _)| *way == [from, to])
+            let is_it = |blocked: &Blocked| blocked.way == [from, to] && blocked.until > seconds;
+            !blocked.iter().any(is_it)
                 && self.graph.is_there(to, view.surface)
                 && room.is_there(&self.graph.patches[to], to)
         };
@@ -359,14 +393,11 @@ impl Bot {
         };
         let safe_starts = starts(&is_safe);
         let starts = starts(&is_open);
-        // Without the strength for it: as far as it gets.
-        let tireless: Vec<Start> = starts
-            .iter()
-            .map(|start| Start {
-                stamina: 1.0,
-                ..*start
-            })
-            .collect();
+        let with = |stamina: f64| -> Vec<Start> {
+            let starts = starts.iter();
+            starts.map(|start| Start { stamina, ..*start }).collect()
+        };
+        let (spent, tireless) = (with(state.stamina), with(1.0));
         let still = Forecast::still();
         let all = Around {
             is_open: &is_open,
@@ -394,12 +425,12 @@ impl Bot {
         let (lasts, plan) = match lasting {
             Some(plan) => (true, Some(plan)),
             // No calm place to rest is in reach: to any level place, or else straight to the goal.
+            // With all its strength, or without the strength for it: as far as it gets.
             None => {
-                let plan = find(&tireless, goal, &still, &all);
-                (
-                    false,
-                    plan.or_else(|| find(&tireless, view.goal, &still, &all)),
-                )
+                let plan = find(&spent, goal, &still, &all)
+                    .or_else(|| find(&tireless, goal, &still, &all))
+                    .or_else(|| find(&tireless, view.goal, &still, &all));
+                (false, plan)
             }
         };
         // A way that is blocked for now is one.
@@ -411,6 +442,23 @@ impl Bot {
         self.plan = plan.map(|plan| Progress::new(plan, lasts, seconds));
     }
 
+    /// A way did not work. Each time that it does not, it is avoided for twice as long.
+    fn block(&mut self, way: [usize; 2], seconds: f64) {
+        let same = self.blocked.iter_mut().find(|blocked| blocked.way == way);
+        let lasts = same
+            .as_ref()
+            .map_or(self.config.blocked_for, |before| 2.0 * before.lasts);
+        let blocked = Blocked {
+            way,
+            until: seconds + lasts,
+            lasts,
+        };
+        match same {
+            Some(before) => *before = blocked,
+            None => self.blocked.push(blocked),
+        }
+    }
+
     fn come(&mut self, view: &View<'_>) -> ClimberInput {
         self.plan = None;
         self.lost = None;
@@ -418,6 +466,25 @@ impl Bot {
         self.approach.input(&self.graph, &self.config, view)
     }
 }
+
+/// A way that did not work.
+#[derive(Clone, Copy, Debug)]
+struct Blocked {
+    way: [usize; 2],
+    /// Until when, and for how long, it is avoided, seconds.
+    until: f64,
+    lasts: f64,
+}
+
+impl Blocked {
+    /// True if it was open for long enough that it may as well work.
+    fn is_forgotten(&self, seconds: f64) -> bool {
+        seconds > self.until + FORGETS * self.lasts
+    }
+}
+
+/// A way that did not work is forgotten after it was open for so many times as long as it was avoided.
+const FORGETS: f64 = 4.0;
 
 /// Whoever is nearer to where it would be on a patch than this share of its radius is there.
 const THERE: f64 = 0.5;
@@ -430,6 +497,11 @@ const RESTS: f64 = 8.0;
 
 /// Who finds no way for so long lets go, seconds.
 const LOST: f64 = 3.0;
+
+/// From a ledge it hangs so many times as long before it lets go, and goes along it for so long where there is no room
+/// above, seconds.
+const LEDGES: f64 = 2.0;
+const SHIMMIES: f64 = 1.0;
 
 /// Stamina that it has to spare where it goes on without a rest.
 const SPARE: f64 = 0.05;

@@ -1,6 +1,10 @@
 //! Everything that can be reached from the entries.
 
+use std::collections::BinaryHeap;
+
 use super::ClimbGraph;
+use crate::Start;
+use crate::plan::{node, of_node};
 
 /// How a climber is on a patch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -62,5 +66,63 @@ impl ClimbGraph {
             }
         }
         reached
+    }
+    /// Of each node, the most stamina with which a climber comes there at rest from some starts if it rests wherever
+    /// it can; negative if it does not come there.
+    ///
+    /// Dijkstra's search (1959) for the widest path. A place that a rest makes better is looked at again.
+    pub(crate) fn strength(&self, starts: impl IntoIterator<Item = Start>) -> Vec<f64> {
+        let costs = self.config.climber.stamina;
+        let drain = costs.map_or(0.0, |costs| costs.hold_drain);
+        let rests = costs.is_none_or(|costs| costs.refill > 0.0);
+        let mut most = vec![-1.0; 2 * self.patches.len()];
+        let mut open = BinaryHeap::new();
+        let offer = |most: &mut [f64], open: &mut BinaryHeap<_>, patch, footing, stamina: f64| {
+            let stamina: f64 = if rests && footing == Footing::Stands {
+                1.0
+            } else {
+                stamina
+            };
+            let node = node(patch, footing);
+            if stamina >= 0.0 && stamina > most[node] {
+                most[node] = stamina;
+                // Bits of numbers that are not negative have their order.
+                open.push((stamina.to_bits(), node));
+            }
+        };
+        for start in starts {
+            if self
+                .footings(start.patch)
+                .any(|footing| footing == start.footing)
+            {
+                offer(
+                    &mut most,
+                    &mut open,
+                    start.patch,
+                    start.footing,
+                    start.stamina.clamp(0.0, 1.0),
+                );
+            }
+        }
+        while let Some((bits, at)) = open.pop() {
+            let stamina = f64::from_bits(bits);
+            if stamina < most[at] {
+                continue;
+            }
+            let (patch, footing) = of_node(at);
+            for other in self.footings(patch) {
+                offer(&mut most, &mut open, patch, other, stamina);
+            }
+            for (beside, way, length) in self.ways.of(patch) {
+                let (leads, costs) = match footing {
+                    Footing::Stands => (way.walks, 0.0),
+                    Footing::Holds => (way.climbs, drain * length / self.speed(footing)),
+                };
+                if leads && !costs.is_nan() {
+                    offer(&mut most, &mut open, beside, footing, stamina - costs);
+                }
+            }
+        }
+        most
     }
 }

@@ -145,6 +145,15 @@ impl ClimbGraph {
             .collect()
     }
 
+    /// Of each patch, whether a climber with so much stamina, 0 to 1, comes there from the ground, on the creature at
+    /// rest. It rests wherever it can.
+    pub fn reachable_with(&self, stamina: f64) -> Vec<bool> {
+        self.strength(self.starts_on_ground(stamina))
+            .chunks_exact(2)
+            .map(|footings| footings.iter().any(|left| *left >= 0.0))
+            .collect()
+    }
+
     /// Number of ways between patches, each counted there and back.
     pub fn ways(&self) -> usize {
         self.ways.len()

@@ -91,6 +91,23 @@ impl Forecast {
         waits as f64 * SLICE
     }
 
+    /// After how long nothing new is expected, seconds, of two minutes that are looked at: the shortest time after which
+    /// all is expected again.
+    ///
+    /// The period of a text by its longest border (Knuth, Morris and Pratt 1977).
+    pub(crate) fn repeats_after(&self) -> f64 {
+        let slices = &self.slices[..self.len().min(2 * AHEAD)];
+        let mut borders = vec![0; slices.len()];
+        for at in 1..slices.len() {
+            let mut border: usize = borders[at - 1];
+            while border > 0 && slices[at] != slices[border] {
+                border = borders[border - 1];
+            }
+            borders[at] = border + usize::from(slices[at] == slices[border]);
+        }
+        (slices.len() - borders.last().unwrap_or(&0)) as f64 * SLICE
+    }
+
     /// Number of slices after which it begins again.
     pub(super) fn len(&self) -> usize {
         self.slices.len()
@@ -106,5 +123,28 @@ impl Forecast {
         }
         let slice = self.slices[slice % self.slices.len()];
         graph.clips.at(slice as usize, patch)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_forecast_repeats_after_its_shortest_period() {
+        let cases: [(&[u32], f64); 6] = [
+            (&[], 0.0),
+            (&[3], 0.5),
+            (&[3, 3, 3, 3], 0.5),
+            (&[1, 2, 1, 2, 1, 2], 1.0),
+            (&[1, 2, 1, 2, 1], 1.0),
+            (&[1, 1, 2, 1, 1, 3], 3.0),
+        ];
+        for (slices, seconds) in cases {
+            let forecast = Forecast {
+                slices: slices.to_vec(),
+            };
+            assert_eq!(forecast.repeats_after(), seconds, "{slices:?}");
+        }
     }
 }

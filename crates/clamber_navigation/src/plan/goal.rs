@@ -101,12 +101,12 @@ impl Goal {
 const ROUNDING: f64 = 1e-9;
 
 /// A patch and a footing, as a number.
-pub(super) fn node(patch: usize, footing: Footing) -> usize {
+pub(crate) fn node(patch: usize, footing: Footing) -> usize {
     2 * patch + usize::from(footing == Footing::Holds)
 }
 
 /// The inverse of [`node`].
-pub(super) fn of_node(node: usize) -> (usize, Footing) {
+pub(crate) fn of_node(node: usize) -> (usize, Footing) {
     let footing = if node % 2 == 1 {
         Footing::Holds
     } else {
@@ -218,7 +218,7 @@ impl ClimbGraph {
     }
 
     /// How a climber can be on a patch.
-    pub(super) fn footings(&self, patch: usize) -> impl Iterator<Item = Footing> + use<> {
+    pub(crate) fn footings(&self, patch: usize) -> impl Iterator<Item = Footing> + use<> {
         let patch = self.patches[patch];
         let stands = patch.can_stand.then_some(Footing::Stands);
         let holds = patch.can_hold.then_some(Footing::Holds);

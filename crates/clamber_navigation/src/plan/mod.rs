@@ -6,5 +6,6 @@ mod search;
 
 pub use forecast::Forecast;
 pub use goal::Goal;
+pub(crate) use goal::{node, of_node};
 pub(crate) use search::{Around, slips, throws};
 pub use search::{Plan, PlanStep, Start};

@@ -6,4 +6,5 @@ mod cache;
 mod jumps;
 mod moving;
 mod plans;
+mod strength;
 mod support;

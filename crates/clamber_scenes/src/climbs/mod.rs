@@ -142,7 +142,7 @@ pub fn climb_by(
     let mut scene = Scene::new(creature, options)?;
     let rate = scene.moves.as_ref().map_or(1.0, |moves| moves.rate);
     let graph = creature.graph(&config, options.height, rate, &[])?;
-    let reached = graph.reachable();
+    let reached = graph.reachable_with(1.0 - BotConfig::default().reserve);
     let height = |patch: usize| graph.patches()[patch].seat.y - scene.ground;
     let best = (0..reached.len()).filter(|patch| reached[*patch]);
     let best = best.max_by(|a, b| height(*a).total_cmp(&height(*b)));
@@ -237,19 +237,20 @@ struct Scene {
 impl Scene {
     fn new(creature: &Creature, options: &ClimbsOptions) -> Result<Self, ClimbError> {
         let (place, ground) = creature.standing(options.height)?;
-        let mut surface = SkinnedSurface::new(std::sync::Arc::clone(&creature.collider));
-        let palette = creature.skeleton.palette(&creature.skeleton.rest_pose())?;
-        surface.place(&palette, place)?;
-        Ok(Self {
-            surface,
+        let moves = match options.moving {
+            true => Some(Moves::new(creature, options.height)?),
+            false => None,
+        };
+        let mut scene = Self {
+            surface: SkinnedSurface::new(std::sync::Arc::clone(&creature.collider)),
             floor: HalfSpace::below(ground),
             ground,
             place,
-            moves: match options.moving {
-                true => Some(Moves::new(creature, options.height)?),
-                false => None,
-            },
-        })
+            moves,
+        };
+        // It stands as it does at first: what jumps there is faster than a bullet.
+        scene.surface.place(&scene.palette(creature, 0.0)?, place)?;
+        Ok(scene)
     }
 
     /// A climber on the ground, some way from an entry.
@@ -280,13 +281,17 @@ impl Scene {
 
     /// Poses the creature: at rest, or by its clips in turn.
     fn advance(&mut self, creature: &Creature, seconds: f64) -> Result<(), ClimbError> {
+        let palette = self.palette(creature, seconds)?;
+        self.surface.advance(&palette, self.place)?;
+        Ok(())
+    }
+
+    fn palette(&self, creature: &Creature, seconds: f64) -> Result<Palette, ClimbError> {
         let mut pose = creature.skeleton.rest_pose();
         if let Some(moves) = &self.moves {
             moves.pose(creature, seconds, &mut pose)?;
         }
-        let palette = creature.skeleton.palette(&pose)?;
-        self.surface.advance(&palette, self.place)?;
-        Ok(())
+        Ok(creature.skeleton.palette(&pose)?)
     }
 
     /// Steps the climber; gives how often it lost its hold.
