@@ -40,6 +40,9 @@ const CHOOSES: f64 = 0.5;
 const GETS_ON: f64 = 0.5;
 const WAITS: f64 = 60.0;
 
+/// In vain it looks for that time every so many seconds at last.
+const PAUSE: f64 = 2.0;
+
 /// An entry from which its strength is not enough counts as so much farther from the goal, seconds.
 const TIRES: f64 = 600.0;
 
@@ -69,6 +72,9 @@ pub(super) struct Approach {
     waits: Option<f64>,
     lasts: bool,
     repeats: f64,
+    /// When it last looked for that, and after how long it looks again, seconds.
+    looked: f64,
+    pause: f64,
     /// It has let go, and holds on to nothing before it stands on the ground.
     pub(super) drops: bool,
 }
@@ -88,6 +94,8 @@ impl Default for Approach {
             waits: None,
             lasts: false,
             repeats: WAITS,
+            looked: f64::NEG_INFINITY,
+            pause: 0.5 * CHOOSES,
             drops: false,
         }
     }
@@ -335,10 +343,20 @@ impl Approach {
             Some(way / climber.ground.walk_speed.max(1e-3))
         };
         self.lasts = false;
-        if !view.forecast.is_still() && is_rested(config, view) {
+        if !view.forecast.is_still()
+            && is_rested(config, view)
+            && seconds - self.looked >= self.pause
+        {
             let lasting = self.lasting(graph, config, view, comes);
             self.lasts = lasting.is_some();
             self.repeats = view.forecast.repeats_after().min(WAITS);
+            // A search that finds nothing takes long: it is made less and less often.
+            self.pause = if self.lasts {
+                CHOOSES
+            } else {
+                (2.0 * self.pause).min(PAUSE)
+            };
+            self.looked = seconds;
             if lasting.is_some() {
                 (self.entry, self.tries) =
                     (lasting, if self.entry == lasting { self.tries } else { 0 });
@@ -391,5 +409,5 @@ impl Approach {
 fn is_rested(config: &BotConfig, view: &View<'_>) -> bool {
     let stamina = view.climber.config().stamina;
     let rests = stamina.is_some_and(|stamina| stamina.refill > 0.0);
-    !rests || view.climber.state().stamina >= config.rested
+    !rests || view.climber.state().stamina >= config.rested.min(1.0)
 }
