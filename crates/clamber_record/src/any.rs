@@ -12,7 +12,7 @@ pub enum AnyRecording {
 }
 
 impl AnyRecording {
-    /// Reads a recording from a file of at most 1 GiB.
+    /// Reads a recording from a file of any length.
     ///
     /// # Errors
     /// As [`Recording::open`].

@@ -91,12 +91,12 @@ impl Forecast {
         waits as f64 * SLICE
     }
 
-    /// After how long nothing new is expected, seconds, of two minutes that are looked at: the shortest time after which
-    /// all is expected again.
+    /// After how long all is expected again, seconds.
     ///
-    /// The period of a text by its longest border (Knuth, Morris and Pratt 1977).
+    /// The period of a text by its longest border (Knuth, Morris and Pratt 1977), where it divides the length: what is
+    /// expected goes round.
     pub(crate) fn repeats_after(&self) -> f64 {
-        let slices = &self.slices[..self.len().min(2 * AHEAD)];
+        let slices = &self.slices;
         let mut borders = vec![0; slices.len()];
         for at in 1..slices.len() {
             let mut border: usize = borders[at - 1];
@@ -105,7 +105,9 @@ impl Forecast {
             }
             borders[at] = border + usize::from(slices[at] == slices[border]);
         }
-        (slices.len() - borders.last().unwrap_or(&0)) as f64 * SLICE
+        let period = slices.len() - borders.last().unwrap_or(&0);
+        let goes_round = period > 0 && slices.len().is_multiple_of(period);
+        (if goes_round { period } else { slices.len() }) as f64 * SLICE
     }
 
     /// Number of slices after which it begins again.
@@ -137,7 +139,7 @@ mod tests {
             (&[3], 0.5),
             (&[3, 3, 3, 3], 0.5),
             (&[1, 2, 1, 2, 1, 2], 1.0),
-            (&[1, 2, 1, 2, 1], 1.0),
+            (&[1, 2, 1, 2, 1], 2.5),
             (&[1, 1, 2, 1, 1, 3], 3.0),
         ];
         for (slices, seconds) in cases {
