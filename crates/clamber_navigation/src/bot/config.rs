@@ -22,9 +22,9 @@ pub struct BotConfig {
     pub patience: f64,
     /// It avoids a way on which it was stuck for so long, seconds. Default 10.
     pub blocked_for: f64,
-    /// Least time between two plans that found no way, seconds. Default 0.5.
+    /// Least time between two plans that found no way, and for which it keeps a plan, seconds. Default 0.5.
     pub plans_every: f64,
-    /// It lets go after hanging in calm for so long, seconds. Default 2.5.
+    /// It lets go after hanging in calm for so long, seconds; from a ledge after twice as long. Default 2.5.
     pub hangs_for: f64,
     /// Seconds from the beginning of an attack until it reacts. Default 0.25.
     pub reaction: f64,

@@ -7,6 +7,7 @@ use glam::DVec3;
 
 use super::{BotConfig, Danger, View};
 use crate::graph::highest_entry;
+use crate::plan::Around;
 use crate::{ClimbGraph, Footing, Start};
 
 /// It jumps within so many radii of where it gets on, seen from above.
@@ -36,15 +37,12 @@ const SWINGS: f64 = 0.4;
 /// It chooses an entry anew every so many seconds.
 const CHOOSES: f64 = 0.5;
 
-/// It takes so long to get on, and it waits no longer than this for a good time to do so, seconds.
+/// From the ground to its first patch it takes so long, and it waits no longer than this for a good time to do so, seconds.
 const GETS_ON: f64 = 0.5;
 const WAITS: f64 = 60.0;
 
 /// In vain it looks for that time every so many seconds at last.
 const PAUSE: f64 = 2.0;
-
-/// An entry from which its strength is not enough counts as so much farther from the goal, seconds.
-const TIRES: f64 = 600.0;
 
 /// An entry has to be better by so many seconds to be taken instead of the one that it goes to.
 const BETTER: f64 = 1.5;
@@ -163,9 +161,11 @@ impl Approach {
         {
             self.free = seconds;
             let away = level(state.position - view.surface.world_from_model().translation);
+            // Who is tired is better off on the ground, even where a leg is in its way.
             return ClimberInput {
                 walk: away.normalize_or(up.any_orthonormal_vector()),
-                ..grip
+                grip: !stands || is_rested(config, view),
+                ..ClimberInput::IDLE
             };
         }
         if seconds - self.chosen >= CHOOSES && state.mode == ClimberMode::Standing {
@@ -273,24 +273,30 @@ impl Approach {
         lasted > 0.0 && place.distance(from) > SWINGS * catches * lasted
     }
 
-    /// True if its strength is enough for what is expected if it gets on now, or if it has waited for that for as long
-    /// as anything is expected.
+    /// True if its strength is enough for what is expected if it goes to its entry now, or if it has waited for that for
+    /// as long as anything is expected.
     fn is_time(&mut self, view: &View<'_>) -> bool {
+        if view.forecast.is_still() || self.lasts {
+            self.waits = None;
+            return true;
+        }
+        if view.danger != Danger::None {
+            // It keeps away for now.
+            self.waits = None;
+            return false;
+        }
         let since = *self.waits.get_or_insert(view.seconds);
-        view.forecast.is_still() || self.lasts || view.seconds - since >= self.repeats
+        view.seconds - since >= self.repeats
     }
 
-    /// How long it waits at a patch from some time on, seconds: a foot that swings is no entry until it stands.
-    fn waits_at(
-        graph: &ClimbGraph,
-        config: &BotConfig,
-        view: &View<'_>,
-        patch: usize,
-        from: f64,
-    ) -> f64 {
-        let grip = view.climber.config().grip;
-        let most = config.climbs_in * grip.map_or(0.0, |grip| grip.hang_acceleration);
-        view.forecast.calms_after(graph, patch, from, most)
+    /// The hardest shake in which it gets on, metres a second squared.
+    fn shake(config: &BotConfig, view: &View<'_>) -> f64 {
+        let climber = view.climber.config();
+        let stands = config.stands_in * climber.ground.throw_acceleration;
+        let holds = climber
+            .grip
+            .map(|grip| config.climbs_in * grip.hang_acceleration);
+        holds.unwrap_or(stands)
     }
 
     /// The entry from which its strength is enough for what is expected.
@@ -305,16 +311,21 @@ impl Approach {
         let known: BTreeMap<usize, (usize, f64)> = reach
             .filter_map(|entry| Some((graph.entries()[entry].patch, (entry, comes(entry)?))))
             .collect();
-        let starts = graph.starts_on_ground(1.0 - config.reserve);
+        let most = Self::shake(config, view);
+        let starts = graph.starts_on_ground(strength(config, view));
         let starts: Vec<Start> = starts
             .filter_map(|start| {
                 let comes = known.get(&start.patch)?.1;
-                let is_calm = Self::waits_at(graph, config, view, start.patch, comes) == 0.0;
+                let is_calm = view.forecast.is_calm_from(graph, start.patch, comes, most);
                 let seconds = comes + GETS_ON;
                 is_calm.then_some(Start { seconds, ..start })
             })
             .collect();
-        let plan = graph.plan(&starts, view.goal, view.forecast)?;
+        let around = Around {
+            is_open: &|_, to| graph.is_there(to, view.surface),
+            ..Around::default()
+        };
+        let plan = graph.plan_around(&starts, view.goal, view.forecast, &around)?;
         Some(known.get(&plan.steps.first()?.patch)?.0)
     }
 
@@ -344,6 +355,7 @@ impl Approach {
         };
         self.lasts = false;
         if !view.forecast.is_still()
+            && view.danger == Danger::None
             && is_rested(config, view)
             && seconds - self.looked >= self.pause
         {
@@ -363,34 +375,33 @@ impl Approach {
                 return;
             }
         }
+        let (strength, most) = (strength(config, view), Self::shake(config, view));
+        // Seconds to the goal by an entry, after whether it tires on the way: then it comes as far as its strength goes.
         let cost = |entry: usize| {
-            let Some(comes) = comes(entry) else {
-                return f64::INFINITY;
-            };
+            let comes = comes(entry)?;
             let at = graph.entries()[entry].patch;
-            // Where its strength is not enough it comes as far as that goes.
-            let [stands, holds] = footings.map(|footing| {
-                view.goal
-                    .least_seconds_with(at, footing, 1.0 - config.reserve)
-            });
+            let [stands, holds] =
+                footings.map(|footing| view.goal.least_seconds_with(at, footing, strength));
             let lasts = stands.min(holds);
-            let left = if lasts.is_finite() {
-                lasts
+            let tires = !lasts.is_finite();
+            let left = if tires {
+                view.goal.least_seconds_from(at)
             } else {
-                TIRES + view.goal.least_seconds_from(at)
+                lasts
             };
-            if !left.is_finite() {
-                return f64::INFINITY;
-            }
-            comes + Self::waits_at(graph, config, view, at, comes) + left
+            // A foot that swings is no entry until it stands.
+            let seconds = comes + view.forecast.calms_after(graph, at, comes, most) + left;
+            left.is_finite().then_some((tires, seconds))
         };
-        let all = (0..graph.entries().len()).map(|entry| (cost(entry), entry));
-        let best = all
-            .filter(|(cost, _)| cost.is_finite())
-            .min_by(|a, b| a.0.total_cmp(&b.0));
-        let now = self.entry.map_or(f64::INFINITY, cost);
+        let all = (0..graph.entries().len()).filter_map(|entry| Some((cost(entry)?, entry)));
+        let best =
+            all.min_by(|((tires, cost), _), ((a, b), _)| tires.cmp(a).then(cost.total_cmp(b)));
+        let now = self.entry.and_then(cost);
+        let is_better = |(tires, seconds): (bool, f64)| {
+            now.is_none_or(|(now, left)| (!tires && now) || tires == now && seconds + BETTER < left)
+        };
         match best {
-            Some((cost, entry)) if cost + BETTER < now || self.entry.is_none() => {
+            Some((cost, entry)) if is_better(cost) => {
                 if self.entry != Some(entry) {
                     self.tries = 0;
                 }
@@ -403,6 +414,19 @@ impl Approach {
             _ => {}
         }
     }
+}
+
+/// The stamina that it counts on once it gets on: it rests before it does.
+fn strength(config: &BotConfig, view: &View<'_>) -> f64 {
+    let stamina = view.climber.config().stamina;
+    let rests = stamina.is_some_and(|stamina| stamina.refill > 0.0);
+    let now = view.climber.state().stamina;
+    let then = if rests {
+        now.max(config.rested.min(1.0))
+    } else {
+        now
+    };
+    (then - config.reserve).max(0.0)
 }
 
 /// True if it has the strength to get on.

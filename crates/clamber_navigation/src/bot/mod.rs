@@ -209,14 +209,16 @@ impl Bot {
         let seconds = view.seconds;
         let state = view.climber.state();
         let grip = view.climber.config().grip;
-        let still = grip.map_or(0.0, |grip| STILL * grip.hang_acceleration);
+        let still = grip.map_or(f64::INFINITY, |grip| STILL * grip.hang_acceleration);
         if state.shake.length() > still {
             self.hangs = None;
         }
         let since = *self.hangs.get_or_insert(seconds);
         let is_on_ledge = state.mode == ClimberMode::LedgeHanging;
         let most = if is_on_ledge { LEDGES } else { 1.0 } * self.config.hangs_for;
-        let holds = seconds - since <= most;
+        // Where it pulls itself up there may be room.
+        let pulls_up = is_on_ledge && state.ledge_hanging.pull_up > 0.0;
+        let holds = pulls_up || seconds - since <= most;
         if !holds && is_on_ledge {
             // There is no room above it, nor beside.
             let way = self.plan.as_ref().and_then(Progress::next_way);
@@ -240,8 +242,17 @@ impl Bot {
         if state.ledge_hanging.gave_up {
             let ahead = self.plan.as_mut();
             let ahead = ahead.and_then(|plan| plan.target(&self.graph, view, &self.config));
-            let toward = ahead.map_or(0.0, |target| (target.place - state.position).dot(aside));
-            self.shimmies = (aside * 1f64.copysign(toward), seconds + SHIMMIES);
+            // Without a way to each side by turns.
+            let back = -self.shimmies.0.dot(aside);
+            let toward = ahead.map_or(back, |target| (target.place - state.position).dot(aside));
+            let (ledge, radius) = (
+                view.climber.config().ledge,
+                view.climber.config().body.radius,
+            );
+            let lasts = ledge.map_or(0.0, |ledge| {
+                SHIMMIES * radius / ledge.shimmy_speed.max(1e-3)
+            });
+            self.shimmies = (aside * 1f64.copysign(toward), seconds + lasts);
         }
         let (way, until) = self.shimmies;
         if seconds < until { way } else { up }
@@ -264,10 +275,12 @@ impl Bot {
         let throws = view.climber.config().ground.throw_acceleration;
         // Where nothing stays calm it rests wherever it can, between shakes.
         let is_calm = || !self.finds_calm || view.forecast.is_calm_at(&self.graph, patch, RESTS);
-        let rests_here = self.rests && (stands || view.is_level()) && is_calm();
+        let rests_here = self.rests && (stands || view.is_level(LETS_GO)) && is_calm();
+        // Before it comes: hands are slower than feet.
+        let can_stand =
+            state.shake.length().max(view.shake_ahead) <= self.config.stands_in * throws;
         let is_shaken = if stands || rests_here {
-            // Before it comes: hands are slower than feet.
-            state.shake.length().max(view.shake_ahead) > self.config.stands_in * throws
+            !can_stand
         } else {
             state.shake.length() > self.config.climbs_in * hangs
         };
@@ -297,11 +310,11 @@ impl Bot {
         };
         self.approach.drops = false;
         if let Some(wanted) = progress.rests_until() {
-            let is_level = stands || view.is_level();
+            let is_level = stands || view.is_level(AS_PLANNED);
             let needs = state.stamina < 1.0 && state.stamina < wanted + self.config.reserve;
             if needs && is_level {
                 progress.waits(view.seconds);
-                return rest;
+                return if can_stand { rest } else { hold };
             }
             // It may still hold on to the slope beside the place.
             let comes = needs && !progress.is_stuck(view.seconds, self.config.patience);
@@ -313,8 +326,10 @@ impl Bot {
             return hold;
         };
         let toward = target.place - state.position;
+        let up = view.climber.config().up();
+        let level = toward - up * toward.dot(up);
         // Where its way can be walked it lets go, and gets strength back.
-        let walks = stands || progress.walks() && view.is_level();
+        let walks = stands || can_stand && progress.walks() && view.is_level(AS_PLANNED);
         let tries_else = progress.tries_else(view);
         let jumps = stands && progress.is_stuck(view.seconds, self.config.patience);
         ClimberInput {
@@ -325,7 +340,7 @@ impl Bot {
                 view.against(&target)
                     .normalize_or(view.climber.config().up())
             },
-            walk: (toward / view.climber.config().body.radius).clamp_length_max(1.0),
+            walk: (level / view.climber.config().body.radius).clamp_length_max(1.0),
             grip: target.footing == Footing::Holds || !walks || tries_else,
             jump: jumps && self.approach.jumps(view.seconds),
             ..ClimberInput::IDLE
@@ -498,10 +513,15 @@ const RESTS: f64 = 8.0;
 /// Who finds no way for so long lets go, seconds.
 const LOST: f64 = 3.0;
 
-/// From a ledge it hangs so many times as long before it lets go, and goes along it for so long where there is no room
-/// above, seconds.
+/// It lets go on slopes up to these shares of what it can stand on: to rest where it happens to be, and where it
+/// planned to stand.
+const LETS_GO: f64 = 0.8;
+const AS_PLANNED: f64 = 0.97;
+
+/// From a ledge it hangs so many times as long before it lets go, and goes along it by so many radii where there is no
+/// room above.
 const LEDGES: f64 = 2.0;
-const SHIMMIES: f64 = 1.0;
+const SHIMMIES: f64 = 2.5;
 
 /// Stamina that it has to spare where it goes on without a rest.
 const SPARE: f64 = 0.05;

@@ -60,13 +60,13 @@ impl View<'_> {
         Some((triangle, material.coordinates.map(|weight| weight as f32)))
     }
 
-    /// True if what it is on is level enough to let go.
-    pub(super) fn is_level(&self) -> bool {
+    /// True if what it is on is level enough to let go: no steeper than a share of what it can stand on.
+    pub(super) fn is_level(&self, share: f64) -> bool {
         let config = self.climber.config();
         let support = self.climber.state().support;
         support.is_some_and(|support| {
             let cosine = support.normal_in_world().dot(config.up());
-            cosine > libm::cos(LEVEL * config.ground.max_slope)
+            cosine > libm::cos(share * config.ground.max_slope)
         })
     }
 
@@ -143,6 +143,3 @@ pub(super) struct Spot {
     /// Where the climber's ball is when it is there.
     pub(super) seat: DVec3,
 }
-
-/// It lets go on slopes up to this share of what it can stand on.
-const LEVEL: f64 = 0.8;

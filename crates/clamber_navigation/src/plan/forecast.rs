@@ -80,15 +80,26 @@ impl Forecast {
         from: f64,
         most: f64,
     ) -> f64 {
-        let first = (from / SLICE) as usize;
-        let is_calm = |slice: &usize| {
-            let mut while_on = *slice..slice + GETS_ON;
-            while_on.all(|slice| self.at(graph, slice, patch).shake <= most)
+        let longest = self.len().min(AHEAD);
+        let is_calm = |waits: &usize| {
+            let from = from + *waits as f64 * SLICE;
+            self.is_calm_from(graph, patch, from, most)
         };
-        let most = self.len().min(AHEAD);
-        let mut slices = first..first + most;
-        let waits = slices.find(is_calm).map_or(most, |slice| slice - first);
-        waits as f64 * SLICE
+        (0..longest).find(is_calm).unwrap_or(longest) as f64 * SLICE
+    }
+
+    /// True if from a time on a patch shakes no harder than `most` metres a second squared for as long as it takes to
+    /// get on.
+    pub(crate) fn is_calm_from(
+        &self,
+        graph: &ClimbGraph,
+        patch: usize,
+        from: f64,
+        most: f64,
+    ) -> bool {
+        let first = (from / SLICE) as usize;
+        let mut while_on = first..first + GETS_ON;
+        while_on.all(|slice| self.at(graph, slice, patch).shake <= most)
     }
 
     /// After how long all is expected again, seconds.

@@ -1,4 +1,4 @@
-//! A bot climbs many models, from the ground to the highest place that their graph calls reachable.
+//! A bot climbs many models, from the ground to the highest place that their graph calls reachable with its strength.
 
 mod moves;
 mod options;
@@ -8,7 +8,7 @@ use std::path::Path;
 
 use clamber_climber::{Climber, ClimberConfig, ClimberEvent, ContactQuery, StepRules};
 use clamber_navigation::{
-    Bot, BotConfig, ClimbGraph, Danger, Forecast, FutureSkin, NavigationError, View,
+    Bot, BotConfig, ClimbGraph, Danger, Footing, Forecast, FutureSkin, NavigationError, View,
 };
 use clamber_surface::geometry::Similarity;
 use clamber_surface::rig::Palette;
@@ -74,9 +74,9 @@ pub struct Climb {
 pub struct Climbed {
     /// Number of patches of the graph.
     pub patches: usize,
-    /// Share of the skin that is reachable.
+    /// Share of the skin that is reachable with the strength that a bot counts on.
     pub reachable: f64,
-    /// Height of the creature, and of the highest place that is reachable, above the ground; metres.
+    /// Height of the creature, and of the highest place that is reachable with that, above the ground; metres.
     pub heights: [f64; 2],
     /// The least time from the ground to there, seconds.
     pub least: f64,
@@ -142,7 +142,8 @@ pub fn climb_by(
     let mut scene = Scene::new(creature, options)?;
     let rate = scene.moves.as_ref().map_or(1.0, |moves| moves.rate);
     let graph = creature.graph(&config, options.height, rate, &[])?;
-    let reached = graph.reachable_with(1.0 - BotConfig::default().reserve);
+    let strength = 1.0 - BotConfig::default().reserve;
+    let reached = graph.reachable_with(strength);
     let height = |patch: usize| graph.patches()[patch].seat.y - scene.ground;
     let best = (0..reached.len()).filter(|patch| reached[*patch]);
     let best = best.max_by(|a, b| height(*a).total_cmp(&height(*b)));
@@ -166,7 +167,12 @@ pub fn climb_by(
         return Ok(climbed);
     };
     let goal = graph.goal(&[best]);
-    let least = |patch: usize| goal.least_seconds_from(patch);
+    let least = |patch: usize| {
+        let footings = [Footing::Stands, Footing::Holds];
+        let [stands, holds] =
+            footings.map(|footing| goal.least_seconds_with(patch, footing, strength));
+        stands.min(holds)
+    };
     let entries = graph.entries().iter().map(|entry| entry.patch);
     let first = entries.min_by(|a, b| least(*a).total_cmp(&least(*b)));
     let first = first.unwrap_or(best);

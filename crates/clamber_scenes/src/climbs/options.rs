@@ -4,8 +4,8 @@ use clap::Parser;
 
 use crate::battle::{BattleError, RidesOptions};
 
-/// A bot climbs every model of a folder, from the ground to the highest place that the model's graph calls reachable,
-/// and a table shows how long it takes.
+/// A bot climbs every model of a folder, from the ground to the highest place that the model's graph calls reachable
+/// with the strength that the bot counts on, and a table shows how long it takes.
 ///
 /// All skin can be gripped, as if it were fur. Exits with 1 if the bot does not come there on 20 of 27 models.
 #[derive(Clone, Debug, Parser)]
