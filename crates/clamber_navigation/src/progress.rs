@@ -14,6 +14,8 @@ pub enum Stage {
     Arms,
     /// Plays the clips.
     Clips,
+    /// Plays jumps from one part to another.
+    Jumps,
 }
 
 /// How far a build has got.

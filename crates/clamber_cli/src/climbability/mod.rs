@@ -243,7 +243,8 @@ fn show(bar: &mut Option<(Stage, Progress)>, built: Built) {
         let of = match built.stage {
             Stage::Seats => "places with room",
             Stage::Arms => "places with holds",
-            _ => "clips",
+            Stage::Clips => "clips",
+            _ => "jumps",
         };
         *bar = Some((built.stage, Progress::new(built.of, of)));
     }

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use super::view::Spot;
 use super::{BotConfig, Target, View};
+use crate::graph::Spot;
 use crate::{ClimbGraph, Footing, Plan};
 
 /// It looks for itself on so many steps of its plan, before and after the one that it was on.
@@ -161,6 +161,12 @@ impl Progress {
         seconds < self.tries_until
     }
 
+    /// The ends of the jump that comes next, if it is on the patch where that begins.
+    pub(super) fn next_jump(&self) -> Option<[usize; 2]> {
+        let [here, next] = [self.at, self.at + 1].map(|at| self.plan.steps.get(at));
+        Some([here?.patch, next.filter(|next| next.jumps)?.patch])
+    }
+
     /// The way that it is on.
     pub(super) fn next_way(&self) -> Option<[usize; 2]> {
         let here = self.plan.steps.get(self.at)?.patch;
@@ -184,7 +190,9 @@ impl Progress {
         self.passed.clear();
         let mut target = None;
         for (index, step) in self.plan.steps.iter().enumerate().skip(self.at) {
-            if index > self.at && self.is_rest(index) && index > self.rested {
+            let is_own =
+                index > self.at && (step.jumps || self.is_rest(index) && index > self.rested);
+            if is_own {
                 break;
             }
             let patch = &graph.patches()[step.patch];

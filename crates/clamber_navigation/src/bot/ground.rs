@@ -239,7 +239,7 @@ impl Approach {
     pub(super) fn gives_up_limb(&mut self, graph: &ClimbGraph, view: &View<'_>, patch: usize) {
         (self.rode, self.drops) = (None, true);
         self.gives_up(view.seconds);
-        let reached = graph.flood([patch]);
+        let reached = graph.region([patch]);
         let until = view.seconds + AVOIDS;
         let all = graph.entries().iter().enumerate();
         let same = all.filter(|(_, entry)| reached.has(entry.patch));

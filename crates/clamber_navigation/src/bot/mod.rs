@@ -3,6 +3,7 @@
 mod config;
 mod follow;
 mod ground;
+mod jumps;
 mod limbs;
 mod room;
 mod view;
@@ -14,11 +15,13 @@ use std::sync::Arc;
 pub use config::BotConfig;
 pub use view::{Danger, View};
 
+use crate::graph::Leap;
 use crate::plan::Around;
 use crate::report::LEVEL;
 use crate::{ClimbGraph, Footing, Forecast, Goal, Plan, Start};
 use follow::Progress;
 use ground::Approach;
+use jumps::{Jumps, TakeOff};
 use limbs::Limbs;
 use room::Room;
 
@@ -53,6 +56,9 @@ pub struct Bot {
     finds_calm: bool,
     /// Where it goes along a ledge, and until when.
     shimmies: (DVec3, f64),
+    jumps: Jumps,
+    /// When it looked last, and how long before that it had, seconds.
+    looks: [f64; 2],
 }
 
 impl Bot {
@@ -80,6 +86,8 @@ impl Bot {
             lost: None,
             finds_calm: true,
             shimmies: (DVec3::ZERO, f64::NEG_INFINITY),
+            jumps: Jumps::default(),
+            looks: [f64::NAN; 2],
         }
     }
 
@@ -132,10 +140,14 @@ impl Bot {
         (self.hangs, self.lost) = (None, None);
         (self.rests, self.finds_calm) = (false, true);
         self.shimmies = (DVec3::ZERO, f64::NEG_INFINITY);
+        self.jumps = Jumps::default();
     }
 
     /// True if it has to rest before it goes on, or does anything that costs strength.
     pub fn wants_rest(&mut self, view: &View<'_>) -> bool {
+        if self.jumps.flies() {
+            return self.rests;
+        }
         let state = view.climber.state();
         let before = self.rests;
         let least = if before {
@@ -173,6 +185,7 @@ impl Bot {
 
     /// The input for the next tick.
     pub fn input(&mut self, view: &View<'_>) -> ClimberInput {
+        self.looks = [view.seconds, view.seconds - self.looks[0]];
         self.wants_rest(view);
         let state = view.climber.state();
         self.limbs.watch(&self.config, view);
@@ -183,6 +196,11 @@ impl Bot {
             grip: true,
             ..ClimberInput::IDLE
         };
+        if matches!(state.mode, ClimberMode::Falling | ClimberMode::Sliding)
+            && let Some(input) = self.jumps.input(view)
+        {
+            return input;
+        }
         match state.mode {
             ClimberMode::Tumbling | ClimberMode::Custom(_) => ClimberInput::IDLE,
             ClimberMode::LedgeHanging => ClimberInput {
@@ -242,9 +260,13 @@ impl Bot {
         if state.ledge_hanging.gave_up {
             let ahead = self.plan.as_mut();
             let ahead = ahead.and_then(|plan| plan.target(&self.graph, view, &self.config));
+            let ahead = self
+                .jumps
+                .goes_to(&self.graph, view)
+                .or(ahead.map(|target| target.place));
             // Without a way to each side by turns.
             let back = -self.shimmies.0.dot(aside);
-            let toward = ahead.map_or(back, |target| (target.place - state.position).dot(aside));
+            let toward = ahead.map_or(back, |place| (place - state.position).dot(aside));
             let (ledge, radius) = (
                 view.climber.config().ledge,
                 view.climber.config().body.radius,
@@ -260,6 +282,9 @@ impl Bot {
 
     fn climb(&mut self, view: &View<'_>, patch: usize) -> ClimberInput {
         self.approach.got_on(view.seconds);
+        if let Some(way) = self.jumps.ends(&self.graph, view) {
+            self.block(way, view.seconds);
+        }
         let state = view.climber.state();
         let stands = state.mode == ClimberMode::Standing;
         let hold = ClimberInput {
@@ -322,6 +347,24 @@ impl Bot {
                 progress.has_rested();
             }
         }
+        if stands && let Some(ends) = progress.next_jump() {
+            match self.jumps.take_off(&self.graph, view, ends) {
+                None => {}
+                Some(TakeOff::Now(aim)) if can_stand => {
+                    if self.approach.jumps(view.seconds) {
+                        return self.jumps.begin(&self.graph, view, ends, aim);
+                    }
+                    return rest;
+                }
+                Some(TakeOff::Later | TakeOff::Tired) => {
+                    progress.waits(view.seconds);
+                    return if can_stand { rest } else { hold };
+                }
+                Some(TakeOff::Unsure | TakeOff::Now(_)) => {
+                    return if can_stand { rest } else { hold };
+                }
+            }
+        }
         let Some(target) = progress.target(&self.graph, view, &self.config) else {
             return hold;
         };
@@ -382,6 +425,9 @@ impl Bot {
                 && room.is_there(&self.graph.patches[to], to)
         };
         let limbs = &self.limbs;
+        let lands = |number: usize, leap: &Leap| {
+            Jumps::may_land(&self.graph, view, number, leap, self.looks[1])
+        };
         let is_safe = |from: usize, to: usize| {
             is_open(from, to) && !limbs.lead_onto(&self.graph, view, [from, to])
         };
@@ -416,6 +462,7 @@ impl Bot {
         let still = Forecast::still();
         let all = Around {
             is_open: &is_open,
+            lands: &lands,
             ..Around::default()
         };
         let calm = Around {
@@ -450,7 +497,10 @@ impl Bot {
         };
         // A way that is blocked for now is one.
         let is_lost = plan.is_none() && {
-            let any = Around::default();
+            let any = Around {
+                lands: &lands,
+                ..Around::default()
+            };
             find(&tireless, view.goal, &still, &any).is_none()
         };
         self.lost = is_lost.then(|| [self.lost.map_or(seconds, |[first, _]| first), seconds]);
@@ -475,6 +525,9 @@ impl Bot {
     }
 
     fn come(&mut self, view: &View<'_>) -> ClimberInput {
+        if let Some(way) = self.jumps.ends(&self.graph, view) {
+            self.block(way, view.seconds);
+        }
         self.plan = None;
         self.lost = None;
         self.planned = f64::NEG_INFINITY;

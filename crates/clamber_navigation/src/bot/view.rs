@@ -1,11 +1,11 @@
 use clamber_climber::Climber;
 use clamber_surface::mesh::TriangleId;
-use clamber_surface::surface::SkinnedSurface;
+use clamber_surface::surface::{SkinnedSurface, SurfacePoint};
 use clamber_world::ObstacleId;
 use glam::DVec3;
 
 use super::Target;
-use crate::graph::{Corner, Patch, axes, corners};
+use crate::graph::{Corner, Patch, Spot, spot_on};
 use crate::{Forecast, Goal};
 
 /// What a creature is about to do to somebody on the ground.
@@ -87,31 +87,17 @@ impl View<'_> {
 
     /// A patch, as the creature is now.
     pub(super) fn spot(&self, patch: &Patch) -> Spot {
-        let known = self.spot_on(patch.triangle, patch.barycentric);
-        let Some((point, [along, across, normal])) = known else {
-            return Spot {
-                point: patch.point,
-                normal: DVec3::ZERO,
-                seat: patch.seat,
-            };
-        };
-        let place = self.surface.world_from_model();
-        let point = place.transform_point(point);
-        let [x, y, z] = patch.away;
-        Spot {
-            point,
-            normal: place.rotation * normal,
-            seat: point + place.rotation * (along * x + across * y + normal * z),
-        }
+        Spot::of(self.surface, patch)
     }
 
-    /// A point of the skin, by a triangle and the weights of its corners, and the triangle's axes, all in the space of
-    /// the model. `None` if it has no area.
-    fn spot_on(&self, triangle: TriangleId, weights: [f64; 3]) -> Option<(DVec3, [DVec3; 3])> {
-        let corners = corners(self.surface, triangle)?;
-        let [u, v, w] = weights;
-        let point = corners[0] * u + corners[1] * v + corners[2] * w;
-        Some((point, axes(corners)?))
+    /// By how much a patch has moved in the last tick, divided by some seconds.
+    pub(super) fn velocity(&self, patch: &Patch, dt: f64) -> Option<DVec3> {
+        let point = SurfacePoint {
+            mesh: self.surface.mesh().id(),
+            triangle: patch.triangle,
+            barycentric: patch.barycentric.map(|weight| weight as f32),
+        };
+        Some(self.surface.in_world().path(point, dt).ok()?.velocity)
     }
 
     /// True if a ball at a place is no deeper in the skin than a share of its radius.
@@ -126,20 +112,10 @@ impl View<'_> {
 
     /// The place in a corner, as the creature is now.
     pub(super) fn corner(&self, corner: &Corner) -> Option<DVec3> {
-        let (point, [.., here]) = self.spot_on(corner.triangle, corner.barycentric)?;
-        let (_, [.., there]) = self.spot_on(corner.other, [1.0, 0.0, 0.0])?;
+        let (point, [.., here]) = spot_on(self.surface, corner.triangle, corner.barycentric)?;
+        let (_, [.., there]) = spot_on(self.surface, corner.other, [1.0, 0.0, 0.0])?;
         let place = self.surface.world_from_model();
         let away = here * corner.apart[0] + there * corner.apart[1];
         Some(place.transform_point(point) + place.rotation * away)
     }
-}
-
-/// A place on the skin, as the creature is now.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Spot {
-    pub(super) point: DVec3,
-    /// Outward; zero where the skin has no area.
-    pub(super) normal: DVec3,
-    /// Where the climber's ball is when it is there.
-    pub(super) seat: DVec3,
 }

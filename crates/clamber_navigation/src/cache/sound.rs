@@ -17,6 +17,7 @@ impl ClimbGraph {
                 .flatten()
                 .all(|triangle| is_there(triangle.index())),
             self.ways.is_sound(patches, triangles),
+            self.leaps.is_sound(&self.patches, self.clips.clips.len()),
             self.locator.is_sound(patches, triangles),
             self.clips.is_sound(patches),
         ];

@@ -12,7 +12,7 @@ use crate::{GraphConfig, GraphSource, NavigationError};
 pub(crate) const SLICE: f64 = 0.5;
 
 /// The clips are played in ticks of this length, seconds.
-const TICK: f64 = 1.0 / 60.0;
+pub(crate) const TICK: f64 = 1.0 / 60.0;
 
 /// Slices times patches of all clips: 300 MB.
 const MOST: f64 = 1e8;
@@ -39,6 +39,8 @@ pub(crate) struct ClipSlices {
     pub(crate) name: String,
     first: usize,
     pub(crate) count: usize,
+    /// It ends as it begins.
+    pub(crate) loops: bool,
 }
 
 /// A patch in a slice of a clip.
@@ -106,11 +108,6 @@ impl ClipFacts {
         let count = ((lasts / SLICE).ceil() as usize).max(1);
         let last = self.clips.last();
         let first = last.map_or(0, |last| last.first + last.count);
-        self.clips.push(ClipSlices {
-            name: clip.name.clone(),
-            first,
-            count,
-        });
         let per_slice = (SLICE / TICK).round() as usize;
         let ticks = ((lasts / TICK).ceil() as usize).max(1);
         let rules = Rules::new(source, config);
@@ -121,11 +118,14 @@ impl ClipFacts {
         let mut riders = vec![Rider::default(); patches.len()];
         let mut played = Played::new(source, clip)?;
         // What comes before the beginning of a loop is its end.
-        let lead = if played.is_loop(&seats, lasts, self.rate, tell)? {
-            ticks.min(LEAD)
-        } else {
-            0
-        };
+        let loops = played.is_loop(&seats, lasts, self.rate, tell)?;
+        let lead = if loops { ticks.min(LEAD) } else { 0 };
+        self.clips.push(ClipSlices {
+            name: clip.name.clone(),
+            first,
+            count,
+            loops,
+        });
         for tick in 0..=ticks + lead {
             if tick.is_multiple_of(TELLS) {
                 tell()?;
@@ -168,6 +168,24 @@ impl ClipFacts {
     pub(crate) fn slice(&self, clip: usize, slice: usize) -> Option<usize> {
         let clip = self.clips.get(clip)?;
         Some(clip.first + slice % clip.count)
+    }
+
+    /// The clip of a slice, by its number among those of all clips.
+    pub(crate) fn clip_of(&self, slice: usize) -> usize {
+        let after = self.clips.partition_point(|clip| clip.first <= slice);
+        after.saturating_sub(1)
+    }
+
+    /// True if a slice follows on another one within a clip.
+    pub(crate) fn goes_on(&self, slice: usize, next: usize) -> bool {
+        self.clips.get(self.clip_of(slice)).is_some_and(|clip| {
+            let is_last = slice + 1 >= clip.first + clip.count;
+            if is_last {
+                clip.loops && next == clip.first
+            } else {
+                next == slice + 1
+            }
+        })
     }
 
     /// How long a clip is, in whole slices, seconds.

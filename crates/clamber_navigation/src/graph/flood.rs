@@ -8,6 +8,7 @@ use crate::plan::{node, of_node};
 
 /// How a climber is on a patch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "cache", derive(serde::Serialize, serde::Deserialize))]
 pub enum Footing {
     /// It stands.
     Stands,
@@ -31,8 +32,17 @@ impl Reachable {
 
 impl ClimbGraph {
     /// All that can be reached at rest from some patches by a climber that does not tire. It walks where it can stand,
-    /// climbs where it can hold on, and changes from one to the other wherever it can do both.
+    /// climbs where it can hold on, changes from one to the other wherever it can do both, and jumps.
     pub(crate) fn flood(&self, from: impl IntoIterator<Item = usize>) -> Reachable {
+        self.reach(from, true)
+    }
+
+    /// [`ClimbGraph::flood`] without jumps: the way back is open, too.
+    pub(crate) fn region(&self, from: impl IntoIterator<Item = usize>) -> Reachable {
+        self.reach(from, false)
+    }
+
+    fn reach(&self, from: impl IntoIterator<Item = usize>, jumps: bool) -> Reachable {
         let none = vec![false; self.patches.len()];
         let mut reached = Reachable {
             stands: none.clone(),
@@ -64,9 +74,17 @@ impl ClimbGraph {
                 let climbs = way.climbs && reached.holds[patch];
                 enter(&mut reached, &mut open, beside, [walks, climbs]);
             }
+            if jumps && reached.stands[patch] {
+                for (_, leap) in self.leaps.of(patch) {
+                    let footings = [Footing::Stands, Footing::Holds];
+                    let lands = footings.map(|footing| footing == leap.lands);
+                    enter(&mut reached, &mut open, leap.to as usize, lands);
+                }
+            }
         }
         reached
     }
+
     /// Of each node, the most stamina with which a climber comes there at rest from some starts if it rests wherever
     /// it can; negative if it does not come there.
     ///
@@ -120,6 +138,12 @@ impl ClimbGraph {
                 };
                 if leads && !costs.is_nan() {
                     offer(&mut most, &mut open, beside, footing, stamina - costs);
+                }
+            }
+            if footing == Footing::Stands {
+                for (_, leap) in self.leaps.of(patch) {
+                    let left = stamina - leap.costs();
+                    offer(&mut most, &mut open, leap.to as usize, leap.lands, left);
                 }
             }
         }

@@ -2,8 +2,10 @@
 
 mod entries;
 mod flood;
+mod leaps;
 mod locate;
 mod patch;
+mod spot;
 mod ways;
 
 use std::ops::ControlFlow;
@@ -20,9 +22,11 @@ pub use entries::Entry;
 pub(crate) use entries::highest_entry;
 pub use flood::Footing;
 pub(crate) use flood::Reachable;
+pub(crate) use leaps::{Aim, Leap, Leaps};
 use locate::Locator;
 pub use patch::Patch;
 pub(crate) use patch::{NONE, axes, corners};
+pub(crate) use spot::{Spot, spot_on};
 pub(crate) use ways::{Corner, Ways};
 
 /// Where a climber can be on a creature, and how it gets from one place to another.
@@ -32,6 +36,7 @@ pub struct ClimbGraph {
     pub(crate) config: GraphConfig,
     pub(crate) patches: Vec<Patch>,
     pub(crate) ways: Ways,
+    pub(crate) leaps: Leaps,
     pub(crate) entries: Vec<Entry>,
     pub(crate) clips: ClipFacts,
     /// One triangle of each plate.
@@ -65,9 +70,10 @@ impl ClimbGraph {
     ) -> Result<(Self, Vec<u32>), NavigationError> {
         let (patches, patch_of) = patch::merge(survey);
         let clips = ClipFacts::measure(source, &survey.config, &patches, tell)?;
-        let graph = Self {
+        let mut graph = Self {
             config: survey.config.clone(),
             ways: patch::ways(survey, &patches, &patch_of),
+            leaps: Leaps::default(),
             entries: entries::entries(survey, &patches, &patch_of),
             locator: Locator::new(survey, &patch_of, source.mesh),
             clips,
@@ -78,6 +84,7 @@ impl ClimbGraph {
                 .collect(),
             patches,
         };
+        graph.leaps = Leaps::find(&graph, source, tell)?;
         Ok((graph, patch_of))
     }
 
@@ -157,6 +164,12 @@ impl ClimbGraph {
     /// Number of ways between patches, each counted there and back.
     pub fn ways(&self) -> usize {
         self.ways.len()
+    }
+
+    /// Number of jumps from one part of the creature to another that were played, and landed at rest. A plan takes one
+    /// only while clips play in which it lands whenever it begins.
+    pub fn jumps(&self) -> usize {
+        self.leaps.len()
     }
 
     /// The settings that it was built with.

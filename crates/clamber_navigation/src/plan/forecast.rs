@@ -2,6 +2,7 @@
 
 use crate::ClimbGraph;
 use crate::clips::{Moment, SLICE};
+use crate::plan::search::slice_of;
 use crate::plan::{slips, throws};
 
 /// What the creature is expected to do from the beginning of a plan on: clips, one after the other, and all of them
@@ -126,6 +127,28 @@ impl Forecast {
         self.slices.len()
     }
 
+    /// True if a jump that begins after some seconds is over before the clip is that plays then, and lands whenever it
+    /// begins in that clip; always on a creature at rest.
+    pub(crate) fn lands(&self, graph: &ClimbGraph, number: usize, seconds: f64) -> bool {
+        let Some(leap) = graph.leaps.get(number) else {
+            return false;
+        };
+        if self.is_still() {
+            return true;
+        }
+        let at = |slice: usize| self.slices[slice % self.slices.len()] as usize;
+        let (first, last) = (slice_of(seconds), slice_of(seconds + leap.seconds()));
+        let clip = graph.clips.clip_of(at(first));
+        graph.leaps.lands_in(number, clip)
+            && (first..last).all(|slice| graph.clips.goes_on(at(slice), at(slice + 1)))
+    }
+
+    /// True if a jump lands at some time.
+    pub(crate) fn ever_lands(&self, graph: &ClimbGraph, number: usize) -> bool {
+        let mut slices = 0..self.slices.len().max(1);
+        slices.any(|slice| self.lands(graph, number, slice as f64 * SLICE))
+    }
+
     /// What happens at a patch after so many slices.
     pub(super) fn at(&self, graph: &ClimbGraph, slice: usize, patch: usize) -> Moment {
         if self.slices.is_empty() {
@@ -134,8 +157,13 @@ impl Forecast {
                 ..Moment::default()
             };
         }
-        let slice = self.slices[slice % self.slices.len()];
-        graph.clips.at(slice as usize, patch)
+        // Divisions are slow.
+        let slice = if slice < self.slices.len() {
+            slice
+        } else {
+            slice % self.slices.len()
+        };
+        graph.clips.at(self.slices[slice] as usize, patch)
     }
 }
 

@@ -115,6 +115,34 @@ pub(crate) fn of_node(node: usize) -> (usize, Footing) {
     (node / 2, footing)
 }
 
+/// A step on a way, from a node to the next.
+#[derive(Clone, Copy, Debug)]
+struct Step {
+    /// How it begins.
+    footing: Footing,
+    /// Seconds that it takes, and for how many of these it holds on.
+    passes: f64,
+    holds: f64,
+    /// Stamina.
+    costs: f64,
+}
+
+impl Step {
+    /// With one footing all the way.
+    fn on(footing: Footing, passes: f64, drain: f64) -> Self {
+        let holds = match footing {
+            Footing::Stands => 0.0,
+            Footing::Holds => passes,
+        };
+        Self {
+            footing,
+            passes,
+            holds,
+            costs: drain * holds,
+        }
+    }
+}
+
 impl ClimbGraph {
     /// The patches whose middles are within `radius` metres of a place, all at rest.
     pub fn patches_near(&self, place: DVec3, radius: f64) -> Vec<usize> {
@@ -139,23 +167,17 @@ impl ClimbGraph {
         let costs = self.config.climber.stamina;
         let drain = costs.map_or(0.0, |costs| strain * costs.hold_drain);
         let refill = costs.map_or(0.0, |costs| costs.refill);
-        let held = |footing, passed: f64| match footing {
-            Footing::Stands => 0.0,
-            Footing::Holds => passed,
-        };
-        let needs = |beyond: f64, footing, passed: f64| {
-            let need = beyond + drain * held(footing, passed);
-            match footing {
+        let needs = |beyond: f64, step: Step| {
+            let need = beyond + strain * step.costs;
+            match step.footing {
                 _ if need > 1.0 + ROUNDING => f64::INFINITY,
                 // It rests here until it has what the way on needs.
                 Footing::Stands if refill > 0.0 => 0.0,
                 _ => need,
             }
         };
-        let seconds = self.backwards(&patches, |beyond, _, passed| beyond + passed);
-        let holds = self.backwards(&patches, |beyond, footing, passed| {
-            beyond + held(footing, passed)
-        });
+        let seconds = self.backwards(&patches, |beyond, step| beyond + step.passes);
+        let holds = self.backwards(&patches, |beyond, step| beyond + step.holds);
         let stamina = self.backwards(&patches, needs);
         let least = seconds.into_iter().zip(holds).zip(stamina);
         let least = least.map(|((seconds, holds), stamina)| Least {
@@ -172,12 +194,12 @@ impl ClimbGraph {
         }
     }
 
-    /// Of each node, the least that some cost comes to on a way to some patches. `cost` tells it for a way that takes a
-    /// footing for some seconds, from what it is beyond that.
+    /// Of each node, the least that some cost comes to on a way to some patches. `cost` tells it for a step, from what it
+    /// is beyond that.
     ///
     /// Dijkstra's search (1959), from the goal backwards: ways lead back as well as there. A cost that gets less on its
     /// way, as what a rest leaves to be needed, has its node looked at again.
-    fn backwards(&self, patches: &[usize], cost: impl Fn(f64, Footing, f64) -> f64) -> Vec<f64> {
+    fn backwards(&self, patches: &[usize], cost: impl Fn(f64, Step) -> f64) -> Vec<f64> {
         let mut least = vec![f64::INFINITY; 2 * self.patches.len()];
         let mut open = BinaryHeap::new();
         for patch in patches {
@@ -187,6 +209,11 @@ impl ClimbGraph {
                 open.push(Reverse((0u64, node)));
             }
         }
+        let drain = self
+            .config
+            .climber
+            .stamina
+            .map_or(0.0, |costs| costs.hold_drain);
         // Costs are not negative, so that their bits have their order.
         while let Some(Reverse((bits, at))) = open.pop() {
             let beyond = f64::from_bits(bits);
@@ -201,17 +228,37 @@ impl ClimbGraph {
                 }
             };
             for other in self.footings(patch) {
-                offer(node(patch, other), cost(beyond, other, 0.0));
+                let changes = Step::on(other, 0.0, drain);
+                offer(node(patch, other), cost(beyond, changes));
             }
             for (beside, way, length) in self.ways.of(patch) {
                 let leads = match footing {
                     Footing::Stands => way.walks,
                     Footing::Holds => way.climbs,
                 };
-                let passed = length / self.speed(footing);
-                if leads && passed.is_finite() {
-                    offer(node(beside, footing), cost(beyond, footing, passed));
+                let passes = length / self.speed(footing);
+                if leads && passes.is_finite() {
+                    let step = Step::on(footing, passes, drain);
+                    offer(node(beside, footing), cost(beyond, step));
                 }
+            }
+            for leap in self.leaps.to(patch).filter(|leap| leap.lands == footing) {
+                let passes = leap.seconds();
+                let step = Step {
+                    footing: Footing::Stands,
+                    passes,
+                    // It counts as holding on for as long as that costs as much.
+                    holds: if drain > 0.0 {
+                        (leap.costs() / drain).min(passes)
+                    } else {
+                        0.0
+                    },
+                    costs: leap.costs(),
+                };
+                offer(
+                    node(leap.from as usize, Footing::Stands),
+                    cost(beyond, step),
+                );
             }
         }
         least

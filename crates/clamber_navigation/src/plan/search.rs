@@ -8,6 +8,7 @@ use clamber_climber::ClimberConfig;
 use super::goal::{node, of_node};
 use super::{Forecast, Goal};
 use crate::clips::{COSINE, Moment, SLICE};
+use crate::graph::Leap;
 use crate::{ClimbGraph, Footing};
 
 /// Where a plan begins.
@@ -35,6 +36,8 @@ pub struct PlanStep {
     pub seconds: f64,
     /// Stamina that it then has.
     pub stamina: f64,
+    /// It comes there by a jump, from the step before.
+    pub jumps: bool,
 }
 
 /// A way to a goal.
@@ -119,6 +122,7 @@ impl ClimbGraph {
             labels: Vec::new(),
             best: vec![[f32::INFINITY; LEVELS]; 2 * self.patches.len()],
             open: BinaryHeap::new(),
+            course: Vec::new(),
         };
         for start in starts {
             let can = start.patch < self.patches.len()
@@ -145,6 +149,8 @@ impl ClimbGraph {
 pub(crate) struct Around<'a> {
     /// True if a way is open, from a patch to another.
     pub(crate) is_open: &'a dyn Fn(usize, usize) -> bool,
+    /// True if a jump may be taken.
+    pub(crate) lands: &'a dyn Fn(usize, &Leap) -> bool,
     /// True if a patch of the goal counts.
     pub(crate) arrives: &'a dyn Fn(usize) -> bool,
 }
@@ -153,6 +159,7 @@ impl Default for Around<'_> {
     fn default() -> Self {
         Self {
             is_open: &|_, _| true,
+            lands: &|_, _| true,
             arrives: &|_| true,
         }
     }
@@ -168,6 +175,9 @@ struct Search<'a> {
     best: Vec<[f32; LEVELS]>,
     /// Labels by when they come to the goal at the earliest.
     open: BinaryHeap<Reverse<(u64, u32)>>,
+    /// Slice by slice, when the present one begins with how much stamina, and what it is like to stay in it: as far as
+    /// it is known.
+    course: Vec<((f64, f64), Stay)>,
 }
 
 impl Search<'_> {
@@ -226,6 +236,8 @@ impl Search<'_> {
             let Some((here, stay)) = self.until_it_moves(here, stay) else {
                 continue;
             };
+            self.course.clear();
+            self.course.push((here, stay));
             for (beside, way, length) in graph.ways.of(patch) {
                 let leads = match footing {
                     Footing::Stands => way.walks,
@@ -235,12 +247,23 @@ impl Search<'_> {
                     continue;
                 }
                 let went = if footing == Footing::Stands && !graph.patches[beside].can_hold {
-                    self.wait_and_go(here, stay, beside, length)
+                    self.wait_and_go(beside, length)
                 } else {
-                    self.go(here, stay, length)
+                    self.go(0, length)
                 };
                 if let Some((seconds, stamina)) = went {
                     self.offer(node(beside, footing), index, seconds, stamina);
+                }
+            }
+            if footing == Footing::Stands {
+                for (number, leap) in graph.leaps.of(patch) {
+                    let to = leap.to as usize;
+                    if !(self.around.is_open)(patch, to) || !(self.around.lands)(number, leap) {
+                        continue;
+                    }
+                    if let Some((seconds, stamina)) = self.jump(number, leap) {
+                        self.offer(node(to, leap.lands), index, seconds, stamina);
+                    }
                 }
             }
         }
@@ -276,31 +299,35 @@ impl Search<'_> {
         }
     }
 
-    /// Goes so many metres; gives when it is there, and its stamina. `None` if it falls on the way.
+    /// What a slice is like, so many after the present one. `None` if it falls before.
     #[inline]
-    fn go(&self, time: (f64, f64), first: Stay, length: f64) -> Option<(f64, f64)> {
-        // Most ways are over before the slice is.
-        let wanted = length / self.graph.speed(first.footing);
-        if first.moves && wanted <= first.lasts {
-            return first.pass(time, wanted);
+    fn slice(&mut self, index: usize) -> Option<((f64, f64), Stay)> {
+        while self.course.len() <= index {
+            let (time, stay) = *self.course.last()?;
+            let time = stay.pass(time, stay.lasts)?;
+            self.course.push((time, self.stay_on(stay, time.0)?));
         }
-        self.go_on(time, first, length)
+        Some(self.course[index])
     }
 
-    fn go_on(&self, mut time: (f64, f64), first: Stay, length: f64) -> Option<(f64, f64)> {
-        let speed = self.graph.speed(first.footing);
-        let (mut left, mut known) = (length, Some(first));
-        for _ in 0..MOST_SLICES {
+    /// Goes so many metres, from a slice of its course on; gives when it is there, and its stamina. `None` if it falls
+    /// on the way.
+    #[inline]
+    fn go(&mut self, from: usize, length: f64) -> Option<(f64, f64)> {
+        let (mut time, mut stay) = self.slice(from)?;
+        let speed = self.graph.speed(stay.footing);
+        let mut left = length;
+        for index in from..from + MOST_SLICES {
             let wanted = left / speed;
-            let stay = known.take().or_else(|| self.stay_on(first, time.0))?;
-            let next = stay.pass(time, wanted)?;
-            if stay.moves {
-                if wanted <= stay.lasts {
-                    return Some(next);
-                }
-                left -= speed * (next.0 - time.0);
+            if stay.moves && wanted <= stay.lasts {
+                return stay.pass(time, wanted);
             }
-            time = next;
+            let moved = stay.moves;
+            let before = time.0;
+            (time, stay) = self.slice(index + 1)?;
+            if moved {
+                left -= speed * (time.0 - before);
+            }
         }
         None
     }
@@ -320,20 +347,28 @@ impl Search<'_> {
     }
 
     /// [`Search::go`] to a patch where it can only stand: as soon as whoever comes there is not thrown or slips.
-    fn wait_and_go(
-        &self,
-        mut time: (f64, f64),
-        mut stay: Stay,
-        to: usize,
-        length: f64,
-    ) -> Option<(f64, f64)> {
-        for _ in 0..=self.forecast.len() {
-            let went = self.go(time, stay, length)?;
-            if self.stay(to, stay.footing, went.0).is_some() {
+    fn wait_and_go(&mut self, to: usize, length: f64) -> Option<(f64, f64)> {
+        for index in 0..=self.forecast.len() {
+            let footing = self.slice(index)?.1.footing;
+            let went = self.go(index, length)?;
+            if self.stay(to, footing, went.0).is_some() {
                 return Some(went);
             }
-            time = stay.pass(time, stay.lasts)?;
-            stay = self.stay_on(stay, time.0)?;
+        }
+        None
+    }
+
+    /// Jumps as soon as all that is expected until it has landed are clips in which that jump always lands.
+    fn jump(&mut self, number: usize, leap: &Leap) -> Option<(f64, f64)> {
+        let to = leap.to as usize;
+        for index in 0..=self.forecast.len() {
+            let (time, stay) = self.slice(index)?;
+            let is_sure = stay.moves && self.forecast.lands(self.graph, number, time.0);
+            let lands = time.0 + leap.seconds();
+            if is_sure && self.stay(to, leap.lands, lands).is_some() {
+                let left = time.1 - self.goal.strain * leap.costs();
+                return (left >= 0.0).then_some((lands, left));
+            }
         }
         None
     }
@@ -346,7 +381,7 @@ impl Search<'_> {
     /// What it is like on a patch from a time on, to the end of the slice. `None` if it falls.
     fn stay(&self, patch: usize, footing: Footing, seconds: f64) -> Option<Stay> {
         let climber = &self.graph.config.climber;
-        let slice = (seconds / SLICE + ROUNDING) as usize;
+        let slice = slice_of(seconds);
         let moment = self.forecast.at(self.graph, slice, patch);
         let holds = match footing {
             Footing::Holds => true,
@@ -386,16 +421,21 @@ impl Search<'_> {
     }
 
     fn plan(&self, last: u32) -> Plan {
-        let mut steps = Vec::new();
+        let mut steps: Vec<PlanStep> = Vec::new();
         let mut index = last;
         while index != NOTHING {
             let label = self.labels[index as usize];
             let (patch, footing) = of_node(label.node as usize);
+            if let Some(after) = steps.last_mut() {
+                let leap = self.graph.leaps.between(patch, after.patch);
+                after.jumps = footing == Footing::Stands && leap.is_some();
+            }
             steps.push(PlanStep {
                 patch,
                 footing,
                 seconds: label.seconds,
                 stamina: label.stamina,
+                jumps: false,
             });
             index = label.before;
         }
@@ -437,6 +477,11 @@ impl Stay {
 
 /// A step takes at most so many slices.
 const MOST_SLICES: usize = 256;
+
+/// The slice of a forecast in which a time is.
+pub(super) fn slice_of(seconds: f64) -> usize {
+    (seconds / SLICE + ROUNDING) as usize
+}
 
 fn level(stamina: f64) -> usize {
     ((stamina * (LEVELS - 1) as f64 + ROUNDING) as usize).min(LEVELS - 1)

@@ -27,7 +27,8 @@ pub struct ClimbReport {
     pub grip_area: f64,
     /// Area on which a climber can stand, square metres.
     pub stand_area: f64,
-    /// Area that a climber from the ground can reach on the creature at rest, square metres.
+    /// Area that a climber from the ground can reach on the creature at rest, jumps between its parts included, square
+    /// metres.
     pub reachable_area: f64,
     /// Of that, area on which it can rest: it can stand there, and the slope is at most six tenths of the steepest one.
     pub rest_area: f64,
@@ -48,7 +49,7 @@ pub struct WayOn {
     pub entries: usize,
     /// The lowest of them, at rest, in the world.
     pub place: DVec3,
-    /// Area that is reached from them, square metres.
+    /// Area that is reached from them without jumps between parts of the creature, square metres.
     pub area: f64,
 }
 
@@ -266,7 +267,7 @@ impl View<'_> {
             .map(|patch| patch.area)
             .collect();
         while let Some(&first) = left.first() {
-            let reached = self.graph.flood([first]);
+            let reached = self.graph.region([first]);
             let (same, others): (Vec<usize>, Vec<usize>) =
                 left.iter().partition(|patch| reached.has(**patch));
             let places = same.iter().map(|patch| self.graph.patches()[*patch].seat);

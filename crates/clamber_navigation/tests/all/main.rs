@@ -4,6 +4,7 @@ mod areas;
 #[cfg(feature = "cache")]
 mod cache;
 mod jumps;
+mod leaps;
 mod moving;
 mod plans;
 mod strength;

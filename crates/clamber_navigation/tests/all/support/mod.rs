@@ -26,6 +26,8 @@ pub(crate) struct Body {
     pub(crate) triangles: Vec<[u32; 3]>,
     pub(crate) tags: Vec<SurfaceTag>,
     pub(crate) weak_points: Vec<WeakPoint>,
+    /// Corners from this one on are on the second joint; `None`: there is one joint.
+    pub(crate) second_joint: Option<usize>,
 }
 
 impl Body {
@@ -68,6 +70,14 @@ impl Body {
         self
     }
 
+    /// Both bodies, the other one on a joint of its own.
+    pub(crate) fn and_on_its_own(self, other: &Self) -> Self {
+        Self {
+            second_joint: Some(self.positions.len()),
+            ..self.and(other)
+        }
+    }
+
     /// The same body with its triangles in another order.
     pub(crate) fn shuffled(&self, seed: u64) -> Self {
         let mut order: Vec<usize> = (0..self.triangles.len()).collect();
@@ -80,17 +90,18 @@ impl Body {
     }
 
     pub(crate) fn mesh(&self) -> Arc<ColliderMesh> {
-        let joint = Influence {
-            joint: JointId(0),
+        let second = self.second_joint.unwrap_or(usize::MAX);
+        let influence = |corner: usize| Influence {
+            joint: JointId(u32::from(corner >= second)),
             weight: 1.0,
         };
-        let influences = vec![joint; self.positions.len()];
+        let influences: Vec<Influence> = (0..self.positions.len()).map(influence).collect();
         let source = MeshSource {
             positions: &self.positions,
             triangles: &self.triangles,
             influences: &influences,
             tags: &self.tags,
-            joint_count: 1,
+            joint_count: 1 + usize::from(self.second_joint.is_some()),
             ..MeshSource::default()
         };
         Arc::new(
@@ -135,13 +146,22 @@ impl Body {
 }
 
 pub(crate) fn skeleton() -> Skeleton {
-    let root = Joint {
-        name: "root".to_owned(),
-        parent: None,
+    Skeleton::new(vec![joint("root", None)]).unwrap()
+}
+
+/// A root and a joint on it.
+pub(crate) fn two_joints() -> Skeleton {
+    let joints = vec![joint("root", None), joint("second", Some(JointId(0)))];
+    Skeleton::new(joints).unwrap()
+}
+
+fn joint(name: &str, parent: Option<JointId>) -> Joint {
+    Joint {
+        name: name.to_owned(),
+        parent,
         rest: Transform::default(),
         inverse_bind: Affine::IDENTITY,
-    };
-    Skeleton::new(vec![root]).unwrap()
+    }
 }
 
 pub(crate) fn climber() -> GraphConfig {

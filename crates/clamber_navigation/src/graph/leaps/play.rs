@@ -1,0 +1,266 @@
+//! Jumps, played by climbers on the skin as it moves.
+
+use clamber_climber::{Climber, ClimberInput, ClimberMode, ClimberState, ContactQuery, StepRules};
+use clamber_surface::rig::{Palette, Playback, Pose};
+use clamber_surface::surface::SkinnedSurface;
+use clamber_world::{Obstacle, ObstacleId};
+use glam::DVec3;
+
+use super::{Aim, ClimbGraph, Footing, LONGEST};
+use crate::clips::TICK;
+use crate::graph::Spot;
+use crate::{GraphSource, NavigationError};
+
+/// A climber stands for so many ticks before it jumps, and has come to rest after as many.
+const SETTLES: u32 = 6;
+
+/// It comes to rest at most so many times as long after its jump as it is expected to fly, and so many pull-ups over a
+/// ledge.
+const LATE: f64 = 1.5;
+const PULLS: f64 = 2.0;
+
+/// Whoever watches is told every so many ticks.
+const TELLS: u32 = 32;
+
+/// A play that landed.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Played {
+    pub(super) patch: u32,
+    pub(super) footing: Footing,
+    pub(super) seconds: f32,
+    pub(super) costs: f32,
+}
+
+/// When jumps begin, and where.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Moment {
+    /// In a clip, or at rest.
+    pub(super) clip: Option<usize>,
+    /// At this time of the clip, seconds.
+    pub(super) begins: f64,
+    /// So many radii off where they should, along two level axes.
+    pub(super) off: [f64; 2],
+}
+
+impl Moment {
+    pub(super) const REST: Self = Self {
+        clip: None,
+        begins: 0.0,
+        off: [0.0; 2],
+    };
+}
+
+/// The creature, and memory to play jumps on it.
+pub(super) struct Theatre<'a> {
+    graph: &'a ClimbGraph,
+    source: &'a GraphSource<'a>,
+    surface: SkinnedSurface,
+    rest: Pose,
+    pose: Pose,
+    palette: Palette,
+}
+
+/// A climber that jumps.
+struct Jumper {
+    climber: Climber,
+    ends: [u32; 2],
+    /// Its jump, and how much stamina it has spent since.
+    aim: Option<Aim>,
+    spent: f64,
+    /// It has left the ground.
+    flies: bool,
+    /// For so many ticks it has been at rest.
+    rests: u32,
+    /// How it ended.
+    ended: Option<Option<Played>>,
+}
+
+const CREATURE: ObstacleId = ObstacleId(0);
+
+impl<'a> Theatre<'a> {
+    pub(super) fn new(
+        graph: &'a ClimbGraph,
+        source: &'a GraphSource<'a>,
+    ) -> Result<Self, NavigationError> {
+        let pose = source.skeleton.rest_pose();
+        Ok(Self {
+            graph,
+            source,
+            surface: SkinnedSurface::new(source.mesh.clone()),
+            palette: source.skeleton.palette(&pose)?,
+            rest: pose.clone(),
+            pose,
+        })
+    }
+
+    /// The skin at rest.
+    pub(super) fn at_rest(&mut self) -> Result<&SkinnedSurface, NavigationError> {
+        self.show(None, 0.0, false)?;
+        Ok(&self.surface)
+    }
+
+    /// How long a clip is, seconds.
+    pub(super) fn seconds(&self, clip: usize) -> f64 {
+        self.source.clips[clip].duration() / self.source.rate
+    }
+
+    /// Moves the skin on to a time of a clip, or to its rest; or poses it so, without motion.
+    fn show(
+        &mut self,
+        clip: Option<usize>,
+        seconds: f64,
+        moves: bool,
+    ) -> Result<(), NavigationError> {
+        let source = self.source;
+        if let Some(index) = clip {
+            let clip = &source.clips[index];
+            let playback = if self.graph.clips.clips[index].loops {
+                Playback::Loop
+            } else {
+                Playback::Clamp
+            };
+            // It says nothing of some joints.
+            self.pose.clone_from(&self.rest);
+            clip.sample_into(seconds * source.rate, playback, &mut self.pose)?;
+            source
+                .skeleton
+                .palette_into(&self.pose, &mut self.palette)?;
+        }
+        if moves {
+            self.surface
+                .advance(&self.palette, source.world_from_model)?;
+        } else {
+            self.surface.place(&self.palette, source.world_from_model)?;
+        }
+        Ok(())
+    }
+
+    /// Plays jumps, and tells of each where it came to rest.
+    pub(super) fn play(
+        &mut self,
+        ends: &[[u32; 2]],
+        when: Moment,
+        tell: &mut dyn FnMut() -> Result<(), NavigationError>,
+    ) -> Result<Vec<Option<Played>>, NavigationError> {
+        let Moment { clip, begins, off } = when;
+        let graph = self.graph;
+        let config = graph.config.climber;
+        let up = config.up();
+        let along = up.any_orthonormal_vector();
+        let off = (along * off[0] + up.cross(along) * off[1]) * config.body.radius;
+        let first = begins - f64::from(SETTLES) * TICK;
+        self.show(clip, first - TICK, false)?;
+        let seat = |surface: &SkinnedSurface, patch: u32| {
+            Spot::of(surface, &graph.patches[patch as usize]).seat
+        };
+        let before: Vec<DVec3> = ends
+            .iter()
+            .map(|[from, _]| seat(&self.surface, *from))
+            .collect();
+        self.show(clip, first, true)?;
+        let mut jumpers = Vec::with_capacity(ends.len());
+        for (ends, before) in ends.iter().zip(before) {
+            let here = seat(&self.surface, ends[0]);
+            let mut climber = Climber::new(config, here + off)?;
+            let still = *climber.state();
+            climber.restore(ClimberState {
+                velocity: (here - before) / TICK,
+                ..still
+            })?;
+            jumpers.push(Jumper {
+                climber,
+                ends: *ends,
+                aim: None,
+                spent: 0.0,
+                flies: false,
+                rests: 0,
+                ended: None,
+            });
+        }
+        let grips =
+            |query: &ContactQuery<'_>| query.usual().with_grip(graph.config.can_grip(&query.tag()));
+        let rules = StepRules::by(&grips);
+        let mut tick: u32 = 1;
+        while jumpers.iter().any(|jumper| jumper.ended.is_none()) {
+            if tick.is_multiple_of(TELLS) {
+                tell()?;
+            }
+            self.show(clip, first + f64::from(tick) * TICK, true)?;
+            let around: [(ObstacleId, &dyn Obstacle); 1] = [(CREATURE, &self.surface)];
+            for jumper in jumpers.iter_mut().filter(|jumper| jumper.ended.is_none()) {
+                let after = tick.checked_sub(SETTLES);
+                jumper.step(graph, &around, &self.surface, after, &rules)?;
+            }
+            tick += 1;
+        }
+        Ok(jumpers
+            .into_iter()
+            .map(|jumper| jumper.ended.flatten())
+            .collect())
+    }
+}
+
+impl Jumper {
+    /// One tick, so many after its jump.
+    fn step(
+        &mut self,
+        graph: &ClimbGraph,
+        around: &[(ObstacleId, &dyn Obstacle)],
+        surface: &SkinnedSurface,
+        after: Option<u32>,
+        rules: &StepRules<'_>,
+    ) -> Result<(), NavigationError> {
+        let config = &graph.config.climber;
+        let seconds = after.map(|after| f64::from(after) * TICK);
+        let seat = |patch: u32| Spot::of(surface, &graph.patches[patch as usize]).seat;
+        if after == Some(0) && self.climber.state().mode == ClimberMode::Standing {
+            self.aim = Aim::at(config, seat(self.ends[0]), seat(self.ends[1]));
+        }
+        let input = match (seconds, self.aim) {
+            (None, _) => ClimberInput::IDLE,
+            (Some(seconds), Some(aim)) => aim.input(config, seconds),
+            (Some(_), None) => {
+                self.ended = Some(None);
+                return Ok(());
+            }
+        };
+        let had = self.climber.state().stamina;
+        self.climber.step_with(&input, around, rules, TICK)?;
+        let state = self.climber.state();
+        let (Some(seconds), Some(aim)) = (seconds, self.aim) else {
+            return Ok(());
+        };
+        self.spent += (had - state.stamina).max(0.0);
+        let footing = match state.mode {
+            ClimberMode::Standing => Some(Footing::Stands),
+            ClimberMode::Holding => Some(Footing::Holds),
+            _ => None,
+        };
+        self.flies |= footing.is_none();
+        self.rests = if footing.is_some() && self.flies {
+            self.rests + 1
+        } else {
+            0
+        };
+        if self.rests >= SETTLES {
+            let support = state.support.and_then(|support| {
+                let material = support.attachment.material;
+                let weights = material.coordinates.map(|weight| weight as f32);
+                graph.patch_of(material.triangle()?, weights)
+            });
+            self.ended = Some(support.zip(footing).map(|(patch, footing)| Played {
+                patch: patch as u32,
+                footing,
+                seconds: seconds as f32,
+                costs: self.spent as f32,
+            }));
+            return Ok(());
+        }
+        let pulls = config.ledge.map_or(0.0, |ledge| PULLS * ledge.pull_up_time);
+        let latest = (LATE * aim.seconds + pulls).min(2.0 * LONGEST);
+        if seconds > latest || state.mode == ClimberMode::Tumbling {
+            self.ended = Some(None);
+        }
+        Ok(())
+    }
+}

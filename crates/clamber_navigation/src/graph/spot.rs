@@ -1,0 +1,52 @@
+//! Patches, as a creature is now.
+
+use clamber_surface::mesh::TriangleId;
+use clamber_surface::surface::SkinnedSurface;
+use glam::DVec3;
+
+use super::{Patch, axes, corners};
+
+/// A place on the skin, as the creature is now.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Spot {
+    pub(crate) point: DVec3,
+    /// Outward; zero where the skin has no area.
+    pub(crate) normal: DVec3,
+    /// Where the climber's ball is when it is there.
+    pub(crate) seat: DVec3,
+}
+
+impl Spot {
+    /// Where a patch is.
+    pub(crate) fn of(surface: &SkinnedSurface, patch: &Patch) -> Self {
+        let known = spot_on(surface, patch.triangle, patch.barycentric);
+        let Some((point, [along, across, normal])) = known else {
+            return Self {
+                point: patch.point,
+                normal: DVec3::ZERO,
+                seat: patch.seat,
+            };
+        };
+        let place = surface.world_from_model();
+        let point = place.transform_point(point);
+        let [x, y, z] = patch.away;
+        Self {
+            point,
+            normal: place.rotation * normal,
+            seat: point + place.rotation * (along * x + across * y + normal * z),
+        }
+    }
+}
+
+/// A point of the skin, by a triangle and the weights of its corners, and the triangle's axes, all in the space of the
+/// model. `None` if it has no area.
+pub(crate) fn spot_on(
+    surface: &SkinnedSurface,
+    triangle: TriangleId,
+    weights: [f64; 3],
+) -> Option<(DVec3, [DVec3; 3])> {
+    let corners = corners(surface, triangle)?;
+    let [u, v, w] = weights;
+    let point = corners[0] * u + corners[1] * v + corners[2] * w;
+    Some((point, axes(corners)?))
+}
