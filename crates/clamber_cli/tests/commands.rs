@@ -316,7 +316,8 @@ fn the_giant_can_be_climbed() {
     close("area", 4102.0);
     close("reachable_area", 3589.0);
     close("rest_area", 523.0);
-    for (index, seconds) in [26.9, 21.7, 25.3].into_iter().enumerate() {
+    // A jump leads to the arm: without one it takes 21.7 s.
+    for (index, seconds) in [26.9, 15.2, 25.3].into_iter().enumerate() {
         let point = &report["weak_points"][index];
         let found = point["seconds"].as_f64().unwrap();
         assert!((found - seconds).abs() < 1.0, "{point}: {seconds}");
