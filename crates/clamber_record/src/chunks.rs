@@ -7,14 +7,21 @@ use std::thread::JoinHandle;
 use std::time::Duration;
 
 use crate::RecordError;
+use crate::views::TakenScenery;
 
 /// A tick on its way to the file.
-pub(crate) trait TakenTick {
+pub trait TakenTick {
     /// True if a replay can begin with it: something is saved of it.
     fn is_saved(&self) -> bool;
 
     /// So many ticks before it were left out.
     fn follows_gap(&mut self, ticks: u64);
+
+    /// True if transforms are due in it.
+    fn is_due(&self) -> bool;
+
+    /// The meshes of this tick.
+    fn scenery(&mut self) -> &mut Vec<TakenScenery>;
 }
 
 /// Encodes ticks and writes them.
@@ -306,6 +313,14 @@ mod tests {
 
         fn follows_gap(&mut self, ticks: u64) {
             self.1 = ticks;
+        }
+
+        fn is_due(&self) -> bool {
+            false
+        }
+
+        fn scenery(&mut self) -> &mut Vec<TakenScenery> {
+            unreachable!("these ticks have no meshes")
         }
     }
 

@@ -7,6 +7,7 @@ mod config;
 mod error;
 mod file;
 mod info;
+mod kind;
 mod messages;
 mod names;
 mod output;
@@ -27,7 +28,8 @@ pub use arena::{
 pub use clamber_surface::surface::{creature_fingerprint, palette_fingerprint};
 pub use error::RecordError;
 pub use info::RecordingInfo;
-pub use recorder::{FigureView, RecordOptions, Recorder, TickView};
-pub use recording::{Ending, RecordedSnapshot, RecordedTick, Recording};
+pub use kind::{OfArena, OfClimber, RecordingKind};
+pub use recorder::{FigureView, RecordOptions, Recorder, RecorderOf, TickView};
+pub use recording::{Ending, RecordedSnapshot, RecordedTick, Recording, RecordingOf};
 pub use replay::{Difference, ReplayError, Replayed, replay};
 pub use views::SceneryView;

@@ -12,12 +12,12 @@ use clamber_surface::rig::{Palette, Skeleton};
 use clamber_surface::surface::SkinnedSurface;
 use clamber_world::ObstacleId;
 
-use crate::chunks::Chunks;
+use crate::chunks::{Chunks, TakenTick};
 use crate::names::ObstacleNames;
 use crate::taken::{Taken, TakenSnapshot};
 use crate::views::{FigureJoints, SceneryNames, SceneryView, TakenBrain, TakenFigure};
 use crate::writing::Writing;
-use crate::{RecordError, RecordingInfo};
+use crate::{OfClimber, RecordError, RecordingInfo, RecordingKind};
 
 /// How often views for people are recorded, and how large chunks are.
 ///
@@ -46,7 +46,7 @@ pub struct RecordOptions {
     pub chunk_ticks: u32,
     /// What happens when the disk is slower than the game for some seconds. If false, which is the default, the game is
     /// never held up: ticks are left out, from a chunk's beginning to where a replay can begin again
-    /// ([`Recorder::dropped`] and the log tell). If true, it waits and nothing is lost: for programs that do not play in
+    /// ([`RecorderOf::dropped`] and the log tell). If true, it waits and nothing is lost: for programs that do not play in
     /// real time.
     ///
     /// Ticks are left out only if the recorder was given snapshots of the scene at least twice: without any, no replay could
@@ -113,20 +113,82 @@ pub struct FigureView<'a> {
 
 /// Writes a recording, chunk by chunk, on a thread of its own.
 ///
-/// [`Recorder::tick`] only copies the tick. Once a chunk is complete, the thread skins, encodes and writes its
+/// Its `tick` only copies the tick. Once a chunk is complete, the thread skins, encodes and writes its
 /// ticks, in their order, while the game goes on. If the thread falls behind for some seconds, ticks are left out, and
 /// counted and told, or the game waits: see [`RecordOptions::waits`].
 ///
 /// A chunk is held in memory and written as a whole, so the file is readable up to the last written chunk
-/// whenever writing stops. A recorder that is dropped without [`Recorder::finish`] finishes the file too, but
+/// whenever writing stops. A recorder that is dropped without [`RecorderOf::finish`] finishes the file too, but
 /// ignores errors.
-pub struct Recorder<W: Write> {
-    options: RecordOptions,
-    names: ObstacleNames,
-    /// The figures that were recorded.
+///
+/// [`Recorder`] records one climber, [`ArenaRecorder`](crate::ArenaRecorder) an arena.
+pub struct RecorderOf<K: RecordingKind, W: Write> {
+    pub(crate) options: RecordOptions,
+    pub(crate) names: ObstacleNames,
+    pub(crate) scenery: SceneryNames,
+    pub(crate) memory: K::Memory,
+    pub(crate) chunks: Chunks<K::Taken, W>,
+}
+
+/// Writes a recording of one climber and its creature: [`RecorderOf`].
+pub type Recorder<W> = RecorderOf<OfClimber, W>;
+
+/// What a recorder of a climber remembers: the figures that were recorded.
+#[derive(Debug, Default)]
+pub struct ClimberMemory {
     figures: Vec<Arc<FigureJoints>>,
-    scenery: SceneryNames,
-    chunks: Chunks<Taken, W>,
+}
+
+impl<K: RecordingKind, W: Write> RecorderOf<K, W> {
+    /// Gives an obstacle a name, by which the log calls it from the next tick on. Of a recording of one climber the
+    /// creature is to have the name in [`RecordingInfo::creature`]: then the log also names the part of it that the
+    /// climber is on. Creatures and fighters of an arena have those of [`ArenaInfo`](crate::ArenaInfo).
+    pub fn name(&mut self, obstacle: ObstacleId, name: &str) {
+        let names = Arc::make_mut(&mut self.names);
+        names.retain(|(id, _)| *id != obstacle);
+        names.push((obstacle, name.to_owned()));
+    }
+
+    /// True if the tick recorded last takes joints, figures and places of meshes: see
+    /// [`RecordOptions::transforms_every`]. In other ticks a figure, or a mesh that was recorded before, need not be
+    /// prepared.
+    ///
+    /// # Errors
+    /// [`RecordError::NoTick`] before the first tick; [`RecordError::Ended`] after writing failed.
+    pub fn is_due(&mut self) -> Result<bool, RecordError> {
+        Ok(self.chunks.last()?.is_due())
+    }
+
+    /// Records a mesh at the tick recorded last, for people to look at, such as the ground or a rock: its shape the
+    /// first time, its place whenever [`RecordOptions::transforms_every`] lets transforms be due. What stands still is
+    /// recorded once.
+    ///
+    /// # Errors
+    /// [`RecordError::NoTick`] before the first tick; [`RecordError::Ended`] after writing failed.
+    pub fn scenery(&mut self, view: &SceneryView<'_>) -> Result<(), RecordError> {
+        let last = self.chunks.last()?;
+        let taken = self.scenery.take(view, last.is_due());
+        last.scenery().extend(taken);
+        Ok(())
+    }
+
+    /// Ticks that were left out so far, since the disk was too slow: [`RecordOptions::waits`]. A gap ends at a tick with a
+    /// snapshot, or a saved state.
+    pub fn dropped(&self) -> u64 {
+        self.chunks.dropped()
+    }
+
+    /// Writes the remaining ticks and the index, and gives back `out`.
+    ///
+    /// # Errors
+    /// [`RecordError::Write`] or another error if a chunk or the index could not be written;
+    /// [`RecordError::Ended`] if a tick has returned that error already.
+    ///
+    /// # Panics
+    /// If `out` panicked: that panic is resumed here.
+    pub fn finish(mut self) -> Result<W, RecordError> {
+        self.chunks.finish()
+    }
 }
 
 impl Recorder<BufWriter<File>> {
@@ -171,8 +233,8 @@ impl<W: Write + Send + 'static> Recorder<W> {
         Ok(Self {
             options,
             names: ObstacleNames::default(),
-            figures: Vec::new(),
             scenery: SceneryNames::default(),
+            memory: ClimberMemory::default(),
             chunks: Chunks::start(writing, (options.chunk_ticks, options.waits))?,
         })
     }
@@ -210,37 +272,6 @@ impl<W: Write> Recorder<W> {
         })
     }
 
-    /// Gives an obstacle a name, by which the log calls it from the next tick on. The creature is to have the name in
-    /// [`RecordingInfo::creature`]: then the log also names the part of it that the climber is on.
-    pub fn name(&mut self, obstacle: ObstacleId, name: &str) {
-        let names = Arc::make_mut(&mut self.names);
-        names.retain(|(id, _)| *id != obstacle);
-        names.push((obstacle, name.to_owned()));
-    }
-
-    /// True if the tick recorded last takes joints, figures and places of meshes: see
-    /// [`RecordOptions::transforms_every`]. In other ticks a figure, or a mesh that was recorded before, need not be
-    /// prepared.
-    ///
-    /// # Errors
-    /// [`RecordError::NoTick`] before the first tick; [`RecordError::Ended`] after writing failed.
-    pub fn is_due(&mut self) -> Result<bool, RecordError> {
-        Ok(self.chunks.last()?.transforms_due)
-    }
-
-    /// Records a mesh at the tick recorded last, for people to look at, such as the ground or a rock: its shape the
-    /// first time, its place whenever [`RecordOptions::transforms_every`] lets transforms be due. What stands still is
-    /// recorded once.
-    ///
-    /// # Errors
-    /// [`RecordError::NoTick`] before the first tick; [`RecordError::Ended`] after writing failed.
-    pub fn scenery(&mut self, view: &SceneryView<'_>) -> Result<(), RecordError> {
-        let last = self.chunks.last()?;
-        let taken = self.scenery.take(view, last.transforms_due);
-        last.scenery.extend(taken);
-        Ok(())
-    }
-
     /// Records the joints of a figure at the tick recorded last, for people to look at: a replay does not compare
     /// them. Nothing is recorded in ticks in which [`RecordOptions::transforms_every`] lets no transforms be due.
     ///
@@ -250,7 +281,8 @@ impl<W: Write> Recorder<W> {
     /// failed. Nothing is recorded then.
     pub fn figure(&mut self, view: &FigureView<'_>) -> Result<(), RecordError> {
         let is_due = self.chunks.last()?.transforms_due;
-        let known = self.figures.iter().find(|known| known.figure == view.name);
+        let figures = &mut self.memory.figures;
+        let known = figures.iter().find(|known| known.figure == view.name);
         let (skeleton, palette) = (view.skeleton.joints().len(), view.palette.matrices().len());
         if palette != skeleton || known.is_some_and(|known| known.len() != skeleton) {
             return Err(RecordError::FigureJoints {
@@ -264,7 +296,7 @@ impl<W: Write> Recorder<W> {
         }
         let joints = known.cloned().unwrap_or_else(|| {
             let joints = Arc::new(FigureJoints::new(view.name, view.skeleton));
-            self.figures.push(Arc::clone(&joints));
+            figures.push(Arc::clone(&joints));
             joints
         });
         let figure = TakenFigure::new(joints, view.palette, view.world_from_model);
@@ -282,12 +314,6 @@ impl<W: Write> Recorder<W> {
         let taken = self.chunks.last()?;
         taken.brain = Some(TakenBrain::new(creature, taken.transforms_due));
         Ok(())
-    }
-
-    /// Ticks that were left out so far, since the disk was too slow: [`RecordOptions::waits`]. A gap ends at a tick with a
-    /// snapshot.
-    pub fn dropped(&self) -> u64 {
-        self.chunks.dropped()
     }
 
     /// Records a snapshot of the scene after the tick recorded last.
@@ -319,17 +345,5 @@ impl<W: Write> Recorder<W> {
         let taken = TakenSnapshot(Box::new(text));
         self.chunks.last()?.snapshots.push(taken);
         Ok(())
-    }
-
-    /// Writes the remaining ticks and the index, and gives back `out`.
-    ///
-    /// # Errors
-    /// [`RecordError::Write`] or another error if a chunk or the index could not be written;
-    /// [`RecordError::Ended`] if [`Recorder::tick`] has returned that error already.
-    ///
-    /// # Panics
-    /// If `out` panicked: that panic is resumed here.
-    pub fn finish(mut self) -> Result<W, RecordError> {
-        self.chunks.finish()
     }
 }

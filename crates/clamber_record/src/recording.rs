@@ -6,7 +6,7 @@ use crate::file::{self, Contents};
 use crate::messages::{Snapshot, Tick};
 use crate::places::Places;
 use crate::source::{Bytes, Place, Source};
-use crate::{ArenaInfo, RecordError, RecordingInfo, topics};
+use crate::{OfArena, OfClimber, RecordError, RecordingInfo, RecordingKind, topics};
 use clamber_climber::{ClimberInput, ClimberState};
 
 /// How the file of a recording ends.
@@ -66,59 +66,74 @@ pub struct RecordedSnapshot {
 }
 
 /// A recording that was read: its metadata, and all ticks up to where the file ends or is damaged.
+///
+/// [`Recording`] is one of a climber, [`ArenaRecording`](crate::ArenaRecording) one of an arena.
 #[derive(Clone, Debug)]
-pub struct Recording {
-    info: RecordingInfo,
-    source: Source,
-    places: Places,
+pub struct RecordingOf<K: RecordingKind> {
+    info: K::Info,
+    pub(crate) source: Source,
+    pub(crate) places: Places,
     ending: Ending,
 }
 
-impl Recording {
+/// A recording of one climber and its creature, by a [`Recorder`](crate::Recorder).
+pub type Recording = RecordingOf<OfClimber>;
+
+impl<K: RecordingKind> RecordingOf<K> {
     /// Reads a recording from a file of any length: only where its ticks are is kept in memory, and one chunk at a time.
     /// Chunks may be compressed by zstd or lz4, as other programs write them, and checksums may be left out.
     ///
     /// # Errors
-    /// [`RecordError::Io`] if the file cannot be read, and as [`Recording::from_bytes`].
+    /// [`RecordError::Io`] if the file cannot be read, and as [`RecordingOf::from_bytes`].
     pub fn open(path: impl AsRef<Path>) -> Result<Self, RecordError> {
         Self::from_contents(file::open(path.as_ref())?)
     }
 
     /// Reads a recording from the bytes of its file.
     ///
-    /// A file that was cut or damaged gives the ticks before that place; see [`Recording::ending`].
+    /// A file that was cut or damaged gives the ticks before that place; see [`RecordingOf::ending`].
     ///
     /// # Errors
     /// [`RecordError::NotMcap`] if the bytes do not begin as an MCAP file, [`RecordError::NotARecording`] if the
-    /// metadata is missing or cannot be read, [`RecordError::TickSeconds`] if its duration of a tick is not positive or
-    /// not finite.
+    /// metadata is missing or cannot be read, or if it is a recording of the other kind, [`RecordError::TickSeconds`]
+    /// if its duration of a tick is not positive or not finite.
     pub fn from_bytes(bytes: Vec<u8>) -> Result<Self, RecordError> {
         Self::from_contents(file::read(Bytes::Memory(bytes))?)
     }
 
     pub(crate) fn from_contents(mut contents: Contents) -> Result<Self, RecordError> {
-        if contents.metadata.contains_key(ArenaInfo::METADATA) {
-            let kind = "it is a recording of an arena; read it with ArenaRecording".to_owned();
-            return Err(RecordError::NotARecording(kind));
-        }
+        let others = [
+            (OfClimber::METADATA, OfClimber::READ_WITH),
+            (OfArena::METADATA, OfArena::READ_WITH),
+        ];
+        let other = others
+            .into_iter()
+            .filter(|(name, _)| *name != K::METADATA)
+            .find(|(name, _)| contents.metadata.contains_key(*name));
         let mut take = |name: &str| {
             contents.metadata.remove(name).ok_or_else(|| {
-                let (ending, wanted) = (&contents.ending, format!("metadata named {name:?}"));
-                RecordError::NotARecording(format!("it has no {wanted}; the {ending}"))
+                RecordError::NotARecording(match other {
+                    Some((_, read_with)) => read_with.to_owned(),
+                    None => format!("it has no metadata named {name:?}; the {}", contents.ending),
+                })
             })
         };
-        let metadata = take(RecordingInfo::METADATA)?;
-        let info = RecordingInfo::from_metadata(&metadata, take(RecordingInfo::SETTINGS)?)?;
+        let metadata = take(K::METADATA)?;
+        let info = K::info(&metadata, take(RecordingInfo::SETTINGS)?)?;
         Ok(Self {
             info,
+            places: if K::IS_ARENA {
+                contents.arena
+            } else {
+                contents.climber
+            },
             source: contents.source,
-            places: contents.climber,
             ending: contents.ending,
         })
     }
 
     /// The metadata of the recording.
-    pub fn info(&self) -> &RecordingInfo {
+    pub fn info(&self) -> &K::Info {
         &self.info
     }
 
@@ -156,27 +171,29 @@ impl Recording {
     /// The tick with this number.
     ///
     /// # Errors
-    /// [`RecordError::NoTick`] if the recording has no such tick.
-    pub fn tick(&self, tick: u64) -> Result<RecordedTick, RecordError> {
-        self.decode_tick(self.places.tick(tick)?)
+    /// [`RecordError::NoTick`] if the recording has no such tick, [`RecordError::Message`] if it cannot be read.
+    pub fn tick(&self, tick: u64) -> Result<K::Tick, RecordError> {
+        self.decode(self.places.tick(tick)?)
     }
 
     /// All ticks, in order.
-    pub fn ticks(&self) -> impl Iterator<Item = Result<RecordedTick, RecordError>> + '_ {
+    pub fn ticks(&self) -> impl Iterator<Item = Result<K::Tick, RecordError>> + '_ {
         self.ticks_from(0)
     }
 
     /// The ticks from this number on, in order.
     ///
     /// These are all ticks for a number before the first one, and none for a number after the last one.
-    pub fn ticks_from(
-        &self,
-        tick: u64,
-    ) -> impl Iterator<Item = Result<RecordedTick, RecordError>> + '_ {
-        let ticks = self.places.from(tick);
-        ticks.map(|place| self.decode_tick(place))
+    pub fn ticks_from(&self, tick: u64) -> impl Iterator<Item = Result<K::Tick, RecordError>> + '_ {
+        self.places.from(tick).map(|place| self.decode(place))
     }
 
+    fn decode(&self, place: &Place) -> Result<K::Tick, RecordError> {
+        self.source.read(place, K::TOPIC, K::tick)
+    }
+}
+
+impl Recording {
     /// The last snapshot at or before a tick.
     ///
     /// # Errors
@@ -184,34 +201,19 @@ impl Recording {
     /// snapshot.
     pub fn snapshot(&self, tick: u64) -> Result<RecordedSnapshot, RecordError> {
         let (at, place) = self.places.saved(tick)?;
+        let message: Snapshot = self.source.decode(place, topics::SNAPSHOT)?;
         Ok(RecordedSnapshot {
             tick: self.tick(at)?,
-            scene: self.decode_snapshot(place)?.scene,
+            scene: message.scene,
         })
-    }
-
-    fn decode_tick(&self, place: &Place) -> Result<RecordedTick, RecordError> {
-        let tick: Tick = self.source.decode(place, topics::TICK)?;
-        RecordedTick::from_message(tick).map_err(|reason| RecordError::Message {
-            at: self.source.offset(place),
-            topic: topics::TICK,
-            reason,
-        })
-    }
-
-    fn decode_snapshot(&self, place: &Place) -> Result<Snapshot, RecordError> {
-        self.source.decode(place, topics::SNAPSHOT)
     }
 }
 
 impl RecordedTick {
     /// What a message says, or what is wrong with it.
     pub(crate) fn decode(message: &[u8]) -> Result<Self, String> {
-        let tick = prost::Message::decode(message);
-        Self::from_message(tick.map_err(|error| error.to_string())?)
-    }
-
-    fn from_message(tick: Tick) -> Result<Self, String> {
+        let tick = <Tick as prost::Message>::decode(message);
+        let tick = tick.map_err(|error| error.to_string())?;
         let state = tick.state.to_climber();
         let state = state.map_err(|mode| format!("unknown climber mode {mode}"))?;
         if state.fingerprint() != tick.state_fingerprint {

@@ -165,19 +165,33 @@ pub fn replay<E>(
     ticks: impl IntoIterator<Item = Result<RecordedTick, RecordError>>,
     mut step: impl FnMut(&RecordedTick) -> Result<Replayed, E>,
 ) -> Result<u64, ReplayError<E>> {
-    let mut agreed = 0;
-    for recorded in ticks {
-        let recorded = recorded?;
-        let replayed = step(&recorded).map_err(|error| ReplayError::Scene {
+    let (agreed, difference) = compare(ticks, |recorded| {
+        let replayed = step(recorded).map_err(|error| ReplayError::Scene {
             tick: recorded.tick,
             error,
         })?;
-        if let Some(difference) = Difference::between(&recorded, &replayed) {
-            return Err(ReplayError::Differs(Box::new(difference)));
+        Ok::<_, ReplayError<E>>(Difference::between(recorded, &replayed))
+    })?;
+    match difference {
+        Some(difference) => Err(ReplayError::Differs(Box::new(difference))),
+        None => Ok(agreed),
+    }
+}
+
+/// Plays ticks again by `step`, which tells how a tick differs, up to the first that does: how many agree, and that
+/// difference.
+pub(crate) fn compare<T, D, E: From<RecordError>>(
+    ticks: impl IntoIterator<Item = Result<T, RecordError>>,
+    mut step: impl FnMut(&T) -> Result<Option<D>, E>,
+) -> Result<(u64, Option<D>), E> {
+    let mut agreed = 0;
+    for recorded in ticks {
+        if let Some(difference) = step(&recorded?)? {
+            return Ok((agreed, Some(difference)));
         }
         agreed += 1;
     }
-    Ok(agreed)
+    Ok((agreed, None))
 }
 
 #[cfg(test)]

@@ -93,15 +93,27 @@ impl Source {
         place: &Place,
         topic: &'static str,
     ) -> Result<M, RecordError> {
-        let failed = |reason: String| RecordError::Message {
-            at: self.offset(place),
-            topic,
-            reason,
-        };
+        let decode = |message: &[u8]| M::decode(message).map_err(|error| error.to_string());
+        self.read(place, topic, decode)
+    }
+
+    /// What a function makes of the message at a place.
+    pub(crate) fn read<T>(
+        &self,
+        place: &Place,
+        topic: &'static str,
+        decode: impl FnOnce(&[u8]) -> Result<T, String>,
+    ) -> Result<T, RecordError> {
         let chunk = self.chunk(place.chunk)?;
         let message = chunk.get(place.from as usize..place.to as usize);
-        let message = message.ok_or_else(|| failed("its chunk has changed".to_owned()))?;
-        M::decode(message).map_err(|error| failed(error.to_string()))
+        let message = message.ok_or_else(|| "its chunk has changed".to_owned());
+        message
+            .and_then(decode)
+            .map_err(|reason| RecordError::Message {
+                at: self.offset(place),
+                topic,
+                reason,
+            })
     }
 
     /// Where a message is in the file, if its chunk is not compressed.

@@ -18,7 +18,7 @@ use crate::{RecordOptions, TickView};
 
 /// A copy of a tick. The memory of its vectors is reused from tick to tick.
 #[derive(Debug)]
-pub(crate) struct Taken {
+pub struct Taken {
     pub(crate) tick: u64,
     pub(crate) input: ClimberInput,
     pub(crate) state: ClimberState,
@@ -54,6 +54,14 @@ impl crate::chunks::TakenTick for Taken {
 
     fn follows_gap(&mut self, ticks: u64) {
         self.gap = ticks;
+    }
+
+    fn is_due(&self) -> bool {
+        self.transforms_due
+    }
+
+    fn scenery(&mut self) -> &mut Vec<TakenScenery> {
+        &mut self.scenery
     }
 }
 

@@ -9,6 +9,8 @@ mod taken;
 mod writing;
 
 pub use info::ArenaInfo;
+pub(crate) use recorder::ArenaMemory;
 pub use recorder::ArenaRecorder;
 pub use recording::{ArenaRecording, RecordedArenaTick};
 pub use replay::{ArenaDifference, ArenaReplay};
+pub(crate) use taken::TakenArena;

@@ -15,8 +15,8 @@ use super::writing::ArenaWriting;
 use crate::chunks::Chunks;
 use crate::names::ObstacleNames;
 use crate::recorder::create;
-use crate::views::{FigureJoints, SceneryNames, SceneryView};
-use crate::{RecordError, RecordOptions};
+use crate::views::{FigureJoints, SceneryNames};
+use crate::{OfArena, RecordError, RecordOptions, RecorderOf};
 
 /// Writes a recording of an arena: its inputs and fingerprints in each tick, so that
 /// [`ArenaRecording::replay`](super::ArenaRecording::replay) can play it again and compare; a saved state at the
@@ -25,18 +25,18 @@ use crate::{RecordError, RecordOptions};
 ///
 /// It writes on a thread of its own, chunk by chunk, as [`Recorder`](crate::Recorder) does, and what is said there of
 /// files that were cut holds here too.
-pub struct ArenaRecorder<W: Write> {
-    options: RecordOptions,
+pub type ArenaRecorder<W> = RecorderOf<OfArena, W>;
+
+/// What a recorder of an arena remembers.
+#[derive(Debug)]
+pub struct ArenaMemory {
     info: ArenaInfo,
-    names: ObstacleNames,
     /// Of the creatures that were seen.
     joints: BTreeMap<CreatureId, Arc<FigureJoints>>,
     /// Fighters at the end of the tick recorded last.
     fighters: usize,
     /// The numbers that the next creature and the next fighter got then: those below have names.
     named: [u32; 2],
-    scenery: SceneryNames,
-    chunks: Chunks<TakenArena, W>,
 }
 
 impl ArenaRecorder<BufWriter<File>> {
@@ -72,10 +72,12 @@ impl<W: Write + Send + 'static> ArenaRecorder<W> {
         let mut recorder = Self {
             options,
             names: ObstacleNames::default(),
-            info: info.clone(),
-            joints: BTreeMap::new(),
-            fighters: 0,
-            named: [0; 2],
+            memory: ArenaMemory {
+                info: info.clone(),
+                joints: BTreeMap::new(),
+                fighters: 0,
+                named: [0; 2],
+            },
             scenery: SceneryNames::default(),
             chunks: Chunks::start(writing, (options.chunk_ticks, options.waits))?,
         };
@@ -102,7 +104,7 @@ impl<W: Write> ArenaRecorder<W> {
         orders: &[Order],
         terrain: &[(ObstacleId, &dyn Obstacle)],
     ) -> Result<(), RecordError> {
-        let (fighters, found) = (self.fighters, inputs.len());
+        let (fighters, found) = (self.memory.fighters, inputs.len());
         if fighters != found {
             return Err(RecordError::Inputs { fighters, found });
         }
@@ -114,28 +116,28 @@ impl<W: Write> ArenaRecorder<W> {
         let next = [arena.next_creature().0, arena.next_fighter().0];
         // Only those who are there: a state may count further than there is memory for names.
         let creatures = arena.creatures().map(|(id, _)| id);
-        let creatures = creatures.filter(|id| id.0 >= self.named[0]);
+        let creatures = creatures.filter(|id| id.0 >= self.memory.named[0]);
         let creatures = creatures.map(|id| {
-            let name = self.info.creature(id.0 as usize);
+            let name = self.memory.info.creature(id.0 as usize);
             (creature_obstacle(id), name)
         });
         let fighters = arena.fighters().iter().map(|fighter| fighter.id());
-        let fighters = fighters.filter(|id| id.0 >= self.named[1]);
+        let fighters = fighters.filter(|id| id.0 >= self.memory.named[1]);
         let fighters = fighters.map(|id| {
-            let name = self.info.fighter(id.0 as usize);
+            let name = self.memory.info.fighter(id.0 as usize);
             (fighter_obstacle(id), name)
         });
         let new: Vec<(ObstacleId, String)> = creatures.chain(fighters).collect();
         if !new.is_empty() {
             Arc::make_mut(&mut self.names).extend(new);
         }
-        self.named = next;
+        self.memory.named = next;
         for (id, creature) in arena.creatures() {
             let joints = || {
-                let name = self.info.creature(id.0 as usize);
+                let name = self.memory.info.creature(id.0 as usize);
                 Arc::new(FigureJoints::new(&name, creature.kind().skeleton()))
             };
-            self.joints.entry(id).or_insert_with(joints);
+            self.memory.joints.entry(id).or_insert_with(joints);
         }
     }
 
@@ -145,27 +147,27 @@ impl<W: Write> ArenaRecorder<W> {
         inputs: (&[ClimberInput], &[Order]),
         terrain: &[(ObstacleId, &dyn Obstacle)],
     ) -> Result<(), RecordError> {
-        let (recorded, found) = (self.info.config, arena.config_hash());
+        let (recorded, found) = (self.memory.info.config, arena.config_hash());
         if recorded != found {
             return Err(RecordError::OtherArena { recorded, found });
         }
         let tick = arena.tick();
         self.chunks.check(tick)?;
         self.name_all(arena);
-        self.fighters = arena.fighters().len();
+        self.memory.fighters = arena.fighters().len();
         let is_due = |every: u32| every > 0 && tick.is_multiple_of(u64::from(every));
         let due = Due {
             views: is_due(self.options.transforms_every),
             skin: is_due(self.options.skin_every),
         };
-        let mut taken = TakenArena::new(arena, inputs, terrain, &self.joints, due)?;
+        let mut taken = TakenArena::new(arena, inputs, terrain, &self.memory.joints, due)?;
         let words = Words {
             arena,
             orders: inputs.1,
-            info: &self.info,
+            info: &self.memory.info,
             names: &self.names,
         };
-        taken.lines = words.lines(crate::output::time(tick, self.info.tick_seconds));
+        taken.lines = words.lines(crate::output::time(tick, self.memory.info.tick_seconds));
         if self.chunks.begins() {
             taken.saved = Some(arena.to_bytes()?);
         }
@@ -176,51 +178,5 @@ impl<W: Write> ArenaRecorder<W> {
             }
             None => Some(taken),
         })
-    }
-
-    /// Gives terrain a name, by which the log calls it from the next tick on. Creatures and fighters have those of
-    /// [`ArenaInfo`].
-    pub fn name(&mut self, obstacle: ObstacleId, name: &str) {
-        let names = Arc::make_mut(&mut self.names);
-        names.retain(|(id, _)| *id != obstacle);
-        names.push((obstacle, name.to_owned()));
-    }
-
-    /// Ticks that were left out so far, since the disk was too slow: [`RecordOptions::waits`].
-    pub fn dropped(&self) -> u64 {
-        self.chunks.dropped()
-    }
-
-    /// [`Recorder::is_due`](crate::Recorder::is_due).
-    ///
-    /// # Errors
-    /// [`RecordError::NoTick`] before the first tick; [`RecordError::Ended`] after writing failed.
-    pub fn is_due(&mut self) -> Result<bool, RecordError> {
-        Ok(self.chunks.last()?.is_due)
-    }
-
-    /// Records a mesh at the tick recorded last, for people to look at, such as the ground or a rock: its shape the
-    /// first time, its place whenever [`RecordOptions::transforms_every`] lets transforms be due. What stands still is
-    /// recorded once.
-    ///
-    /// # Errors
-    /// [`RecordError::Ended`] after writing failed.
-    pub fn scenery(&mut self, view: &SceneryView<'_>) -> Result<(), RecordError> {
-        let last = self.chunks.last()?;
-        let taken = self.scenery.take(view, last.is_due);
-        last.scenery.extend(taken);
-        Ok(())
-    }
-
-    /// Writes the remaining ticks and the index, and gives back `out`.
-    ///
-    /// # Errors
-    /// [`RecordError::Write`] or another error if a chunk or the index could not be written;
-    /// [`RecordError::Ended`] if [`ArenaRecorder::tick`] has returned that error already.
-    ///
-    /// # Panics
-    /// If `out` panicked: that panic is resumed here.
-    pub fn finish(mut self) -> Result<W, RecordError> {
-        self.chunks.finish()
     }
 }

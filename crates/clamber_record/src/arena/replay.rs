@@ -5,6 +5,7 @@ use clamber_fight::{Arena, ArenaError, ArenaPart, Order};
 
 use super::{ArenaInfo, ArenaRecording, RecordedArenaTick};
 use crate::RecordError;
+use crate::replay::compare;
 
 /// A tick at which a replay differs from the recording.
 #[derive(Clone, Debug, PartialEq)]
@@ -100,14 +101,8 @@ impl ArenaRecording {
         let from = from.or(self.first()).unwrap_or_default();
         let (from, saved) = self.saved(from)?;
         arena.restore_bytes(&saved)?;
-        let mut replay = ArenaReplay {
-            from,
-            agreed: 0,
-            difference: None,
-        };
         let mut last = from;
-        for recorded in self.ticks_from(from) {
-            let recorded = recorded?;
+        let (agreed, difference) = compare(self.ticks_from(from), |recorded| {
             if recorded.tick > last && recorded.tick - last > 1 {
                 // After a gap it goes on from what was saved there.
                 let (_, saved) = self.saved(recorded.tick)?;
@@ -116,13 +111,18 @@ impl ArenaRecording {
                 step(arena, &recorded.inputs, &recorded.orders)?;
             }
             last = recorded.tick;
-            if arena.fingerprint() != recorded.fingerprint {
-                let (all, parts) = (arena.fingerprint(), arena.part_fingerprints());
-                replay.difference = ArenaDifference::between(self.info(), &recorded, all, &parts);
-                break;
+            let all = arena.fingerprint();
+            if all == recorded.fingerprint {
+                return Ok::<_, RecordError>(None);
             }
-            replay.agreed += 1;
-        }
-        Ok(replay)
+            let parts = arena.part_fingerprints();
+            let info = self.info();
+            Ok(ArenaDifference::between(info, recorded, all, &parts))
+        })?;
+        Ok(ArenaReplay {
+            from,
+            agreed,
+            difference,
+        })
     }
 }

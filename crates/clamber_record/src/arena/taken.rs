@@ -18,7 +18,7 @@ use crate::views::{FigureJoints, TakenFigure, TakenScenery, brain};
 
 /// A tick of an arena.
 #[derive(Debug)]
-pub(crate) struct TakenArena {
+pub struct TakenArena {
     pub(crate) message: ArenaTick,
     pub(crate) lines: Vec<Log>,
     /// True if views are due.
@@ -128,6 +128,14 @@ impl TakenTick for TakenArena {
 
     fn follows_gap(&mut self, ticks: u64) {
         self.gap = ticks;
+    }
+
+    fn is_due(&self) -> bool {
+        self.is_due
+    }
+
+    fn scenery(&mut self) -> &mut Vec<TakenScenery> {
+        &mut self.scenery
     }
 }
 

@@ -37,7 +37,7 @@ struct Shape {
 
 /// A mesh in a tick.
 #[derive(Debug)]
-pub(crate) struct TakenScenery {
+pub struct TakenScenery {
     name: Arc<str>,
     position: DVec3,
     rotation: DQuat,

@@ -111,6 +111,14 @@ fn a_recording_replays_from_its_beginning_and_from_every_second() {
         recording.info().fighters,
         ["fighter 0", "archer", "fighter 2"]
     );
+    let ticks = recording.ticks().map(Result::unwrap);
+    let numbers = ticks.map(|tick| {
+        assert_eq!(recording.tick(tick.tick).unwrap(), tick);
+        tick.tick
+    });
+    assert!(numbers.eq(0..=TICKS));
+    let beyond = recording.tick(TICKS + 1);
+    assert!(matches!(beyond, Err(RecordError::NoTick { .. })));
     let mut arena = arena();
     for from in [None, Some(59), Some(60), Some(61), Some(200), Some(TICKS)] {
         let replay = recording.replay(&mut arena, from, step).unwrap();
