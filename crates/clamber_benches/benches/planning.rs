@@ -55,6 +55,7 @@ fn run(brief: bool) -> Result<(), Failure> {
     let seconds = start.elapsed().as_secs_f64();
     cells.push("the graph of the giant, s", seconds, Bound::Most(20.0));
     cells.value("patches", graph.patches().len() as f64);
+    cells.value("jumps", graph.jumps() as f64);
     cells.value("the graph from its file, s", read(&creature)?);
     plans(&creature, &graph, if brief { 10 } else { 500 }, &mut cells)?;
     climb(

@@ -37,11 +37,12 @@ const SWINGS: f64 = 0.4;
 /// It chooses an entry anew every so many seconds.
 const CHOOSES: f64 = 0.5;
 
-/// From the ground to its first patch it takes so long, and it waits no longer than this for a good time to do so, seconds.
+/// From the ground to its first patch it takes so long, and it waits no longer than `WAITS` for a good time to do so,
+/// seconds.
 const GETS_ON: f64 = 0.5;
 const WAITS: f64 = 60.0;
 
-/// In vain it looks for that time every so many seconds at last.
+/// A search for that time which found nothing is made again after so many seconds at most.
 const PAUSE: f64 = 2.0;
 
 /// An entry has to be better by so many seconds to be taken instead of the one that it goes to.
@@ -161,7 +162,7 @@ impl Approach {
         {
             self.free = seconds;
             let away = level(state.position - view.surface.world_from_model().translation);
-            // Who is tired is better off on the ground, even where a leg is in its way.
+            // A tired one does not grip: it rests on the ground, even if it runs into a leg.
             return ClimberInput {
                 walk: away.normalize_or(up.any_orthonormal_vector()),
                 grip: !stands || is_rested(config, view),
@@ -273,8 +274,8 @@ impl Approach {
         lasted > 0.0 && place.distance(from) > SWINGS * catches * lasted
     }
 
-    /// True if its strength is enough for what is expected if it goes to its entry now, or if it has waited for that for
-    /// as long as anything is expected.
+    /// True if it is time to get on: its strength is enough for what is expected from now on, or it has waited for such
+    /// a time until all that is expected has passed.
     fn is_time(&mut self, view: &View<'_>) -> bool {
         if view.forecast.is_still() || self.lasts {
             self.waits = None;

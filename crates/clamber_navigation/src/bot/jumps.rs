@@ -79,7 +79,9 @@ impl Jumps {
                 last: DVec3::NAN,
             });
         self.ready = Some(Ready { last: way, ..ready });
-        if climber.stamina.is_some() && state.stamina <= leap.costs() {
+        // Who cannot rest goes as far as its strength does.
+        let rests = climber.stamina.is_some_and(|stamina| stamina.refill > 0.0);
+        if rests && state.stamina <= leap.costs() {
             return Some(TakeOff::Tired);
         }
         let Some(aim) = Aim::at(climber, from, to) else {
@@ -151,27 +153,25 @@ impl Jumps {
         (!view.is_on_creature() || apart > MISSES * climber.config().body.radius).then_some(ends)
     }
 
-    /// True if a jump is worth a plan: it lands in some of the clips that are expected, or its ends keep together, as far
-    /// as that can be seen from what they have moved by in the last `dt` seconds.
-    pub(super) fn may_land(
-        graph: &ClimbGraph,
-        view: &View<'_>,
-        number: usize,
-        leap: &Leap,
-        dt: f64,
-    ) -> bool {
-        if !view.forecast.is_still() {
-            return view.forecast.ever_lands(graph, number);
-        }
-        // Who has not looked for a while finds out where the jump begins.
-        if !(dt > 0.0 && dt < LOOKS) {
-            return true;
-        }
+    /// Of each jump, whether a plan may lead over it. If clips are expected, it has to land in one of them. Otherwise its
+    /// ends have to keep together, at the velocities that they had in the last `dt` seconds.
+    pub(super) fn may_land(graph: &ClimbGraph, view: &View<'_>, dt: f64) -> Vec<bool> {
+        let radius = view.climber.config().body.radius;
         let velocity = |patch: u32| view.velocity(&graph.patches()[patch as usize], dt);
-        let [Some(from), Some(to)] = [leap.from, leap.aimed].map(velocity) else {
-            return false;
+        let may_land = |(number, leap): (usize, &Leap)| {
+            if !view.forecast.is_still() {
+                return view.forecast.ever_lands(graph, number);
+            }
+            // After a pause no velocities are known. Then the take-off decides.
+            if !(dt > 0.0 && dt < LOOKS) {
+                return true;
+            }
+            let [Some(from), Some(to)] = [leap.from, leap.aimed].map(velocity) else {
+                return false;
+            };
+            (to - from).length() * leap.seconds() <= PARTS * radius
         };
-        (to - from).length() * leap.seconds() <= PARTS * view.climber.config().body.radius
+        graph.leaps.iter().enumerate().map(may_land).collect()
     }
 }
 

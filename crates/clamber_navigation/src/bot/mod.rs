@@ -15,7 +15,6 @@ use std::sync::Arc;
 pub use config::BotConfig;
 pub use view::{Danger, View};
 
-use crate::graph::Leap;
 use crate::plan::Around;
 use crate::report::LEVEL;
 use crate::{ClimbGraph, Footing, Forecast, Goal, Plan, Start};
@@ -425,9 +424,8 @@ impl Bot {
                 && room.is_there(&self.graph.patches[to], to)
         };
         let limbs = &self.limbs;
-        let lands = |number: usize, leap: &Leap| {
-            Jumps::may_land(&self.graph, view, number, leap, self.looks[1])
-        };
+        let may_land = Jumps::may_land(&self.graph, view, self.looks[1]);
+        let lands = |jump: usize| may_land[jump];
         let is_safe = |from: usize, to: usize| {
             is_open(from, to) && !limbs.lead_onto(&self.graph, view, [from, to])
         };
@@ -566,8 +564,8 @@ const RESTS: f64 = 8.0;
 /// Who finds no way for so long lets go, seconds.
 const LOST: f64 = 3.0;
 
-/// It lets go on slopes up to these shares of what it can stand on: to rest where it happens to be, and where it
-/// planned to stand.
+/// The steepest slopes on which it lets go, as shares of the steepest one that it can stand on: to rest anywhere, and
+/// to rest or walk where its plan says so.
 const LETS_GO: f64 = 0.8;
 const AS_PLANNED: f64 = 0.97;
 

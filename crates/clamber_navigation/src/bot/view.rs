@@ -34,7 +34,8 @@ pub struct View<'a> {
     /// Where to go.
     pub goal: &'a Goal,
     /// What the creature is expected to do from now on: a clip that it plays begins with its present time. Plans are
-    /// made on it now and then, so it may be a rough guess.
+    /// made on it now and then, so it may be a rough guess; but a jump from one part of the creature to another relies
+    /// on the next second or two. [`Forecast::still`] leaves that to the bot's own eyes.
     pub forecast: &'a Forecast,
     /// What it is about to do to somebody on the ground.
     pub danger: Danger,
@@ -60,7 +61,7 @@ impl View<'_> {
         Some((triangle, material.coordinates.map(|weight| weight as f32)))
     }
 
-    /// True if what it is on is level enough to let go: no steeper than a share of what it can stand on.
+    /// True if the skin under it is no steeper than a share of the steepest slope that it can stand on.
     pub(super) fn is_level(&self, share: f64) -> bool {
         let config = self.climber.config();
         let support = self.climber.state().support;

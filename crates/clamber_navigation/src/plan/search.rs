@@ -149,8 +149,8 @@ impl ClimbGraph {
 pub(crate) struct Around<'a> {
     /// True if a way is open, from a patch to another.
     pub(crate) is_open: &'a dyn Fn(usize, usize) -> bool,
-    /// True if a jump may be taken.
-    pub(crate) lands: &'a dyn Fn(usize, &Leap) -> bool,
+    /// True if a jump may be taken, by its number.
+    pub(crate) lands: &'a dyn Fn(usize) -> bool,
     /// True if a patch of the goal counts.
     pub(crate) arrives: &'a dyn Fn(usize) -> bool,
 }
@@ -159,7 +159,7 @@ impl Default for Around<'_> {
     fn default() -> Self {
         Self {
             is_open: &|_, _| true,
-            lands: &|_, _| true,
+            lands: &|_| true,
             arrives: &|_| true,
         }
     }
@@ -258,7 +258,7 @@ impl Search<'_> {
             if footing == Footing::Stands {
                 for (number, leap) in graph.leaps.of(patch) {
                     let to = leap.to as usize;
-                    if !(self.around.is_open)(patch, to) || !(self.around.lands)(number, leap) {
+                    if !(self.around.is_open)(patch, to) || !(self.around.lands)(number) {
                         continue;
                     }
                     if let Some((seconds, stamina)) = self.jump(number, leap) {

@@ -4,11 +4,10 @@
 
 use std::sync::Arc;
 
-use crate::support::{Body, climber, two_joints};
-use clamber_climber::{Climber, ContactQuery, StepRules};
+use crate::support::{Body, climber, graph_of, two_joints};
+use clamber_climber::{Climber, ClimberState, ContactQuery, StepRules};
 use clamber_navigation::{
-    Bot, BotConfig, ClimbGraph, Danger, Footing, Forecast, Goal, GraphConfig, GraphSource, Start,
-    View,
+    Bot, BotConfig, ClimbGraph, Danger, Footing, Forecast, Goal, GraphConfig, Start, View,
 };
 use clamber_surface::geometry::Similarity;
 use clamber_surface::mesh::SurfaceKind::{self, Fur, Skin};
@@ -57,20 +56,8 @@ fn place(size: f64) -> Similarity {
 
 /// The graph of blocks with clips, for a climber of their size.
 fn graph(body: &Body, size: f64, clips: &[Clip]) -> Arc<ClimbGraph> {
-    let (mesh, skeleton) = (body.mesh(), two_joints());
-    let source = GraphSource {
-        skeleton: &skeleton,
-        mesh: &mesh,
-        clips,
-        rate: 1.0,
-        plates: &[],
-        weak_points: &[],
-        world_from_model: place(size),
-        ground: 0.0,
-    };
-    let go_on = |_| std::ops::ControlFlow::Continue(());
     let config = GraphConfig::new(climber().climber.scaled(size));
-    Arc::new(ClimbGraph::build(&source, &config, go_on).unwrap())
+    graph_of(body, &config, clips, place(size))
 }
 
 /// The top of the other block.
@@ -144,7 +131,7 @@ fn crosses(
     graph: &Arc<ClimbGraph>,
     goal: &Goal,
     moves: Option<Moves<'_>>,
-    from: DVec3,
+    (from, stamina): (DVec3, f64),
 ) -> Went {
     let skeleton = two_joints();
     let mut surface = SkinnedSurface::new(body.mesh());
@@ -161,6 +148,8 @@ fn crosses(
     let config = graph.config().climber;
     let feet = DVec3::Y * 1.02 * config.body.radius;
     let mut who = Climber::new(config, from * size + feet).unwrap();
+    let state = *who.state();
+    who.restore(ClimberState { stamina, ..state }).unwrap();
     let mut bot = Bot::new(Arc::clone(graph), BotConfig::default());
     let mut was_lost = false;
     let floor = HalfSpace::below(0.0);
@@ -233,11 +222,26 @@ fn gaps_and_ledges_are_crossed_where_the_graph_says_so() {
         for _ in 0..3 {
             let aside = 3.0 * (rng.f64() - 0.5);
             let from = DVec3::new(-3.0 + 2.5 * rng.f64(), 6.0, aside);
-            let went = crosses((&body, size), &graph, &goal, None, from);
+            let went = crosses((&body, size), &graph, &goal, None, (from, 1.0));
             assert_eq!(went, Went::Across, "{told}, from {from}");
         }
     }
     assert!(crossed > 25 && not > 5, "{crossed} {not}");
+}
+
+/// A jump that needs no hands is made without strength too, also by somebody who never rests.
+#[test]
+fn who_has_no_strength_left_jumps() {
+    let body = blocks(1.6, -1.0, [Skin, Skin]);
+    for refill in [0.0, 0.1] {
+        let mut config = climber();
+        config.climber.stamina.as_mut().unwrap().refill = refill;
+        let graph = graph_of(&body, &config, &[], place(1.0));
+        let goal = goal(&graph, 1.0, 1.6);
+        let from = DVec3::new(-2.0, 6.0, 0.0);
+        let went = crosses((&body, 1.0), &graph, &goal, None, (from, 0.0));
+        assert_eq!(went, Went::Across, "{refill}");
+    }
 }
 
 /// A clip in which a joint goes from one place to another and back.
@@ -294,7 +298,7 @@ fn jumps_are_planned_in_clips_in_which_they_always_land() {
                     begins: lasts * f64::from(phase) / 16.0,
                     told: true,
                 };
-                let went = crosses((&body, 1.0), &graph, &goal, Some(moves), from);
+                let went = crosses((&body, 1.0), &graph, &goal, Some(moves), (from, 1.0));
                 assert_eq!(went, Went::Across, "{kind:?} {} {phase}", clip.name);
             }
         }
@@ -305,7 +309,7 @@ fn jumps_are_planned_in_clips_in_which_they_always_land() {
                 begins: 10.0 * share,
                 told: true,
             };
-            let went = crosses((&body, 1.0), &graph, &goal, Some(both), from);
+            let went = crosses((&body, 1.0), &graph, &goal, Some(both), (from, 1.0));
             assert_eq!(went, Went::Across, "{kind:?} {phase}, in turns");
             // Nobody jumps to what moves away, told of it or not.
             for told in [true, false] {
@@ -314,7 +318,7 @@ fn jumps_are_planned_in_clips_in_which_they_always_land() {
                     begins: 6.0 * share,
                     told,
                 };
-                let went = crosses((&body, 1.0), &graph, &goal, Some(moves), from);
+                let went = crosses((&body, 1.0), &graph, &goal, Some(moves), (from, 1.0));
                 assert_ne!(went, Went::Down, "{kind:?} {phase}, told: {told}");
                 assert!(!told || went == Went::Back, "{kind:?} {phase}: {went:?}");
             }

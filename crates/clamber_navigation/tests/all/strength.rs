@@ -4,10 +4,10 @@
 
 use std::sync::Arc;
 
-use crate::support::{Body, climber, skeleton};
+use crate::support::{Body, climber, graph_of, skeleton};
 use clamber_climber::{Climber, ClimberEvent, ContactQuery, StepRules};
 use clamber_navigation::{
-    Bot, BotConfig, ClimbGraph, Danger, Forecast, Goal, GraphConfig, GraphSource, Start, View,
+    Bot, BotConfig, ClimbGraph, Danger, Forecast, Goal, GraphConfig, Start, View,
 };
 use clamber_surface::geometry::Similarity;
 use clamber_surface::mesh::SurfaceKind::Fur;
@@ -51,19 +51,7 @@ fn lasts(seconds: f64) -> GraphConfig {
 
 /// The graph of a body with a clip.
 fn graph(body: &Body, config: &GraphConfig, clips: &[Clip]) -> Arc<ClimbGraph> {
-    let (mesh, skeleton) = (body.mesh(), skeleton());
-    let source = GraphSource {
-        skeleton: &skeleton,
-        mesh: &mesh,
-        clips,
-        rate: 1.0,
-        plates: &[],
-        weak_points: &[],
-        world_from_model: Similarity::IDENTITY,
-        ground: 0.0,
-    };
-    let go_on = |_| std::ops::ControlFlow::Continue(());
-    Arc::new(ClimbGraph::build(&source, config, go_on).unwrap())
+    graph_of(body, config, clips, Similarity::IDENTITY)
 }
 
 /// How a climb went.

@@ -73,7 +73,7 @@ const SPREAD: f64 = 4.0;
 /// In a clip it lands within so many radii of where it does at rest.
 const SAME: f64 = 2.0;
 
-/// So many jumps are played at rest, and so many of those that land there in all clips; those that save most.
+/// So many jumps are played at rest, those that save most. So many of those that land are kept, and played in clips.
 const MOST_TRIED: usize = 512;
 const MOST: usize = 64;
 
@@ -104,6 +104,9 @@ impl Leaps {
             }
             let mut left: Vec<(usize, Leap)> = leaps.iter().copied().enumerate().collect();
             for phase in 0..phases as u32 {
+                if left.is_empty() {
+                    break;
+                }
                 let begins = lasts * f64::from(phase) / phases;
                 let off = OFF[phase as usize % OFF.len()];
                 let when = Moment {
@@ -144,6 +147,9 @@ impl Leaps {
             })
         };
         for tries in tries[..tries.len().min(MOST_TRIED)].chunks(AT_ONCE) {
+            if leaps.len() == MOST {
+                break;
+            }
             let ends: Vec<[u32; 2]> = tries.iter().map(|tried| tried.ends).collect();
             let landed = theatre.play(&ends, Moment::REST, tell)?;
             let mut new: Vec<(usize, Leap)> = Vec::new();
@@ -244,6 +250,11 @@ impl Leaps {
         clip < self.clips && lands.copied().unwrap_or(false)
     }
 
+    /// All of them.
+    pub(crate) fn iter(&self) -> impl Iterator<Item = &Leap> {
+        self.leaps.iter()
+    }
+
     /// Number of them.
     pub(crate) fn len(&self) -> usize {
         self.leaps.len()
@@ -313,7 +324,7 @@ impl Aim {
         let height = (to - from).dot(up);
         let level = to - from - up * height;
         let under = rise * rise - 2.0 * gravity * height;
-        // It rises for no time where it does not get there: hands do.
+        // What it does not rise to, hands catch when it is highest.
         let seconds = (rise + libm::sqrt(under.max(0.0))) / gravity;
         let hands = climber.grip.map_or(0.0, |grip| grip.reach);
         let ledge = climber
@@ -334,7 +345,7 @@ impl Aim {
         })
     }
 
-    /// The input so many seconds after the jump; that of the jump at 0.
+    /// The input of a tick that begins so many seconds after the jump. The tick of the jump itself is at 0.
     pub(crate) fn input(&self, climber: &ClimberConfig, seconds: f64) -> ClimberInput {
         let rises = climber.ground.jump_speed / climber.gravity.length();
         ClimberInput {

@@ -15,7 +15,7 @@ use clamber_surface::geometry::{Affine, Similarity};
 use clamber_surface::mesh::{
     BuildOptions, ColliderMesh, Influence, MeshSource, SurfaceKind, SurfaceTag,
 };
-use clamber_surface::rig::{Joint, JointId, Skeleton, Transform, WeakPoint};
+use clamber_surface::rig::{Clip, Joint, JointId, Skeleton, Transform, WeakPoint};
 use clamber_surface::surface::SkinnedSurface;
 use glam::Vec3;
 
@@ -143,6 +143,33 @@ impl Body {
             ground: 0.0,
         })
     }
+}
+
+/// The graph of a body with clips, above ground at height 0.
+pub(crate) fn graph_of(
+    body: &Body,
+    config: &GraphConfig,
+    clips: &[Clip],
+    world_from_model: Similarity,
+) -> Arc<ClimbGraph> {
+    let mesh = body.mesh();
+    let skeleton = if body.second_joint.is_some() {
+        two_joints()
+    } else {
+        skeleton()
+    };
+    let source = GraphSource {
+        skeleton: &skeleton,
+        mesh: &mesh,
+        clips,
+        rate: 1.0,
+        plates: &[],
+        weak_points: &[],
+        world_from_model,
+        ground: 0.0,
+    };
+    let go_on = |_| ControlFlow::Continue(());
+    Arc::new(ClimbGraph::build(&source, config, go_on).unwrap())
 }
 
 pub(crate) fn skeleton() -> Skeleton {
