@@ -112,6 +112,70 @@ fn brains_are_inspected() {
     std::fs::remove_file(&broken).unwrap();
 }
 
+/// A brain is proposed for each model, in 40 lines at most, and fits it; some that jump at their ends are warned of.
+#[test]
+fn brains_are_proposed() {
+    let file = format!("{}/proposed.json", env!("CARGO_TARGET_TMPDIR"));
+    let files = test_data::gltf_files("proposals for all models").unwrap();
+    let mut files: Vec<_> = files.into_iter().map(|(_, path)| path).collect();
+    let count = files.len();
+    files.push(giant::path());
+    let (mut proposed, mut warned) = (0, 0);
+    for path in files {
+        let creature = path.to_str().unwrap();
+        let ended = clamber(&["inspect", "--propose-brain", creature, "--height", "12.5"]);
+        let text = String::from_utf8(ended.stdout).unwrap();
+        if load(&path).is_err() {
+            assert_eq!(ended.status.code(), Some(2), "{creature}");
+            continue;
+        }
+        assert_eq!(ended.status.code(), Some(0), "{creature}");
+        let lines = text.lines().count();
+        assert!(lines <= 40, "{creature}: {lines} lines\n{text}");
+        let json: serde_json::Value = serde_json::from_str(&text).unwrap();
+        assert_eq!(json["body"]["height"], 12.5, "{text}");
+        let is_giant = path == giant::path();
+        assert_eq!(json["body"]["fur"].is_null(), is_giant, "{text}");
+        // A flat creature of the edge cases has no room for one.
+        let has_none = is_giant || creature.contains("quad_skin");
+        let weak_points = &json["body"]["weak_points"];
+        assert_eq!(weak_points.is_null(), has_none, "{creature}\n{text}");
+        std::fs::write(&file, &text).unwrap();
+        let ended = clamber(&["inspect", "--brain", &file, "--creature", creature]);
+        let report = String::from_utf8(ended.stdout).unwrap();
+        assert_eq!(ended.status.code(), Some(0), "{creature}\n{text}\n{report}");
+        assert!(!report.contains("does not end as it begins"), "{report}");
+        proposed += 1;
+        // Without what closes them.
+        let mut open = json.clone();
+        let clips = open["body"]["clips"].as_object_mut();
+        let clips = clips.into_iter().flat_map(|clips| clips.values_mut());
+        let closed = clips.filter_map(|clip| clip.as_object_mut()?.remove("close"));
+        if closed.count() > 0 {
+            std::fs::write(&file, open.to_string()).unwrap();
+            let ended = clamber(&["inspect", "--brain", &file, "--creature", creature]);
+            let report = String::from_utf8(ended.stdout).unwrap();
+            warned += usize::from(report.contains("does not end as it begins"));
+        }
+    }
+    println!("{proposed} brains, {warned} creatures whose clips jump");
+    assert!(count == 0 || proposed > 27 && warned > 0);
+    for (arguments, told) in [
+        (&["--height", "12"][..], "--propose-brain"),
+        (&["--propose-brain", "--joints"], "--joints"),
+        (&["--propose-brain", "--height", "0"], "`height` is 0"),
+        (&["--propose-brain", "--height", "NaN"], "`height` is NaN"),
+    ] {
+        let creature = giant::path();
+        let all = ["inspect", creature.to_str().unwrap()].into_iter();
+        let all: Vec<&str> = all.chain(arguments.iter().copied()).collect();
+        let ended = clamber(&all);
+        let text = String::from_utf8(ended.stderr).unwrap();
+        assert_eq!(ended.status.code(), Some(2), "{text}");
+        assert!(text.contains(told), "{text}");
+    }
+}
+
 #[test]
 fn errors_name_what_is_wrong() {
     let file = giant::path();

@@ -6,6 +6,7 @@ mod creature;
 mod error;
 mod feet;
 mod kind;
+mod propose;
 pub mod senses;
 
 pub use brain::{Brain, BrainError, BrainFile, BrainProblem, BrainReport, BrainState};
@@ -15,7 +16,7 @@ pub use creature::{
 };
 pub use error::ColossusError;
 pub use kind::{
-    BodyFile, ClipFile, CreatureKind, CreatureParts, Facing, GaitFile, HeadFile, Knee, LegFile,
-    Plate, PlateFile, Times, WeakPointFile,
+    BodyFile, ClipFile, CreatureKind, CreatureParts, Facing, FurFile, GaitFile, HeadFile, Knee,
+    LegFile, Plate, PlateFile, Times, WeakPointFile,
 };
 pub use senses::{RegionSense, Sense, Senses};

@@ -1,12 +1,17 @@
 //! The collider mesh under construction.
 
+use std::collections::BTreeMap;
+use std::ops::Range;
+
 use clamber_surface::mesh::{
     BuildOptions, BuildReport, ColliderMesh, Influence, MeshError, MeshSource, SurfaceTag,
+    TriangleId,
 };
 use glam::Vec3;
 
 use crate::GltfErrorKind;
 use crate::vertices::Vertices;
+use crate::visual::Material;
 
 /// All collision primitives of a creature, merged.
 #[derive(Default)]
@@ -18,6 +23,8 @@ pub(crate) struct Collision {
     pub(crate) spaces: Vec<u32>,
     pub(crate) triangles: Vec<[u32; 3]>,
     pub(crate) tags: Vec<SurfaceTag>,
+    /// Of each material that is used, the triangles that have it: from here, before there. Ascending.
+    pub(crate) materials: Vec<(usize, Range<usize>)>,
 }
 
 impl Collision {
@@ -58,5 +65,26 @@ impl Collision {
             joint_count,
         };
         ColliderMesh::build(&source, options)
+    }
+
+    /// Of each material with a name, the triangles of the built mesh that have it.
+    pub(crate) fn named_materials(
+        &self,
+        report: &BuildReport,
+        all: &[Material],
+    ) -> BTreeMap<String, Vec<TriangleId>> {
+        let mut named: BTreeMap<String, Vec<TriangleId>> = BTreeMap::new();
+        let built = &report.source_triangles;
+        for (material, Range { start, end }) in &self.materials {
+            let name = all.get(*material).and_then(|one| one.name.as_ref());
+            let [first, after] = [*start, *end]
+                .map(|bound| built.partition_point(|source| (*source as usize) < bound));
+            let Some(name) = name.filter(|_| first < after) else {
+                continue;
+            };
+            let triangles = (first..after).map(|index| TriangleId(index as u32));
+            named.entry(name.clone()).or_default().extend(triangles);
+        }
+        named
     }
 }

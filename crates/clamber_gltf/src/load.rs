@@ -1,8 +1,9 @@
+use std::collections::BTreeMap;
 use std::io;
 use std::path::Path;
 use std::sync::Arc;
 
-use clamber_surface::mesh::{BuildReport, ColliderMesh};
+use clamber_surface::mesh::{BuildReport, ColliderMesh, TriangleId};
 use clamber_surface::rig::Skeleton;
 
 use crate::accessor::Reader;
@@ -173,7 +174,7 @@ fn rig(
     contents.reader.charge(&object, bytes)?;
     let joints = skeleton::load(contents, members, &mut warnings)?;
     let Meshes { collision, visual } = mesh::load(contents, members, &joints, &mut warnings)?;
-    let collider = collider(collision, &joints.skeleton, contents.options, &object)?;
+    let collider = collider(collision, &joints.skeleton, contents, &object)?;
     let clips = clip::load(contents, &joints.of_node, &mut warnings)?;
     let weak_points = weak_point::load(contents, members, &joints, &mut warnings)?;
     let mut rig = Rig {
@@ -182,6 +183,7 @@ fn rig(
         collider: Arc::new(collider.mesh),
         visual,
         materials: contents.materials.clone(),
+        collider_materials: collider.materials,
         weak_points,
         report: ImportReport {
             build: collider.report,
@@ -199,6 +201,7 @@ fn rig(
 struct Collider {
     mesh: ColliderMesh,
     report: BuildReport,
+    materials: BTreeMap<String, Vec<TriangleId>>,
     /// The factor that it was scaled by; `None` if no height was set.
     scale: Option<f64>,
 }
@@ -208,9 +211,10 @@ struct Collider {
 fn collider(
     mut collision: Collision,
     skeleton: &Skeleton,
-    options: &LoadOptions,
+    contents: &Contents<'_>,
     object: &str,
 ) -> Result<Collider, GltfErrorKind> {
+    let options = contents.options;
     let build = |collision: &Collision| {
         let built = collision.build(skeleton.joints().len(), &options.build);
         built.map_err(|error| GltfErrorKind::Collider {
@@ -220,11 +224,11 @@ fn collider(
     };
     let (mesh, report) = build(&collision)?;
     let Some(height) = options.height else {
-        let scale = None;
         return Ok(Collider {
+            materials: collision.named_materials(&report, &contents.materials),
             mesh,
             report,
-            scale,
+            scale: None,
         });
     };
     let factor = scale::factor(height, skeleton, &mesh, object)?;
@@ -233,6 +237,7 @@ fn collider(
     scale::points(&mut collision.positions, factor);
     let (mesh, report) = build(&collision)?;
     Ok(Collider {
+        materials: collision.named_materials(&report, &contents.materials),
         mesh,
         report,
         scale: Some(factor),

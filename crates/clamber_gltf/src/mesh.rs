@@ -182,8 +182,11 @@ impl Gathered {
             collision
                 .triangles
                 .extend(triangles.iter().map(|t| t.map(|v| v + base)));
-            let count = collision.triangles.len();
+            let (first, count) = (collision.tags.len(), collision.triangles.len());
             collision.tags.resize(count, tag);
+            let material = primitive.material().index();
+            let uses = material.map(|material| (material, first..count));
+            collision.materials.extend(uses);
         }
         if let Some(visual) = place.visual {
             self.visual[visual].push(primitive, tag, triangles.to_vec());

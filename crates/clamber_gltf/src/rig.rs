@@ -1,6 +1,7 @@
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use clamber_surface::mesh::{BuildReport, ColliderMesh, MeshError};
+use clamber_surface::mesh::{BuildReport, ColliderMesh, MeshError, TriangleId};
 use clamber_surface::rig::{Clip, Skeleton, WeakPoint};
 
 use crate::visual::{self, Material, VisualMesh};
@@ -22,6 +23,8 @@ pub struct Rig {
     pub visual: Vec<VisualMesh>,
     /// All materials of the file, in its order.
     pub materials: Vec<Material>,
+    /// Of each material with a name that the collider has, its triangles, ascending. Materials of the same name are one.
+    pub collider_materials: BTreeMap<String, Vec<TriangleId>>,
     /// The weak points, in the order of the file's nodes.
     pub weak_points: Vec<WeakPoint>,
     /// What the import found, changed and skipped.
@@ -37,6 +40,7 @@ impl Rig {
             collider,
             visual: Vec::new(),
             materials: Vec::new(),
+            collider_materials: BTreeMap::new(),
             weak_points: Vec::new(),
             report: ImportReport::default(),
         }

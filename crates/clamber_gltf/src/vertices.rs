@@ -257,8 +257,9 @@ pub(crate) fn triangles(
         let reason = format!("has {} corners, not a multiple of 3", indices.len());
         return Err(GltfErrorKind::invalid(object, reason));
     }
-    // A strip makes up to three corners of every index, once for the collider and once for drawing.
-    reader.charge(object, indices.len().saturating_mul(6 * size_of::<u32>()))?;
+    // A strip makes up to three corners of every index, once for the collider and once for drawing, and the triangle's
+    // number among those of its material.
+    reader.charge(object, indices.len().saturating_mul(7 * size_of::<u32>()))?;
     Ok(corners(&indices, primitive.mode()).collect())
 }
 

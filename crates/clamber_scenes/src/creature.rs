@@ -1,3 +1,4 @@
+use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -12,7 +13,7 @@ use clamber_gltf::{GltfError, LoadOptions};
 use clamber_surface::mesh::{ColliderMesh, MeshError, PaletteError};
 use clamber_surface::rig::{Clip, Palette, Pose, RigError, Skeleton, WeakPoint};
 use clamber_surface::skin::skin;
-use clamber_surface::surface::SurfaceError;
+use clamber_surface::surface::{SurfaceError, creature_fingerprint};
 use glam::Vec3;
 use thiserror::Error;
 
@@ -27,6 +28,8 @@ pub struct Creature {
     pub clips: Vec<Clip>,
     /// The collision mesh.
     pub collider: Arc<ColliderMesh>,
+    /// Of each material with a name, the triangles of the collider that have it.
+    pub materials: BTreeMap<String, Vec<TriangleId>>,
     /// Where it can be wounded.
     pub weak_points: Vec<WeakPoint>,
     /// Speed of the walk clip, model units a second; `None` if unknown.
@@ -35,10 +38,11 @@ pub struct Creature {
     pub(crate) graphs: Graphs,
 }
 
-/// Graphs, by mesh, climber, height and the rate of clips.
+/// Graphs, by the fingerprint of the creature, its weak points, climber, height and the rate of clips.
 pub(crate) type Graphs = Arc<Mutex<Vec<(GraphKey, Arc<ClimbGraph>)>>>;
 type GraphKey = (
-    Arc<ColliderMesh>,
+    u64,
+    Vec<WeakPoint>,
     ClimberConfig,
     (f64, f64),
     Vec<Vec<TriangleId>>,
@@ -78,6 +82,7 @@ impl Creature {
             skeleton,
             clips,
             collider,
+            materials: BTreeMap::new(),
             weak_points: Vec::new(),
             walk_speed: None,
             graphs: Graphs::default(),
@@ -92,6 +97,7 @@ impl Creature {
         let rig = clamber_gltf::load_with(path, &LoadOptions::default())?;
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
         Ok(Self {
+            materials: rig.collider_materials,
             weak_points: rig.weak_points,
             ..Self::new(name, rig.skeleton, rig.clips, rig.collider)
         })
@@ -111,10 +117,14 @@ impl Creature {
         plates: &[Vec<TriangleId>],
     ) -> Result<Arc<ClimbGraph>, NavigationError> {
         let mut known = self.graphs.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((_, graph)) = known.iter().find(|((mesh, other, size, parts), _)| {
-            let is_same = other == climber && *size == (height, rate) && parts == plates;
-            is_same && Arc::ptr_eq(mesh, &self.collider)
-        }) {
+        let key = (
+            creature_fingerprint(&self.skeleton, &self.clips, &self.collider),
+            self.weak_points.clone(),
+            *climber,
+            (height, rate),
+            plates.to_vec(),
+        );
+        if let Some((_, graph)) = known.iter().find(|(other, _)| *other == key) {
             return Ok(Arc::clone(graph));
         }
         let (world_from_model, ground) = self.standing(height)?;
@@ -140,12 +150,6 @@ impl Creature {
         };
         let graph = ClimbGraph::build(&source, &config, |_| ControlFlow::Continue(()))?;
         let graph = Arc::new(graph);
-        let key = (
-            Arc::clone(&self.collider),
-            *climber,
-            (height, rate),
-            plates.to_vec(),
-        );
         known.push((key, Arc::clone(&graph)));
         Ok(graph)
     }
@@ -187,9 +191,24 @@ impl Creature {
             skeleton: self.skeleton.clone(),
             clips: self.clips.clone(),
             mesh: Arc::clone(&self.collider),
+            materials: self.materials.clone(),
             weak_points: self.weak_points.clone(),
         };
         CreatureKind::new(parts, brain)
+    }
+
+    /// The creature as it is when it lives by a brain, whose file may turn it, and say more of its clips, fur and weak
+    /// points.
+    pub(crate) fn as_it_lives(&self, kind: &CreatureKind) -> Self {
+        // What the kind adds to them is no clip of the file: breath, which it plays on top of others.
+        let clips = kind.clips().clips().iter().take(self.clips.len());
+        Self {
+            skeleton: kind.skeleton().clone(),
+            clips: clips.cloned().collect(),
+            collider: Arc::clone(kind.mesh()),
+            weak_points: kind.weak_points().to_vec(),
+            ..self.clone()
+        }
     }
 
     /// The first clip whose name contains one of `words`. Words must be in lower case, names match in any case,

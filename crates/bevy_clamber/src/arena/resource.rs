@@ -24,6 +24,7 @@ use clamber_fight::{Arena, ArenaEvent, Order};
 ///         skeleton: rig.skeleton.clone(),
 ///         clips: rig.clips.clone(),
 ///         mesh: Arc::clone(&rig.collider),
+///         materials: rig.collider_materials.clone(),
 ///         weak_points: rig.weak_points.clone(),
 ///     };
 ///     let brain = Brain::from_json(&std::fs::read_to_string("assets/colossus.brain.json")?, 1.0 / 60.0)?;

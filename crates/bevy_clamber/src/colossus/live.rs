@@ -92,6 +92,7 @@ fn make(
         skeleton: rig.skeleton.clone(),
         clips: rig.clips.clone(),
         mesh: Arc::clone(&rig.collider),
+        materials: rig.collider_materials.clone(),
         weak_points: rig.weak_points.clone(),
     };
     let kind = Arc::new(CreatureKind::new(parts, brain)?);

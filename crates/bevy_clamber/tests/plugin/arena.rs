@@ -39,6 +39,7 @@ fn kind() -> &'static Arc<CreatureKind> {
             skeleton: rig.skeleton,
             clips: rig.clips,
             mesh: rig.collider,
+            materials: rig.collider_materials,
             weak_points: rig.weak_points,
         };
         let brain = std::fs::read_to_string(asset("colossus.brain.json")).unwrap();

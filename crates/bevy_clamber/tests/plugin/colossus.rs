@@ -148,6 +148,7 @@ fn lives_as_without_an_app(size: f32, tick: f64, origin: DVec3) {
         skeleton: rig.skeleton,
         clips: rig.clips,
         mesh: rig.collider,
+        materials: rig.collider_materials,
         weak_points: rig.weak_points,
     };
     let dt = app.world().resource::<Time<Fixed>>().timestep();

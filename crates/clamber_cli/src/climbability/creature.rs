@@ -51,7 +51,8 @@ impl Creature {
         let parts = CreatureParts {
             skeleton: rig.skeleton,
             clips: rig.clips,
-            mesh: Arc::clone(&rig.collider),
+            mesh: rig.collider,
+            materials: rig.collider_materials,
             weak_points: rig.weak_points,
         };
         let kind =
@@ -63,7 +64,7 @@ impl Creature {
         let plates = kind.plates().iter();
         Ok(Self {
             skeleton: kind.skeleton().clone(),
-            mesh: rig.collider,
+            mesh: Arc::clone(kind.mesh()),
             clips: kind.clips().clips().iter().take(of_file).cloned().collect(),
             weak_points: kind.weak_points().to_vec(),
             plates: plates.map(|plate| plate.triangles.clone()).collect(),

@@ -1,7 +1,10 @@
 //! A brain's file: its states, what leads from one to another, and what can never happen.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
+use clamber_animation::SeamProbe;
+use clamber_colossus::brain::Act;
 use clamber_colossus::{Brain, CreatureKind, CreatureParts};
 use clamber_gltf::load;
 
@@ -27,6 +30,7 @@ pub(super) fn print(options: &InspectOptions) -> Result<bool, InspectError> {
                 skeleton: rig.skeleton,
                 clips: rig.clips,
                 mesh: Arc::clone(&rig.collider),
+                materials: rig.collider_materials,
                 weak_points: rig.weak_points,
             };
             let kind = CreatureKind::new(parts, brain).map_err(|error| InspectError::Colossus {
@@ -34,6 +38,8 @@ pub(super) fn print(options: &InspectOptions) -> Result<bool, InspectError> {
                 error,
             })?;
             print_body(&kind);
+            print_jumps(&kind)?;
+            println!();
             kind.report()
         }
         None => brain.report(),
@@ -80,5 +86,32 @@ fn print_body(kind: &CreatureKind) {
              file, set `facing`"
         );
     }
-    println!();
+}
+
+/// Warns of clips that are played again and again, but do not end as they begin.
+fn print_jumps(kind: &CreatureKind) -> Result<(), InspectError> {
+    let brain = kind.brain();
+    let mut names: BTreeSet<&str> = BTreeSet::new();
+    for state in brain.states() {
+        if let Some(Act::Play(clip)) = brain.act(state) {
+            names.insert(clip);
+        }
+    }
+    if let Some(gait) = &brain.file().body.gait {
+        names.extend([gait.idle.as_str(), gait.walk.as_str()]);
+        names.extend(gait.turn.iter().flatten().map(String::as_str));
+    }
+    let probe = SeamProbe::new(kind.skeleton(), kind.mesh(), kind.height());
+    let clips = kind.clips().clips().iter();
+    for clip in clips.filter(|clip| names.contains(clip.name.as_str())) {
+        let seam = probe.measure(clip)?;
+        if !seam.is_loop() {
+            println!(
+                "WARNING: `{}` is played again and again, but does not end as it begins: skin jumps at {:.2} heights a second \
+                 there and goes at {:.2} elsewhere, which throws off riders. `close` it in the body's `clips`",
+                clip.name, seam.speed, seam.within
+            );
+        }
+    }
+    Ok(())
 }

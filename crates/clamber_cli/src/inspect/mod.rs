@@ -7,6 +7,7 @@ mod deviation;
 mod humanoid;
 mod joints;
 mod options;
+mod propose;
 mod report;
 
 use std::io::Write;
@@ -84,6 +85,14 @@ pub enum InspectError {
         /// Why not.
         error: ColossusError,
     },
+    /// No brain can be proposed for the creature.
+    #[error("{}: {error}", file.display())]
+    Propose {
+        /// The creature's file.
+        file: PathBuf,
+        /// Why not.
+        error: String,
+    },
     /// The file has no clip of that name.
     #[error("there is no clip {name:?}; the clips are: {clips}")]
     Clip {
@@ -107,6 +116,10 @@ pub fn print(options: &InspectOptions) -> Result<bool, InspectError> {
     let mut load = LoadOptions::default();
     (load.scene, load.skin) = (options.scene, options.skin);
     let rig = load_with(&options.file, &load)?;
+    if options.propose_brain {
+        print!("{}", propose::text(rig, options)?);
+        return Ok(true);
+    }
     if options.joints {
         println!("{}", options.file.display());
         print!("{}", joints::tree(&rig));

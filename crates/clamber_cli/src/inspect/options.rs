@@ -57,6 +57,20 @@ pub struct InspectOptions {
     #[arg(long, conflicts_with_all = ["json", "clips", "poses", "thorough", "humanoid", "brain"])]
     pub joints: bool,
 
+    /// Print a brain's file that fits the creature, to be changed, and measure nothing: legs, gait, head, fur, a weak
+    /// point, and states with the clips that it has.
+    #[arg(long, conflicts_with_all = ["json", "clips", "poses", "thorough", "humanoid", "brain", "joints"])]
+    pub propose_brain: bool,
+
+    /// With --propose-brain: how tall the creature shall be, metres.
+    #[arg(
+        long,
+        value_name = "METRES",
+        requires = "propose_brain",
+        default_value_t = 20.0
+    )]
+    pub height: f64,
+
     /// Print which joints make a human body, and measure nothing. Exits with 1 if there is none.
     #[arg(long, conflicts_with_all = ["json", "clips", "poses", "thorough"])]
     pub humanoid: bool,
@@ -91,6 +105,8 @@ impl InspectOptions {
             poses: None,
             thorough: false,
             joints: false,
+            propose_brain: false,
+            height: 20.0,
             humanoid: false,
             draw: None,
             seed: 1,

@@ -1,15 +1,21 @@
-//! What the brain's file says about a creature's own file: markers of clips, and weak points.
+//! What the brain's file says about a creature's own file: markers and ends of clips, fur, and weak points.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 use clamber_animation::joint_in_model;
-use clamber_animation::rig::{Clip, Marker, WeakPoint};
-use glam::DVec3;
+use clamber_animation::rig::{
+    Channel, Clip, Interpolation, JointId, Keyframes, Marker, RigError, WeakPoint,
+};
+use clamber_surface::mesh::{ColliderMesh, SurfaceKind, SurfaceTag, TriangleId};
+use glam::{DVec3, Quat, Vec3};
 
-use super::file::{BodyFile, WeakPointFile};
+use super::file::{BodyFile, FurFile, WeakPointFile};
 use super::{Names, whole};
 use crate::brain::{BrainError, BrainProblem, list};
 
-/// Adds the brain's file's markers to clips.
-pub(crate) fn mark(clips: Vec<Clip>, body: &BodyFile) -> Result<Vec<Clip>, BrainError> {
+/// Adds the brain's file's markers to clips, and leads their ends back to their beginnings.
+pub(crate) fn changed(clips: Vec<Clip>, body: &BodyFile) -> Result<Vec<Clip>, BrainError> {
     for name in body.clips.keys() {
         if !clips.iter().any(|clip| clip.name == *name) {
             return Err(whole(BrainProblem::Unknown {
@@ -32,10 +38,122 @@ pub(crate) fn mark(clips: Vec<Clip>, body: &BodyFile) -> Result<Vec<Clip>, Brain
                 time: *time,
             }));
         }
-        let marked = clip.with_markers(markers);
-        marked.map_err(|error| whole(BrainProblem::Text(error.to_string())))
+        let in_words = |error: RigError| {
+            let fault = format!("clip `{}`: {error}", clip.name);
+            whole(BrainProblem::Text(fault))
+        };
+        let marked = clip.clone().with_markers(markers).map_err(in_words)?;
+        let Some(seconds) = file.close else {
+            return Ok(marked);
+        };
+        if !(seconds > 0.0 && seconds <= LONGEST) {
+            let (what, range) = ("close", "more than 0 and at most 10 s");
+            return Err(whole(BrainProblem::OutOfRange {
+                what,
+                range,
+                found: seconds,
+            }));
+        }
+        closed(&marked, seconds).map_err(in_words)
     });
     marked.collect()
+}
+
+/// The longest time in which a clip is led back to its beginning, seconds.
+const LONGEST: f64 = 10.0;
+
+/// A clip that goes from its end back to its beginning in so many seconds more.
+fn closed(clip: &Clip, seconds: f64) -> Result<Clip, RigError> {
+    let spans = || clip.channels().iter().map(Channel::span);
+    let end = spans().map(|span| span.1).fold(f32::NEG_INFINITY, f32::max);
+    let back = (f64::from(end) + seconds) as f32;
+    let channels = clip.channels().iter().map(|channel| {
+        let (mut times, interpolation) = (channel.times().to_vec(), channel.interpolation());
+        // It holds its last value until the clip ends.
+        let is_held = channel.span().1 < end;
+        times.extend(is_held.then_some(end));
+        times.push(back);
+        let spline = interpolation == Interpolation::CubicSpline;
+        let vector = |values: &[Vec3]| extended(values, spline, Vec3::ZERO, is_held);
+        let values = match channel.values() {
+            Keyframes::Translation(values) => Keyframes::Translation(vector(values)),
+            Keyframes::Scale(values) => Keyframes::Scale(vector(values)),
+            Keyframes::Rotation(values) => {
+                let still = Quat::from_xyzw(0.0, 0.0, 0.0, 0.0);
+                Keyframes::Rotation(extended(values, spline, still, is_held))
+            }
+        };
+        Channel::new(channel.joint(), interpolation, times, values)
+    });
+    let channels: Result<Vec<Channel>, RigError> = channels.collect();
+    Clip::new(clip.name.clone(), channels?)
+        .with_markers(clip.markers().to_vec())?
+        .with_ground_speed(clip.ground_speed())
+}
+
+/// The values of a channel, with its first one once more at the end, and before that its last one if it `is_held`.
+/// Splines stand still there.
+fn extended<T: Copy>(values: &[T], is_spline: bool, still: T, is_held: bool) -> Vec<T> {
+    let mut values = values.to_vec();
+    let middle = usize::from(is_spline);
+    let (Some(&first), Some(&last)) = (values.get(middle), values.iter().rev().nth(middle)) else {
+        return values;
+    };
+    if is_spline {
+        let end = values.len() - 1;
+        values[end] = still;
+    }
+    for value in is_held.then_some(last).into_iter().chain([first]) {
+        if is_spline {
+            values.extend([still, value, still]);
+        } else {
+            values.push(value);
+        }
+    }
+    values
+}
+
+/// The skin with the fur of the brain's file.
+pub(crate) fn furred(
+    names: &Names<'_>,
+    fur: &FurFile,
+    mesh: Arc<ColliderMesh>,
+    materials: &BTreeMap<String, Vec<TriangleId>>,
+) -> Result<Arc<ColliderMesh>, BrainError> {
+    let mut joints: BTreeSet<JointId> = BTreeSet::new();
+    for pattern in &fur.joints {
+        joints.extend(names.joints(pattern).map_err(whole)?);
+    }
+    let mut all: BTreeSet<TriangleId> = BTreeSet::new();
+    for name in &fur.materials {
+        let Some(triangles) = materials.get(name) else {
+            return Err(whole(BrainProblem::Unknown {
+                what: "material",
+                name: name.clone(),
+                known: list(materials.keys()),
+            }));
+        };
+        all.extend(triangles);
+    }
+    if joints.is_empty() && all.is_empty() {
+        return Ok(mesh);
+    }
+    let is_of = |triangle| {
+        mesh.joint_of(triangle)
+            .is_some_and(|joint| joints.contains(&joint))
+    };
+    let furred = mesh.with_tags(|triangle, tag| {
+        let grows = tag.kind != SurfaceKind::Stone && is_of(triangle);
+        if grows || all.contains(&triangle) {
+            SurfaceTag {
+                kind: SurfaceKind::Fur,
+                ..tag
+            }
+        } else {
+            tag
+        }
+    });
+    Ok(Arc::new(furred))
 }
 
 /// A weak point of the brain's file, for a creature of a height in the model's units.

@@ -34,6 +34,9 @@ pub struct BodyFile {
     /// Pieces of armour that break off.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub plates: Vec<PlateFile>,
+    /// Which of its skin is fur, which a climber holds on to, beside what its own file says.
+    #[serde(default, skip_serializing_if = "FurFile::is_empty")]
+    pub fur: FurFile,
     /// How tall it is, metres, at [`CreatureConfig::scale`](crate::CreatureConfig) 1; `None` for as tall as its file
     /// makes it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -60,6 +63,7 @@ impl Default for BodyFile {
             head: None,
             breathe: None,
             plates: Vec::new(),
+            fur: FurFile::default(),
             height: None,
             made_for: None,
             tremor: tremor(),
@@ -103,6 +107,11 @@ pub struct ClipFile {
     /// attack, `impact`, and those that transitions wait for. They replace those of the same name in the file.
     #[serde(default, with = "unique", skip_serializing_if = "BTreeMap::is_empty")]
     pub markers: BTreeMap<String, Times>,
+    /// Seconds in which it goes back from its end to its beginning, which are added to it: more than 0, at most 10. For
+    /// a clip that is played again and again, but ends in another pose than it begins with; where it only lacks its
+    /// last key frame, a frame's time. Without it such a clip jumps, and throws off who rides.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub close: Option<f64>,
 }
 
 /// One time, or several.
@@ -122,6 +131,25 @@ impl Times {
             Self::One(time) => core::slice::from_ref(time),
             Self::Several(times) => times,
         }
+    }
+}
+
+/// Skin that is fur: it can be gripped and hung from.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FurFile {
+    /// Joints whose skin is fur: each triangle belongs to the joint that moves it most. `"spine.*"` names all joints that
+    /// begin with `spine.`, `"*"` all. Stone stays stone.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub joints: Vec<String>,
+    /// Materials of the creature's file that are fur, by their names, whatever the file says of them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub materials: Vec<String>,
+}
+
+impl FurFile {
+    fn is_empty(&self) -> bool {
+        self.joints.is_empty() && self.materials.is_empty()
     }
 }
 

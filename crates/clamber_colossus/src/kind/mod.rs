@@ -14,6 +14,7 @@ mod plate;
 mod sole;
 mod strikes;
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -27,7 +28,8 @@ use glam::{DAffine3, DVec3};
 pub(crate) use blended::BlendedSole;
 pub(crate) use extent::{BANDS, Band, EDGES, Extent};
 pub use file::{
-    BodyFile, ClipFile, Facing, GaitFile, HeadFile, Knee, LegFile, PlateFile, Times, WeakPointFile,
+    BodyFile, ClipFile, Facing, FurFile, GaitFile, HeadFile, Knee, LegFile, PlateFile, Times,
+    WeakPointFile,
 };
 pub(crate) use gait::Gait;
 pub(crate) use leg::{Contacts, Leg, rotation_of};
@@ -101,6 +103,8 @@ pub struct CreatureParts {
     pub clips: Vec<Clip>,
     /// The skin that people touch.
     pub mesh: Arc<ColliderMesh>,
+    /// Of each material that the brain's file may name ([`FurFile::materials`]), the triangles of the skin that have it.
+    pub materials: BTreeMap<String, Vec<TriangleId>>,
     /// Where it can be wounded.
     pub weak_points: Vec<WeakPoint>,
 }
@@ -116,11 +120,12 @@ impl CreatureKind {
             skeleton,
             clips,
             mesh,
+            materials,
             weak_points,
         } = parts;
         let body = &brain.file().body;
         let (skeleton, clips) = facing::turned(skeleton, clips, body.facing)?;
-        let mut clips = additions::mark(clips, body)?;
+        let mut clips = additions::changed(clips, body)?;
         let mut weak_points = weak_points;
         // A copy: the clip itself may be played as well.
         let breath = brain.file().body.breathe.as_ref();
@@ -153,6 +158,7 @@ impl CreatureKind {
             clips: &clips,
             gravity: GRAVITY * height / known.unwrap_or(HUMAN),
         };
+        let mesh = additions::furred(&names, &body.fur, mesh, &materials)?;
         for file in &body.weak_points {
             weak_points.push(additions::weak_point(&names, file, height)?);
         }
@@ -277,7 +283,7 @@ impl CreatureKind {
         &self.clips
     }
 
-    /// The skin that people touch.
+    /// The skin that people touch: that of the creature's file, with the fur of the brain's file.
     pub fn mesh(&self) -> &Arc<ColliderMesh> {
         &self.mesh
     }

@@ -23,7 +23,7 @@ use serde_json::{Value, json};
 /// An animal of the test data.
 pub(crate) struct Animal {
     pub(crate) file: &'static str,
-    legs: Vec<Value>,
+    pub(crate) legs: Vec<Value>,
     idle: &'static str,
     walk: &'static str,
     /// The height for which its clips were made, metres: of a real one, roughly.
@@ -206,6 +206,7 @@ fn kind_with(
         skeleton: rig.skeleton,
         clips,
         mesh: rig.collider,
+        materials: rig.collider_materials,
         weak_points: Vec::new(),
     };
     let brain = Brain::from_json(&brain.to_string(), TICK).unwrap();
@@ -464,6 +465,7 @@ fn legs_that_cannot_be_are_refused_by_name() {
         skeleton: rig.skeleton,
         clips: rig.clips,
         mesh: rig.collider,
+        materials: rig.collider_materials,
         weak_points: Vec::new(),
     };
     let brain = Brain::from_json(&brain.to_string(), TICK).unwrap();

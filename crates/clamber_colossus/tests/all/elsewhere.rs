@@ -6,14 +6,18 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use crate::support::{TICK, person};
-use clamber_animation::rig::{Channel, Clip, Keyframes, Skeleton};
+use clamber_animation::SeamProbe;
+use clamber_animation::rig::{
+    Channel, Clip, Interpolation, JointId, Keyframes, Marker, Playback, Skeleton, Transform,
+};
 use clamber_colossus::{
     Brain, Creature, CreatureConfig, CreatureEvent, CreatureKind, CreatureParts, Noise,
     Surroundings,
 };
 use clamber_gltf::{Rig, load};
+use clamber_surface::mesh::{SurfaceKind, SurfaceTag, TriangleId};
 use clamber_world::{HalfSpace, Obstacle};
-use glam::{DVec3, Quat};
+use glam::{DVec3, Quat, Vec3};
 use serde_json::{Value, json};
 
 fn rig(file: &str) -> Option<Rig> {
@@ -29,6 +33,7 @@ fn try_kind(rig: &Rig, brain: &Value) -> Result<Arc<CreatureKind>, String> {
         skeleton: rig.skeleton.clone(),
         clips: rig.clips.clone(),
         mesh: Arc::clone(&rig.collider),
+        materials: rig.collider_materials.clone(),
         weak_points: rig.weak_points.clone(),
     };
     let brain = Brain::from_json(&brain.to_string(), TICK).map_err(|error| error.to_string())?;
@@ -104,6 +109,197 @@ fn markers_and_weak_points_of_the_brains_file_are_as_good_as_the_files_own() {
 }
 
 #[test]
+fn skin_is_fur_by_joint_and_by_material() {
+    let Some(rig) = rig("Trex.glb") else { return };
+    let with = |fur: Value| {
+        let mut brain = trex();
+        brain["body"]["fur"] = fur;
+        try_kind(&rig, &brain)
+    };
+    let is_fur = |kind: &CreatureKind, triangle: usize| {
+        kind.mesh().tags()[triangle].kind == SurfaceKind::Fur
+    };
+    let plain = with(json!({})).unwrap();
+    assert!(Arc::ptr_eq(plain.mesh(), &rig.collider));
+    let tail = with(json!({ "joints": ["Tail*", "Head"] })).unwrap();
+    let mut count = 0;
+    for triangle in 0..rig.collider.triangles().len() {
+        let joint = rig.collider.joint_of(TriangleId(triangle as u32)).unwrap();
+        let name = rig.skeleton.joints()[joint.index()].name.as_str();
+        let wanted = name.starts_with("Tail") || name == "Head";
+        assert_eq!(is_fur(&tail, triangle), wanted, "{name}");
+        count += usize::from(wanted);
+    }
+    assert!(count > 50 && count < rig.collider.triangles().len() - 50);
+    assert_eq!(rig.collider_materials.len(), 5);
+    let green = with(json!({ "materials": ["Green", "Red"] })).unwrap();
+    let wanted = |triangle: usize| {
+        ["Green", "Red"].iter().any(|name| {
+            let triangles = &rig.collider_materials[*name];
+            triangles
+                .binary_search(&TriangleId(triangle as u32))
+                .is_ok()
+        })
+    };
+    let all = 0..rig.collider.triangles().len();
+    assert!(
+        all.clone()
+            .all(|triangle| is_fur(&green, triangle) == wanted(triangle))
+    );
+    assert!(all.clone().any(wanted) && !all.clone().all(wanted));
+    // Each triangle has one material.
+    let sum: usize = rig.collider_materials.values().map(Vec::len).sum();
+    assert_eq!(sum, all.len());
+    // What is stone stays stone where a joint has fur, and becomes fur where its own material is.
+    let stone = rig.collider.with_tags(|triangle, tag| SurfaceTag {
+        kind: if wanted(triangle.index()) {
+            SurfaceKind::Stone
+        } else {
+            tag.kind
+        },
+        user: 7,
+        ..tag
+    });
+    let mut stony = rig.clone();
+    stony.collider = Arc::new(stone);
+    let mut brain = trex();
+    brain["body"]["fur"] = json!({ "joints": ["*"] });
+    let kind = try_kind(&stony, &brain).unwrap();
+    assert!(
+        all.clone()
+            .all(|triangle| is_fur(&kind, triangle) != wanted(triangle))
+    );
+    brain["body"]["fur"] = json!({ "joints": ["*"], "materials": ["Green", "Red"] });
+    let kind = try_kind(&stony, &brain).unwrap();
+    assert!(all.clone().all(|triangle| is_fur(&kind, triangle)));
+    assert!(
+        all.clone()
+            .all(|triangle| kind.mesh().tags()[triangle].user == 7)
+    );
+    // The creature's own surface has it, where climbers are.
+    let creature = Creature::new(kind, CreatureConfig::default()).unwrap();
+    assert!(
+        creature
+            .surface()
+            .mesh()
+            .tags()
+            .iter()
+            .all(|tag| tag.kind == SurfaceKind::Fur)
+    );
+    for (fur, words) in [
+        (json!({ "materials": ["green"] }), "material `green`"),
+        (json!({ "joints": ["Wing.*"] }), "joint `Wing.*`"),
+        (json!({ "joint": ["Tail1"] }), "unknown field `joint`"),
+    ] {
+        let error = with(fur).unwrap_err();
+        assert!(error.contains(words), "{error}");
+    }
+    let error = with(json!({ "materials": ["green"] })).unwrap_err();
+    assert!(
+        error.contains("Green") && error.contains("LightYellow"),
+        "{error}"
+    );
+}
+
+/// A clip whose channels begin and end at different times, of each way to interpolate.
+fn ragged(joint: JointId) -> Clip {
+    let vectors = |xs: &[f32]| xs.iter().map(|x| Vec3::splat(*x)).collect::<Vec<_>>();
+    let turns = |angles: &[f32]| {
+        angles
+            .iter()
+            .map(|angle| {
+                Quat::from_xyzw(libm::sinf(angle / 2.0), 0.0, 0.0, libm::cosf(angle / 2.0))
+            })
+            .collect()
+    };
+    let linear = Channel::new(
+        joint,
+        Interpolation::Linear,
+        vec![0.5, 1.0, 2.0],
+        Keyframes::Translation(vectors(&[1.0, 2.0, 4.0])),
+    );
+    let step = Channel::new(
+        joint,
+        Interpolation::Step,
+        vec![1.0, 3.0],
+        Keyframes::Rotation(turns(&[0.1, 0.7])),
+    );
+    let spline = Channel::new(
+        joint,
+        Interpolation::CubicSpline,
+        vec![0.75, 1.5, 2.5],
+        Keyframes::Scale(vectors(&[9.0, 1.0, 0.5, 0.1, 1.2, 0.1, 0.3, 1.5, 9.0])),
+    );
+    let channels = [linear, step, spline].map(Result::unwrap).to_vec();
+    Clip::new("ragged", channels)
+}
+
+#[test]
+fn a_clip_that_is_closed_goes_back_to_its_beginning_and_is_as_before_until_then() {
+    let Some(mut rig) = rig("Trex.glb") else {
+        return;
+    };
+    let joint = rig.skeleton.find("Neck").unwrap();
+    let marker = Marker {
+        name: "snap".into(),
+        time: 2.5,
+    };
+    let clip = ragged(joint).with_markers(vec![marker]).unwrap();
+    let clip = clip.with_ground_speed(Some(1.5)).unwrap();
+    rig.clips.push(clip.clone());
+    let rest = rig.skeleton.rest_pose();
+    for seconds in [1.0 / 24.0, 0.5, 10.0] {
+        let mut brain = trex();
+        brain["body"]["clips"]["ragged"] = json!({ "close": seconds });
+        let kind = try_kind(&rig, &brain).unwrap();
+        let closed = &kind.clips().clips()[rig.clips.len() - 1];
+        let ends = clip.duration();
+        assert!((closed.duration() - ends - seconds).abs() < 1e-6);
+        assert_eq!(closed.markers(), clip.markers());
+        assert_eq!(closed.ground_speed(), Some(1.5));
+        let at = |clip: &Clip, time: f64| {
+            let pose = clip.sample(&rest, time, Playback::Clamp).unwrap();
+            pose.transforms[joint.index()]
+        };
+        let gap = |a: Transform, b: Transform| {
+            let turn = a.rotation.angle_between(b.rotation);
+            a.translation.distance(b.translation) + a.scale.distance(b.scale) + turn
+        };
+        for tick in 0..1_000 {
+            let time = ends * f64::from(tick) / 1_000.0;
+            let apart = gap(at(closed, time), at(&clip, time));
+            assert!(apart < 1e-5, "at {time} s: {apart}");
+        }
+        assert!(gap(at(closed, 0.0), at(&clip, 0.0)) < 1e-6);
+        assert!(gap(at(closed, ends), at(&clip, ends)) < 1e-3);
+        assert!(gap(at(closed, closed.duration()), at(&clip, 0.0)) < 1e-6);
+        // Half way back it is half way there: what is linear, and what is stepped stays.
+        let half = at(closed, ends + 0.5 * seconds);
+        assert!((half.translation.x - 2.5).abs() < 1e-4, "{half:?}");
+        assert!(half.rotation.angle_between(at(&clip, ends).rotation) < 1e-3);
+    }
+}
+
+#[test]
+fn a_clip_that_jumps_does_so_no_more_when_it_is_closed() {
+    let Some(rig) = rig("Trex.glb") else { return };
+    // It ends on its back.
+    let death = "Armature|TRex_Death";
+    let seam = |close: Option<f64>| {
+        let mut brain = trex();
+        if let Some(close) = close {
+            brain["body"]["clips"][death] = json!({ "close": close });
+        }
+        let kind = try_kind(&rig, &brain).unwrap();
+        let clip = kind.clips().find(death).unwrap();
+        let probe = SeamProbe::new(kind.skeleton(), kind.mesh(), kind.height());
+        probe.measure(kind.clips().clip(clip).unwrap()).unwrap()
+    };
+    assert!(!seam(None).is_loop(), "{:?}", seam(None));
+    assert!(seam(Some(0.5)).is_loop(), "{:?}", seam(Some(0.5)));
+}
+
+#[test]
 fn what_cannot_be_is_refused_by_name() {
     let Some(rig) = rig("Trex.glb") else { return };
     let changed = |pointer: &str, value: Value| {
@@ -143,6 +339,16 @@ fn what_cannot_be_is_refused_by_name() {
             "/body/clips/Armature|TRex_Attack",
             json!({ "marks": {} }),
             "unknown field `marks`",
+        ),
+        (
+            "/body/clips/Armature|TRex_Attack",
+            json!({ "close": 0 }),
+            "`close` is 0",
+        ),
+        (
+            "/body/clips/Armature|TRex_Attack",
+            json!({ "close": 11 }),
+            "`close` is 11",
         ),
     ] {
         let error = changed(pointer, value);

@@ -13,6 +13,7 @@ mod giant;
 mod legs;
 mod ordered;
 mod plates;
+mod proposed;
 mod senses;
 mod sizes;
 mod support;

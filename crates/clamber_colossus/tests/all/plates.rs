@@ -81,6 +81,7 @@ fn slab() -> Creature {
         skeleton: Skeleton::new(vec![root]).unwrap(),
         clips: Vec::new(),
         mesh: Arc::new(mesh),
+        materials: std::collections::BTreeMap::new(),
         weak_points: vec![point("first", -3.0, 0), point("second", 3.0, 1)],
     };
     let kind = CreatureKind::new(parts, Brain::from_json(BRAIN, TICK).unwrap()).unwrap();

@@ -16,7 +16,7 @@ use clamber_world::{HalfSpace, Obstacle};
 use glam::DVec3;
 
 /// The giant, and the models of the test data that load.
-fn models() -> Vec<PathBuf> {
+pub(crate) fn models() -> Vec<PathBuf> {
     let mut all = vec![PathBuf::from(concat!(
         env!("CARGO_MANIFEST_DIR"),
         "/../../assets/colossus.glb"

@@ -30,6 +30,7 @@ fn kind() -> Option<Arc<CreatureKind>> {
         skeleton: rig.skeleton,
         clips: rig.clips,
         mesh: rig.collider,
+        materials: rig.collider_materials,
         weak_points: rig.weak_points,
     };
     let brain = Brain::from_json(&text, TICK).unwrap();

@@ -3,13 +3,14 @@
 
 use std::collections::BTreeSet;
 
+use clamber_animation::SeamProbe;
 use clamber_surface::geometry::{Similarity, rotation_from_axis_angle};
 use clamber_surface::rig::{Clip, Palette, Playback, Pose};
 use glam::DVec3;
 
 use super::BattleError;
-use super::repeat::{Repeat, SeamProbe};
-use crate::{Creature, valley};
+use super::repeat::Repeat;
+use crate::{Creature, CreatureError, valley};
 
 /// Seconds over which one clip fades into the next.
 const FADE: f64 = 0.6;
@@ -82,11 +83,14 @@ impl<'a> Choreography<'a> {
                 height,
             });
         }
-        let probe = SeamProbe::new(creature, tall);
+        let probe = SeamProbe::new(&creature.skeleton, &creature.collider, tall);
         let repeats = |act: &&mut Act| act.repeat != Repeat::Hold;
         for act in acts.iter_mut().filter(repeats) {
             if let Some(clip) = act.clip {
-                act.repeat = probe.measure(&creature.clips[clip])?.repeat();
+                let seam = probe
+                    .measure(&creature.clips[clip])
+                    .map_err(CreatureError::from)?;
+                act.repeat = Repeat::of(seam);
             }
         }
         let speed = creature

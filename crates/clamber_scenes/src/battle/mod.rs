@@ -43,7 +43,7 @@ pub use performer::{Performer, PerformerState};
 #[cfg(feature = "record")]
 pub use record::{BattleRecorder, Replay, replay};
 pub use recording::{Recording, Sample};
-pub(crate) use repeat::{Repeat, SeamProbe};
+pub(crate) use repeat::Repeat;
 pub use rides::{Ride, RidesOptions, ride_all, table as rides_table};
 pub use rockfall::{Rockfall, RockfallReport};
 pub use scene::{Battle, CREATURE, TERRAIN, TICK};

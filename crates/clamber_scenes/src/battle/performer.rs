@@ -340,7 +340,9 @@ impl<'a> Performer<'a> {
 /// An arena with the creature alone.
 fn arena(creature: &Creature, brain: Brain, options: &BattleOptions) -> Result<Arena, BattleError> {
     let kind = creature.with_brain(brain)?;
-    let scale = options.height() / kind.height();
+    // What its brain says of its height is at a scale of 1.
+    let tall = kind.brain().file().body.height.unwrap_or(kind.height());
+    let scale = options.height() / tall;
     if !(scale.is_normal() && scale > 0.0) {
         return Err(BattleError::NoHeight {
             creature: creature.name.clone(),

@@ -13,10 +13,11 @@ use super::performer::Sight;
 use super::scene::CREATURE;
 use super::{BattleError, Performer};
 
-/// How far above a weak point what covers it may be, and how far from it a climber goes to wound it, in the units of
-/// the creature's file.
+/// How far above a weak point what covers it may be, and how far from it a climber goes to wound it, metres on a creature
+/// that is as tall as the giant, `TALL` metres; on a smaller one less.
 const COVER: f64 = 1.2;
 const BESIDE: f64 = 0.5;
+const TALL: f64 = 41.0;
 
 /// What can be reached this far below the highest place counts as the top, as a share of the height of all that can be
 /// reached.
@@ -297,10 +298,11 @@ fn targets(performer: &Performer<'_>, graph: &ClimbGraph) -> Vec<Target> {
         return Vec::new();
     };
     let (kind, scale) = (life.kind(), life.scale());
+    let size = life.height() / TALL;
     let mut targets = Vec::new();
     for (index, point) in kind.weak_points().iter().enumerate() {
         let place = place(performer, index) * scale;
-        let over = graph.patches_near(place, COVER * scale);
+        let over = graph.patches_near(place, COVER * size);
         for plate in 0..kind.plates().len() {
             let is_on = |patch: &usize| {
                 let triangle = graph.patches()[*patch].triangle;
@@ -317,7 +319,7 @@ fn targets(performer: &Performer<'_>, graph: &ClimbGraph) -> Vec<Target> {
                 });
             }
         }
-        let reach = (f64::from(point.radius) + BESIDE) * scale;
+        let reach = f64::from(point.radius) * scale + BESIDE * size;
         let is_skin = |patch: &usize| {
             let triangle = graph.patches()[*patch].triangle;
             let mut plates = kind.plates().iter();

@@ -95,6 +95,9 @@ impl<'a> Battle<'a> {
             find_perch(performer.surface(), height, seed).ok_or_else(|| BattleError::NoPerch {
                 creature: creature.name.clone(),
             })?;
+        let life = performer.life();
+        let living = life.map(|life| creature.as_it_lives(life.kind()));
+        let living = living.as_ref().unwrap_or(creature);
         let mut world = valley::world();
         let (climber, pilot) = match story {
             Story::Climb => {
@@ -102,7 +105,7 @@ impl<'a> Battle<'a> {
                 let climber = climber_before_the_outcrop(seed)?;
                 let plates = performer.plates();
                 let rate = performer.life().map_or(1.0, |life| life.rate());
-                let graph = creature.graph(climber.config(), height, rate, &plates)?;
+                let graph = living.graph(climber.config(), height, rate, &plates)?;
                 let planner = Planner::new(&performer, graph)?;
                 (climber, Some(Box::new(planner)))
             }
@@ -117,7 +120,7 @@ impl<'a> Battle<'a> {
             world,
             before: BodyPoses::default(),
             rocks,
-            grips: Grips::of(creature),
+            grips: Grips::of(living),
             perch: perch.material,
             drops: u32::from(pilot.is_none()),
             rider: Rider::new(),

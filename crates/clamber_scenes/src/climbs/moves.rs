@@ -1,11 +1,12 @@
 //! What a model does while a bot climbs it: it idles and walks by turns.
 
+use clamber_animation::SeamProbe;
 use clamber_navigation::{ClimbGraph, Forecast};
 use clamber_surface::rig::{Playback, Pose};
 
 use super::ClimbError;
 use crate::Creature;
-use crate::battle::{Repeat, SeamProbe};
+use crate::battle::Repeat;
 
 /// Seconds of each of its clips.
 const TURN: f64 = 30.0;
@@ -82,7 +83,7 @@ impl Moves {
     pub(super) fn new(creature: &Creature, height: f64) -> Result<Self, ClimbError> {
         let (place, _) = creature.standing(height)?;
         let own = height / place.scale;
-        let probe = SeamProbe::new(creature, own);
+        let probe = SeamProbe::new(&creature.skeleton, &creature.collider, own);
         let all = || 0..creature.clips.len();
         let name = |clip: usize| creature.clips[clip].name.to_lowercase();
         let lives = |clip: &usize| {
@@ -104,7 +105,7 @@ impl Moves {
             clips.extend(all().find(lives).or(all().next()));
         }
         for clip in clips {
-            let repeat = probe.measure(&creature.clips[clip])?.repeat();
+            let repeat = Repeat::of(probe.measure(&creature.clips[clip])?);
             played.push(Played { clip, repeat });
         }
         Ok(Self {

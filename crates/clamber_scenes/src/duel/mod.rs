@@ -73,6 +73,7 @@ impl Duel {
             skeleton: rig.skeleton,
             clips: rig.clips,
             mesh: rig.collider,
+            materials: rig.collider_materials,
             weak_points: rig.weak_points,
         };
         let brain = std::fs::read_to_string(giant::brain_path()).map_err(DuelError::BrainFile)?;

@@ -11,7 +11,7 @@ use super::joint_balls::JointBalls;
 use super::lineage::{Lineage, MeshId};
 use super::parts::{Part, Parts};
 use super::weights::WEIGHT_ONE;
-use super::{PaletteError, SurfaceTags};
+use super::{PaletteError, SurfaceTag, SurfaceTags};
 use crate::geometry::triangle::scaled_normal;
 use crate::geometry::{Affine, MAX_COORDINATE, round_up_to_f32, widen};
 use crate::rig::JointId;
@@ -121,6 +121,38 @@ impl ColliderMesh {
     /// The tag of every triangle, by triangle id. Includes removed triangles.
     pub fn tags(&self) -> &SurfaceTags {
         &self.tags
+    }
+
+    /// The same mesh with other tags: `tag` is called once for each triangle, in ascending order, removed ones included,
+    /// with the tag that it has. Ids, and points on the one mesh, are those of the other.
+    ///
+    /// ```
+    /// use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource, SurfaceKind, SurfaceTag};
+    /// use clamber_surface::rig::JointId;
+    /// use glam::Vec3;
+    ///
+    /// let influences = [Influence { joint: JointId(0), weight: 1.0 }; 3];
+    /// let source = MeshSource {
+    ///     positions: &[Vec3::ZERO, Vec3::X, Vec3::Y],
+    ///     triangles: &[[0, 1, 2]],
+    ///     influences: &influences,
+    ///     joint_count: 1,
+    ///     ..MeshSource::default()
+    /// };
+    /// let (skin, _) = ColliderMesh::build(&source, &BuildOptions::default())?;
+    /// let fur = skin.with_tags(|_, tag| SurfaceTag { kind: SurfaceKind::Fur, ..tag });
+    /// assert_eq!(fur.tags()[0].kind, SurfaceKind::Fur);
+    /// assert_eq!(fur.id(), skin.id());
+    /// # Ok::<(), clamber_surface::mesh::MeshError>(())
+    /// ```
+    #[must_use]
+    pub fn with_tags(&self, mut tag: impl FnMut(TriangleId, SurfaceTag) -> SurfaceTag) -> Self {
+        let tags = (0..).map(TriangleId).zip(self.tags.iter());
+        let tags = tags.map(|(triangle, old)| tag(triangle, *old)).collect();
+        Self {
+            tags,
+            ..self.clone()
+        }
     }
 
     /// The parts, with lists of their triangles and vertices. A build sorts them by joint; edits may append more, and

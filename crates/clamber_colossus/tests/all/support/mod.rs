@@ -56,6 +56,7 @@ pub(crate) fn kind_of(rig: Rig, brain: &str) -> Result<CreatureKind, ColossusErr
         skeleton: rig.skeleton,
         clips: rig.clips,
         mesh: rig.collider,
+        materials: rig.collider_materials,
         weak_points: rig.weak_points,
     };
     let brain = Brain::from_json(brain, TICK).unwrap();

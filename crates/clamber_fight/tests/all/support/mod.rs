@@ -123,6 +123,7 @@ impl Slab {
             skeleton: Skeleton::new(vec![root]).unwrap(),
             clips: vec![Clip::new("lie", vec![moves, scales])],
             mesh: Arc::new(mesh),
+            materials: std::collections::BTreeMap::new(),
             weak_points: self.weak_points.clone(),
         };
         let plates = if self.plate {
@@ -196,6 +197,7 @@ pub(crate) fn wall(joints: u32) -> Arc<CreatureKind> {
         skeleton: Skeleton::new(all.collect()).unwrap(),
         clips: Vec::new(),
         mesh: Arc::new(mesh),
+        materials: std::collections::BTreeMap::new(),
         weak_points: vec![heart],
     };
     let brain = r#"{ "start": "stands", "states": { "stands": {} } }"#;
@@ -274,6 +276,7 @@ pub(crate) fn giant() -> Arc<CreatureKind> {
         skeleton: rig.skeleton,
         clips: rig.clips,
         mesh: rig.collider,
+        materials: rig.collider_materials,
         weak_points: rig.weak_points,
     };
     let brain = std::fs::read_to_string(format!("{assets}colossus.brain.json")).unwrap();

@@ -1,0 +1,302 @@
+//! Proposes a brain file for a creature from elsewhere, as far as its own file shows what there is: to begin with, and
+//! to be changed.
+
+mod clips;
+mod legs;
+mod look;
+mod states;
+mod strike;
+
+use clamber_animation::SeamProbe;
+use clamber_animation::rig::JointId;
+use clamber_surface::mesh::SurfaceKind;
+use glam::DVec3;
+
+use crate::brain::{Brain, BrainFile, StateFile};
+use crate::error::ColossusError;
+use crate::kind::{
+    BodyFile, ClipFile, CreatureKind, CreatureParts, Facing, FurFile, GaitFile, HUMAN, HeadFile,
+    LegFile, Times, WeakPointFile,
+};
+use clips::Clips;
+use look::{Look, rounded};
+use strike::Struck;
+
+/// Length of ticks, seconds: nothing that is proposed depends on it.
+const TICK: f64 = 1.0 / 60.0;
+
+/// How fast a creature turns on the spot, and while it walks, degrees a second at the height for which its clips were
+/// made.
+const TURNS: f64 = 90.0;
+const STEERS: f64 = 40.0;
+
+/// Feet that go slower than this, in heights a second of the clip, do not walk; it goes at `STROLLS` then.
+const SLOWEST: f64 = 0.1;
+const STROLLS: f64 = 0.4;
+
+/// Radius of the weak point in heights, and its hit points: three charged stabs of a sword.
+const WEAK: f64 = 0.05;
+const HIT_POINTS: f64 = 3.0;
+
+impl BrainFile {
+    /// A brain for a creature from elsewhere that lives by it at once: it looks about, wanders, sleeps, notices people,
+    /// goes to them, attacks and shakes off who rides, as far as its clips go, and dies when its weak point is used up.
+    ///
+    /// It is `height` metres tall, 0.001 to 100,000. Clips are told apart by their names, such as `Walk` and
+    /// `Attack_Headbutt`; legs are the chains of joints whose ends move skin on the ground; the limb of an attack is what
+    /// moves fastest in its clip, and hurts while it does. All of its skin is fur unless its file has some, and its weak
+    /// point is on top of its head. Whatever does not fit the creature is left out, so that [`CreatureKind::new`] takes
+    /// it. It is a file to begin with, not to keep: `clamber inspect --propose-brain` writes it as text.
+    ///
+    /// # Errors
+    /// As [`CreatureKind::new`], for parts that fit no brain, and a height out of its range.
+    pub fn propose(parts: &CreatureParts, height: f64) -> Result<Self, ColossusError> {
+        let mut proposal = Proposal {
+            parts,
+            clips: Clips::of(&parts.clips),
+            body: BodyFile {
+                height: Some(height),
+                made_for: Some(HUMAN),
+                ..BodyFile::default()
+            },
+        };
+        // What does not fit without anything else fits nothing.
+        proposal.kind()?;
+        proposal.walk()?;
+        proposal.repeat()?;
+        let attack = proposal.attack()?;
+        proposal.head()?;
+        proposal.skin()?;
+        let file = states::file(&proposal, attack.as_ref())?;
+        CreatureKind::new(parts.clone(), Brain::new(file.clone(), TICK)?)?;
+        Ok(file)
+    }
+}
+
+/// A proposal under construction. Its body fits the creature at any time.
+struct Proposal<'a> {
+    parts: &'a CreatureParts,
+    clips: Clips,
+    body: BodyFile,
+}
+
+/// An attack that a creature seems to have.
+struct Strikes {
+    clip: String,
+    limb: Vec<String>,
+}
+
+impl Proposal<'_> {
+    /// The creature with what is proposed.
+    fn kind(&self) -> Result<CreatureKind, ColossusError> {
+        self.kind_with(self.body.clone())
+    }
+
+    fn kind_with(&self, body: BodyFile) -> Result<CreatureKind, ColossusError> {
+        let file = BrainFile {
+            body,
+            start: "stands".to_owned(),
+            states: [("stands".to_owned(), StateFile::default())].into(),
+            ..BrainFile::default()
+        };
+        CreatureKind::new(self.parts.clone(), Brain::new(file, TICK)?)
+    }
+
+    /// Takes a change of the body if the creature fits it then.
+    fn take(&mut self, change: impl FnOnce(&mut BodyFile)) -> Option<CreatureKind> {
+        let mut body = self.body.clone();
+        change(&mut body);
+        let kind = self.kind_with(body.clone()).ok()?;
+        self.body = body;
+        Some(kind)
+    }
+
+    /// Legs, gait, and where it looks: along its walk.
+    fn walk(&mut self) -> Result<(), ColossusError> {
+        let (Some(idle), Some(walk)) = (self.clips.idle.clone(), self.clips.walk.clone()) else {
+            return Ok(());
+        };
+        let kind = self.kind()?;
+        let legs: Vec<LegFile> = legs::find(&Look::at(&kind)?);
+        let fits = legs.into_iter().filter(|leg| {
+            let legs = vec![leg.clone()];
+            let body = BodyFile {
+                legs,
+                ..self.body.clone()
+            };
+            self.kind_with(body).is_ok()
+        });
+        let legs: Vec<LegFile> = fits.collect();
+        if legs.len() > 1 {
+            self.take(|body| body.legs = legs);
+        }
+        // A fan runs as well.
+        if self.body.legs.is_empty() && !walk.to_lowercase().contains("walk") {
+            return Ok(());
+        }
+        let gait = GaitFile {
+            idle,
+            walk,
+            speed: Some(STROLLS),
+            turn: None,
+            turn_deg: TURNS,
+            steer_deg: STEERS,
+        };
+        let kind = self.take(|body| body.gait = Some(gait.clone()));
+        if let Some(aside) = kind.and_then(|kind| kind.walks_aside()) {
+            let facing = match aside {
+                45.0..135.0 => Facing::PlusX,
+                -135.0..-45.0 => Facing::MinusX,
+                -45.0..45.0 => Facing::PlusZ,
+                _ => Facing::MinusZ,
+            };
+            let turned = self.take(|body| body.facing = facing);
+            // Feet that never stand tell nothing.
+            let ahead = turned.and_then(|kind| kind.walks_aside());
+            if ahead.is_none_or(|aside| aside.abs() > 45.0) {
+                self.body.facing = Facing::PlusZ;
+            }
+        }
+        // The speed of its feet, if they have one.
+        let measured = GaitFile {
+            speed: None,
+            ..gait.clone()
+        };
+        let kind = self.take(|body| body.gait = Some(measured));
+        let speed = kind.and_then(|kind| Some(kind.walking_speed()? / kind.height()));
+        if speed.is_some_and(|speed| speed < SLOWEST) {
+            self.take(|body| body.gait = Some(gait));
+        }
+        Ok(())
+    }
+
+    /// Closes clips that are played again and again, but do not end as they begin.
+    fn repeat(&mut self) -> Result<(), ColossusError> {
+        let kind = self.kind()?;
+        let probe = SeamProbe::new(kind.skeleton(), kind.mesh(), kind.height());
+        let mut played: Vec<String> = self.clips.idle.iter().cloned().collect();
+        played.extend(self.body.gait.iter().map(|gait| gait.walk.clone()));
+        played.dedup();
+        for name in played {
+            let Some(clip) = kind.clips().clips().iter().find(|clip| clip.name == name) else {
+                continue;
+            };
+            let seam = probe.measure(clip)?;
+            if seam.is_loop() {
+                continue;
+            }
+            // As fast as it is in the clip.
+            let seconds = seam.speed * TICK / seam.within.max(1e-6);
+            let close = rounded(seconds.clamp(0.04, 1.0), 1e2);
+            self.take(|body| body.clips.entry(name).or_default().close = Some(close));
+        }
+        Ok(())
+    }
+
+    /// Its attack, with the times at which its limb hurts.
+    fn attack(&mut self) -> Result<Option<Strikes>, ColossusError> {
+        let kind = self.kind()?;
+        let look = Look::at(&kind)?;
+        let name = self.clips.attack.clone();
+        let clips = kind.clips().clips();
+        let clip = clips.iter().find(|clip| Some(&clip.name) == name.as_ref());
+        let (Some(name), Some(clip)) = (name, clip) else {
+            return Ok(None);
+        };
+        let feet: Vec<&String> = self.body.legs.iter().flat_map(|leg| &leg.joints).collect();
+        let Some(Struck { limb, active }) = strike::find(&look, clip, &feet)? else {
+            return Ok(None);
+        };
+        let has = |name: &str| clip.markers().iter().any(|marker| marker.name == name);
+        if has("active") && has("recovery") {
+            return Ok(Some(Strikes { clip: name, limb }));
+        }
+        let [from, to] = active.map(Times::One);
+        let clip = name.clone();
+        let marks = |body: &mut BodyFile| {
+            let ClipFile { markers, .. } = body.clips.entry(name).or_default();
+            markers.insert("active".to_owned(), from);
+            markers.insert("recovery".to_owned(), to);
+        };
+        Ok(self.take(marks).map(|_| Strikes { clip, limb }))
+    }
+
+    /// Head and neck.
+    fn head(&mut self) -> Result<(), ColossusError> {
+        let kind = self.kind()?;
+        let look = Look::at(&kind)?;
+        let Some(head) = look.head() else {
+            return Ok(());
+        };
+        let is_neck = |joint: &JointId| look.name(*joint).to_lowercase().contains("neck");
+        let neck: Vec<JointId> = look
+            .upward(head)
+            .skip(1)
+            .take_while(is_neck)
+            .take(2)
+            .collect();
+        let all = [head].into_iter().chain(neck);
+        let joints: Vec<JointId> = all.collect();
+        let shares = joints.iter().enumerate().map(|(index, joint)| {
+            let share = if index + 1 < joints.len() { 0.5 } else { 1.0 };
+            (look.name(*joint).to_owned(), share)
+        });
+        let middle = look.middle(head).unwrap_or_default();
+        let file = HeadFile {
+            joints: shares.collect(),
+            eye: [0.0, look.in_heights(middle.y), look.in_heights(middle.z)],
+            limits_deg: [60.0, 30.0],
+        };
+        self.take(|body| body.head = Some(file));
+        Ok(())
+    }
+
+    /// Fur, and a weak point on top of the head, or of what is highest.
+    fn skin(&mut self) -> Result<(), ColossusError> {
+        let mut tags = self.parts.mesh.tags().iter();
+        if !tags.any(|tag| tag.kind == SurfaceKind::Fur) {
+            let joints = vec!["*".to_owned()];
+            self.body.fur = FurFile {
+                joints,
+                ..FurFile::default()
+            };
+        }
+        if self.parts.weak_points.iter().any(|point| point.major) {
+            return Ok(());
+        }
+        let kind = self.kind()?;
+        let look = Look::at(&kind)?;
+        // Between its ears rather than on one of them.
+        let is_middle = |joint: JointId, place: &DVec3| {
+            (place.x - look.place(joint).x).abs() < WEAK * look.height
+        };
+        let top = |joint: JointId| {
+            let skin = || look.skin(joint).iter();
+            let higher = |a: &&DVec3, b: &&DVec3| a.y.total_cmp(&b.y);
+            let middle = skin()
+                .filter(|place| is_middle(joint, place))
+                .max_by(higher);
+            let top = middle.or_else(|| skin().max_by(higher))?;
+            Some((joint, *top))
+        };
+        let highest = || {
+            let tops = look.joints().filter_map(top);
+            tops.max_by(|a, b| a.1.y.total_cmp(&b.1.y))
+        };
+        let Some((joint, top)) = look.head().and_then(top).or_else(highest) else {
+            return Ok(());
+        };
+        let at = top - look.place(joint);
+        let weak = WeakPointFile {
+            name: "weak point".to_owned(),
+            joint: look.name(joint).to_owned(),
+            at: at.to_array().map(|x| look.in_heights(x)),
+            radius: WEAK,
+            hit_points: HIT_POINTS,
+            major: true,
+            order: None,
+        };
+        self.take(|body| body.weak_points.push(weak));
+        Ok(())
+    }
+}

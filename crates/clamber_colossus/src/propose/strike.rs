@@ -1,0 +1,152 @@
+//! Finds out which limb strikes in a clip, and when.
+
+use clamber_animation::rig::{Clip, JointId, Playback};
+use glam::DVec3;
+
+use super::look::{Look, place, rounded};
+use crate::error::ColossusError;
+
+/// Looks a second at a clip.
+const LOOKS: f64 = 60.0;
+
+/// A limb hurts while it is faster than this share of its largest speed, and for `SHORTEST` seconds at least.
+const FAST: f64 = 0.4;
+const SHORTEST: f64 = 0.15;
+
+/// Limbs that have this share of the largest speed are as fast.
+const ALIKE: f64 = 0.9;
+
+/// The most joints below the one that strikes which hurt as well.
+const MOST: usize = 3;
+
+/// A limb that strikes in a clip.
+pub(super) struct Struck {
+    /// Joints whose skin hurts; the last is its end.
+    pub(super) limb: Vec<String>,
+    /// From when to when it hurts, seconds of the clip.
+    pub(super) active: [f64; 2],
+}
+
+/// Words in the names of clips in which legs strike, and the head.
+const LEGS: [&str; 2] = ["kick", "stomp"];
+const HEADS: [&str; 2] = ["bite", "headbutt"];
+
+/// A leg strikes only if it is so many times as fast as anything else, as others step.
+const FASTER: f64 = 2.0;
+
+/// The limb before the creature that goes ahead fastest in a clip, before its marker `recovery` if it has one; `None` if
+/// none does. `legs` are the joints of legs.
+pub(super) fn find(
+    look: &Look<'_>,
+    clip: &Clip,
+    legs: &[&String],
+) -> Result<Option<Struck>, ColossusError> {
+    let name = clip.name.to_lowercase();
+    let is_of = |words: &[&str]| words.iter().any(|word| name.contains(word));
+    let is_leg = |joint: JointId| legs.iter().any(|leg| *leg == look.name(joint));
+    let head = look.head().filter(|_| is_of(&HEADS));
+    let kicks = is_of(&LEGS) && !legs.is_empty();
+    // How much a joint's speed counts.
+    let counts = |joint: JointId| {
+        let is_none = kicks && !is_leg(joint)
+            || head.is_some_and(|head| look.upward(joint).all(|above| above != head));
+        match is_none {
+            true => 0.0,
+            false if is_leg(joint) && !kicks => 1.0 / FASTER,
+            false => 1.0,
+        }
+    };
+    let recovery = clip
+        .markers()
+        .iter()
+        .find(|marker| marker.name == "recovery");
+    let until = recovery.map_or(f64::INFINITY, |marker| marker.time);
+    let middles: Vec<(JointId, DVec3)> = look
+        .joints()
+        .filter_map(|joint| Some((joint, look.middle(joint)? + look.place(joint))))
+        .collect();
+    let rest = look.skeleton.palette(&look.skeleton.rest_pose())?;
+    let count = (clip.duration() * LOOKS).ceil().max(1.0) as usize;
+    let step = clip.duration() / count as f64;
+    let mut ways: Vec<Vec<DVec3>> = vec![Vec::new(); middles.len()];
+    for sample in 0..=count {
+        let time = sample as f64 * step;
+        let mut pose = look.skeleton.rest_pose();
+        clip.sample_into(time, Playback::Clamp, &mut pose)?;
+        let posed = look.skeleton.palette(&pose)?;
+        for ((joint, middle), way) in middles.iter().zip(&mut ways) {
+            let frames = rest
+                .model_from_joint(*joint)
+                .zip(posed.model_from_joint(*joint));
+            let at = frames.map(|(rest, posed)| {
+                posed.transform_point3(rest.inverse().transform_point3(*middle))
+            });
+            way.push(at.unwrap_or_else(|| place(look.skeleton, &pose, *joint)));
+        }
+    }
+    let speed = |way: &[DVec3], at: usize| way[at].distance(way[at + 1]);
+    let depths = look
+        .joints()
+        .flat_map(|joint| look.skin(joint))
+        .map(|place| place.z);
+    let [back, front] = depths.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], z| {
+        [low.min(z), high.max(z)]
+    });
+    let middle = 0.5 * (back + front);
+    // What strikes is before it and goes ahead, as a tail that swings meanwhile does not; a leg may come down.
+    let strikes = |index: usize, at: usize| {
+        let (before, after) = (ways[index][at], ways[index][at + 1]);
+        let goes = if kicks {
+            after.distance(before)
+        } else {
+            after.z - before.z
+        };
+        let is_there = kicks || before.z > middle;
+        if is_there && (at as f64) * step < until {
+            counts(middles[index].0) * goes
+        } else {
+            0.0
+        }
+    };
+    let mut fastest = (1e-4 * look.height, None);
+    for index in 0..ways.len() {
+        for at in 0..count {
+            let found = strikes(index, at);
+            if found > fastest.0 {
+                fastest = (found, Some(at));
+            }
+        }
+    }
+    let (fastest, Some(at)) = fastest else {
+        return Ok(None);
+    };
+    // Of what is as fast, where the whole body goes ahead, what is foremost.
+    let alike = (0..ways.len()).filter(|index| strikes(*index, at) > ALIKE * fastest);
+    let foremost = alike.max_by(|a, b| ways[*a][at].z.total_cmp(&ways[*b][at].z));
+    let Some(index) = foremost else {
+        return Ok(None);
+    };
+    let (end, way) = (middles[index].0, &ways[index]);
+    let least = FAST * speed(way, at);
+    let before = (0..at)
+        .rev()
+        .take_while(|at| speed(way, *at) > least)
+        .count();
+    let after = (at + 1..count)
+        .take_while(|at| speed(way, *at) > least)
+        .count();
+    let mut active = [at - before, at + 1 + after].map(|sample| sample as f64 * step);
+    let wider = (0.5 * (SHORTEST - (active[1] - active[0]))).max(0.0);
+    active = [active[0] - wider, active[1] + wider].map(|time| time.clamp(0.0, clip.duration()));
+    active = active.map(|time| rounded(time, 1e2).min(clip.duration()));
+    let is_below = |joint: &JointId| look.upward(*joint).skip(1).any(|above| above == end);
+    let moves = |joint: &JointId| !look.skin(*joint).is_empty();
+    let below = look
+        .joints()
+        .filter(|joint| is_below(joint) && moves(joint));
+    let limb = below.take(MOST).chain([end]);
+    Ok((active[0] < active[1]).then(|| Struck {
+        limb: limb.map(|joint| look.name(joint).to_owned()).collect(),
+        active,
+    }))
+}

@@ -1,0 +1,326 @@
+//! Brains that are proposed for creatures from elsewhere.
+
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use crate::animals::animals;
+use crate::sizes::models;
+use crate::support::{TICK, person};
+use clamber_animation::{SeamProbe, joint_in_model};
+use clamber_colossus::{
+    Brain, BrainFile, Creature, CreatureConfig, CreatureKind, CreatureParts, Noise, Person, Riding,
+    Surroundings, Wound,
+};
+use clamber_gltf::load;
+use clamber_surface::mesh::{SurfaceKind, TriangleId};
+use clamber_world::{HalfSpace, MaterialPoint, Obstacle};
+use glam::DVec3;
+
+fn parts(path: &Path) -> Option<CreatureParts> {
+    let rig = load(path).ok()?;
+    Some(CreatureParts {
+        skeleton: rig.skeleton,
+        clips: rig.clips,
+        mesh: rig.collider,
+        materials: rig.collider_materials,
+        weak_points: rig.weak_points,
+    })
+}
+
+fn name(path: &Path) -> String {
+    let name = path.file_name().unwrap();
+    name.to_string_lossy().into_owned()
+}
+
+fn kind(parts: &CreatureParts, file: &BrainFile) -> Arc<CreatureKind> {
+    // As people have it: from text.
+    let text = serde_json::to_string(file).unwrap();
+    let brain = Brain::from_json(&text, TICK).unwrap();
+    assert_eq!(brain.file(), file);
+    Arc::new(CreatureKind::new(parts.clone(), brain).unwrap())
+}
+
+/// What a creature did.
+#[derive(Default)]
+struct Life {
+    visited: BTreeSet<String>,
+    /// The longest time in one state, seconds.
+    longest: (f64, String),
+    lasted: f64,
+    home: Option<DVec3>,
+    /// How far it has been from where it began.
+    farthest: f64,
+    turned: f64,
+}
+
+impl Life {
+    /// Lets some seconds pass.
+    fn pass(&mut self, creature: &mut Creature, seconds: f64, people: &[Person], noises: &[Noise]) {
+        let ground = HalfSpace::below(0.0);
+        let terrain: [&dyn Obstacle; 1] = [&ground];
+        let place = creature.state().position();
+        let home = self.home.get_or_insert(place).to_owned();
+        for _ in 0..(seconds / TICK) as u32 {
+            let around = Surroundings {
+                terrain: &terrain,
+                people,
+                noises,
+                ..Surroundings::default()
+            };
+            let before = creature.state().brain().current();
+            let yaw = creature.state().yaw();
+            creature.step(&around).unwrap();
+            let brain = creature.kind().brain();
+            let now = creature.state().brain().current();
+            self.lasted = if now == before {
+                self.lasted + TICK
+            } else {
+                0.0
+            };
+            if self.lasted > self.longest.0 {
+                self.longest = (self.lasted, brain.path(now).to_owned());
+            }
+            self.visited.insert(brain.path(now).to_owned());
+            let way = creature.state().position() - home;
+            self.farthest = self.farthest.max(way.length());
+            let turn = (creature.state().yaw() - yaw).abs();
+            self.turned += turn.min(core::f64::consts::TAU - turn);
+        }
+    }
+}
+
+/// Ten minutes of each creature, of which `share` is played: alone, with somebody before it and behind it, with a rider,
+/// and with noises.
+fn lives(height: f64, share: f64) {
+    let mut count = 0;
+    for path in models() {
+        let Some(parts) = parts(&path) else { continue };
+        let file = BrainFile::propose(&parts, height).unwrap();
+        let kind = kind(&parts, &file);
+        assert!(
+            kind.report().never.is_empty(),
+            "{}: {:?}",
+            name(&path),
+            kind.report().never
+        );
+        let config = CreatureConfig {
+            seed: 3,
+            ..CreatureConfig::default()
+        };
+        let mut creature = Creature::new(Arc::clone(&kind), config).unwrap();
+        let mut life = Life::default();
+        life.pass(&mut creature, 240.0 * share, &[], &[]);
+        let says = |what: &str, life: &Life| {
+            format!("{} at {height} m: {what}; {:?}", name(&path), life.visited)
+        };
+        let has = |life: &Life, state: &str| life.visited.iter().any(|path| path.contains(state));
+        assert!(has(&life, "sleeps"), "{}", says("it never slept", &life));
+        let walks = kind.can_walk();
+        // Somebody shows up before it, and later behind it.
+        let world = creature.state().position();
+        for (way, seconds) in [(1.0, 90.0), (-1.0, 90.0)] {
+            let yaw = creature.state().yaw();
+            let ahead = DVec3::new(libm::sin(yaw), 0.0, libm::cos(yaw));
+            let prey = person(world + ahead * (way * (3.0 * height).min(120.0)));
+            let before = life.turned;
+            let (place, loudness) = (prey.middle(), 1.0);
+            for _ in 0..(4.0 + 0.2 * seconds * share) as u32 {
+                life.pass(&mut creature, TICK, &[prey], &[Noise { place, loudness }]);
+                life.pass(&mut creature, 5.0, &[prey], &[]);
+            }
+            assert!(has(&life, "alert"), "{}", says("nobody was noticed", &life));
+            let turned = life.turned - before;
+            assert!(
+                way > 0.0 || !walks || turned > 1.0,
+                "{}",
+                says("it did not turn", &life)
+            );
+        }
+        let rider = Person {
+            riding: Some(Riding {
+                at: MaterialPoint::on_triangle(TriangleId(0), [1.0 / 3.0; 3]),
+                hangs: false,
+            }),
+            ..person(creature.state().position() + DVec3::Y * height)
+        };
+        life.pass(&mut creature, 20.0, &[rider], &[]);
+        life.pass(&mut creature, 130.0 * share, &[rider], &[]);
+        assert!(
+            has(&life, "ridden/shakes"),
+            "{}",
+            says("it bore its rider", &life)
+        );
+        let is_far = life.farthest > 0.2 * height;
+        let far = format!("it goes {} m", life.farthest);
+        assert_eq!(is_far, walks, "{}", says(&far, &life));
+        let (longest, state) = &life.longest;
+        println!(
+            "{:<32} at {height} m: {longest:>5.1} s in {state}",
+            name(&path)
+        );
+        // Everything takes longer for what is larger, by Froude's law.
+        let most = 60.0 * (height / 20.0).sqrt().max(1.0);
+        assert!(
+            *longest < most,
+            "{}",
+            says(&format!("{longest} s in {state}"), &life)
+        );
+        if file.body.weak_points.is_empty() {
+            // The giant has its own, in an order.
+            continue;
+        }
+        // A stab of its skin where the weak point is.
+        let place = creature.weak_point(0).unwrap();
+        let skin = creature.surface().in_world();
+        let hit = skin.closest_point(place, height).unwrap();
+        let at = MaterialPoint::on_triangle(hit.triangle, hit.barycentric);
+        let (place, damage) = (hit.point, 3.0);
+        let done = creature.hurt(&Wound { place, at, damage });
+        assert_eq!(
+            done,
+            3.0,
+            "{}",
+            says("its weak point is not at its skin", &life)
+        );
+        life.pass(&mut creature, 1.0, &[], &[]);
+        assert!(has(&life, "dies"), "{}", says("it did not die", &life));
+        count += 1;
+    }
+    let is_there = std::env::var_os("CLAMBER_TEST_DATA").is_some();
+    assert_eq!(count, if is_there { 27 } else { 0 });
+}
+
+#[test]
+fn creatures_from_elsewhere_live_by_what_is_proposed() {
+    lives(20.0, 0.3);
+}
+
+#[test]
+#[ignore = "takes minutes: ten of each creature, at three sizes"]
+fn creatures_from_elsewhere_live_for_ten_minutes() {
+    for height in [3.0, 20.0, 60.0] {
+        lives(height, 1.0);
+    }
+}
+
+/// Legs that people found in these files, with the feet and toes that they name.
+#[test]
+fn legs_are_those_that_people_find() {
+    let Some(root) = std::env::var_os("CLAMBER_TEST_DATA") else {
+        eprintln!("SKIPPED legs: set CLAMBER_TEST_DATA to the folder that holds models/Trex.glb");
+        return;
+    };
+    for animal in animals() {
+        // It has no walk, so it needs no legs.
+        if animal.file == "gltf_spider_animated.gltf" {
+            continue;
+        }
+        let path = PathBuf::from(&root).join("models").join(animal.file);
+        let file = BrainFile::propose(&parts(&path).unwrap(), 20.0).unwrap();
+        let found: BTreeMap<String, Option<String>> = file
+            .body
+            .legs
+            .iter()
+            .map(|leg| (leg.joints.last().unwrap().clone(), leg.toe.clone()))
+            .collect();
+        let known = animal.legs.iter().map(|leg| {
+            let joints = leg["joints"].as_array().unwrap();
+            let foot = joints.last().unwrap().as_str().unwrap().to_owned();
+            (foot, leg["toe"].as_str().map(str::to_owned))
+        });
+        assert_eq!(found, known.collect(), "{}", animal.file);
+        for leg in &file.body.legs {
+            let known = animal.legs.iter().find(|known| {
+                let joints = known["joints"].as_array().unwrap();
+                joints.last().unwrap() == leg.joints.last().unwrap().as_str()
+            });
+            let known: Vec<&str> = known.unwrap()["joints"]
+                .as_array()
+                .unwrap()
+                .iter()
+                .map(|joint| joint.as_str().unwrap())
+                .collect();
+            // At most one joint more or less: where the leg begins is a matter of taste.
+            let same = leg
+                .joints
+                .iter()
+                .filter(|joint| known.contains(&joint.as_str()));
+            assert!(same.count() + 1 >= known.len(), "{leg:?} {known:?}");
+            assert!(leg.joints.len() <= known.len() + 1, "{leg:?} {known:?}");
+        }
+    }
+}
+
+#[test]
+fn skin_is_fur_and_the_weak_point_is_on_it() {
+    for path in models() {
+        let Some(parts) = parts(&path) else { continue };
+        let file = BrainFile::propose(&parts, 20.0).unwrap();
+        let kind = kind(&parts, &file);
+        let has_fur = parts
+            .mesh
+            .tags()
+            .iter()
+            .any(|tag| tag.kind == SurfaceKind::Fur);
+        if has_fur {
+            assert_eq!(kind.mesh().tags(), parts.mesh.tags());
+            continue;
+        }
+        let mut tags = kind.mesh().tags().iter();
+        assert!(
+            tags.all(|tag| tag.kind == SurfaceKind::Fur),
+            "{}",
+            name(&path)
+        );
+        let point = &kind.weak_points()[0];
+        let rest = kind.skeleton().rest_pose();
+        let frame = joint_in_model(kind.skeleton(), &rest, point.joint).unwrap();
+        let at = frame.transform_point3(point.position.as_dvec3());
+        let palette = kind.skeleton().palette(&rest).unwrap();
+        let skin = clamber_surface::skin::skin(kind.mesh(), palette.matrices()).unwrap();
+        let gap = skin.iter().map(|place| place.as_dvec3().distance(at));
+        let gap = gap.fold(f64::INFINITY, f64::min);
+        assert!(gap < 2e-3 * kind.height(), "{}: {gap}", name(&path));
+    }
+}
+
+#[test]
+fn what_is_played_again_and_again_ends_as_it_begins() {
+    let mut closed = 0;
+    for path in models() {
+        let Some(parts) = parts(&path) else { continue };
+        let file = BrainFile::propose(&parts, 20.0).unwrap();
+        closed += file
+            .body
+            .clips
+            .values()
+            .filter(|clip| clip.close.is_some())
+            .count();
+        let kind = kind(&parts, &file);
+        let probe = SeamProbe::new(kind.skeleton(), kind.mesh(), kind.height());
+        let gait = file
+            .body
+            .gait
+            .iter()
+            .flat_map(|gait| [&gait.idle, &gait.walk]);
+        for name in gait {
+            let clip = kind.clips().find(name).unwrap();
+            let seam = probe.measure(kind.clips().clip(clip).unwrap()).unwrap();
+            assert!(seam.is_loop(), "{} {name}: {seam:?}", path.display());
+        }
+    }
+    println!("{closed} clips were closed");
+    assert!(closed > 0 || std::env::var_os("CLAMBER_TEST_DATA").is_none());
+}
+
+#[test]
+fn what_is_no_height_is_refused() {
+    let parts = parts(&models()[0]).unwrap();
+    for height in [0.0, -1.0, 1e-4, 1e6, f64::NAN, f64::INFINITY] {
+        let error = BrainFile::propose(&parts, height).unwrap_err().to_string();
+        assert!(error.contains("height"), "{error}");
+    }
+}

@@ -1,0 +1,66 @@
+//! Animals of files that were not made for this fight by brains that are proposed for them, and a bot kills them.
+
+#![allow(clippy::unwrap_used, reason = "a test")]
+
+use std::path::PathBuf;
+
+use clamber::colossus::{BrainFile, CreatureParts};
+use clamber_scenes::battle::{BattleOptions, fight_all};
+
+/// The fights of an animal that were won, of as many seeds.
+fn won(animal: &str, seeds: u64) -> u64 {
+    let Some(root) = std::env::var_os("CLAMBER_TEST_DATA") else {
+        eprintln!(
+            "SKIPPED {animal}: set CLAMBER_TEST_DATA to the folder that holds models/Trex.glb"
+        );
+        return seeds;
+    };
+    let path = PathBuf::from(root).join("models").join(animal);
+    let rig = clamber::gltf::load(&path).unwrap();
+    let parts = CreatureParts {
+        skeleton: rig.skeleton,
+        clips: rig.clips,
+        mesh: rig.collider,
+        materials: rig.collider_materials,
+        weak_points: rig.weak_points,
+    };
+    let brain = BrainFile::propose(&parts, 20.0).unwrap();
+    let file = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("{animal}.brain.json"));
+    std::fs::write(&file, serde_json::to_string(&brain).unwrap()).unwrap();
+    let options = BattleOptions {
+        creature: Some(path),
+        brain: Some(file),
+        seconds: Some(300.0),
+        rocks: 0,
+        seed: 1,
+        ..BattleOptions::default()
+    };
+    let fights = fight_all(&options, seeds, |_| ()).unwrap();
+    for fight in &fights {
+        println!("{animal:<16} {fight}");
+    }
+    fights.iter().filter(|fight| fight.tally.killed > 0).count() as u64
+}
+
+#[test]
+fn animals_from_elsewhere_are_killed() {
+    for animal in ["Trex.glb", "Triceratops.glb", "Bull.glb"] {
+        assert_eq!(won(animal, 1), 1, "{animal}");
+    }
+}
+
+#[test]
+#[ignore = "takes minutes: 35 fights"]
+fn animals_from_elsewhere_are_killed_in_three_of_five_fights() {
+    let quadrupeds = [
+        "Apatosaurus.glb",
+        "Bull.glb",
+        "Fox.glb",
+        "Stag.glb",
+        "Triceratops.glb",
+    ];
+    for animal in quadrupeds.into_iter().chain(["Trex.glb", "Spider.glb"]) {
+        let won = won(animal, 5);
+        assert!(won >= 3, "{animal}: {won} of 5");
+    }
+}
