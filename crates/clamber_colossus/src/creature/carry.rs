@@ -47,6 +47,8 @@ impl Creature {
         state.gaze.value = carried.place(state.gaze.value);
         state.gaze.velocity = carried.vector(state.gaze.velocity);
         state.aim = carried.vector(state.aim);
+        let lean = &mut state.lean.spring;
+        (lean.value, lean.velocity) = (carried.vector(lean.value), carried.vector(lean.velocity));
         state.yaw = nearest_turn(state.yaw + carried.yaw);
         state.hips.turn(&carried);
         for foot in &mut state.feet {

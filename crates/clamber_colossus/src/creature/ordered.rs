@@ -52,6 +52,7 @@ impl Creature {
             look: fresh.look,
             gaze: fresh.gaze,
             gaze_weight: fresh.gaze_weight,
+            lean: fresh.lean,
             home: fresh.home,
             patrol: fresh.patrol,
             sleeps: fresh.sleeps,

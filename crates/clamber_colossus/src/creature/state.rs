@@ -77,6 +77,7 @@ pub struct CreatureState {
     pub(super) struck: Vec<u64>,
     /// From where the clip strikes to where this attack does, in world space.
     pub(super) aim: DVec3,
+    pub(super) lean: Lean,
     /// The pose of the last step, with feet and head.
     pub(super) pose: Pose,
     /// Markers that were passed in the last step: clips, and indices in them.
@@ -176,6 +177,15 @@ impl Walked {
     }
 }
 
+/// How far a neck or an arm leans out to whom it strikes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Lean {
+    /// From where the clip has its end, in world space.
+    pub(super) spring: Spring<DVec3>,
+    /// The state whose attack leans; `None` if nothing does.
+    pub(super) with: Option<StateId>,
+}
+
 /// Somebody's time on the creature.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Ride {
@@ -269,6 +279,7 @@ impl CreatureState {
             sleeps: 0,
             struck: Vec::new(),
             aim: DVec3::ZERO,
+            lean: Lean::default(),
             pose: kind.clips().rest().clone(),
             passed: Vec::new(),
             ticks: 0,
@@ -295,6 +306,13 @@ impl CreatureState {
             playing: match self.playing {
                 Playing::Act(state) => same(state).map_or(Playing::Idle, Playing::Act),
                 other => other,
+            },
+            lean: match self.lean.with {
+                Some(state) if same(state).is_some() => Lean {
+                    with: same(state),
+                    ..self.lean
+                },
+                _ => Lean::default(),
             },
             senses: if has_senses {
                 self.senses.clone()
@@ -417,7 +435,8 @@ impl CreatureState {
         let states = brain.len();
         let acting = self.acting.is_none_or(|state| state.index() < states);
         let playing = !matches!(self.playing, Playing::Act(state) if state.index() >= states);
-        if !acting || !playing {
+        let leaning = self.lean.with.is_none_or(|state| state.index() < states);
+        if !acting || !playing || !leaning {
             return Err(ColossusError::OtherKind(
                 "its act is not one of the brain's",
             ));
@@ -432,7 +451,12 @@ impl CreatureState {
         let far = |number: f64| number.is_nan() || number.abs() > FARTHEST;
         let fast = |number: &f64| number.is_nan() || number.abs() > FASTEST;
         let known = self.prey.map_or(self.home, |(_, place)| place);
-        let gaze = [self.gaze.value, self.gaze.velocity];
+        let gaze = [
+            self.gaze.value,
+            self.gaze.velocity,
+            self.lean.spring.value,
+            self.lean.spring.velocity,
+        ];
         let stands = self.stands_on.map_or(self.home, |point| point.at);
         let sent = self.errand.map_or(self.home, |errand| errand.to);
         let places = [

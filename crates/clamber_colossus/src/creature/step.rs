@@ -256,6 +256,7 @@ impl Creature {
         };
         self.put_feet(world, &ground, dt);
         self.turn_head(world, around, dt);
+        self.lean(world, dt);
         self.kind
             .skeleton()
             .palette_into(&self.state.pose, &mut self.palette)?;

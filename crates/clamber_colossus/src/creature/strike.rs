@@ -1,19 +1,28 @@
 //! Whom an attack strikes: whoever the skin of its limb touches while it hurts.
 
-use clamber_surface::geometry::WorldCapsule;
+use clamber_surface::geometry::{Similarity, WorldCapsule};
 use clamber_surface::mesh::TriangleId;
 use clamber_surface::surface::TargetMotion;
 use clamber_world::{Obstacle, SweepContact};
 use glam::DVec3;
 
 use super::report::{AttackPhase, Blow};
-use super::state::Playing;
+use super::state::{Lean, Playing};
 use super::{Creature, Surroundings};
 use crate::brain::StateId;
 use crate::kind::Strike;
 
 /// A limb strikes whoever is this close to its skin, metres: a climber that it pushes stays at about that distance.
 const REACH: f64 = 0.05;
+
+/// A neck has half of its way to whom it bites behind it after this share of the time until it hurts, which is no less
+/// than `QUICKEST` seconds of the clip: nine tenths are behind it then. A giant's goes back in `RETURNS` seconds.
+const SETTLED: f64 = 0.3;
+const QUICKEST: f64 = 0.15;
+const RETURNS: f64 = 0.4;
+
+/// It is back when it is nearer than this, in heights of the creature.
+const LEAST: f64 = 1e-4;
 
 impl Creature {
     /// The attack that it is at, and where in it; `None` while it does not attack.
@@ -90,6 +99,44 @@ impl Creature {
             .cast_capsule_where(body, still, TargetMotion::Moving, &mut is_limb)
     }
 
+    /// Brings a neck or an arm to where its attack aims, until it stops to hurt, and back.
+    pub(super) fn lean(&mut self, world: &Similarity, dt: f64) {
+        let kind = std::sync::Arc::clone(&self.kind);
+        let chain_of = |state: StateId| kind.act(state).strike.as_ref()?.chain.as_ref();
+        let strikes = self
+            .attack()
+            .filter(|(state, phase)| *phase != AttackPhase::Recovery && chain_of(*state).is_some());
+        let (rate, pace) = (self.size.rate.max(1e-3), self.size.pace);
+        let least = LEAST * self.size.height;
+        let aim = self.state.aim;
+        let Lean { spring, with } = &mut self.state.lean;
+        // What it leans with goes back before something else is used.
+        if let Some((state, _)) = strikes.filter(|_| with.is_none()) {
+            *with = Some(state);
+        }
+        let Some(state) = *with else { return };
+        let goes = strikes.is_some_and(|(striking, _)| striking == state);
+        let active = kind.act(state).strike.as_ref().map(|strike| strike.active);
+        let winds_up = active.map_or(0.0, |[from, _]| from).max(QUICKEST);
+        if goes {
+            spring.step(aim, SETTLED * winds_up / rate, dt);
+        } else {
+            spring.step(DVec3::ZERO, RETURNS * pace, dt);
+            if spring.value.length() < least && spring.velocity.length() < least {
+                self.state.lean = Lean::default();
+                return;
+            }
+        }
+        let leans = spring.value;
+        let Some(chain) = chain_of(state) else { return };
+        let skeleton = kind.skeleton();
+        if let Ok(end) = chain.end(skeleton, &self.state.pose) {
+            let target = end + world.rotation.conjugate() * leans / self.size.scale;
+            // What cannot be reached is gone for as far as it goes; what cannot be bent stays.
+            let _ = chain.solve(skeleton, &mut self.state.pose, target);
+        }
+    }
+
     /// Decides where this attack strikes: at its prey, if that is near enough to where the clip does.
     pub(super) fn aim(&mut self, strike: &Strike) {
         let Some((_, prey)) = self.state.prey.filter(|_| self.state.unseen == 0) else {
@@ -97,13 +144,18 @@ impl Creature {
         };
         let world = self.state.world_from_model(self.size.scale);
         let way = prey - world.transform_point(strike.spot);
-        let level = DVec3::new(way.x, 0.0, way.z);
-        let length = level.length();
+        // A foot comes down on the ground where it is; a mouth goes down to whom it bites.
+        let way = if strike.chain.is_some() {
+            way
+        } else {
+            DVec3::new(way.x, 0.0, way.z)
+        };
+        let length = way.length();
         // Further away than it can aim, it goes as far as it can: it shows what it means.
         let aim = if length > strike.aim {
-            level * (strike.aim / length)
+            way * (strike.aim / length)
         } else {
-            level
+            way
         };
         let in_model = world.rotation.conjugate() * aim / self.size.scale;
         self.state.aim = aim * strike.reach(in_model);

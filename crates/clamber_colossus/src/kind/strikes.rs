@@ -1,3 +1,4 @@
+use clamber_animation::ik::Chain;
 use clamber_animation::joint_in_model;
 use clamber_animation::rig::{JointId, Playback};
 use glam::DVec3;
@@ -21,9 +22,12 @@ pub(crate) struct Strike {
     pub(crate) spot: DVec3,
     /// The leg that strikes, if one does: its index.
     pub(crate) leg: Option<usize>,
-    /// From its hip to where its ankle comes down, in model space, as the hip moves on while the foot stands there.
+    /// The neck or arm that brings its limb to whom it strikes, if it aims with something else than a leg.
+    pub(crate) chain: Option<Chain>,
+    /// From its hip to where its ankle comes down, in model space, as the hip moves on while the foot stands there; from
+    /// the first joint of a neck to where its end strikes.
     reaches: Vec<DVec3>,
-    /// Length of that leg that is used.
+    /// Length of that leg, or neck, that is used.
     length: f64,
     /// Balls in the skin of all joints.
     pub(crate) swept: Vec<Swept>,
@@ -49,6 +53,9 @@ const STRETCH: f64 = 0.97;
 /// share of the leg's length.
 const LOOKS: f64 = 20.0;
 const LEFT: f64 = 0.03;
+
+/// A neck or an arm is so many bones at most: more would bend the body.
+const BONES: usize = 3;
 
 impl Strike {
     pub(crate) fn new(
@@ -83,7 +90,20 @@ impl Strike {
             .map_or(DVec3::ZERO, |frame| frame.translation);
         let leg = legs.iter().position(|leg| limb.contains(&leg.ankle));
         let mut reaches = Vec::new();
-        let length = leg.map_or(0.0, |leg| legs[leg].length);
+        let mut length = leg.map_or(0.0, |leg| legs[leg].length);
+        let chain = chain_to(names, end, legs).filter(|_| leg.is_none() && attack.aim > 0.0);
+        if let Some(chain) = &chain {
+            let place = |joint: &JointId| {
+                joint_in_model(names.skeleton, &pose, *joint)
+                    .map_or(DVec3::ZERO, |frame| frame.translation)
+            };
+            let places: Vec<DVec3> = chain.joints().iter().map(place).collect();
+            length = places
+                .windows(2)
+                .map(|bone| bone[0].distance(bone[1]))
+                .sum();
+            reaches.push(spot - places[0]);
+        }
         if let Some(leg) = leg.map(|leg| &legs[leg]) {
             let at = |time: f64| {
                 let pose = clip
@@ -106,7 +126,8 @@ impl Strike {
             let after = step(clip.duration() - to, 1.0).map_while(|time| stands(at(time)?));
             reaches.extend(before.chain(after));
         }
-        let aims = |ball: &JointBall| leg.is_some() && limb.contains(&ball.joint);
+        let goes = leg.is_some() || chain.is_some();
+        let aims = |ball: &JointBall| goes && limb.contains(&ball.joint);
         let new = |ball: &JointBall| Swept {
             radius: ball.radius,
             aims: aims(ball),
@@ -134,11 +155,12 @@ impl Strike {
             aim: attack.aim,
             spot,
             leg,
+            chain,
         })
     }
 
-    /// How much of a way the spot can be moved along it, as a share: a leg does not reach everywhere. The way is in
-    /// model space.
+    /// How much of a way the spot can be moved along it, as a share: a leg or a neck does not reach everywhere. The way is
+    /// in model space.
     pub(crate) fn reach(&self, way: DVec3) -> f64 {
         let length = STRETCH * self.length;
         let share = |from: &DVec3| {
@@ -156,4 +178,17 @@ impl Strike {
     pub(crate) fn hurts(&self, joint: JointId) -> bool {
         self.limb.contains(&joint)
     }
+}
+
+/// The neck or arm above the end of a limb: joints that no leg hangs from.
+fn chain_to(names: &Names<'_>, end: JointId, legs: &[Leg]) -> Option<Chain> {
+    let skeleton = names.skeleton;
+    let parent = |joint: &JointId| skeleton.joints()[joint.index()].parent;
+    let is_free = |joint: &JointId| {
+        let holds = |leg: &Leg| skeleton.is_descendant_or_self(leg.hip, *joint);
+        parent(joint).is_some() && !legs.iter().any(holds)
+    };
+    let above = core::iter::successors(Some(end), parent);
+    let first = above.take_while(is_free).take(BONES + 1).last()?;
+    Chain::new(skeleton, first, end).ok()
 }

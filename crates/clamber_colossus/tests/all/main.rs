@@ -11,6 +11,7 @@ mod feet;
 mod foresight;
 mod giant;
 mod legs;
+mod mouths;
 mod ordered;
 mod plates;
 mod proposed;

@@ -1,0 +1,194 @@
+//! Mouths and hands aim as feet do: they go to whom they strike, and back.
+
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use crate::support::{TICK, person};
+use clamber_colossus::{
+    Brain, BrainFile, Creature, CreatureConfig, CreatureKind, CreatureParts, Surroundings,
+};
+use clamber_gltf::load;
+use clamber_world::{HalfSpace, Obstacle};
+use glam::DVec3;
+use serde_json::{Value, json};
+
+/// An animal that waits for a second, attacks as is proposed for it, and dies if its one weak point is gone.
+fn animal(file: &str, height: f64, aim: f64) -> Option<Arc<CreatureKind>> {
+    let Some(root) = std::env::var_os("CLAMBER_TEST_DATA") else {
+        eprintln!("SKIPPED {file}: set CLAMBER_TEST_DATA to the folder that holds models/Trex.glb");
+        return None;
+    };
+    let rig = load(PathBuf::from(root).join("models").join(file)).unwrap();
+    let parts = CreatureParts {
+        skeleton: rig.skeleton,
+        clips: rig.clips,
+        mesh: rig.collider,
+        materials: rig.collider_materials,
+        weak_points: rig.weak_points,
+    };
+    let proposed = BrainFile::propose(&parts, height).unwrap();
+    let proposed = serde_json::to_value(&proposed).unwrap();
+    let mut act: Value =
+        proposed["states"]["alive"]["states"]["alert"]["states"]["strikes"]["act"].clone();
+    act["attack"]["aim"] = aim.into();
+    let brain = json!({
+        "body": proposed["body"],
+        "start": "waits",
+        "states": {
+            "waits": { "transitions": [{ "to": "strikes", "after": 1 }] },
+            "strikes": { "act": act, "transitions": [
+                { "to": "ends" }, { "to": "dies", "when": ["health <= 0"], "interrupts": true, "priority": 1 }] },
+            "ends": { "final": true },
+            "dies": { "act": proposed["states"]["dies"]["act"], "fade": 0.3, "final": true }
+        }
+    });
+    let brain = Brain::from_json(&brain.to_string(), TICK).unwrap();
+    Some(Arc::new(CreatureKind::new(parts, brain).unwrap()))
+}
+
+/// Where the attack strikes without an aim: the middle of the limb's end while it hurts, in world space.
+fn spot(kind: &Arc<CreatureKind>) -> DVec3 {
+    let mut creature = Creature::new(Arc::clone(kind), CreatureConfig::default()).unwrap();
+    let brain = kind.brain();
+    let strikes = brain.find("strikes").unwrap();
+    let Some(clamber_colossus::brain::Act::Attack(attack)) = brain.act(strikes) else {
+        unreachable!("it attacks");
+    };
+    let end = kind.skeleton().find(attack.limb.last().unwrap()).unwrap();
+    let ground = HalfSpace::below(0.0);
+    let terrain: [&dyn Obstacle; 1] = [&ground];
+    let mut last = DVec3::ZERO;
+    for _ in 0..1_200 {
+        creature
+            .step(&Surroundings {
+                terrain: &terrain,
+                ..Surroundings::default()
+            })
+            .unwrap();
+        if creature
+            .attack()
+            .is_some_and(|(_, phase)| phase == clamber_colossus::AttackPhase::Active)
+        {
+            let frame = creature.palette().model_from_joint(end).unwrap();
+            last = creature
+                .surface()
+                .world_from_model()
+                .transform_point(frame.translation);
+        }
+    }
+    last
+}
+
+/// Of people at 48 places around the spot, up to `within` metres away, how many are struck.
+fn struck(kind: &Arc<CreatureKind>, spot: DVec3, within: f64) -> usize {
+    let mut count = 0;
+    for place in 0..48 {
+        let turn = f64::from(place) * 2.4;
+        let share = (f64::from(place) + 0.5) / 48.0;
+        let aside = DVec3::new(libm::cos(turn), 0.0, libm::sin(turn)) * (within * share.sqrt());
+        let victim = person(spot + aside - DVec3::Y * 0.875);
+        let mut creature = Creature::new(Arc::clone(kind), CreatureConfig::default()).unwrap();
+        let ground = HalfSpace::below(0.0);
+        let terrain: [&dyn Obstacle; 1] = [&ground];
+        let people = [victim];
+        for _ in 0..1_200 {
+            let around = Surroundings {
+                terrain: &terrain,
+                people: &people,
+                ..Surroundings::default()
+            };
+            if !creature.step(&around).unwrap().blows.is_empty() {
+                count += 1;
+                break;
+            }
+        }
+    }
+    count
+}
+
+#[test]
+fn a_mouth_goes_to_whom_it_bites() {
+    for (file, height) in [
+        ("Trex.glb", 12.0),
+        ("Trex.glb", 30.0),
+        ("Bull.glb", 12.0),
+        ("George.glb", 12.0),
+    ] {
+        let within = 0.25 * height;
+        let Some(without) = animal(file, height, 0.0) else {
+            return;
+        };
+        let spot = spot(&without);
+        let with = animal(file, height, 1.2 * within).unwrap();
+        let counts = [&without, &with].map(|kind| struck(kind, spot, within));
+        println!(
+            "{file} at {height} m: {} of 48 without an aim, {} with one",
+            counts[0], counts[1]
+        );
+        // As far as its neck reaches.
+        assert!(
+            counts[1] >= 24 && counts[1] >= counts[0] + 8,
+            "{file}: {counts:?}"
+        );
+    }
+}
+
+/// The largest acceleration of a head in a tick, metres a second squared, over an attack on somebody, which ends by death
+/// after some ticks.
+fn jerk(kind: &Arc<CreatureKind>, at: DVec3, dies: Option<usize>) -> (f64, Vec<DVec3>) {
+    let mut creature = Creature::new(Arc::clone(kind), CreatureConfig::default()).unwrap();
+    let ground = HalfSpace::below(0.0);
+    let terrain: [&dyn Obstacle; 1] = [&ground];
+    let people = [person(at - DVec3::Y * 0.875)];
+    let end = kind.skeleton().find("Head").unwrap();
+    let (mut before, mut speed): (Option<DVec3>, Option<DVec3>) = (None, None);
+    let (mut worst, mut way) = (0f64, Vec::new());
+    for tick in 0..400 {
+        if dies == Some(tick) {
+            assert!(creature.harm(0, 100.0).is_some());
+        }
+        let around = Surroundings {
+            terrain: &terrain,
+            people: &people,
+            ..Surroundings::default()
+        };
+        creature.step(&around).unwrap();
+        let frame = creature.palette().model_from_joint(end).unwrap();
+        let now = creature
+            .surface()
+            .world_from_model()
+            .transform_point(frame.translation);
+        let moved = before.map(|before| (now - before) / TICK);
+        if let (Some(a), Some(b)) = (moved, speed) {
+            worst = worst.max(a.distance(b) / TICK);
+        }
+        (before, speed) = (Some(now), moved);
+        way.push(now);
+    }
+    (worst, way)
+}
+
+#[test]
+fn a_neck_goes_out_and_back_without_a_jump() {
+    let height = 20.0;
+    let Some(without) = animal("Trex.glb", height, 0.0) else {
+        return;
+    };
+    let with = animal("Trex.glb", height, 5.0).unwrap();
+    let at = spot(&without) + DVec3::new(2.0, -1.0, 1.0);
+    for dies in [None, Some(70), Some(100), Some(130), Some(160)] {
+        let [(plain, clip), (aimed, leant)] = [&without, &with].map(|kind| jerk(kind, at, dies));
+        let apart = clip.iter().zip(&leant).map(|(a, b)| a.distance(*b));
+        let most = apart.fold(0.0, f64::max);
+        println!(
+            "dies at {dies:?}: {plain:.0} m/s² without an aim, {aimed:.0} with one, up to {most:.1} m aside"
+        );
+        assert!(aimed < plain + 3.0 * 9.81, "{dies:?}: {plain} {aimed}");
+        assert!(most > 0.3, "{dies:?}: {most}");
+        // It is back in the end.
+        let end = clip[399].distance(leant[399]);
+        assert!(end < 1e-3 * height, "{end}");
+    }
+}
