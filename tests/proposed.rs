@@ -4,16 +4,16 @@
 
 use std::path::PathBuf;
 
-use clamber::colossus::{BrainFile, CreatureParts};
+use clamber_colossus::{BrainFile, CreatureParts};
 use clamber_scenes::battle::{BattleOptions, fight_all};
 
-/// The fights of an animal that were won, of as many seeds.
-fn won(animal: &str, seeds: u64) -> u64 {
+/// The fights of an animal that were won, of as many seeds; `None` without the test data.
+fn won(animal: &str, seeds: u64) -> Option<u64> {
     let Some(root) = std::env::var_os("CLAMBER_TEST_DATA") else {
         eprintln!(
             "SKIPPED {animal}: set CLAMBER_TEST_DATA to the folder that holds models/Trex.glb"
         );
-        return seeds;
+        return None;
     };
     let path = PathBuf::from(root).join("models").join(animal);
     let rig = clamber::gltf::load(&path).unwrap();
@@ -39,28 +39,32 @@ fn won(animal: &str, seeds: u64) -> u64 {
     for fight in &fights {
         println!("{animal:<16} {fight}");
     }
-    fights.iter().filter(|fight| fight.tally.killed > 0).count() as u64
+    let killed = fights.iter().filter(|fight| fight.tally.killed > 0);
+    Some(killed.count() as u64)
 }
 
 #[test]
 fn animals_from_elsewhere_are_killed() {
     for animal in ["Trex.glb", "Triceratops.glb", "Bull.glb"] {
-        assert_eq!(won(animal, 1), 1, "{animal}");
+        let Some(won) = won(animal, 1) else { return };
+        assert_eq!(won, 1, "{animal}");
     }
 }
 
 #[test]
-#[ignore = "takes minutes: 35 fights"]
+#[ignore = "takes a minute: 30 fights"]
 fn animals_from_elsewhere_are_killed_in_three_of_five_fights() {
-    let quadrupeds = [
+    // Five of them have four legs.
+    for animal in [
         "Apatosaurus.glb",
         "Bull.glb",
         "Fox.glb",
         "Stag.glb",
         "Triceratops.glb",
-    ];
-    for animal in quadrupeds.into_iter().chain(["Trex.glb", "Spider.glb"]) {
-        let won = won(animal, 5);
+        "Trex.glb",
+    ] {
+        let Some(won) = won(animal, 5) else { return };
+        println!("{animal}: {won} of 5");
         assert!(won >= 3, "{animal}: {won} of 5");
     }
 }
