@@ -73,6 +73,7 @@ const ALLOWED: [(&str, &[&str]); 21] = [
         "clamber_scenes",
         &[
             "clamber_surface",
+            "clamber_animation",
             "clamber_world",
             "clamber_climber",
             "clamber_body",
@@ -110,6 +111,7 @@ const ALLOWED: [(&str, &[&str]); 21] = [
         "clamber_cli",
         &[
             "clamber_surface",
+            "clamber_animation",
             "clamber_body",
             "clamber_climber",
             "clamber_colossus",
