@@ -83,7 +83,12 @@ impl Collision {
                 continue;
             };
             let triangles = (first..after).map(|index| TriangleId(index as u32));
-            named.entry(name.clone()).or_default().extend(triangles);
+            match named.get_mut(name) {
+                Some(known) => known.extend(triangles),
+                None => {
+                    named.insert(name.clone(), triangles.collect());
+                }
+            }
         }
         named
     }

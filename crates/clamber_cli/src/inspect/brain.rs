@@ -102,8 +102,8 @@ fn print_jumps(kind: &CreatureKind) -> Result<(), InspectError> {
         names.extend(gait.turn.iter().flatten().map(String::as_str));
     }
     let probe = SeamProbe::new(kind.skeleton(), kind.mesh(), kind.height());
-    let clips = kind.clips().clips().iter();
-    for clip in clips.filter(|clip| names.contains(clip.name.as_str())) {
+    let clips = names.into_iter().filter_map(|name| kind.clips().find(name));
+    for clip in clips.filter_map(|id| kind.clips().clip(id).ok()) {
         let seam = probe.measure(clip)?;
         if !seam.is_loop() {
             println!(

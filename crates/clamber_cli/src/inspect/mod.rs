@@ -105,6 +105,7 @@ pub enum InspectError {
 
 /// Loads a file, measures the creature, and prints both as they come; returns true if all checks hold. With
 /// [`InspectOptions::humanoid`], prints the human body in it instead; returns true if there is one. With
+/// [`InspectOptions::propose_brain`], prints a brain's file for it. With
 /// [`InspectOptions::brain`], prints a brain; returns true if all of it can happen.
 ///
 /// # Errors

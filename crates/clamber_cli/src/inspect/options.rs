@@ -9,7 +9,7 @@ use clap::Args;
 /// they must hold. Exits with 1 if a comparison fails, with 2 if the file cannot be loaded.
 ///
 /// With --brain it reads a brain's file: it prints states, transitions, and what can never happen. Exits with 1 if
-/// there is such a thing, with 2 if the file is not valid.
+/// there is such a thing, with 2 if the file is not valid. With --propose-brain it writes such a file for a creature.
 #[derive(Args, Clone, Debug)]
 pub struct InspectOptions {
     /// A .glb or .gltf file; with --brain, a .json file.

@@ -25,8 +25,11 @@ pub(crate) fn changed(clips: Vec<Clip>, body: &BodyFile) -> Result<Vec<Clip>, Br
             }));
         }
     }
+    let mut seen = BTreeSet::new();
     let marked = clips.into_iter().map(|clip| {
-        let Some(file) = body.clips.get(&clip.name) else {
+        // A name means the first clip that has it.
+        let is_first = seen.insert(clip.name.clone());
+        let Some(file) = body.clips.get(&clip.name).filter(|_| is_first) else {
             return Ok(clip);
         };
         let kept = clip.markers().iter();
@@ -80,7 +83,16 @@ fn closed(clip: &Clip, seconds: f64) -> Result<Clip, RigError> {
             Keyframes::Scale(values) => Keyframes::Scale(vector(values)),
             Keyframes::Rotation(values) => {
                 let still = Quat::from_xyzw(0.0, 0.0, 0.0, 0.0);
-                Keyframes::Rotation(extended(values, spline, still, is_held))
+                let mut values = extended(values, spline, still, is_held);
+                // The same rotation, on the side of the one before it: a spline would go round otherwise.
+                let last = values.len() - 1 - usize::from(spline);
+                let before = last.checked_sub(if spline { 3 } else { 1 });
+                if before.is_some_and(|before| {
+                    values[before].as_dquat().dot(values[last].as_dquat()) < 0.0
+                }) {
+                    values[last] = -values[last];
+                }
+                Keyframes::Rotation(values)
             }
         };
         Channel::new(channel.joint(), interpolation, times, values)

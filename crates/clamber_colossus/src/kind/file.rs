@@ -108,8 +108,9 @@ pub struct ClipFile {
     #[serde(default, with = "unique", skip_serializing_if = "BTreeMap::is_empty")]
     pub markers: BTreeMap<String, Times>,
     /// Seconds in which it goes back from its end to its beginning, which are added to it: more than 0, at most 10. For
-    /// a clip that is played again and again, but ends in another pose than it begins with; where it only lacks its
-    /// last key frame, a frame's time. Without it such a clip jumps, and throws off who rides.
+    /// a clip that is played again and again, but ends in another pose than it begins with; give the time of a frame
+    /// where only the last key frame is missing. Without it such a clip jumps, and throws off who rides. Markers are
+    /// within the clip as it is in its file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub close: Option<f64>,
 }

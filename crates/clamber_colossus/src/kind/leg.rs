@@ -21,6 +21,9 @@ const HIGH: f64 = 0.2;
 /// Samples a second in which a clip is searched for contacts.
 const SAMPLES: f64 = 60.0;
 
+/// A clip is looked at so often at most: a file may claim that it lasts for years.
+const MOST_SAMPLES: f64 = 216_000.0;
+
 /// A leg of a kind of creature, in the model's units.
 #[derive(Clone, Debug)]
 pub(crate) struct Leg {
@@ -122,7 +125,7 @@ impl Leg {
         playback: Playback,
     ) -> Result<(Vec<DVec3>, f64), ColossusError> {
         let duration = clip.duration();
-        let count = (duration * SAMPLES).round().max(1.0) as usize;
+        let count = (duration * SAMPLES).round().clamp(1.0, MOST_SAMPLES) as usize;
         let mut pose = Pose::default();
         let mut at = |time: f64| -> Result<DVec3, ColossusError> {
             pose.transforms.clone_from(&names.clips.rest().transforms);

@@ -4,21 +4,42 @@ use clamber_animation::rig::Clip;
 
 /// Words in the names of clips of somebody who waits, walks, shakes somebody off, attacks, and dies. Those that come
 /// first are preferred.
-const WAITS: [&str; 7] = ["idle", "survey", "stand", "breath", "rest", "swim", "fly"];
-const WALKS: [&str; 3] = ["walk", "move", "run"];
-const SHAKES: [&str; 10] = [
-    "shake", "shrug", "hitre", "react", "impact", "hurt", "roar", "dance", "jump", "attack",
+const WAITS: [&str; 13] = [
+    "idle",
+    "survey",
+    "stand",
+    "stands",
+    "standing",
+    "breath",
+    "breathe",
+    "breathing",
+    "rest",
+    "swim",
+    "swimming",
+    "fly",
+    "flying",
+];
+const WALKS: [&str; 7] = [
+    "walk", "walks", "walking", "move", "moves", "run", "running",
+];
+const SHAKES: [&str; 11] = [
+    "shake", "shrug", "hit", "react", "recieve", "impact", "hurt", "roar", "dance", "jump",
+    "attack",
 ];
 const ATTACKS: [&str; 9] = [
     "headbutt", "bite", "attack", "stomp", "swipe", "punch", "kick", "slash", "strike",
 ];
-const DIES: [&str; 3] = ["death", "die", "dead"];
+const DIES: [&str; 5] = ["death", "die", "dies", "dying", "dead"];
 
 /// Words in the names of clips that are neither waiting nor walking.
-const ACTS: [&str; 12] = [
-    "death", "attack", "bite", "punch", "kick", "slash", "shoot", "hit", "jump", "hold", "gun",
-    "sit",
+const ACTS: [&str; 22] = [
+    "death", "die", "dies", "dying", "dead", "attack", "headbutt", "bite", "punch", "kick",
+    "slash", "shoot", "hit", "jump", "hold", "holding", "gun", "sword", "sit", "sitting", "fast",
+    "impulse",
 ];
+
+/// A clip that lasts longer than this is none of them, seconds.
+const LONGEST: f64 = 600.0;
 
 /// What a creature's clips are for, as far as their names tell.
 pub(super) struct Clips {
@@ -31,25 +52,164 @@ pub(super) struct Clips {
 
 impl Clips {
     pub(super) fn of(clips: &[Clip]) -> Self {
-        let lasting = || clips.iter().filter(|clip| clip.duration() > 0.0);
-        let named = |clip: &Clip, word: &str| clip.name.to_lowercase().contains(word);
-        // The first of the shortest name: others say what it does meanwhile.
-        let plainest = |words: &[&str], is_calm: bool| {
-            let is_act = |clip: &Clip| is_calm && ACTS.iter().any(|act| named(clip, act));
-            words.iter().find_map(|word| {
-                let found = lasting().filter(|clip| named(clip, word) && !is_act(clip));
-                found
-                    .min_by_key(|clip| clip.name.len())
-                    .map(|clip| clip.name.clone())
+        // A name means the first clip that has it.
+        let is_first = |index: usize, clip: &Clip| {
+            let same = clips.iter().position(|other| other.name == clip.name);
+            same == Some(index) && clip.duration() <= LONGEST
+        };
+        let known = clips
+            .iter()
+            .enumerate()
+            .filter(|(index, clip)| is_first(*index, clip));
+        let known: Vec<(&Clip, Vec<String>)> =
+            known.map(|(_, clip)| (clip, words(&clip.name))).collect();
+        let is_act = |words: &[String]| words.iter().any(|word| ACTS.contains(&word.as_str()));
+        // Of several the one of the shortest name: longer ones tell what else it does.
+        let plainest = |wanted: &[&str], is_calm: bool| {
+            wanted.iter().find_map(|word| {
+                let fits = known.iter().filter(|(clip, words)| {
+                    // Who only stands may do so in a single pose.
+                    let lasts = clip.duration() > 0.0 || is_calm && WAITS.contains(word);
+                    let is_named = words.iter().any(|own| own == word);
+                    lasts && is_named && !(is_calm && is_act(words))
+                });
+                let plainest = fits.min_by_key(|(clip, _)| clip.name.len());
+                plainest.map(|(clip, _)| clip.name.clone())
             })
         };
-        let first = lasting().map(|clip| clip.name.clone()).next();
+        let calm = known
+            .iter()
+            .find(|(clip, words)| clip.duration() > 0.0 && !is_act(words));
         Self {
-            idle: plainest(&WAITS, true).or(first),
+            idle: plainest(&WAITS, true).or(calm.map(|(clip, _)| clip.name.clone())),
             walk: plainest(&WALKS, true),
             shake: plainest(&SHAKES, false),
             attack: plainest(&ATTACKS, false),
             death: plainest(&DIES, false),
         }
+    }
+}
+
+/// The words of a name in lower case: of `Rhino|Idle_HitReact.001` they are idle, hit and react. What is before the last
+/// `|` names the armature.
+fn words(name: &str) -> Vec<String> {
+    let name = name.rsplit('|').next().unwrap_or(name);
+    let mut words: Vec<String> = Vec::new();
+    let mut before: Option<char> = None;
+    for letter in name.chars() {
+        let goes_on = before.is_some_and(|before| {
+            before.is_alphabetic() && !(before.is_lowercase() && letter.is_uppercase())
+        });
+        if letter.is_alphabetic() {
+            if !goes_on {
+                words.push(String::new());
+            }
+            if let Some(word) = words.last_mut() {
+                word.extend(letter.to_lowercase());
+            }
+        }
+        before = Some(letter);
+    }
+    words
+}
+
+#[cfg(test)]
+mod tests {
+    use clamber_animation::rig::{Channel, Interpolation, JointId, Keyframes};
+    use glam::Vec3;
+
+    use super::*;
+
+    fn clip(name: &str, seconds: f32) -> Clip {
+        let times = if seconds > 0.0 {
+            vec![0.0, seconds]
+        } else {
+            vec![0.0]
+        };
+        let values = Keyframes::Translation(vec![Vec3::ZERO; times.len()]);
+        let channel = Channel::new(JointId(0), Interpolation::Linear, times, values).unwrap();
+        Clip::new(name, vec![channel])
+    }
+
+    fn found(names: &[(&str, f32)]) -> [Option<String>; 5] {
+        let clips: Vec<Clip> = names
+            .iter()
+            .map(|(name, seconds)| clip(name, *seconds))
+            .collect();
+        let Clips {
+            idle,
+            walk,
+            shake,
+            attack,
+            death,
+        } = Clips::of(&clips);
+        [idle, walk, shake, attack, death]
+    }
+
+    fn wanted(names: [&str; 5]) -> [Option<String>; 5] {
+        names.map(|name| (!name.is_empty()).then(|| name.to_owned()))
+    }
+
+    #[test]
+    fn names_are_words() {
+        assert_eq!(words("Rhino|Idle_HitReact.001"), ["idle", "hit", "react"]);
+        assert_eq!(words("fanRunning"), ["fan", "running"]);
+        assert_eq!(words("1_idle"), ["idle"]);
+        assert_eq!(words("A|b|"), Vec::<String>::new());
+        assert_eq!(words("ATTACK"), ["attack"]);
+    }
+
+    #[test]
+    fn words_within_words_mean_nothing() {
+        // White, soldier, undead, armature action, trunk, parasite.
+        let all = found(&[("WhiteRhino|Idle", 1.0), ("WhiteRhino|Walk", 1.0)]);
+        assert_eq!(
+            all,
+            wanted(["WhiteRhino|Idle", "WhiteRhino|Walk", "", "", ""])
+        );
+        let all = found(&[
+            ("Soldier|Idle", 1.0),
+            ("Soldier_Run", 1.0),
+            ("Undead_Roar", 1.0),
+        ]);
+        assert_eq!(
+            all,
+            wanted(["Soldier|Idle", "Soldier_Run", "Undead_Roar", "", ""])
+        );
+        assert_eq!(
+            found(&[("Trunk_Swing", 1.0)]),
+            wanted(["Trunk_Swing", "", "", "", ""])
+        );
+        assert_eq!(
+            found(&[("ArmatureAction", 1.0)]),
+            wanted(["ArmatureAction", "", "", "", ""])
+        );
+    }
+
+    #[test]
+    fn nobody_idles_by_dying_or_attacking() {
+        let all = found(&[
+            ("Attack", 1.0),
+            ("Death", 1.0),
+            ("Walk", 1.0),
+            ("Idle", 0.0),
+        ]);
+        assert_eq!(all, wanted(["Idle", "Walk", "Attack", "Attack", "Death"]));
+        let all = found(&[("Stand_Die", 1.0), ("Attack", 1.0)]);
+        assert_eq!(all, wanted(["", "", "Attack", "Attack", "Stand_Die"]));
+        let all = found(&[("Swimming_Fast", 1.0), ("Swimming_Normal", 1.0)]);
+        assert_eq!(all[0].as_deref(), Some("Swimming_Normal"));
+    }
+
+    #[test]
+    fn clips_without_end_and_second_ones_of_a_name_are_none() {
+        assert_eq!(
+            found(&[("Idle", 1e9), ("Attack", 1e9)]),
+            wanted(["", "", "", "", ""])
+        );
+        assert_eq!(
+            found(&[("Jump", 0.0), ("Jump", 1.0)]),
+            wanted(["", "", "", "", ""])
+        );
     }
 }

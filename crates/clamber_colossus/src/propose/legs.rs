@@ -7,8 +7,8 @@ use clamber_animation::rig::JointId;
 use super::look::Look;
 use crate::kind::LegFile;
 
-/// Skin that is no higher above the lowest than this share of the height stands on the ground, where no joint that is
-/// nearer to the middle than `MIDDLE` heights ends a leg.
+/// Skin that is no higher above the lowest than this share of the height stands on the ground. A joint whose skin is
+/// nearer to the middle of the creature than `MIDDLE` heights is no foot.
 const LOW: f64 = 0.04;
 const MIDDLE: f64 = 0.01;
 
@@ -30,6 +30,11 @@ const STRIDE: f64 = 0.3;
 
 /// The most joints of a leg.
 const MOST: usize = 5;
+
+/// What has more ends on the ground than this stands on none of them. Gaps between pieces of skin are measured up to so
+/// many pairs of vertices.
+const MOST_LEGS: usize = 64;
+const MOST_PAIRS: usize = 4_000_000;
 
 /// A leg under construction.
 struct Found {
@@ -64,7 +69,9 @@ pub(super) fn find(look: &Look<'_>) -> Vec<LegFile> {
         }
         trim(look, &mut chain);
         let name = |joint: &JointId| look.name(*joint).to_owned();
-        (chain.len() > 1).then(|| LegFile {
+        let mut all = chain.iter().chain(&leg.toe);
+        let is_named = all.all(|joint| look.is_named(*joint));
+        (chain.len() > 1 && is_named).then(|| LegFile {
             joints: chain.iter().map(name).collect(),
             toe: leg.toe.as_ref().map(name),
             knee: None,
@@ -118,6 +125,9 @@ fn feet(look: &Look<'_>) -> Vec<Found> {
         .flat_map(|joint| look.upward(*joint).skip(1))
         .collect();
     let ends: Vec<JointId> = low.into_iter().filter(|one| !above.contains(one)).collect();
+    if ends.len() > MOST_LEGS {
+        return Vec::new();
+    }
     let mut passed: BTreeMap<JointId, usize> = BTreeMap::new();
     for joint in ends.iter().flat_map(|end| look.upward(*end)) {
         *passed.entry(joint).or_default() += 1;
@@ -137,7 +147,7 @@ fn feet(look: &Look<'_>) -> Vec<Found> {
     }
     let all: BTreeSet<JointId> = feet.keys().copied().collect();
     let found = feet.iter().map(|(foot, toes)| {
-        // Controls hang from the root, as others do.
+        // A foot hangs in its leg, unless other feet hang from the same joint: then it is a control below the root.
         let is_held = look
             .parent(*foot)
             .is_some_and(|parent| passed.get(&parent) == Some(&1));
@@ -181,6 +191,10 @@ fn nearest(look: &Look<'_>, foot: JointId, feet: &BTreeSet<JointId>) -> Option<J
     let together = together.filter(|(joint, _)| is_elsewhere(joint));
     if let Some((joint, _)) = together.max_by_key(|(_, triangles)| *triangles) {
         return Some(joint);
+    }
+    let vertices: usize = look.joints().map(|joint| look.skin(joint).len()).sum();
+    if vertices.saturating_mul(look.skin(foot).len()) > MOST_PAIRS {
+        return None;
     }
     let others = look.joints().filter(is_elsewhere);
     let near = (NEAR * look.height) * (NEAR * look.height);

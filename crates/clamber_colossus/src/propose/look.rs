@@ -60,6 +60,12 @@ impl<'a> Look<'a> {
         &self.skeleton.joints()[joint.index()].name
     }
 
+    /// True if the joint's name means it: names may be doubled, and `*` stands for any text in some places.
+    pub(super) fn is_named(&self, joint: JointId) -> bool {
+        let name = self.name(joint);
+        self.skeleton.find(name) == Some(joint) && !name.contains('*')
+    }
+
     pub(super) fn parent(&self, joint: JointId) -> Option<JointId> {
         self.skeleton.joints()[joint.index()].parent
     }
@@ -99,11 +105,11 @@ impl<'a> Look<'a> {
         found
     }
 
-    /// The joint of the head, by its name: the shortest one with skin.
+    /// The joint of the head: of those with `head` in their names that move skin, the one of the shortest name.
     pub(super) fn head(&self) -> Option<JointId> {
         let named = self.joints().filter(|joint| {
             let name = self.name(*joint).to_lowercase();
-            name.contains("head") && !self.skin(*joint).is_empty()
+            name.contains("head") && !self.skin(*joint).is_empty() && self.is_named(*joint)
         });
         named.min_by_key(|joint| self.name(*joint).len())
     }

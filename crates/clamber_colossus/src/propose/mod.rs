@@ -43,13 +43,13 @@ impl BrainFile {
     /// goes to them, attacks and shakes off who rides, as far as its clips go, and dies when its weak point is used up.
     ///
     /// It is `height` metres tall, 0.001 to 100,000. Clips are told apart by their names, such as `Walk` and
-    /// `Attack_Headbutt`; legs are the chains of joints whose ends move skin on the ground; the limb of an attack is what
-    /// moves fastest in its clip, and hurts while it does. All of its skin is fur unless its file has some, and its weak
+    /// `Attack_Headbutt`; legs are the pairs of chains of joints whose ends move the lowest skin; the limb of an attack is
+    /// what goes ahead fastest in its clip, and hurts while it does. All of its skin is fur unless its file has some, and its weak
     /// point is on top of its head. Whatever does not fit the creature is left out, so that [`CreatureKind::new`] takes
     /// it. It is a file to begin with, not to keep: `clamber inspect --propose-brain` writes it as text.
     ///
     /// # Errors
-    /// As [`CreatureKind::new`], for parts that fit no brain, and a height out of its range.
+    /// As [`CreatureKind::new`] for a brain that names nothing of the creature, with this height.
     pub fn propose(parts: &CreatureParts, height: f64) -> Result<Self, ColossusError> {
         let mut proposal = Proposal {
             parts,
@@ -60,15 +60,23 @@ impl BrainFile {
                 ..BodyFile::default()
             },
         };
-        // What does not fit without anything else fits nothing.
+        // Parts that do not fit each other are refused here.
         proposal.kind()?;
         proposal.walk()?;
         proposal.repeat()?;
         let attack = proposal.attack()?;
         proposal.head()?;
         proposal.skin()?;
+        let fits = |file: &BrainFile| -> Result<CreatureKind, ColossusError> {
+            CreatureKind::new(parts.clone(), Brain::new(file.clone(), TICK)?)
+        };
         let file = states::file(&proposal, attack.as_ref())?;
-        CreatureKind::new(parts.clone(), Brain::new(file.clone(), TICK)?)?;
+        if fits(&file).is_ok() {
+            return Ok(file);
+        }
+        // The file's own markers may stand in no order.
+        let file = states::file(&proposal, None)?;
+        fits(&file)?;
         Ok(file)
     }
 }
@@ -130,7 +138,7 @@ impl Proposal<'_> {
         if legs.len() > 1 {
             self.take(|body| body.legs = legs);
         }
-        // A fan runs as well.
+        // Without legs only a walk is one: fans run, too.
         if self.body.legs.is_empty() && !walk.to_lowercase().contains("walk") {
             return Ok(());
         }
@@ -151,7 +159,7 @@ impl Proposal<'_> {
                 _ => Facing::MinusZ,
             };
             let turned = self.take(|body| body.facing = facing);
-            // Feet that never stand tell nothing.
+            // Feet that stand in no part of the clip do not tell where it goes.
             let ahead = turned.and_then(|kind| kind.walks_aside());
             if ahead.is_none_or(|aside| aside.abs() > 45.0) {
                 self.body.facing = Facing::PlusZ;
@@ -181,11 +189,11 @@ impl Proposal<'_> {
             let Some(clip) = kind.clips().clips().iter().find(|clip| clip.name == name) else {
                 continue;
             };
-            let seam = probe.measure(clip)?;
-            if seam.is_loop() {
+            // A clip that cannot be posed somewhere cannot be closed.
+            let Some(seam) = probe.measure(clip).ok().filter(|seam| !seam.is_loop()) else {
                 continue;
-            }
-            // As fast as it is in the clip.
+            };
+            // As fast as skin is in the clip.
             let seconds = seam.speed * TICK / seam.within.max(1e-6);
             let close = rounded(seconds.clamp(0.04, 1.0), 1e2);
             self.take(|body| body.clips.entry(name).or_default().close = Some(close));
@@ -204,7 +212,7 @@ impl Proposal<'_> {
             return Ok(None);
         };
         let feet: Vec<&String> = self.body.legs.iter().flat_map(|leg| &leg.joints).collect();
-        let Some(Struck { limb, active }) = strike::find(&look, clip, &feet)? else {
+        let Some(Struck { limb, active }) = strike::find(&look, clip, &feet).ok().flatten() else {
             return Ok(None);
         };
         let has = |name: &str| clip.markers().iter().any(|marker| marker.name == name);
@@ -228,7 +236,9 @@ impl Proposal<'_> {
         let Some(head) = look.head() else {
             return Ok(());
         };
-        let is_neck = |joint: &JointId| look.name(*joint).to_lowercase().contains("neck");
+        let is_neck = |joint: &JointId| {
+            look.is_named(*joint) && look.name(*joint).to_lowercase().contains("neck")
+        };
         let neck: Vec<JointId> = look
             .upward(head)
             .skip(1)
@@ -280,7 +290,8 @@ impl Proposal<'_> {
             Some((joint, *top))
         };
         let highest = || {
-            let tops = look.joints().filter_map(top);
+            let named = look.joints().filter(|joint| look.is_named(*joint));
+            let tops = named.filter_map(top);
             tops.max_by(|a, b| a.1.y.total_cmp(&b.1.y))
         };
         let Some((joint, top)) = look.head().and_then(top).or_else(highest) else {

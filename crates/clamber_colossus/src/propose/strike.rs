@@ -31,7 +31,7 @@ pub(super) struct Struck {
 const LEGS: [&str; 2] = ["kick", "stomp"];
 const HEADS: [&str; 2] = ["bite", "headbutt"];
 
-/// A leg strikes only if it is so many times as fast as anything else, as others step.
+/// A leg strikes only if it is so many times as fast as anything else: most legs only step meanwhile.
 const FASTER: f64 = 2.0;
 
 /// The limb before the creature that goes ahead fastest in a clip, before its marker `recovery` if it has one; `None` if
@@ -63,6 +63,7 @@ pub(super) fn find(
     let until = recovery.map_or(f64::INFINITY, |marker| marker.time);
     let middles: Vec<(JointId, DVec3)> = look
         .joints()
+        .filter(|joint| look.is_named(*joint))
         .filter_map(|joint| Some((joint, look.middle(joint)? + look.place(joint))))
         .collect();
     let rest = look.skeleton.palette(&look.skeleton.rest_pose())?;
@@ -140,7 +141,7 @@ pub(super) fn find(
     active = [active[0] - wider, active[1] + wider].map(|time| time.clamp(0.0, clip.duration()));
     active = active.map(|time| rounded(time, 1e2).min(clip.duration()));
     let is_below = |joint: &JointId| look.upward(*joint).skip(1).any(|above| above == end);
-    let moves = |joint: &JointId| !look.skin(*joint).is_empty();
+    let moves = |joint: &JointId| !look.skin(*joint).is_empty() && look.is_named(*joint);
     let below = look
         .joints()
         .filter(|joint| is_below(joint) && moves(joint));

@@ -281,6 +281,40 @@ fn a_clip_that_is_closed_goes_back_to_its_beginning_and_is_as_before_until_then(
 }
 
 #[test]
+fn a_spline_of_rotations_closes_the_short_way() {
+    let Some(mut rig) = rig("Trex.glb") else {
+        return;
+    };
+    let joint = rig.skeleton.find("Neck").unwrap();
+    let still = Quat::from_xyzw(0.0, 0.0, 0.0, 0.0);
+    let turn =
+        |angle: f32| Quat::from_xyzw(libm::sinf(angle / 2.0), 0.0, 0.0, libm::cosf(angle / 2.0));
+    // Nearly the same, with the other sign.
+    let values = [still, turn(0.1), still, still, -turn(0.2), still].to_vec();
+    let spline = Channel::new(
+        joint,
+        Interpolation::CubicSpline,
+        vec![0.0, 1.0],
+        Keyframes::Rotation(values),
+    );
+    rig.clips.push(Clip::new("sways", vec![spline.unwrap()]));
+    let mut brain = trex();
+    brain["body"]["clips"]["sways"] = json!({ "close": 0.5 });
+    let kind = try_kind(&rig, &brain).unwrap();
+    let closed = &kind.clips().clips()[rig.clips.len() - 1];
+    for step in 0..=20 {
+        let time = 1.0 + 0.5 * f64::from(step) / 20.0;
+        let pose = closed
+            .sample(&rig.skeleton.rest_pose(), time, Playback::Clamp)
+            .unwrap();
+        let angle = pose.transforms[joint.index()]
+            .rotation
+            .angle_between(turn(0.15));
+        assert!(angle < 0.06, "at {time} s: {angle}");
+    }
+}
+
+#[test]
 fn a_clip_that_jumps_does_so_no_more_when_it_is_closed() {
     let Some(rig) = rig("Trex.glb") else { return };
     // It ends on its back.

@@ -9,6 +9,7 @@ use std::sync::Arc;
 use crate::animals::animals;
 use crate::sizes::models;
 use crate::support::{TICK, person};
+use clamber_animation::rig::{Channel, Clip, Interpolation, JointId, Keyframes, Marker, Skeleton};
 use clamber_animation::{SeamProbe, joint_in_model};
 use clamber_colossus::{
     Brain, BrainFile, Creature, CreatureConfig, CreatureKind, CreatureParts, Noise, Person, Riding,
@@ -17,7 +18,7 @@ use clamber_colossus::{
 use clamber_gltf::load;
 use clamber_surface::mesh::{SurfaceKind, TriangleId};
 use clamber_world::{HalfSpace, MaterialPoint, Obstacle};
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 fn parts(path: &Path) -> Option<CreatureParts> {
     let rig = load(path).ok()?;
@@ -323,4 +324,92 @@ fn what_is_no_height_is_refused() {
         let error = BrainFile::propose(&parts, height).unwrap_err().to_string();
         assert!(error.contains("height"), "{error}");
     }
+}
+
+/// A creature of the test data, with clips and a skeleton that were changed.
+fn changed(change: impl FnOnce(&mut CreatureParts)) -> Option<CreatureParts> {
+    let Some(root) = std::env::var_os("CLAMBER_TEST_DATA") else {
+        eprintln!("SKIPPED files: set CLAMBER_TEST_DATA to the folder that holds models/Trex.glb");
+        return None;
+    };
+    let mut parts = parts(&PathBuf::from(root).join("models").join("Trex.glb")).unwrap();
+    change(&mut parts);
+    Some(parts)
+}
+
+fn keys(name: &str, seconds: f32) -> Clip {
+    let values = Keyframes::Translation(vec![Vec3::ZERO, Vec3::Y]);
+    let channel = Channel::new(
+        JointId(0),
+        Interpolation::Linear,
+        vec![0.0, seconds],
+        values,
+    );
+    Clip::new(name, vec![channel.unwrap()])
+}
+
+#[test]
+fn clips_without_end_take_no_time() {
+    let parts = changed(|parts| {
+        parts.clips = ["Idle", "Walk", "Attack"]
+            .map(|name| keys(name, 1e9))
+            .to_vec();
+    });
+    let Some(parts) = parts else { return };
+    let file = BrainFile::propose(&parts, 20.0).unwrap();
+    assert_eq!((file.body.gait.as_ref(), file.body.clips.len()), (None, 0));
+}
+
+#[test]
+fn what_does_not_fit_is_left_out() {
+    // Its own markers, in the wrong order.
+    let parts = changed(|parts| {
+        let marker = |name: &str, time| Marker {
+            name: name.into(),
+            time,
+        };
+        for clip in &mut parts.clips {
+            if clip.name.ends_with("Attack") {
+                let markers = vec![marker("active", 0.6), marker("recovery", 0.5)];
+                *clip = clip.clone().with_markers(markers).unwrap();
+            }
+        }
+    });
+    let Some(parts) = parts else { return };
+    let file = BrainFile::propose(&parts, 20.0).unwrap();
+    let text = serde_json::to_string(&file).unwrap();
+    assert!(
+        !text.contains("attack\":") && text.contains("TRex_Walk"),
+        "{text}"
+    );
+    kind(&parts, &file);
+    // Names that two joints have mean the first one only.
+    let twice = |name: &'static str, other: &'static str| {
+        changed(move |parts| {
+            let mut joints = parts.skeleton.joints().to_vec();
+            for joint in &mut joints {
+                if joint.name == name {
+                    joint.name = other.to_owned();
+                }
+            }
+            parts.skeleton = Skeleton::new(joints).unwrap();
+        })
+        .unwrap()
+    };
+    // The root comes before the head.
+    let parts = twice("root", "Head");
+    let file = BrainFile::propose(&parts, 20.0).unwrap();
+    let kind = kind(&parts, &file);
+    for (name, _) in file.body.head.iter().flat_map(|head| &head.joints) {
+        assert_ne!(name, "Head");
+    }
+    assert_ne!(
+        file.body.weak_points[0].joint,
+        "Head",
+        "{:?}",
+        kind.height()
+    );
+    let parts = twice("BackFoot.L", "BackFoot.R");
+    let file = BrainFile::propose(&parts, 20.0).unwrap();
+    assert!(file.body.legs.is_empty(), "{:?}", file.body.legs);
 }
