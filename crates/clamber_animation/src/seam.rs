@@ -32,13 +32,13 @@ pub struct Seam {
 
 impl Seam {
     /// How much faster the vertex is than skin that does not jump, heights of the creature a second; negative if it
-    /// does not jump. Skin jumps if it is more than 1.5 times as fast as anywhere within the clip, and faster than a
-    /// hundredth of the creature's height a second.
-    pub fn excess(self) -> f64 {
+    /// does not jump.
+    fn excess(self) -> f64 {
         self.speed - (JUMP * self.within).max(SLOW)
     }
 
-    /// True if the clip can be played again and again, as no skin jumps.
+    /// True if the clip can be played again and again, as no skin jumps: more than 1.5 times as fast as anywhere within
+    /// the clip, and faster than a hundredth of the creature's height a second.
     pub fn is_loop(self) -> bool {
         self.excess() <= 0.0
     }
@@ -54,12 +54,12 @@ pub struct SeamProbe<'a> {
 }
 
 impl<'a> SeamProbe<'a> {
-    /// A probe for a creature that is `height` units of its model tall, more than 0.
+    /// A probe for a creature that is `height` units of its model tall; a flat one counts as a billionth of a unit tall.
     pub fn new(skeleton: &'a Skeleton, mesh: &'a ColliderMesh, height: f64) -> Self {
         Self {
             skeleton,
             mesh,
-            height,
+            height: height.max(1e-9),
             vertices: outermost(mesh),
         }
     }

@@ -120,7 +120,7 @@ fn brains_are_proposed() {
     let mut files: Vec<_> = files.into_iter().map(|(_, path)| path).collect();
     let count = files.len();
     files.push(giant::path());
-    let (mut proposed, mut warned) = (0, 0);
+    let (mut proposed, mut warned, mut longest) = (0, 0, 0);
     for path in files {
         let creature = path.to_str().unwrap();
         let ended = clamber(&["inspect", "--propose-brain", creature, "--height", "12.5"]);
@@ -145,7 +145,7 @@ fn brains_are_proposed() {
         let report = String::from_utf8(ended.stdout).unwrap();
         assert_eq!(ended.status.code(), Some(0), "{creature}\n{text}\n{report}");
         assert!(!report.contains("does not end as it begins"), "{report}");
-        proposed += 1;
+        (proposed, longest) = (proposed + 1, longest.max(lines));
         // Without what closes them.
         let mut open = json.clone();
         let clips = open["body"]["clips"].as_object_mut();
@@ -158,7 +158,7 @@ fn brains_are_proposed() {
             warned += usize::from(report.contains("does not end as it begins"));
         }
     }
-    println!("{proposed} brains, {warned} creatures whose clips jump");
+    println!("{proposed} brains of up to {longest} lines, {warned} creatures whose clips jump");
     assert!(count == 0 || proposed > 27 && warned > 0);
     for (arguments, told) in [
         (&["--height", "12"][..], "--propose-brain"),

@@ -153,8 +153,7 @@ pub struct Attack {
     /// Speed that a blow gives along the limb's motion, metres a second.
     pub throw: f64,
     /// The limb's end goes to its prey if that is within this distance of where the clip strikes, metres: a leg as far as
-    /// it reaches, a mouth or a hand as far as the neck or the arm above it does. 0 strikes
-    /// where the clip does.
+    /// it reaches, a mouth or a hand as far as the neck or the arm above it does. 0 strikes where the clip does.
     #[serde(default, skip_serializing_if = "is_zero_f64")]
     pub aim: f64,
 }

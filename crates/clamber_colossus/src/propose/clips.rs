@@ -92,7 +92,7 @@ impl Clips {
 
 /// The words of a name in lower case: of `Rhino|Idle_HitReact.001` they are idle, hit and react. What is before the last
 /// `|` names the armature.
-fn words(name: &str) -> Vec<String> {
+pub(super) fn words(name: &str) -> Vec<String> {
     let name = name.rsplit('|').next().unwrap_or(name);
     let mut words: Vec<String> = Vec::new();
     let mut before: Option<char> = None;

@@ -23,8 +23,8 @@ const NEAR: f64 = 0.1;
 const LIGHT: f64 = 0.15;
 const INNER: f64 = 0.75;
 
-/// Feet of a pair differ by no more heights than this in how far aside they are; how far one is before the other counts
-/// less by the factor of `STRIDE`.
+/// Feet of a pair differ by no more heights than this in how far aside they are. Of several that may be a pair the most
+/// alike are; how far one is before the other counts only this share of other distances, as they may be in a stride.
 const ASIDE: f64 = 0.1;
 const STRIDE: f64 = 0.3;
 
@@ -45,7 +45,7 @@ struct Found {
     base: JointId,
 }
 
-/// The legs that a creature seems to have; none rather than one.
+/// The legs that a creature seems to have.
 pub(super) fn find(look: &Look<'_>) -> Vec<LegFile> {
     let mut found = feet(look);
     // Feet that hang elsewhere are carried by what would be feet without them.

@@ -3,6 +3,7 @@
 use clamber_animation::rig::{Clip, JointId, Playback};
 use glam::DVec3;
 
+use super::clips::words;
 use super::look::{Look, place, rounded};
 use crate::error::ColossusError;
 
@@ -34,15 +35,15 @@ const HEADS: [&str; 2] = ["bite", "headbutt"];
 /// A leg strikes only if it is so many times as fast as anything else: most legs only step meanwhile.
 const FASTER: f64 = 2.0;
 
-/// The limb before the creature that goes ahead fastest in a clip, before its marker `recovery` if it has one; `None` if
-/// none does. `legs` are the joints of legs.
+/// The limb in the front half of the creature that goes ahead fastest in a clip, until its marker `recovery` if it has
+/// one; `None` if none does. `legs` are the joints of legs.
 pub(super) fn find(
     look: &Look<'_>,
     clip: &Clip,
     legs: &[&String],
 ) -> Result<Option<Struck>, ColossusError> {
-    let name = clip.name.to_lowercase();
-    let is_of = |words: &[&str]| words.iter().any(|word| name.contains(word));
+    let name = words(&clip.name);
+    let is_of = |words: &[&str]| name.iter().any(|word| words.contains(&word.as_str()));
     let is_leg = |joint: JointId| legs.iter().any(|leg| *leg == look.name(joint));
     let head = look.head().filter(|_| is_of(&HEADS));
     let kicks = is_of(&LEGS) && !legs.is_empty();
