@@ -45,9 +45,9 @@ pub use collider::{
 };
 #[cfg(feature = "colossus")]
 pub use colossus::{
-    BrainLoadError, Colossus, ColossusBody, ColossusBrain, ColossusEntered, ColossusHurt,
-    ColossusMarker, ColossusNoise, ColossusPlanted, ColossusPlugin, ColossusStaggered,
-    ColossusStruck,
+    BrainLoadError, Colossus, ColossusBody, ColossusBrain, ColossusBurst, ColossusEntered,
+    ColossusHurt, ColossusMarker, ColossusNoise, ColossusPlanted, ColossusPlugin,
+    ColossusStaggered, ColossusStruck, ColossusThrew, ColossusWave,
 };
 #[cfg(feature = "input")]
 pub use controls::{ClimberControls, ClimberControlsPlugin};

@@ -24,8 +24,9 @@ pub use crate::{
 };
 #[cfg(feature = "colossus")]
 pub use crate::{
-    Colossus, ColossusBody, ColossusBrain, ColossusEntered, ColossusHurt, ColossusMarker,
-    ColossusNoise, ColossusPlanted, ColossusPlugin, ColossusStaggered, ColossusStruck,
+    Colossus, ColossusBody, ColossusBrain, ColossusBurst, ColossusEntered, ColossusHurt,
+    ColossusMarker, ColossusNoise, ColossusPlanted, ColossusPlugin, ColossusStaggered,
+    ColossusStruck, ColossusThrew, ColossusWave,
 };
 #[cfg(feature = "rapier")]
 pub use crate::{Debris, DebrisPlugin, RapierProxy, RapierProxyPlugin};

@@ -49,7 +49,36 @@ events! {
         /// Where, in Bevy's world space.
         place: Vec3,
     }
-    /// A limb of a creature struck a climber.
+    /// A creature threw something: [`Creature::shots`] tells where it is, as long as it flies.
+    ColossusThrew {
+        /// Its number, by which [`Creature::shots`] has it.
+        number: u64,
+        /// From where, in Bevy's world space.
+        place: Vec3,
+        /// Metres a second.
+        velocity: Vec3,
+        /// The state whose attack it is of, with the names of those around it.
+        attack: String,
+    }
+    /// What a creature threw has struck somebody, or met terrain or another creature.
+    ColossusBurst {
+        /// Its number.
+        number: u64,
+        /// Where, in Bevy's world space.
+        place: Vec3,
+        /// The state whose attack it was of, with the names of those around it.
+        attack: String,
+    }
+    /// A wave of a creature's attack goes out: [`Creature::waves`] tells how far it has come.
+    ColossusWave {
+        /// From where, in Bevy's world space.
+        place: Vec3,
+        /// How far, metres.
+        radius: f32,
+        /// The state whose attack it is of, with the names of those around it.
+        attack: String,
+    }
+    /// A creature struck a climber: with a limb, a wave, a shot or a beam.
     ColossusStruck {
         /// The climber.
         climber: Entity,
@@ -102,6 +131,47 @@ pub(super) fn tell_all(
                     entity,
                     leg: *leg,
                     place: (*place - origin).as_vec3(),
+                },
+            ),
+            CreatureEvent::Threw {
+                state,
+                number,
+                place,
+                velocity,
+            } => tell(
+                commands,
+                ColossusThrew {
+                    entity,
+                    number: *number,
+                    place: (*place - origin).as_vec3(),
+                    velocity: velocity.as_vec3(),
+                    attack: path(*state),
+                },
+            ),
+            CreatureEvent::Burst {
+                state,
+                number,
+                place,
+            } => tell(
+                commands,
+                ColossusBurst {
+                    entity,
+                    number: *number,
+                    place: (*place - origin).as_vec3(),
+                    attack: path(*state),
+                },
+            ),
+            CreatureEvent::Wave {
+                state,
+                place,
+                radius,
+            } => tell(
+                commands,
+                ColossusWave {
+                    entity,
+                    place: (*place - origin).as_vec3(),
+                    radius: *radius as f32,
+                    attack: path(*state),
                 },
             ),
             CreatureEvent::Hurt {

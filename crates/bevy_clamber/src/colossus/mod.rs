@@ -10,8 +10,8 @@ mod senses;
 pub use asset::{BrainLoadError, ColossusBrain};
 pub use component::{Colossus, ColossusBody};
 pub use events::{
-    ColossusEntered, ColossusHurt, ColossusMarker, ColossusPlanted, ColossusStaggered,
-    ColossusStruck,
+    ColossusBurst, ColossusEntered, ColossusHurt, ColossusMarker, ColossusPlanted,
+    ColossusStaggered, ColossusStruck, ColossusThrew, ColossusWave,
 };
 pub use plugin::ColossusPlugin;
 pub use senses::ColossusNoise;

@@ -33,8 +33,8 @@ use_each! { ALWAYS, cfg(all()),
 }
 use_each! { AVIAN, cfg(feature = "avian"), AvianProxy AvianProxyPlugin }
 use_each! { COLOSSUS, cfg(feature = "colossus"),
-    Colossus ColossusBody ColossusBrain ColossusEntered ColossusHurt ColossusMarker ColossusNoise
-    ColossusPlanted ColossusPlugin ColossusStaggered ColossusStruck
+    Colossus ColossusBody ColossusBrain ColossusBurst ColossusEntered ColossusHurt ColossusMarker ColossusNoise
+    ColossusPlanted ColossusPlugin ColossusStaggered ColossusStruck ColossusThrew ColossusWave
 }
 use_each! { DIAGNOSTICS, cfg(feature = "diagnostics"), SurfaceDiagnosticsPlugin }
 use_each! { FIGHT, cfg(feature = "fight"),

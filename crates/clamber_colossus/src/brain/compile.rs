@@ -375,13 +375,7 @@ fn count(states: &BTreeMap<String, StateFile>) -> usize {
 fn check_act(file: &StateFile) -> Result<(), BrainProblem> {
     use super::Act;
     match &file.act {
-        Some(Act::Attack(attack)) => {
-            if !(0.0..=1.0).contains(&attack.damage) {
-                return Err(out_of_range("damage", "from 0 to 1", attack.damage));
-            }
-            check_seconds("throw", attack.throw)?;
-            check_seconds("aim", attack.aim)
-        }
+        Some(Act::Attack(attack)) => attack.check(),
         Some(Act::Walk(walk)) => check_seconds("within", walk.within),
         Some(Act::Turn(turn)) => check_seconds("within_deg", turn.within_deg),
         Some(Act::Play(_) | Act::Once(_) | Act::Sleep) | None => Ok(()),
@@ -389,7 +383,7 @@ fn check_act(file: &StateFile) -> Result<(), BrainProblem> {
 }
 
 /// Refuses times and lengths that are not finite or negative.
-fn check_seconds(what: &'static str, found: f64) -> Result<(), BrainProblem> {
+pub(super) fn check_seconds(what: &'static str, found: f64) -> Result<(), BrainProblem> {
     if (0.0..=1e6).contains(&found) {
         Ok(())
     } else {
@@ -397,7 +391,7 @@ fn check_seconds(what: &'static str, found: f64) -> Result<(), BrainProblem> {
     }
 }
 
-fn out_of_range(what: &'static str, range: &'static str, found: f64) -> BrainProblem {
+pub(super) fn out_of_range(what: &'static str, range: &'static str, found: f64) -> BrainProblem {
     BrainProblem::OutOfRange { what, range, found }
 }
 

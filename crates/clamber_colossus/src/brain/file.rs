@@ -2,7 +2,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::unique;
+use super::{Attack, unique};
 use crate::kind::BodyFile;
 
 /// A brain as its file has it: states, moods, and what leads from one state to another.
@@ -130,32 +130,14 @@ pub enum Act {
     Play(String),
     /// Plays a clip once, to its end, and holds that. The state is left only then, or by a transition that interrupts.
     Once(String),
-    /// Plays a clip once, during which limbs hurt whom they touch.
-    Attack(Attack),
+    /// Plays a clip once, in which a limb strikes people.
+    Attack(Box<Attack>),
     /// Walks to a place.
     Walk(Walk),
     /// Turns on the spot to a place.
     Turn(Turn),
     /// Sleeps: holds the pose that its clips have reached, sees nothing, but feels and hears. It costs almost nothing.
     Sleep,
-}
-
-/// A clip in which limbs hurt whom they touch, from its marker `active` to its marker `recovery`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Attack {
-    /// The clip.
-    pub clip: String,
-    /// Joints whose skin hurts, such as `["foot.R", "toe.R"]`, or `["thumb.*.R", "hand.R"]`. The last one is its end.
-    pub limb: Vec<String>,
-    /// Hit points that a blow costs, 0 to 1.
-    pub damage: f64,
-    /// Speed that a blow gives along the limb's motion, metres a second.
-    pub throw: f64,
-    /// The limb's end goes to its prey if that is within this distance of where the clip strikes, metres: a leg as far as
-    /// it reaches, a mouth or a hand as far as the neck or the arm above it does. 0 strikes where the clip does.
-    #[serde(default, skip_serializing_if = "is_zero_f64")]
-    pub aim: f64,
 }
 
 /// A walk to a place.
@@ -218,8 +200,4 @@ fn is_false(value: &bool) -> bool {
 
 fn is_zero(value: &i32) -> bool {
     *value == 0
-}
-
-fn is_zero_f64(value: &f64) -> bool {
-    *value == 0.0
 }

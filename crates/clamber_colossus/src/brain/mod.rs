@@ -1,5 +1,6 @@
 #![doc = include_str!("form.md")]
 
+mod attack;
 mod compile;
 mod condition;
 mod error;
@@ -9,13 +10,14 @@ mod report;
 mod state;
 pub(crate) mod unique;
 
+pub(crate) use attack::WaveOf;
+pub use attack::{Attack, Beam, Shot, Wave};
 pub(crate) use compile::list;
 
 use condition::Condition;
 pub use error::{BrainError, BrainProblem};
 pub use file::{
-    Act, After, Attack, BrainFile, Gaze, MoodFile, Place, RaiseFile, StateFile, TransitionFile,
-    Turn, Walk,
+    Act, After, BrainFile, Gaze, MoodFile, Place, RaiseFile, StateFile, TransitionFile, Turn, Walk,
 };
 pub use report::{BrainReport, Never};
 pub use state::{BrainState, Entered};
@@ -126,7 +128,8 @@ impl Act {
     /// The clip that it plays; `None` for those of the gait.
     pub fn clip(&self) -> Option<&str> {
         match self {
-            Self::Play(clip) | Self::Once(clip) | Self::Attack(Attack { clip, .. }) => Some(clip),
+            Self::Play(clip) | Self::Once(clip) => Some(clip),
+            Self::Attack(attack) => Some(&attack.clip),
             Self::Walk(_) | Self::Turn(_) | Self::Sleep => None,
         }
     }

@@ -49,6 +49,7 @@ impl Creature {
         state.aim = carried.vector(state.aim);
         let lean = &mut state.lean.spring;
         (lean.value, lean.velocity) = (carried.vector(lean.value), carried.vector(lean.velocity));
+        state.ranged.be_carried(&carried);
         state.yaw = nearest_turn(state.yaw + carried.yaw);
         state.hips.turn(&carried);
         for foot in &mut state.feet {

@@ -149,7 +149,7 @@ impl Creature {
             let is_known = self.state.unseen == 0
                 && !looks
                 && self.state.prey.is_some_and(|(id, _)| id == person.id);
-            if is_near || is_ahead && (is_known || looks && !is_hidden(around, eye, person)) {
+            if is_near || is_ahead && (is_known || looks && !around.hides(eye, person)) {
                 nearest = Some((distance, person.id, middle));
             }
         }
@@ -250,15 +250,4 @@ impl Creature {
                 && (low.z..=high.z).contains(&at.z)
         })
     }
-}
-
-/// True if terrain is between an eye and a person's middle.
-fn is_hidden(around: &Surroundings<'_>, eye: DVec3, person: &Person) -> bool {
-    let way = person.middle() - eye;
-    let distance = way.length() - person.body.radius;
-    distance > 0.0
-        && around
-            .terrain
-            .iter()
-            .any(|obstacle| obstacle.cast_ray(eye, way, distance).is_some())
 }

@@ -14,6 +14,7 @@ mod legs;
 mod move_on;
 mod ordered;
 mod press;
+mod ranged;
 mod report;
 mod room;
 mod size;
@@ -32,6 +33,7 @@ use glam::DVec3;
 
 pub use config::CreatureConfig;
 pub use foresee::Foresight;
+pub use ranged::{ActiveShot, ActiveWave};
 pub use report::{AttackPhase, Blow, CreatureEvent, CreatureReport};
 pub use state::CreatureState;
 use state::Sound;

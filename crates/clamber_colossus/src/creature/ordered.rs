@@ -22,8 +22,8 @@ pub(super) struct Errand {
 
 impl Creature {
     /// Puts the creature somewhere else, at rest, as if it had begun there: its home is there, too. What its brain
-    /// thinks, its clips and its wounds stay. Its skin stands there without motion, so that whoever is on it is left
-    /// behind.
+    /// thinks, its clips and its wounds stay, and so does what its attacks have thrown and sent out, where that is. Its
+    /// skin stands there without motion, so that whoever is on it is left behind.
     ///
     /// # Errors
     /// [`ColossusError::OutOfRange`] for a place that is not finite or beyond 1e12 m, or a heading beyond 1e6, and those of
@@ -36,7 +36,10 @@ impl Creature {
         };
         config.check()?;
         let fresh = CreatureState::new(&self.kind, &config, self.size.rate);
+        let mut ranged = self.state.ranged.clone();
+        ranged.be_put(position + fresh.heading() * self.size.height);
         let mut state = CreatureState {
+            ranged,
             position: fresh.position,
             yaw: fresh.yaw,
             speed: fresh.speed,
@@ -119,6 +122,7 @@ impl Creature {
     fn leave_act(&mut self) {
         self.state.acting = None;
         self.state.struck.clear();
+        self.state.ranged.begin();
         self.state.aim = DVec3::ZERO;
         self.state.walked = Walked::default();
         self.state.senses.set(Sense::Done, 0.0);

@@ -10,6 +10,9 @@ pub struct CreatureReport {
     pub events: Vec<CreatureEvent>,
     /// Whom it struck. Give each to its climber with the next tick's input.
     pub blows: Vec<Blow>,
+    /// The beam of its attack, if there is one in this tick, in world space: where it goes out from, and where it ends,
+    /// which is at what stops it.
+    pub beam: Option<[DVec3; 2]>,
 }
 
 /// Something that a creature did, or that happened to it.
@@ -45,6 +48,36 @@ pub enum CreatureEvent {
         /// Where its ball is, in world space.
         place: DVec3,
     },
+    /// An attack threw something: [`Creature::shots`](super::Creature::shots) has it as long as it flies.
+    Threw {
+        /// The state whose attack it is of.
+        state: StateId,
+        /// Its number.
+        number: u64,
+        /// From where, in world space.
+        place: DVec3,
+        /// Metres a second.
+        velocity: DVec3,
+    },
+    /// What it threw has struck somebody, or met terrain or another creature. Of a shot that is over since it has met
+    /// nothing for long, or since there are too many, nothing is told.
+    Burst {
+        /// The state whose attack it was of.
+        state: StateId,
+        /// Its number.
+        number: u64,
+        /// Where, in world space.
+        place: DVec3,
+    },
+    /// A wave goes out: [`Creature::waves`](super::Creature::waves) has it as long as it spreads.
+    Wave {
+        /// The state whose attack it is of.
+        state: StateId,
+        /// From where, in world space.
+        place: DVec3,
+        /// How far, metres.
+        radius: f64,
+    },
     /// A weak point was hurt.
     Hurt {
         /// The weak point, by its index.
@@ -63,12 +96,12 @@ pub enum CreatureEvent {
     },
 }
 
-/// A blow that a limb dealt somebody.
+/// A blow that a limb, a wave, a shot or a beam dealt somebody.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Blow {
     /// Whom: [`Person::id`](super::Person::id).
     pub person: u64,
-    /// Change of velocity, metres a second: along the limb's motion.
+    /// Change of velocity, metres a second: along the motion of what struck; of a wave, away from where it began and up.
     pub velocity: DVec3,
     /// Hit points, 0 to 1.
     pub damage: f64,
@@ -85,6 +118,6 @@ pub enum AttackPhase {
     WindUp,
     /// The limb hurts whom it touches.
     Active,
-    /// The limb goes back, and hurts nobody.
+    /// The limb goes back, and hurts nobody. What the attack has thrown or sent out still does.
     Recovery,
 }

@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::CreatureConfig;
 use super::hips::Hips;
 use super::ordered::Errand;
+use super::ranged::Ranged;
 use super::report::CreatureEvent;
 use crate::brain::{BrainState, StateId};
 use crate::error::ColossusError;
@@ -73,11 +74,12 @@ pub struct CreatureState {
     pub(super) told: Vec<CreatureEvent>,
     /// Wounds since the last step.
     pub(super) wounds: Vec<Felt>,
-    /// Whom the attack has struck already.
+    /// Whom the attack has struck already: by its limb, its beam, or the wave of its limb.
     pub(super) struck: Vec<u64>,
     /// From where the clip strikes to where this attack does, in world space.
     pub(super) aim: DVec3,
     pub(super) lean: Lean,
+    pub(super) ranged: Ranged,
     /// The pose of the last step, with feet and head.
     pub(super) pose: Pose,
     /// Markers that were passed in the last step: clips, and indices in them.
@@ -280,6 +282,7 @@ impl CreatureState {
             struck: Vec::new(),
             aim: DVec3::ZERO,
             lean: Lean::default(),
+            ranged: Ranged::default(),
             pose: kind.clips().rest().clone(),
             passed: Vec::new(),
             ticks: 0,
@@ -314,6 +317,7 @@ impl CreatureState {
                 },
                 _ => Lean::default(),
             },
+            ranged: self.ranged.carry_over(to, same),
             senses: if has_senses {
                 self.senses.clone()
             } else {
@@ -431,6 +435,11 @@ impl CreatureState {
         }
         if self.errand.is_some() && kind.gait().is_none() {
             return Err(ColossusError::OtherKind("it was sent, and cannot walk"));
+        }
+        if !self.ranged.fits(kind) {
+            return Err(ColossusError::OtherKind(
+                "what its attacks have let out is not its brain's",
+            ));
         }
         let states = brain.len();
         let acting = self.acting.is_none_or(|state| state.index() < states);

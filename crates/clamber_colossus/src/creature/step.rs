@@ -22,9 +22,11 @@ const SETTLES: f64 = 0.8;
 impl Creature {
     /// Lets a tick pass, of the length that its brain was made for.
     ///
-    /// In this order: ground that has moved carries it; senses of what was around it at the end of the last tick; the brain; the act that it chose begins
-    /// or goes on; clips; the place in the world; the pose, with feet on the ground and the head turned; the skin; whom
-    /// the limbs strike. Step the creature before the climbers on it. A creature that is asleep only feels and thinks.
+    /// In this order: ground that has moved carries it; senses of what was around it at the end of the last tick; the brain;
+    /// what its attacks have thrown and sent out goes on, and strikes; the act that it chose begins or goes on; clips; the
+    /// place in the world; the pose, with feet on the ground and the head turned; the skin; whom limbs and beams strike,
+    /// and what is thrown and sent out. Step the creature before the climbers on it. A creature that is asleep only feels
+    /// and thinks, and what it has thrown and sent out goes on.
     ///
     /// # Errors
     /// [`ColossusError::Surface`] if the skin cannot be posed, for example since the creature has left the range of numbers.
@@ -33,10 +35,12 @@ impl Creature {
         self.report.events.clear();
         self.report.events.append(&mut self.state.told);
         self.report.blows.clear();
+        self.report.beam = None;
         self.state.ticks = self.state.ticks.wrapping_add(1);
         let is_carried = self.be_carried(around, dt);
         self.feel(around);
         self.think();
+        self.go_on_from_afar(around, dt);
         if self.sleeps(is_carried)? {
             return Ok(&self.report);
         }
@@ -47,6 +51,7 @@ impl Creature {
         self.take_pose(&world_from_model, around, dt)?;
         self.surface.advance(&self.palette, world_from_model)?;
         self.strike(around, dt);
+        self.strike_from_afar(around, dt);
         Ok(&self.report)
     }
 
@@ -123,6 +128,7 @@ impl Creature {
         // What is left of a walk ends under the act.
         self.state.halts = !walks && self.state.speed > 0.0;
         self.state.struck.clear();
+        self.state.ranged.begin();
         self.state.aim = DVec3::ZERO;
         self.state.walked.is_blocked = false;
         match act {
@@ -145,6 +151,7 @@ impl Creature {
         let kind = std::sync::Arc::clone(&self.kind);
         if let Some(strike) = &kind.act(state).strike {
             self.aim(strike);
+            self.mark_prey();
             if !self.may_strike(strike, around) {
                 self.state.walked.is_blocked = true;
                 if kind.gait().is_none() {

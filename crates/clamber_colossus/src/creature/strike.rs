@@ -9,7 +9,7 @@ use glam::DVec3;
 use super::report::{AttackPhase, Blow};
 use super::state::{Lean, Playing};
 use super::{Creature, Surroundings};
-use crate::brain::StateId;
+use crate::brain::{Act, StateId};
 use crate::kind::Strike;
 
 /// A limb strikes whoever is this close to its skin, metres: a climber that it pushes stays at about that distance.
@@ -28,6 +28,9 @@ impl Creature {
     /// The attack that it is at, and where in it; `None` while it does not attack.
     pub fn attack(&self) -> Option<(StateId, AttackPhase)> {
         let Playing::Act(state) = self.state.playing else {
+            return None;
+        };
+        let Some(Act::Attack(_)) = self.kind.brain().act(state) else {
             return None;
         };
         // Its clip may still be seen when the creature does something else by now.
@@ -55,6 +58,9 @@ impl Creature {
         let Some(strike) = &kind.act(state).strike else {
             return;
         };
+        if !strike.attack.limb_strikes() {
+            return;
+        }
         for person in around.people {
             if self.state.struck.contains(&person.id) || !person.body.is_valid() {
                 continue;
@@ -72,8 +78,8 @@ impl Creature {
             self.state.struck.push(person.id);
             self.report.blows.push(Blow {
                 person: person.id,
-                velocity: direction * strike.throw,
-                damage: strike.damage,
+                velocity: direction * strike.attack.throw,
+                damage: strike.attack.damage,
                 place: hit.contact.point,
                 state,
             });
@@ -152,8 +158,8 @@ impl Creature {
         };
         let length = way.length();
         // Further away than it can aim, it goes as far as it can: it shows what it means.
-        let aim = if length > strike.aim {
-            way * (strike.aim / length)
+        let aim = if length > strike.attack.aim {
+            way * (strike.attack.aim / length)
         } else {
             way
         };

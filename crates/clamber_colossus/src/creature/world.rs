@@ -59,6 +59,19 @@ pub struct Wound {
     pub damage: f64,
 }
 
+impl Surroundings<'_> {
+    /// True if terrain is between a place and a person's middle.
+    pub(super) fn hides(&self, place: DVec3, person: &Person) -> bool {
+        let way = person.middle() - place;
+        let distance = way.length() - person.body.radius;
+        distance > 0.0
+            && self
+                .terrain
+                .iter()
+                .any(|obstacle| obstacle.cast_ray(place, way, distance).is_some())
+    }
+}
+
 impl Person {
     /// The middle of the body.
     pub fn middle(&self) -> DVec3 {

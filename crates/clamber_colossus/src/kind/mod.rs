@@ -514,7 +514,7 @@ fn strike(
 
 fn attack_with<'a>(brain: &'a Brain, clip: &str) -> Option<(StateId, &'a Attack)> {
     brain.states().find_map(|state| match brain.act(state) {
-        Some(Act::Attack(attack)) if attack.clip == clip => Some((state, attack)),
+        Some(Act::Attack(attack)) if attack.clip == clip => Some((state, attack.as_ref())),
         _ => None,
     })
 }

@@ -13,11 +13,10 @@ pub(crate) struct Strike {
     pub(crate) limb: Vec<JointId>,
     /// Seconds of the clip: from here on it hurts, and until here.
     pub(crate) active: [f64; 2],
-    /// Hit points, and metres a second.
-    pub(crate) damage: f64,
-    pub(crate) throw: f64,
-    /// Metres.
-    pub(crate) aim: f64,
+    /// What it does to people, and where it aims.
+    pub(crate) attack: Attack,
+    /// Seconds of the clip when its wave goes out.
+    pub(crate) impact: f64,
     /// Where the limb's last joint is when it stops to hurt, in model space.
     pub(crate) spot: DVec3,
     /// The leg that strikes, if one does: its index.
@@ -150,9 +149,8 @@ impl Strike {
             length,
             limb,
             active: [from, to],
-            damage: attack.damage,
-            throw: attack.throw,
-            aim: attack.aim,
+            impact: marker("impact").unwrap_or(to),
+            attack: attack.clone(),
             spot,
             leg,
             chain,
@@ -172,6 +170,11 @@ impl Strike {
         };
         let shares = self.reaches.iter().map(share);
         shares.fold(1.0, f64::min).max(0.0)
+    }
+
+    /// The joint at its limb's end.
+    pub(crate) fn end(&self) -> Option<JointId> {
+        self.limb.last().copied()
     }
 
     /// True for skin of a joint that hurts.

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
-use crate::support::{TICK, brain_file, brain_with, creature, kind, person};
+use crate::support::{TICK, brain_file, brain_with, creature, kind, kind_at, person};
 use clamber_animation::rig::Playback;
 use clamber_animation::{joint_in_model, rig::JointId};
 use clamber_colossus::brain::Act;
@@ -11,7 +11,7 @@ use clamber_world::{HalfSpace, Obstacle};
 use glam::DVec3;
 
 /// The states of the giant's own brain that attack, each with its act as text.
-fn attacks() -> Vec<(String, serde_json::Value)> {
+pub(crate) fn attacks() -> Vec<(String, serde_json::Value)> {
     fn collect(states: &serde_json::Value, found: &mut Vec<(String, serde_json::Value)>) {
         for (name, state) in states.as_object().into_iter().flatten() {
             if state["act"]["attack"].is_object() {
@@ -27,14 +27,19 @@ fn attacks() -> Vec<(String, serde_json::Value)> {
 }
 
 /// The giant, standing, a second before an attack.
-fn before(act: &serde_json::Value) -> Creature {
+pub(crate) fn before(act: &serde_json::Value) -> Creature {
+    before_at(act, TICK, CreatureConfig::default())
+}
+
+/// [`before`] with ticks of another length, and a giant of another size.
+pub(crate) fn before_at(act: &serde_json::Value, tick: f64, config: CreatureConfig) -> Creature {
     let states = serde_json::json!({
         "waits": { "transitions": [{ "to": "attacks", "after": 1 }] },
         "attacks": { "act": act, "transitions": [{ "to": "ends" }] },
         "ends": { "final": true }
     });
-    let kind = kind(&brain_with("waits", &states.to_string()));
-    creature(&kind, CreatureConfig::default())
+    let kind = kind_at(&brain_with("waits", &states.to_string()), tick);
+    creature(&kind, config)
 }
 
 /// What came of one attack on one person.
@@ -134,7 +139,7 @@ fn angle(a: DVec3, b: DVec3) -> f64 {
 }
 
 /// Where an attack strikes: the end of its limb when it stops to hurt.
-fn spot(giant: &Creature, act: &serde_json::Value) -> DVec3 {
+pub(crate) fn spot(giant: &Creature, act: &serde_json::Value) -> DVec3 {
     let kind = giant.kind();
     let attack = &act["attack"];
     let clip = kind.clips().find(attack["clip"].as_str().unwrap()).unwrap();

@@ -19,9 +19,9 @@ use crate::walls::{config, creatures};
 
 /// A deck without an end that moves, to the last bit as it is told. It turns about up alone.
 #[derive(Clone, Copy)]
-struct Deck {
-    before: Similarity,
-    now: Similarity,
+pub(crate) struct Deck {
+    pub(crate) before: Similarity,
+    pub(crate) now: Similarity,
 }
 
 impl Deck {

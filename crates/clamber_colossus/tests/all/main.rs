@@ -15,6 +15,8 @@ mod mouths;
 mod ordered;
 mod plates;
 mod proposed;
+mod ranged;
+mod ranged_elsewhere;
 mod senses;
 mod sizes;
 mod support;

@@ -1,5 +1,6 @@
 //! Fights, seen from outside: weapons, rooms, snapshots, and what must not happen.
 
+mod afar;
 mod aims;
 mod arrows;
 mod behind;

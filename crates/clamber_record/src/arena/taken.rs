@@ -4,12 +4,13 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use clamber_climber::{ClimberConfig, ClimberInput, ClimberState};
-use clamber_colossus::Creature;
+use clamber_colossus::{ActiveShot, ActiveWave, Creature};
 use clamber_fight::{Arena, ArenaPart, Blade, CreatureId, FighterId, Order, ProjectilePlace};
 use clamber_surface::geometry::Affine;
 use clamber_surface::mesh::ColliderMesh;
 use clamber_world::{Obstacle, ObstacleId};
 use foxglove::messages::Log;
+use glam::DVec3;
 
 use crate::RecordError;
 use crate::chunks::TakenTick;
@@ -39,6 +40,9 @@ pub(crate) struct TakenCreature {
     pub(crate) figure: TakenFigure,
     pub(crate) brain: Brain,
     pub(crate) skin: Option<(Arc<ColliderMesh>, Vec<Affine>)>,
+    pub(crate) shots: Vec<ActiveShot>,
+    pub(crate) waves: Vec<ActiveWave>,
+    pub(crate) beam: Option<[DVec3; 2]>,
 }
 
 #[derive(Clone, Debug)]
@@ -150,6 +154,9 @@ impl TakenCreature {
             id,
             figure: TakenFigure::new(Arc::clone(joints), palette, *surface.world_from_model()),
             brain: brain(creature),
+            shots: creature.shots().collect(),
+            waves: creature.waves().collect(),
+            beam: creature.report().beam,
             skin: with_skin.then(|| (Arc::clone(surface.mesh()), palette.matrices().to_vec())),
         }
     }

@@ -5,6 +5,7 @@ use clamber_fight::{Blade, CreatureId, FighterId, ProjectilePlace};
 use clamber_surface::skin::skin_into;
 use foxglove::messages::{
     ArrowPrimitive, FrameTransforms, Log, PointCloud, Pose, SceneEntity, SceneUpdate,
+    SpherePrimitive,
 };
 use glam::{DVec3, Vec3};
 
@@ -113,6 +114,7 @@ impl<W: Write> ArenaWriting<W> {
         self.output
             .send(self.transforms, now, &FrameTransforms { transforms })?;
         entities.push(arrows(now, &taken.projectiles));
+        entities.push(attacks(now, &taken.creatures));
         let scene = SceneUpdate {
             deletions: Vec::new(),
             entities,
@@ -201,6 +203,30 @@ fn arrows(now: u64, projectiles: &[ProjectilePlace]) -> SceneEntity {
         arrow(tail, place.tip, [0.03, 0.08], [0.6, 0.4, 0.2])
     });
     entity.arrows = drawn.collect();
+    entity
+}
+
+/// What creatures' attacks have let out: shots, waves as far as they have come, and beams.
+fn attacks(now: u64, creatures: &[TakenCreature]) -> SceneEntity {
+    let mut entity = entity(now, "attacks");
+    for creature in creatures {
+        let ball = |place: DVec3, radius: f64, opacity: f64| SpherePrimitive {
+            pose: Some(Pose {
+                position: Some(vector(place)),
+                orientation: Some(rotation(glam::DQuat::IDENTITY)),
+            }),
+            size: Some(vector(DVec3::splat(2.0 * radius))),
+            color: Some(color(0.9, 0.5, 0.1, opacity)),
+        };
+        let shots = creature.shots.iter();
+        let shots = shots.map(|shot| ball(shot.place, shot.radius, 1.0));
+        let waves = creature.waves.iter();
+        let waves = waves.map(|wave| ball(wave.place, wave.reach, 0.25));
+        entity.spheres.extend(shots.chain(waves));
+        let beam = creature.beam;
+        let beam = beam.map(|[from, to]| arrow(from, to, [0.2, 0.2], [1.0, 0.9, 0.4]));
+        entity.arrows.extend(beam);
+    }
     entity
 }
 

@@ -107,6 +107,25 @@ pub(crate) fn line(creature: &Creature, event: &CreatureEvent) -> Option<String>
             let [x, y, z] = place.to_array();
             format!("does not get on to where it was sent, to {x:.1}, {y:.1}, {z:.1}")
         }
+        CreatureEvent::Threw { state, place, .. } => {
+            let [x, y, z] = place.to_array();
+            let by = name(creature, *state);
+            format!("threw something with {by}, from {x:.1}, {y:.1}, {z:.1}")
+        }
+        CreatureEvent::Burst { state, place, .. } => {
+            let [x, y, z] = place.to_array();
+            let by = name(creature, *state);
+            format!("what it threw with {by} ended at {x:.1}, {y:.1}, {z:.1}")
+        }
+        CreatureEvent::Wave {
+            state,
+            place,
+            radius,
+        } => {
+            let [x, y, z] = place.to_array();
+            let by = name(creature, *state);
+            format!("sent out a wave of {radius:.1} m with {by}, from {x:.1}, {y:.1}, {z:.1}")
+        }
         CreatureEvent::Marker { .. } | CreatureEvent::Plant { .. } => return None,
         // An event that is newer than this list.
         other => format!("{other:?}"),

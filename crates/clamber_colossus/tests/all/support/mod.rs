@@ -44,21 +44,33 @@ pub(crate) fn kind(brain: &str) -> Arc<CreatureKind> {
     Arc::new(try_kind(brain).unwrap())
 }
 
+/// The giant with this brain, for ticks of another length.
+pub(crate) fn kind_at(brain: &str, tick: f64) -> Arc<CreatureKind> {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/colossus.glb");
+    let parts = parts_of(clamber_gltf::load(path).unwrap());
+    let brain = Brain::from_json(brain, tick).unwrap();
+    Arc::new(CreatureKind::new(parts, brain).unwrap())
+}
+
 /// The giant with this brain, which may not fit it.
 pub(crate) fn try_kind(brain: &str) -> Result<CreatureKind, ColossusError> {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/colossus.glb");
     kind_of(clamber_gltf::load(path).unwrap(), brain)
 }
 
-/// A creature of an imported file with this brain, which may not fit it.
-pub(crate) fn kind_of(rig: Rig, brain: &str) -> Result<CreatureKind, ColossusError> {
-    let parts = CreatureParts {
+fn parts_of(rig: Rig) -> CreatureParts {
+    CreatureParts {
         skeleton: rig.skeleton,
         clips: rig.clips,
         mesh: rig.collider,
         materials: rig.collider_materials,
         weak_points: rig.weak_points,
-    };
+    }
+}
+
+/// A creature of an imported file with this brain, which may not fit it.
+pub(crate) fn kind_of(rig: Rig, brain: &str) -> Result<CreatureKind, ColossusError> {
+    let parts = parts_of(rig);
     let brain = Brain::from_json(brain, TICK).unwrap();
     CreatureKind::new(parts, brain)
 }

@@ -270,6 +270,11 @@ pub(crate) fn hits(events: &[ArenaEvent]) -> Vec<f64> {
 
 /// The giant of `assets/`, with its brain.
 pub(crate) fn giant() -> Arc<CreatureKind> {
+    giant_with(|_| ())
+}
+
+/// The giant with its brain's file changed.
+pub(crate) fn giant_with(change: impl Fn(&mut serde_json::Value)) -> Arc<CreatureKind> {
     let assets = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/");
     let rig = clamber_gltf::load(format!("{assets}colossus.glb")).unwrap();
     let parts = CreatureParts {
@@ -280,7 +285,9 @@ pub(crate) fn giant() -> Arc<CreatureKind> {
         weak_points: rig.weak_points,
     };
     let brain = std::fs::read_to_string(format!("{assets}colossus.brain.json")).unwrap();
-    let brain = Brain::from_json(&brain, 1.0 / 60.0).unwrap();
+    let mut brain = serde_json::from_str(&brain).unwrap();
+    change(&mut brain);
+    let brain = Brain::from_json(&brain.to_string(), 1.0 / 60.0).unwrap();
     Arc::new(CreatureKind::new(parts, brain).unwrap())
 }
 

@@ -1,0 +1,73 @@
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+use super::line::Line;
+use crate::brain::{Beam, StateId};
+use crate::creature::report::Blow;
+use crate::creature::{Creature, Surroundings};
+
+/// A beam that turns is looked at where its end has moved by this, metres, beside its own radius, and so often in a tick
+/// at most.
+const STEP: f64 = 0.3;
+const MOST_STEPS: f64 = 32.0;
+
+/// Where a beam goes out from, and its direction.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Ray {
+    pub(super) from: DVec3,
+    pub(super) direction: DVec3,
+}
+
+impl Creature {
+    /// Strikes whom a beam from a place to where the attack aims touches, on its way there from where it was.
+    pub(super) fn shine(
+        &mut self,
+        state: StateId,
+        from: DVec3,
+        file: &Beam,
+        around: &Surroundings<'_>,
+    ) {
+        let way = self.state.ranged.mark - from;
+        let direction = way.try_normalize().unwrap_or(self.state.heading());
+        let now = Ray { from, direction };
+        let was = self.state.ranged.beam.replace(now).unwrap_or(now);
+        let moved = was.from.distance(from) + file.length * was.direction.distance(direction);
+        let steps = (moved / (STEP + file.radius)).ceil().clamp(1.0, MOST_STEPS);
+        for step in 1..=steps as u32 {
+            let share = f64::from(step) / steps;
+            let turned = was.direction.lerp(direction, share);
+            let ray = Ray {
+                from: was.from.lerp(from, share),
+                direction: turned.try_normalize().unwrap_or(direction),
+            };
+            self.shine_along(ray, state, file, around);
+        }
+    }
+
+    fn shine_along(&mut self, ray: Ray, state: StateId, file: &Beam, around: &Surroundings<'_>) {
+        let line = Line {
+            from: ray.from,
+            way: ray.direction * file.length,
+            radius: file.radius,
+        };
+        let end = line.stop(0.0, around).map_or(1.0, |(share, _)| share);
+        self.report.beam = Some([ray.from, line.at(end)]);
+        for person in around.people {
+            if self.state.struck.contains(&person.id) {
+                continue;
+            }
+            let touched = line.touch(person, around);
+            let Some(share) = touched.filter(|share| *share <= end) else {
+                continue;
+            };
+            self.state.struck.push(person.id);
+            self.deal(Blow {
+                person: person.id,
+                velocity: ray.direction * file.throw,
+                damage: file.damage,
+                place: line.at(share),
+                state,
+            });
+        }
+    }
+}

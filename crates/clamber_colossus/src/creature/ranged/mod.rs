@@ -1,0 +1,270 @@
+//! Attacks that strike from afar: waves, shots and beams.
+//!
+//! They strike people who do not ride the creature, and whom no terrain hides from them.
+
+mod beam;
+mod line;
+mod shot;
+mod wave;
+
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+use super::report::{AttackPhase, Blow};
+use super::state::FARTHEST;
+use super::{Creature, Surroundings};
+use crate::brain::{Act, Attack, StateId, WaveOf};
+use crate::feet::Carried;
+use crate::kind::{CreatureKind, Strike};
+use beam::Ray;
+use shot::ShotState;
+use wave::WaveState;
+
+pub use shot::ActiveShot;
+pub use wave::ActiveWave;
+
+/// At most so many waves, and as many shots, are there at a time: the oldest one is gone when there would be more.
+const MOST: usize = 64;
+
+/// A place on terrain is in front of that when it is moved by this, metres.
+const TOUCHING: f64 = 1e-3;
+
+/// What strikes from afar, and where it goes to.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Ranged {
+    /// Where a shot or a beam goes to, in world space.
+    mark: DVec3,
+    /// The beam of the last tick.
+    beam: Option<Ray>,
+    /// What has left the creature in the attack that it is at.
+    is_out: Out,
+    waves: Vec<WaveState>,
+    shots: Vec<ShotState>,
+    /// Number of the next shot.
+    next_shot: u64,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+struct Out {
+    wave: bool,
+    shot: bool,
+    beam: bool,
+}
+
+impl Ranged {
+    /// Nothing of the next attack has been let out.
+    pub(super) fn begin(&mut self) {
+        (self.is_out, self.beam) = (Out::default(), None);
+    }
+
+    /// The creature is elsewhere, and aims at a place there. What its attacks have let out stays.
+    pub(super) fn be_put(&mut self, mark: DVec3) {
+        (self.mark, self.beam) = (mark, None);
+    }
+
+    /// Goes with the ground that the creature stands on, but for what has flown.
+    pub(super) fn be_carried(&mut self, carried: &Carried) {
+        self.mark = carried.level_place(self.mark);
+        if let Some(beam) = &mut self.beam {
+            beam.from = carried.place(beam.from);
+            beam.direction = carried.vector(beam.direction);
+        }
+        for wave in self.waves.iter_mut().filter(|wave| wave.of == WaveOf::Limb) {
+            wave.place = carried.place(wave.place);
+        }
+    }
+
+    /// True if a creature of this kind can have let it out.
+    pub(super) fn fits(&self, kind: &CreatureKind) -> bool {
+        let is_near = |place: DVec3| place.is_finite() && place.abs().max_element() <= FARTHEST;
+        let beam = self
+            .beam
+            .is_none_or(|beam| is_near(beam.from) && (beam.direction.length() - 1.0).abs() < 1e-6);
+        is_near(self.mark)
+            && beam
+            && self.next_shot <= u64::MAX / 2
+            && self.waves.len().max(self.shots.len()) <= MOST
+            && self.waves.iter().all(|wave| {
+                let attack = attack_of(kind, wave.state);
+                let reach = (0.0..=FARTHEST).contains(&wave.reach);
+                is_near(wave.place)
+                    && reach
+                    && attack.is_some_and(|one| one.wave_of(wave.of).is_some())
+            })
+            && self.shots.iter().all(|shot| {
+                let attack = attack_of(kind, shot.state);
+                is_near(shot.place)
+                    && shot.number < self.next_shot
+                    && shot::is_reached(shot.velocity)
+                    && attack.is_some_and(|one| one.shot.is_some())
+            })
+    }
+
+    /// What goes on with another brain, whose states `same` finds.
+    pub(super) fn carry_over(
+        &self,
+        to: &CreatureKind,
+        same: impl Fn(StateId) -> Option<StateId>,
+    ) -> Self {
+        let mut carried = self.clone();
+        carried.waves.retain_mut(|wave| {
+            let state = same(wave.state);
+            let attack = state.and_then(|state| attack_of(to, state));
+            wave.state = state.unwrap_or(wave.state);
+            attack.is_some_and(|attack| attack.wave_of(wave.of).is_some())
+        });
+        carried.shots.retain_mut(|shot| {
+            let state = same(shot.state);
+            let attack = state.and_then(|state| attack_of(to, state));
+            shot.state = state.unwrap_or(shot.state);
+            attack.is_some_and(|attack| attack.shot.is_some())
+        });
+        carried
+    }
+}
+
+impl Creature {
+    /// Decides where a shot or a beam of the attack that begins goes to.
+    pub(super) fn mark_prey(&mut self) {
+        let seen = self.state.prey.filter(|_| self.state.unseen == 0);
+        self.state.ranged.mark = seen.map_or_else(|| self.ground_ahead(), |(_, place)| place);
+    }
+
+    fn ground_ahead(&self) -> DVec3 {
+        self.state.position + self.state.heading() * self.size.height
+    }
+
+    /// Waves and shots go on, whatever the creature does.
+    pub(super) fn go_on_from_afar(&mut self, around: &Surroundings<'_>, dt: f64) {
+        if self.state.ranged.waves.is_empty() && self.state.ranged.shots.is_empty() {
+            return;
+        }
+        let kind = std::sync::Arc::clone(&self.kind);
+        let mut waves = std::mem::take(&mut self.state.ranged.waves);
+        waves.retain_mut(|wave| {
+            let attack = attack_of(&kind, wave.state);
+            let file = attack.and_then(|attack| attack.wave_of(wave.of));
+            file.is_some_and(|file| self.spread(wave, file, around, dt))
+        });
+        // Those that shots let out come after them.
+        self.state.ranged.waves = waves;
+        let mut shots = std::mem::take(&mut self.state.ranged.shots);
+        shots.retain_mut(|shot| {
+            let file = attack_of(&kind, shot.state).and_then(|attack| attack.shot.as_ref());
+            file.is_some_and(|file| self.fly(shot, file, around, dt))
+        });
+        self.state.ranged.shots = shots;
+    }
+
+    /// What the attack that it is at lets out in this tick.
+    pub(super) fn strike_from_afar(&mut self, around: &Surroundings<'_>, dt: f64) {
+        let Some((state, phase)) = self.attack() else {
+            return;
+        };
+        let kind = std::sync::Arc::clone(&self.kind);
+        let Some(strike) = &kind.act(state).strike else {
+            return;
+        };
+        let attack = &strike.attack;
+        if attack.wave.is_none() && attack.shot.is_none() && attack.beam.is_none() {
+            return;
+        }
+        let Some(end) = self.limb_end(strike) else {
+            return;
+        };
+        self.follow_prey(attack, phase, dt);
+        if let Some(shot) = &attack.shot
+            && phase != AttackPhase::WindUp
+            && !self.state.ranged.is_out.shot
+        {
+            self.state.ranged.is_out.shot = true;
+            self.shoot(state, end, shot);
+        }
+        if let Some(beam) = &attack.beam
+            && (phase == AttackPhase::Active
+                || phase == AttackPhase::Recovery && !self.state.ranged.is_out.beam)
+        {
+            self.state.ranged.is_out.beam = true;
+            self.shine(state, end, beam, around);
+        } else {
+            self.state.ranged.beam = None;
+        }
+        let layer = self.state.animator.layers().first();
+        let time = layer.map_or(0.0, |layer| layer.time);
+        if let Some(wave) = &attack.wave
+            && time >= strike.impact
+            && !self.state.ranged.is_out.wave
+        {
+            self.state.ranged.is_out.wave = true;
+            self.send_wave(state, end, wave, around, dt);
+        }
+    }
+
+    /// Tells of a blow, if it is one.
+    fn deal(&mut self, blow: Blow) {
+        if blow.damage != 0.0 || blow.velocity != DVec3::ZERO {
+            self.report.blows.push(blow);
+        }
+    }
+
+    /// Where the limb's end is, in world space.
+    fn limb_end(&self, strike: &Strike) -> Option<DVec3> {
+        let frame = self.palette.model_from_joint(strike.end()?)?;
+        let world = self.surface.world_from_model();
+        Some(world.transform_point(frame.translation))
+    }
+
+    fn follow_prey(&mut self, attack: &Attack, phase: AttackPhase, dt: f64) {
+        let still_aims = match phase {
+            AttackPhase::WindUp => true,
+            AttackPhase::Active => attack.beam.is_some(),
+            AttackPhase::Recovery => false,
+        };
+        let prey = self.state.prey.filter(|_| self.state.unseen == 0);
+        if let (true, Some((_, place))) = (still_aims, prey) {
+            let way = place - self.state.ranged.mark;
+            self.state.ranged.mark += way.clamp_length_max(attack.follows * dt);
+        }
+    }
+}
+
+/// The attack that a state makes.
+fn attack_of(kind: &CreatureKind, state: StateId) -> Option<&Attack> {
+    match kind.brain().act(state) {
+        Some(Act::Attack(attack)) => Some(attack),
+        _ => None,
+    }
+}
+
+/// A place that is moved in a direction by a length, or half way to what terrain is there.
+fn moved_off(place: DVec3, out: DVec3, by: f64, around: &Surroundings<'_>) -> DVec3 {
+    let hits = around.terrain.iter();
+    let hits = hits.filter_map(|one| one.cast_ray(place + out * TOUCHING, out, by));
+    let free = hits.map(|hit| 0.5 * hit.distance).fold(by, f64::min);
+    place + out * free
+}
+
+#[cfg(test)]
+mod tests {
+    use clamber_world::{HalfSpace, Obstacle};
+
+    use super::*;
+
+    #[test]
+    fn a_place_is_not_moved_into_what_is_opposite() {
+        let ground = HalfSpace::below(0.0);
+        let Some(roof) = HalfSpace::behind(DVec3::Y * 0.3, DVec3::NEG_Y) else {
+            unreachable!("it has a direction");
+        };
+        let moved = |terrain: &[&dyn Obstacle]| {
+            let around = Surroundings {
+                terrain,
+                ..Surroundings::default()
+            };
+            moved_off(DVec3::ZERO, DVec3::Y, 0.5, &around).y
+        };
+        assert!((moved(&[&ground]) - 0.5).abs() < 1e-9);
+        let between = moved(&[&ground, &roof]);
+        assert!((between - 0.15).abs() < 2e-3, "{between}");
+    }
+}

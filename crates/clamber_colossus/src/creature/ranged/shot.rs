@@ -1,0 +1,265 @@
+use core::f64::consts::FRAC_PI_2;
+
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+use super::line::Line;
+use super::wave::{self, WaveState};
+use super::{MOST, attack_of, moved_off};
+use crate::brain::{Shot, StateId, WaveOf};
+use crate::creature::report::{Blow, CreatureEvent};
+use crate::creature::state::FARTHEST;
+use crate::creature::{Creature, Surroundings};
+
+/// A shot is no faster than this, metres a second: somewhat more than its own speed, and what gravity adds in its time.
+const FASTEST: f64 = 62_000.0;
+
+/// Obstacles are looked for from so far behind it on, metres.
+const BEHIND: f64 = 0.01;
+
+/// Something that a creature has thrown, spat or shot.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ActiveShot {
+    /// The state whose attack it is of.
+    pub state: StateId,
+    /// Its number: the creature's first shot has 0, and each the next one.
+    pub number: u64,
+    /// Its middle, in world space.
+    pub place: DVec3,
+    /// Metres a second.
+    pub velocity: DVec3,
+    /// Metres.
+    pub radius: f64,
+}
+
+/// A shot, as it is saved.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct ShotState {
+    pub(super) state: StateId,
+    pub(super) number: u64,
+    pub(super) place: DVec3,
+    pub(super) velocity: DVec3,
+    pub(super) ticks: u32,
+}
+
+/// True for a velocity that shots have.
+pub(super) fn is_reached(velocity: DVec3) -> bool {
+    velocity.is_finite() && velocity.length() <= FASTEST
+}
+
+impl Creature {
+    /// What its attacks have thrown and has not met anything yet, the oldest first.
+    pub fn shots(&self) -> impl Iterator<Item = ActiveShot> + '_ {
+        self.state.ranged.shots.iter().filter_map(|shot| {
+            let file = attack_of(&self.kind, shot.state)?.shot.as_ref()?;
+            Some(ActiveShot {
+                state: shot.state,
+                number: shot.number,
+                place: shot.place,
+                velocity: shot.velocity,
+                radius: file.radius,
+            })
+        })
+    }
+
+    /// Lets a shot go to where the attack aims.
+    pub(super) fn shoot(&mut self, state: StateId, end: DVec3, file: &Shot) {
+        if !end.is_finite() || end.abs().max_element() > FARTHEST {
+            return;
+        }
+        let ranged = &mut self.state.ranged;
+        let way = ranged.mark - end;
+        let velocity = direction(way, file).unwrap_or(self.state.heading()) * file.speed;
+        let ranged = &mut self.state.ranged;
+        if ranged.shots.len() >= MOST {
+            ranged.shots.remove(0);
+        }
+        ranged.shots.push(ShotState {
+            state,
+            number: ranged.next_shot,
+            place: end,
+            velocity,
+            ticks: 0,
+        });
+        let number = ranged.next_shot;
+        ranged.next_shot += 1;
+        self.report.events.push(CreatureEvent::Threw {
+            state,
+            number,
+            place: end,
+            velocity,
+        });
+    }
+
+    /// Lets a tick pass for a shot. Returns false if it has ended.
+    pub(super) fn fly(
+        &mut self,
+        shot: &mut ShotState,
+        file: &Shot,
+        around: &Surroundings<'_>,
+        dt: f64,
+    ) -> bool {
+        let pull = DVec3::NEG_Y * file.gravity;
+        let line = Line {
+            from: shot.place,
+            way: shot.velocity * dt + pull * (0.5 * dt * dt),
+            radius: file.radius,
+        };
+        // It has come from there, but for its first tick.
+        let behind = if shot.ticks > 0 { BEHIND } else { 0.0 };
+        let stop = line.stop(behind, around);
+        let end = stop.map_or(1.0, |(share, _)| share);
+        let touches = around.people.iter().filter_map(|person| {
+            let share = line.touch(person, around)?;
+            (share <= end).then_some((share, person))
+        });
+        let first = touches.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.id.cmp(&b.1.id)));
+        let (place, struck) = match (first, stop) {
+            (Some((share, person)), _) => {
+                let place = line.at(share);
+                let along = line.way.normalize_or_zero();
+                self.deal(Blow {
+                    person: person.id,
+                    velocity: along * file.throw,
+                    damage: file.damage,
+                    place,
+                    state: shot.state,
+                });
+                (place, vec![person.id])
+            }
+            (None, Some((share, out))) => {
+                let most = file.wave.as_ref().map_or(0.0, wave::lift);
+                let off = file.radius.min(most);
+                (moved_off(line.at(share), out, off, around), Vec::new())
+            }
+            (None, None) => {
+                shot.place = line.at(1.0);
+                shot.velocity += pull * dt;
+                shot.ticks = shot.ticks.saturating_add(1);
+                let is_near = shot.place.abs().max_element() <= FARTHEST;
+                return is_near && f64::from(shot.ticks) * dt < file.lasts;
+            }
+        };
+        let (state, number) = (shot.state, shot.number);
+        self.report.events.push(CreatureEvent::Burst {
+            state,
+            number,
+            place,
+        });
+        if let Some(wave) = &file.wave {
+            let begun = WaveState {
+                state,
+                of: WaveOf::Shot,
+                place,
+                reach: 0.0,
+                struck,
+            };
+            self.begin_wave(begun, wave, around, dt);
+        }
+        false
+    }
+}
+
+/// In which direction a shot gets along a way, by the flat one of two arcs: as far in its direction as it gets if none
+/// gets there. `None` if the way leads nowhere.
+fn direction(way: DVec3, file: &Shot) -> Option<DVec3> {
+    let level = DVec3::new(way.x, 0.0, way.z);
+    let (length, up) = (level.length(), way.y);
+    let ahead = level.try_normalize().unwrap_or(DVec3::ZERO);
+    let (square, pull) = (file.speed * file.speed, file.gravity);
+    // At a rise k it is at k * length - pull * length^2 * (1 + k^2) / (2 * square) when it has gone that far. The lesser
+    // one of two such k, without a difference of what is almost the same:
+    let rise = pull * length * length + 2.0 * up * square;
+    let root = square * square - pull * rise;
+    let angle = if root >= 0.0 {
+        libm::atan2(rise, (square + root.sqrt()) * length)
+    } else {
+        // Farthest along a slope is half way between that and straight up.
+        0.5 * (FRAC_PI_2 + libm::atan2(up, length))
+    };
+    let (sin, cos) = libm::sincos(angle);
+    let is_way = way.is_finite() && way != DVec3::ZERO;
+    is_way
+        .then_some(ahead * cos + DVec3::Y * sin)?
+        .try_normalize()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn shot(speed: f64, gravity: f64) -> Shot {
+        Shot {
+            speed,
+            radius: 0.5,
+            gravity,
+            lasts: 20.0,
+            damage: 0.1,
+            throw: 1.0,
+            wave: None,
+        }
+    }
+
+    #[test]
+    fn shots_get_where_they_are_aimed_or_as_far_as_they_go() {
+        let mut random = fastrand::Rng::with_seed(3);
+        let mut lot = |size: f64| (random.f64() - 0.5) * 2.0 * size;
+        let (mut reached, mut short) = (0, 0);
+        for case in 0..2_000 {
+            let way = match case % 10 {
+                0 => DVec3::Y * lot(20.0),
+                _ => DVec3::new(lot(60.0), lot(30.0), lot(60.0)),
+            };
+            let gravity = [9.81, 0.0, 1e-12, 3.7][case % 4];
+            let speed = 8.0 + lot(4.0).abs() * 6.0;
+            let level = DVec3::new(way.x, 0.0, way.z);
+            let velocity = direction(way, &shot(speed, gravity)).unwrap() * speed;
+            let highest = if gravity == 0.0 {
+                f64::INFINITY
+            } else {
+                let length = level.length_squared();
+                speed * speed / (2.0 * gravity) - gravity * length / (2.0 * speed * speed)
+            };
+            let what = format!("case {case}: {way} at {speed} m/s, {gravity} m/s^2");
+            if way.y <= highest {
+                // It is there at the time that its level speed tells, or straight up at one of two.
+                let [from, to] = [velocity.dot(level), level.length_squared()];
+                let times = if to > 0.0 {
+                    vec![to / from]
+                } else if gravity < 1e-9 {
+                    vec![way.y / velocity.y]
+                } else {
+                    let root = (velocity.y * velocity.y - 2.0 * gravity * way.y)
+                        .max(0.0)
+                        .sqrt();
+                    [-1.0, 1.0]
+                        .map(|side| (velocity.y + side * root) / gravity)
+                        .to_vec()
+                };
+                let miss = |t: &f64| {
+                    let at = velocity * *t - DVec3::Y * (0.5 * gravity * t * t);
+                    at.distance(way)
+                };
+                let least = times.iter().map(miss).fold(f64::INFINITY, f64::min);
+                assert!(least < 1e-6, "{what}: {least} m");
+                assert!(times.iter().any(|time| *time >= 0.0), "{what}");
+                reached += 1;
+            } else if level.length() > 1.0 {
+                // Where arcs of other angles cross the straight way, none is farther.
+                let slope = way.y / level.length();
+                let range = |angle: f64| {
+                    let (sin, cos) = libm::sincos(angle);
+                    2.0 * speed * speed * cos * (sin - slope * cos) / gravity
+                };
+                let ours = range(libm::asin(velocity.y / speed));
+                let best = (0..9_000).map(|step| range(f64::from(step) * 1e-4 * FRAC_PI_2 * 1.1));
+                let best = best.fold(0.0, f64::max);
+                assert!(ours >= best * 0.999_999, "{what}: {ours} of {best} m");
+                short += 1;
+            }
+        }
+        assert!(reached > 500 && short > 100, "{reached} {short}");
+        assert_eq!(direction(DVec3::ZERO, &shot(10.0, 9.81)), None);
+        assert_eq!(direction(DVec3::ZERO, &shot(10.0, 0.0)), None);
+    }
+}

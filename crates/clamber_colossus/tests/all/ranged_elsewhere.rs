@@ -1,0 +1,425 @@
+//! Attacks from afar where the scenes of `ranged` do not go: at other rates and sizes, on moving and steep ground, by
+//! clips with other markers, with riders, without prey, saved in their midst.
+
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
+use crate::attacks::{before, before_at};
+use crate::carried::Deck;
+use crate::ranged::{Seen, act, attack, attack_among, places, somebody, wall};
+use crate::support::TICK;
+use clamber_colossus::{Creature, CreatureConfig, CreatureEvent, Person, Riding, Surroundings};
+use clamber_surface::geometry::{Similarity, rotation_from_axis_angle};
+use clamber_surface::mesh::TriangleId;
+use clamber_world::{HalfSpace, MaterialPoint, Obstacle};
+use glam::DVec3;
+use serde_json::{Value, json};
+
+/// A wave, a shot and a beam that nobody escapes.
+fn all_ways() -> [(&'static str, &'static str, Value); 3] {
+    let blow = |mut way: Value| {
+        (way["damage"], way["throw"]) = (0.5.into(), 5.0.into());
+        way
+    };
+    [
+        (
+            "stomp_right",
+            "wave",
+            blow(json!({ "radius": 40.0, "speed": 8.0 })),
+        ),
+        (
+            "swipe_right",
+            "shot",
+            blow(json!({ "speed": 25.0, "radius": 0.8 })),
+        ),
+        (
+            "swipe_right",
+            "beam",
+            blow(json!({ "length": 90.0, "radius": 0.4 })),
+        ),
+    ]
+}
+
+fn waves(seen: &Seen) -> Vec<(usize, DVec3)> {
+    let all = seen.events.iter().filter_map(|(tick, event)| match event {
+        CreatureEvent::Wave { place, .. } => Some((*tick, *place)),
+        _ => None,
+    });
+    all.collect()
+}
+
+#[test]
+fn riders_are_spared() {
+    let ground = HalfSpace::below(0.0);
+    for (state, way, file) in all_ways() {
+        let giant = before(&act(state, json!({ way: file })));
+        for (riding, struck) in [(false, 1), (true, 0)] {
+            let at = Riding {
+                at: MaterialPoint::on_triangle(TriangleId(0), [1.0, 0.0, 0.0]),
+                hangs: false,
+            };
+            // The rider is where the other one is, who is seen.
+            let people = |_| {
+                let rider = Person {
+                    riding: riding.then_some(at),
+                    ..somebody(2, DVec3::new(2.0, 0.0, 20.0))
+                };
+                vec![rider]
+            };
+            let seen = attack(&giant, people, |_| vec![&ground]);
+            assert_eq!(seen.blows.len(), struck, "{way}");
+        }
+    }
+}
+
+#[test]
+fn other_rates_strike_the_same_people() {
+    let ground = HalfSpace::below(0.0);
+    for (state, way, file) in all_ways() {
+        let told = [30.0, 60.0, 144.0].map(|rate| {
+            let act = act(state, json!({ way: file.clone() }));
+            let giant = before_at(&act, 1.0 / rate, CreatureConfig::default());
+            let people = |_| {
+                let all = (0..12u32).map(|id| {
+                    let at = DVec3::new(
+                        2.0 * f64::from(id % 4) - 3.0,
+                        0.0,
+                        12.0 + 2.0 * f64::from(id),
+                    );
+                    somebody(id.into(), at)
+                });
+                all.collect()
+            };
+            let seen = attack(&giant, people, |_| vec![&ground]);
+            let mut blows: Vec<_> = seen.blows;
+            blows.sort_by_key(|(_, blow)| blow.person);
+            let struck: Vec<u64> = blows.iter().map(|(_, blow)| blow.person).collect();
+            let when: Vec<f64> = blows.iter().map(|(tick, _)| *tick as f64 / rate).collect();
+            (struck, when)
+        });
+        assert!(!told[0].0.is_empty(), "{way}");
+        for (struck, when) in &told[1..] {
+            assert_eq!(struck, &told[0].0, "{way}");
+            for (a, b) in when.iter().zip(&told[0].1) {
+                assert!((a - b).abs() < 0.1, "{way}: {a} {b}");
+            }
+        }
+    }
+}
+
+/// A beam that turns fast leaves nobody out between ticks.
+#[test]
+fn a_beam_that_turns_strikes_all_it_passes() {
+    let beam = json!({ "length": 90.0, "radius": 0.1, "damage": 0.1, "throw": 1.0 });
+    let with = json!({ "beam": beam, "follows": 60.0 });
+    for rate in [30.0, 60.0] {
+        let giant = before_at(
+            &act("swipe_right", with.clone()),
+            1.0 / rate,
+            CreatureConfig::default(),
+        );
+        // In the air, at the height of the hand: the prey goes aside, and many stand behind it, far away.
+        let people = |time: f64| {
+            let aside = ((time - 1.6).max(0.0) * 40.0).min(24.0);
+            let prey = Person {
+                id: 1000,
+                ..somebody(1000, DVec3::new(-12.0 + aside, 9.0, 24.0))
+            };
+            let all = (0..200u32).map(|id| {
+                let angle = (f64::from(id) - 100.0) * 0.01;
+                let way = DVec3::new(libm::sin(angle), 0.0, libm::cos(angle)) * 70.0;
+                let tall = somebody(id.into(), way);
+                let mut body = tall.body;
+                (body.ends[0].y, body.ends[1].y) = (-60.0, 60.0);
+                Person { body, ..tall }
+            });
+            all.chain([prey]).collect()
+        };
+        let seen = attack(&giant, people, |_| Vec::new());
+        let mut struck: Vec<u64> = seen.blows.iter().map(|(_, blow)| blow.person).collect();
+        struck.sort_unstable();
+        struck.retain(|id| *id < 1000);
+        let (first, last) = (struck[0], struck[struck.len() - 1]);
+        assert!(last - first > 60, "{rate} Hz: {first} to {last}");
+        let all: Vec<u64> = (first..=last).collect();
+        assert_eq!(struck, all, "{rate} Hz");
+    }
+}
+
+/// Waves begin above the ground below the limb, whatever the giant's size and the slope.
+#[test]
+fn waves_begin_on_the_ground_at_every_size_and_on_slopes() {
+    for scale in [0.05, 1.0, 10.0] {
+        for degrees in [-20.0f64, 0.0, 20.0, 40.0] {
+            let slope = degrees.to_radians();
+            let normal = DVec3::new(0.0, libm::cos(slope), -libm::sin(slope));
+            let ground = HalfSpace::behind(DVec3::ZERO, normal).unwrap();
+            for state in ["stomp_right", "kick_left", "swipe_right", "sweep_right"] {
+                let wave = json!({ "radius": 15.0, "height": 0.5, "damage": 0.5, "throw": 5.0 });
+                let config = CreatureConfig {
+                    scale,
+                    ..CreatureConfig::default()
+                };
+                let giant = before_at(&act(state, json!({ "wave": wave })), TICK, config);
+                let what = format!("{state} at {scale} on {degrees} degrees");
+                let begins = |people: &dyn Fn(f64) -> Vec<Person>| {
+                    let seen = attack(&giant, people, |_| vec![&ground]);
+                    let waves = waves(&seen);
+                    assert_eq!(waves.len(), 1, "{what}");
+                    (waves[0].1, seen.blows.len())
+                };
+                let (from, _) = begins(&|_| Vec::new());
+                let height = from.dot(normal) / normal.y;
+                let least = if state.starts_with('s') && state != "stomp_right" {
+                    0.3
+                } else {
+                    0.4
+                };
+                let most = if state == "stomp_right" {
+                    0.51
+                } else {
+                    f64::INFINITY
+                };
+                assert!(
+                    (least..=most).contains(&height),
+                    "{what}: {height} m above it"
+                );
+                if state != "stomp_right" {
+                    continue;
+                }
+                // Whoever stands about it is struck.
+                let all = places(DVec3::ZERO, 10.0, 3);
+                let people = |_| {
+                    let all = (0..).zip(&all).take(200);
+                    let place = |way: DVec3| {
+                        let at = from + way;
+                        at - DVec3::Y * (at.dot(normal) / normal.y)
+                    };
+                    all.map(|(id, (way, _))| somebody(id, place(*way)))
+                        .collect()
+                };
+                let (_, struck) = begins(&people);
+                assert_eq!(struck, 200, "{what}");
+            }
+        }
+    }
+}
+
+/// A wave goes out at the first marker `impact`, also after `recovery`, and at `recovery` without one.
+#[test]
+fn waves_go_out_at_their_marker() {
+    let ground = HalfSpace::below(0.0);
+    for (state, seconds) in [
+        ("stomp_right", 1.84),
+        ("kick_right", 3.4),
+        ("swipe_right", 2.93),
+    ] {
+        let wave = json!({ "radius": 9.0, "damage": 0.5, "throw": 5.0 });
+        let giant = before(&act(state, json!({ "wave": wave })));
+        let seen = attack(&giant, |_| Vec::new(), |_| vec![&ground]);
+        let waves = waves(&seen);
+        assert_eq!(waves.len(), 1, "{state}");
+        let time = waves[0].0 as f64 * TICK;
+        assert!((time - seconds).abs() < 0.06, "{state}: {time} s");
+    }
+}
+
+/// Without prey in view it throws at the ground ahead, also if somebody was seen long ago; a creature that is put
+/// elsewhere throws there.
+#[test]
+fn without_prey_it_throws_ahead() {
+    let ground = HalfSpace::below(0.0);
+    let shot = json!({ "speed": 60.0, "radius": 0.5, "gravity": 0.0, "damage": 0.5, "throw": 5.0 });
+    let giant = before(&act("swipe_right", json!({ "shot": shot, "follows": 2.0 })));
+    let burst = |seen: &Seen| {
+        let burst = seen.events.iter().find_map(|(_, event)| match event {
+            CreatureEvent::Burst { place, .. } => Some(*place),
+            _ => None,
+        });
+        burst.unwrap()
+    };
+    let ahead = DVec3::Z * giant.height();
+    let alone = burst(&attack(&giant, |_| Vec::new(), |_| vec![&ground]));
+    assert!(alone.distance(ahead) < 0.01, "{alone} {ahead}");
+    // Who was seen, and is behind it since, is not thrown at.
+    let mut later = giant.clone();
+    for tick in 0..50 {
+        let z = if tick < 20 { 30.0 } else { -30.0 };
+        step(
+            &mut later,
+            &[somebody(1, DVec3::new(3.0, 0.0, z))],
+            &[&ground],
+        );
+    }
+    let behind = burst(&attack(
+        &later,
+        |_| vec![somebody(1, DVec3::new(3.0, 0.0, -30.0))],
+        |_| vec![&ground],
+    ));
+    assert!(behind.distance(ahead) < 0.01, "{behind} {ahead}");
+    // It is put elsewhere in its wind-up.
+    let mut put = giant.clone();
+    let people = [somebody(1, DVec3::new(3.0, 0.0, 30.0))];
+    for _ in 0..100 {
+        step(&mut put, &people, &[&ground]);
+    }
+    assert!(put.attack().is_some());
+    let there = DVec3::new(1000.0, 0.0, 0.0);
+    put.put(there, 0.0).unwrap();
+    let mut place = None;
+    for _ in 0..300 {
+        let report = step(&mut put, &[], &[&ground]);
+        place = place.or(report.into_iter().find_map(|event| match event {
+            CreatureEvent::Burst { place, .. } => Some(place),
+            _ => None,
+        }));
+    }
+    assert!(place.unwrap().distance(there + ahead) < 0.01, "{place:?}");
+}
+
+fn step(giant: &mut Creature, people: &[Person], terrain: &[&dyn Obstacle]) -> Vec<CreatureEvent> {
+    let around = Surroundings {
+        terrain,
+        people,
+        ..Surroundings::default()
+    };
+    giant.step(&around).unwrap().events.clone()
+}
+
+/// On a ship that turns, waves of limbs and places that are aimed at go with it; what flies does not.
+#[test]
+fn on_a_ship_waves_go_with_it_and_stones_fly_straight() {
+    let with = json!({
+        "wave": { "radius": 60.0, "speed": 2.0, "damage": 0.1, "throw": 1.0 },
+        "shot": { "speed": 20.0, "radius": 0.5, "gravity": 0.0, "lasts": 30.0, "damage": 0.1, "throw": 1.0,
+            "wave": { "radius": 7.0, "speed": 0.5, "damage": 0.1, "throw": 1.0 } }
+    });
+    let mut giant = before(&act("stomp_right", with));
+    let at = |tick: u32| {
+        let time = f64::from(tick) * TICK;
+        Similarity {
+            rotation: rotation_from_axis_angle(DVec3::Y, 0.1 * time),
+            translation: DVec3::new(2.0, 0.0, 1.0) * time,
+            ..Similarity::IDENTITY
+        }
+    };
+    let (mut begun, mut shot): (Option<DVec3>, Option<(DVec3, DVec3)>) = (None, None);
+    let (mut carried, mut flew, mut stayed) = (0, 0, 0);
+    let mut burst: Option<DVec3> = None;
+    for tick in 1..=400 {
+        let deck = Deck {
+            before: at(tick - 1),
+            now: at(tick),
+        };
+        step(&mut giant, &[], &[&deck]);
+        // The stone bursts before the foot comes down.
+        let (of_burst, of_limb) = giant
+            .waves()
+            .partition::<Vec<_>, _>(|wave| wave.radius < 10.0);
+        if let Some(wave) = of_burst.first() {
+            assert_eq!(*burst.get_or_insert(wave.place), wave.place);
+            stayed += 1;
+        }
+        if let Some(wave) = of_limb.first() {
+            let there = at(tick).inverse_transform_point(wave.place);
+            let first = *begun.get_or_insert(there);
+            assert!(there.distance(first) < 1e-6, "{there} {first}");
+            carried += 1;
+        }
+        if let Some(now) = giant.shots().next() {
+            let (place, velocity) = shot.unwrap_or((now.place, now.velocity));
+            assert!(now.place.distance(place) < 1e-9 && now.velocity == velocity);
+            shot = Some((now.place + now.velocity * TICK, velocity));
+            flew += 1;
+        }
+    }
+    let told = format!("{carried} {flew} {stayed}");
+    assert!(carried > 100 && flew > 20 && stayed > 100, "{told}");
+}
+
+/// Wherever an attack is saved, a fresh creature goes on with the same bits.
+#[test]
+fn an_attack_is_saved_at_any_time() {
+    let ground = HalfSpace::below(0.0);
+    let mut with = json!({ "follows": 2.5 });
+    for (_, way, file) in all_ways() {
+        with[way] = file;
+    }
+    let before = before(&act("stomp_right", with));
+    let mut giant = before.clone();
+    let person = |tick: u32| {
+        let angle = 0.01 * f64::from(tick);
+        [somebody(1, DVec3::new(8.0 * libm::sin(angle), 0.0, 26.0))]
+    };
+    let around = |people: &[Person], giant: &mut Creature| {
+        let around = Surroundings {
+            terrain: &[&ground],
+            people,
+            ..Surroundings::default()
+        };
+        giant.step(&around).unwrap().clone()
+    };
+    let mut ways = [0; 3];
+    for tick in 0..330u32 {
+        if tick % 5 == 0 {
+            let text = serde_json::to_string(giant.state()).unwrap();
+            let json = serde_json::to_string(giant.kind().brain().file()).unwrap();
+            let mut fresh =
+                Creature::new(crate::support::kind(&json), CreatureConfig::default()).unwrap();
+            fresh.restore(serde_json::from_str(&text).unwrap()).unwrap();
+            let mut same = giant.clone();
+            for later in tick..tick + 45 {
+                let [one, two] = [&mut same, &mut fresh].map(|giant| around(&person(later), giant));
+                assert_eq!(one, two, "tick {later} from {tick}");
+                assert_eq!(same.state(), fresh.state(), "tick {later} from {tick}");
+            }
+        }
+        let report = around(&person(tick), &mut giant);
+        ways[0] += usize::from(giant.waves().next().is_some());
+        ways[1] += usize::from(giant.shots().next().is_some());
+        ways[2] += usize::from(report.beam.is_some());
+    }
+    assert!(ways.iter().all(|ticks| *ticks > 10), "{ways:?}");
+}
+
+/// A beam ends in its report where it does in the world.
+#[test]
+fn beams_tell_where_they_end() {
+    let ground = HalfSpace::below(0.0);
+    let rock = wall(DVec3::new(-40.0, 0.0, 25.0), DVec3::X * 80.0, 60.0);
+    let (_, way, file) = all_ways()[2].clone();
+    let mut giant = before(&act("swipe_right", json!({ way: file })));
+    let mut ends = Vec::new();
+    for _ in 0..400 {
+        let around = Surroundings {
+            terrain: &[&ground],
+            creatures: &[&rock],
+            people: &[somebody(1, DVec3::new(0.0, 8.0, 40.0))],
+            ..Surroundings::default()
+        };
+        ends.extend(giant.step(&around).unwrap().beam);
+    }
+    assert!(ends.len() > 60, "{}", ends.len());
+    for [from, to] in ends {
+        assert!((to.z - 25.0).abs() < 1e-4 && from.z < 25.0, "{from} {to}");
+    }
+}
+
+/// Others' skins stop no wave, and are no ground.
+#[test]
+fn waves_pass_other_creatures() {
+    let ground = HalfSpace::below(0.0);
+    let skin = wall(DVec3::new(-40.0, 0.0, 22.0), DVec3::X * 80.0, 10.0);
+    let wave = json!({ "radius": 40.0, "height": 0.5, "damage": 0.5, "throw": 5.0 });
+    let giant = before(&act("stomp_right", json!({ "wave": wave })));
+    let people = |_| {
+        vec![
+            somebody(1, DVec3::new(0.0, 0.0, 26.0)),
+            somebody(2, DVec3::new(0.0, 9.0, 22.0)),
+        ]
+    };
+    let seen = attack_among(&giant, people, |_| {
+        [vec![&ground as &dyn Obstacle], vec![&skin]]
+    });
+    let struck: Vec<u64> = seen.blows.iter().map(|(_, blow)| blow.person).collect();
+    assert_eq!(struck, [1]);
+}

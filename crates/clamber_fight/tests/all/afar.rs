@@ -1,0 +1,111 @@
+//! What a creature throws and sends out reaches fighters by way of the arena, and is part of what is saved.
+
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
+use crate::support::{GROUND, giant_with};
+use clamber_climber::ClimberInput;
+use clamber_colossus::{CreatureConfig, CreatureEvent};
+use clamber_fight::{Arena, ArenaConfig, ArenaEvent, CreatureId, FighterConfig, FighterId};
+use clamber_world::{HalfSpace, Obstacle, ObstacleId};
+use glam::{DVec2, DVec3};
+use serde_json::json;
+
+/// Three fighters before the giant, which throws a stone that bursts after a second, and then stomps.
+fn arena() -> Arena {
+    let kind = giant_with(|file| {
+        let wave = json!({ "radius": 4.0, "speed": 10.0, "damage": 0.2, "throw": 5.0 });
+        let stone =
+            json!({ "speed": 22.0, "radius": 0.7, "damage": 0.3, "throw": 8.0, "wave": wave });
+        file["start"] = "waits".into();
+        file["states"] = json!({
+            "waits": { "transitions": [{ "to": "throws", "after": 1 }] },
+            "throws": {
+                "act": { "attack": { "clip": "swipe", "limb": ["hand.R"], "shot": stone, "follows": 1.0 } },
+                "transitions": [{ "to": "stomps" }]
+            },
+            "stomps": {
+                "act": { "attack": { "clip": "stomp", "limb": ["foot.R", "toe.R"],
+                    "wave": { "radius": 40.0, "speed": 20.0, "damage": 0.1, "throw": 2.0 } } },
+                "transitions": [{ "to": "waits" }]
+            }
+        });
+    });
+    let mut arena = Arena::new(ArenaConfig::default()).unwrap();
+    arena.add_creature(kind, CreatureConfig::default()).unwrap();
+    for at in [
+        DVec2::new(1.0, 24.0),
+        DVec2::new(2.5, 25.0),
+        DVec2::new(-30.0, 12.0),
+    ] {
+        let place = DVec3::new(at.x, 1.0, at.y);
+        arena.add_fighter(FighterConfig::hero(), place).unwrap();
+    }
+    arena
+}
+
+#[test]
+fn stones_and_waves_of_a_creature_strike_fighters() {
+    let ground = HalfSpace::below(0.0);
+    let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &ground)];
+    let inputs = [ClimberInput::IDLE; 3];
+    let mut ours = arena();
+    let (mut struck, mut told, mut in_the_air) = (Vec::new(), Vec::new(), 0);
+    let mut saved = Vec::new();
+    for tick in 0..620 {
+        for event in ours.step(&inputs, &terrain).unwrap() {
+            match event {
+                ArenaEvent::Struck {
+                    fighter, damage, ..
+                } => struck.push((*fighter, *damage)),
+                ArenaEvent::Creature { event, .. } => told.push(event.clone()),
+                _ => {}
+            }
+        }
+        let giant = ours.creature(CreatureId(0)).unwrap();
+        let flies = giant.shots().count() + giant.waves().count();
+        in_the_air += usize::from(flies > 0);
+        if flies > 0 && tick % 7 == 0 {
+            saved.push((tick, ours.to_bytes().unwrap()));
+        }
+    }
+    let of = |number| {
+        let ours = struck.iter().filter(|(fighter, _)| fighter.0 == number);
+        ours.map(|(_, damage)| *damage).collect::<Vec<f64>>()
+    };
+    // The stone's own damage, and less by its burst; the wave of the stomp, the less the farther.
+    assert_eq!(of(0)[0], 0.3);
+    assert!(of(1)[0] > 0.02 && of(1)[0] < 0.2, "{:?}", of(1));
+    assert_eq!([of(0).len(), of(1).len(), of(2).len()], [2, 2, 1]);
+    for number in 0..3 {
+        let left = ours
+            .fighter(FighterId(number))
+            .unwrap()
+            .climber()
+            .state()
+            .hit_points;
+        assert!(left < 1.0, "{number}: {left}");
+    }
+    let count = |is: fn(&CreatureEvent) -> bool| told.iter().filter(|event| is(event)).count();
+    assert_eq!(
+        count(|event| matches!(event, CreatureEvent::Threw { .. })),
+        1
+    );
+    assert_eq!(
+        count(|event| matches!(event, CreatureEvent::Burst { .. })),
+        1
+    );
+    assert_eq!(
+        count(|event| matches!(event, CreatureEvent::Wave { .. })),
+        2
+    );
+    assert!(in_the_air > 60, "{in_the_air}");
+    // From wherever it was saved, a fresh arena comes to the same end.
+    for (tick, bytes) in saved {
+        let mut fresh = arena();
+        fresh.restore_bytes(&bytes).unwrap();
+        for _ in tick + 1..620 {
+            fresh.step(&inputs, &terrain).unwrap();
+        }
+        assert_eq!(fresh.fingerprint(), ours.fingerprint(), "from tick {tick}");
+    }
+}
