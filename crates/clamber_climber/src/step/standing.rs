@@ -12,6 +12,10 @@ use crate::{ClimberEvent, ClimberMode};
 /// stand upright on its material point looks for new ground.
 const SHOVED: f64 = 0.1;
 
+/// A climber that stands farther than the margin above its point, since something pushed it or it let go of a hold, goes
+/// down to it by this share of its radius in a second. What was pushed aside stays: what pushed it may still be there.
+const SETTLES: f64 = 0.5;
+
 /// A climber that is crushed into its ground by up to this share of its radius still stands on it.
 const SUNK: f64 = 0.5;
 
@@ -102,10 +106,16 @@ impl Tick<'_> {
 
     /// Stays on its material point; obstacles may push it aside a little.
     fn stay(&mut self, carried: &Carried) -> NextMode {
-        let moved = self.slide(&self.path(carried.position), Intent::Stay);
-        self.state.position = moved.position;
         let radius = self.config.body.radius;
         let upright = carried.motion.position + carried.normal() * radius;
+        let off = carried.position - upright;
+        let above = off.dot(carried.normal());
+        let aside = (off - carried.normal() * above).length();
+        let too_far = (above - aside - self.config.body.margin).max(0.0);
+        let settles = too_far.min(SETTLES * radius * self.dt());
+        let path = self.path(carried.position - carried.normal() * settles);
+        let moved = self.slide(&path, Intent::Stay);
+        self.state.position = moved.position;
         let apart = moved.position - upright;
         // An obstacle that crushes it into its ground does not push it off.
         let into = apart.dot(carried.normal()).clamp(-SUNK * radius, 0.0);

@@ -37,6 +37,41 @@ pub(crate) fn falls_lands_and_jumps() {
     });
 }
 
+/// A climber that something has pushed off the point that it stands on, or that let go of a hold above it, by less than
+/// makes it look for new ground.
+pub(crate) fn who_stands_above_its_point_goes_down_to_it() {
+    for degrees in [0.0, 20.0, 40.0] {
+        let angle = radians(degrees);
+        every(0.0, |played| {
+            let normal = DVec3::new(-libm::sin(angle), libm::cos(angle), 0.0);
+            let stage = Stage::new(played).with_still(&slope(angle));
+            let config = walker_at(2.0);
+            let start = normal * config.body.radius - DVec3::Y * config.body.radius;
+            let mut run = Run::new(stage, config, start).settle();
+            let stood = run.position();
+            let mut state = *run.state();
+            state.position += normal * (0.07 * config.body.radius);
+            let support = state.support.as_mut().unwrap();
+            support.attachment = support.attachment.moved_to(state.position);
+            run.put(state);
+            let mut off = run.position().distance(stood);
+            for tick in 0..30 {
+                run.step(&IDLE);
+                let now = run.position().distance(stood);
+                assert_eq!(run.mode(), Standing, "{degrees}, {played:?}, tick {tick}");
+                assert!(now <= off + 1e-6, "{degrees}, {played:?}: {off} then {now}");
+                off = now;
+            }
+            within!(
+                off,
+                config.body.margin + 1e-6,
+                "{degrees}, {played:?}: {off}"
+            );
+            run.sound()
+        });
+    }
+}
+
 /// A slope that rises along +X at an angle.
 fn slope(angle: f64) -> Shape {
     Shape::floor(40.0).turned(DVec3::Z, angle)

@@ -454,6 +454,7 @@ failures! {
     air::steering_away_from_a_cliff_counts_from_the_cliff,
     air::the_frame_of_a_fall_becomes_that_of_the_air,
     air::steering_in_the_air_climbs_no_steep_slope,
+    ground::who_stands_above_its_point_goes_down_to_it,
     crouching::a_climber_crouches_under_a_ceiling,
     crouching::who_has_no_room_does_not_stand_up,
     crouching::a_body_grows_only_where_it_has_room,

@@ -1,6 +1,6 @@
 //! Checks of the climber, computed independently of the climber and mostly of the surface's queries.
 
-use clamber_climber::{Climber, ClimberMode, StepReport};
+use clamber_climber::{Climber, ClimberEvent, ClimberMode, StepReport};
 use clamber_surface::measure::skin_vertex_reference;
 use clamber_surface::rig::Palette;
 use clamber_surface::surface::SkinnedSurface;
@@ -121,10 +121,21 @@ impl Watch {
             self.recorded = None;
             return None;
         };
-        let Some(recorded) = self.recorded else {
+        // It may slip and land on another point within one tick.
+        let landed = |event: &ClimberEvent| matches!(event, ClimberEvent::Landed { .. });
+        let kept = self
+            .recorded
+            .filter(|_| !watched.report.events.iter().any(landed));
+        let Some(recorded) = kept else {
             self.recorded = Some(support.attachment.material);
             return None;
         };
+        let push_out = watched.report.pushed_out.length();
+        if push_out > MAX_PUSH_OUT {
+            let what = format!("pushed out by {push_out:.3} m");
+            self.faults
+                .note(PUSH_OUT, || moment.describe(&what, center));
+        }
         let radius = climber.config().body.radius;
         if let Some(nearest) = surface.closest_point(center, radius) {
             self.deepest = self.deepest.max(radius - nearest.distance);
@@ -153,12 +164,6 @@ impl Watch {
             let what = format!("stands off by {:.3} m", off.gap);
             self.faults
                 .note(STANDS_OFF, || moment.describe(&what, center));
-        }
-        let push_out = watched.report.pushed_out.length();
-        if push_out > MAX_PUSH_OUT {
-            let what = format!("pushed out by {push_out:.3} m");
-            self.faults
-                .note(PUSH_OUT, || moment.describe(&what, center));
         }
         Some(drift)
     }
