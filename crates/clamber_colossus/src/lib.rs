@@ -11,7 +11,7 @@ pub mod senses;
 
 pub use brain::{Brain, BrainError, BrainFile, BrainProblem, BrainReport, BrainState};
 pub use creature::{
-    ActiveShot, ActiveWave, AttackPhase, Blow, Creature, CreatureConfig, CreatureEvent,
+    ActiveBeam, ActiveShot, ActiveWave, AttackPhase, Blow, Creature, CreatureConfig, CreatureEvent,
     CreatureReport, CreatureState, Foresight, Noise, Person, Riding, Surroundings, Wound,
 };
 pub use error::ColossusError;

@@ -12,8 +12,9 @@ use crate::{ClimberEvent, ClimberMode};
 /// stand upright on its material point looks for new ground.
 const SHOVED: f64 = 0.1;
 
-/// A climber that stands farther than the margin above its point, since something pushed it or it let go of a hold, goes
-/// down to it by this share of its radius in a second. What was pushed aside stays: what pushed it may still be there.
+/// A climber that stands above its point, since something pushed it or it let go of a hold, goes down by this share of its
+/// radius in a second, until it is no farther above the point than the margin and than it is aside of it. It does not go
+/// back to the side: what pushed it may still be there.
 const SETTLES: f64 = 0.5;
 
 /// A climber that is crushed into its ground by up to this share of its radius still stands on it.
@@ -113,8 +114,14 @@ impl Tick<'_> {
         let aside = (off - carried.normal() * above).length();
         let too_far = (above - aside - self.config.body.margin).max(0.0);
         let settles = too_far.min(SETTLES * radius * self.dt());
-        let path = self.path(carried.position - carried.normal() * settles);
-        let moved = self.slide(&path, Intent::Stay);
+        let down = carried.normal() * -settles;
+        let path = self.path(carried.position + down);
+        // What is in its way is neither hit nor pushed by that.
+        let wanted = (path.target - down - path.start) / self.dt();
+        let moved = self.slide_at(&path, Intent::Stay, wanted);
+        let went = (moved.position - carried.position).dot(-carried.normal());
+        let stopped = settles - went.clamp(0.0, settles);
+        self.report.pushed_out -= carried.normal() * stopped;
         self.state.position = moved.position;
         let apart = moved.position - upright;
         // An obstacle that crushes it into its ground does not push it off.

@@ -50,13 +50,18 @@ pub(crate) fn who_stands_above_its_point_goes_down_to_it() {
             let mut run = Run::new(stage, config, start).settle();
             let stood = run.position();
             let mut state = *run.state();
-            state.position += normal * (0.07 * config.body.radius);
+            state.position += normal * (0.095 * config.body.radius);
             let support = state.support.as_mut().unwrap();
             support.attachment = support.attachment.moved_to(state.position);
             run.put(state);
             let mut off = run.position().distance(stood);
             for tick in 0..30 {
-                run.step(&IDLE);
+                let report = run.step(&IDLE);
+                let pushed = report.pushed_out.length();
+                assert!(
+                    pushed < 1e-6,
+                    "{degrees}, {played:?}, tick {tick}: {pushed}"
+                );
                 let now = run.position().distance(stood);
                 assert_eq!(run.mode(), Standing, "{degrees}, {played:?}, tick {tick}");
                 assert!(now <= off + 1e-6, "{degrees}, {played:?}: {off} then {now}");

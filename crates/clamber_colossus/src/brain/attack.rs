@@ -37,8 +37,9 @@ pub struct Attack {
     /// it reaches, a mouth or a hand as far as the neck or the arm above it does. 0 strikes where the clip does.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub aim: f64,
-    /// A wave that goes out from the ground below the limb's end at the clip's first marker `impact`, or at its marker
-    /// `recovery` if it has none. It spares whom the limb has struck, and whom it strikes the limb spares.
+    /// A wave that goes out from the ground at the limb's end, or from the limb's end if there is no ground near it, at the
+    /// clip's first marker `impact`, or at its marker `recovery` if it has none. The limb, its wave and its beam together
+    /// strike a person once.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wave: Option<Wave>,
     /// What leaves the limb's end at the clip's marker `active`. It ends where its middle meets terrain or another
@@ -49,24 +50,28 @@ pub struct Attack {
     /// another creature.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub beam: Option<Beam>,
-    /// A shot or a beam goes to where the middle of its prey was when the attack began; to the ground ahead of it, as far
-    /// away as it is high, if none was seen then. While it sees prey, this place follows that with so many metres a
-    /// second: for a shot until it leaves, for a beam until its end. Whoever runs faster gets away.
+    /// A shot or a beam goes to where the middle of the prey was when the attack began. If no prey was seen then, it goes
+    /// to a place ahead of the creature, level with its feet, as far away as the creature is high. While the creature
+    /// sees prey, this place follows the prey with so many metres a second: for a shot until it leaves, for a beam until
+    /// its end. Whoever runs faster gets away.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub follows: f64,
 }
 
 /// A ball that grows, and strikes whom it reaches, once: a shock wave, a tremor, a blast.
+///
+/// It begins somewhat above the ground, or off what a shot has met: by 0.5 m, or by a thirtieth of its radius if that is
+/// more. Lower rocks do not stop it. Distances count from there to a person's skin.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Wave {
-    /// How far it goes, metres, from where it begins to a person's skin.
+    /// How far it goes, metres.
     pub radius: f64,
     /// How fast it grows, metres a second: fast enough to be at its end within 60 s. Without it all are struck at once.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub speed: Option<f64>,
-    /// It strikes only who has terrain within so many metres below: who jumps is spared, and so is who stands on another
-    /// creature. Without it all are struck.
+    /// It strikes only whose body would touch terrain if it were so many metres lower: who jumps is spared, and so is who
+    /// stands on another creature. Without it all are struck.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub height: Option<f64>,
     /// Hit points that it costs where it begins, 0 to 1. At a distance d it is this times 1 - d / radius.
@@ -95,7 +100,7 @@ pub struct Shot {
     pub damage: f64,
     /// Speed that it gives along its way, metres a second.
     pub throw: f64,
-    /// A wave that goes out from where it meets something. It spares whom the shot has struck.
+    /// A wave that goes out from where the shot meets something. The shot and its wave together strike a person once.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wave: Option<Wave>,
 }
@@ -148,7 +153,7 @@ impl Attack {
 
     /// True if its limb's skin hurts.
     pub(crate) fn limb_strikes(&self) -> bool {
-        self.damage != 0.0 || self.throw != 0.0
+        strikes(self.damage, self.throw)
     }
 
     /// The wave that goes out where its limb comes down, or where its shot ends.
@@ -188,6 +193,10 @@ const SHOT_WAVE: WaveNames = [
 const MILLION: &str = "more than 0 and at most 1,000,000";
 
 impl Wave {
+    pub(crate) fn strikes(&self) -> bool {
+        strikes(self.damage, self.throw)
+    }
+
     fn check(&self, names: &WaveNames) -> Result<(), BrainProblem> {
         let [radius, speed, height, damage, throw] = *names;
         check_blow([damage, throw], self.damage, self.throw)?;
@@ -205,7 +214,17 @@ impl Wave {
     }
 }
 
+impl Beam {
+    pub(crate) fn strikes(&self) -> bool {
+        strikes(self.damage, self.throw)
+    }
+}
+
 impl Shot {
+    pub(crate) fn strikes(&self) -> bool {
+        strikes(self.damage, self.throw)
+    }
+
     fn check(&self) -> Result<(), BrainProblem> {
         check_blow(["shot.damage", "shot.throw"], self.damage, self.throw)?;
         check_seconds("shot.radius", self.radius)?;
@@ -228,6 +247,11 @@ impl Shot {
             .as_ref()
             .map_or(Ok(()), |wave| wave.check(&SHOT_WAVE))
     }
+}
+
+/// True if a blow does anything.
+fn strikes(damage: f64, throw: f64) -> bool {
+    damage != 0.0 || throw != 0.0
 }
 
 fn check_blow(names: [&'static str; 2], damage: f64, throw: f64) -> Result<(), BrainProblem> {

@@ -34,7 +34,7 @@ use glam::DVec3;
 pub use config::CreatureConfig;
 pub use foresee::Foresight;
 pub use ranged::{ActiveShot, ActiveWave};
-pub use report::{AttackPhase, Blow, CreatureEvent, CreatureReport};
+pub use report::{ActiveBeam, AttackPhase, Blow, CreatureEvent, CreatureReport};
 pub use state::CreatureState;
 use state::Sound;
 pub use world::{Noise, Person, Riding, Surroundings, Wound};

@@ -10,9 +10,21 @@ pub struct CreatureReport {
     pub events: Vec<CreatureEvent>,
     /// Whom it struck. Give each to its climber with the next tick's input.
     pub blows: Vec<Blow>,
-    /// The beam of its attack, if there is one in this tick, in world space: where it goes out from, and where it ends,
-    /// which is at what stops it.
-    pub beam: Option<[DVec3; 2]>,
+    /// The beam of its attack, if there is one in this tick.
+    pub beam: Option<ActiveBeam>,
+}
+
+/// A beam, in world space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ActiveBeam {
+    /// The state whose attack it is of.
+    pub state: StateId,
+    /// Where it goes out from.
+    pub from: DVec3,
+    /// Where it ends: at its length, or at what stops it.
+    pub to: DVec3,
+    /// Metres.
+    pub radius: f64,
 }
 
 /// Something that a creature did, or that happened to it.
@@ -59,8 +71,8 @@ pub enum CreatureEvent {
         /// Metres a second.
         velocity: DVec3,
     },
-    /// What it threw has struck somebody, or met terrain or another creature. Of a shot that is over since it has met
-    /// nothing for long, or since there are too many, nothing is told.
+    /// What it threw has struck somebody, or met terrain or another creature. No event tells of a shot that ends
+    /// otherwise: since its time is over, it is too far away, or there are too many.
     Burst {
         /// The state whose attack it was of.
         state: StateId,

@@ -10,7 +10,7 @@ use crate::support::TICK;
 use clamber_colossus::{Creature, CreatureConfig, CreatureEvent, Person, Riding, Surroundings};
 use clamber_surface::geometry::{Similarity, rotation_from_axis_angle};
 use clamber_surface::mesh::TriangleId;
-use clamber_world::{HalfSpace, MaterialPoint, Obstacle};
+use clamber_world::{HalfSpace, MaterialPoint, Obstacle, TriangleTerrain};
 use glam::DVec3;
 use serde_json::{Value, json};
 
@@ -52,22 +52,23 @@ fn riders_are_spared() {
     let ground = HalfSpace::below(0.0);
     for (state, way, file) in all_ways() {
         let giant = before(&act(state, json!({ way: file })));
-        for (riding, struck) in [(false, 1), (true, 0)] {
-            let at = Riding {
-                at: MaterialPoint::on_triangle(TriangleId(0), [1.0, 0.0, 0.0]),
-                hangs: false,
+        let at = Riding {
+            at: MaterialPoint::on_triangle(TriangleId(0), [1.0, 0.0, 0.0]),
+            hangs: false,
+        };
+        // The rider is where the other one is, who is seen.
+        let people = |_| {
+            let other = somebody(2, DVec3::new(2.0, 0.0, 20.0));
+            let rider = Person {
+                id: 1,
+                riding: Some(at),
+                ..other
             };
-            // The rider is where the other one is, who is seen.
-            let people = |_| {
-                let rider = Person {
-                    riding: riding.then_some(at),
-                    ..somebody(2, DVec3::new(2.0, 0.0, 20.0))
-                };
-                vec![rider]
-            };
-            let seen = attack(&giant, people, |_| vec![&ground]);
-            assert_eq!(seen.blows.len(), struck, "{way}");
-        }
+            vec![rider, other]
+        };
+        let seen = attack(&giant, people, |_| vec![&ground]);
+        let struck: Vec<u64> = seen.blows.iter().map(|(_, blow)| blow.person).collect();
+        assert_eq!(struck, [2], "{way}");
     }
 }
 
@@ -399,8 +400,9 @@ fn beams_tell_where_they_end() {
         ends.extend(giant.step(&around).unwrap().beam);
     }
     assert!(ends.len() > 60, "{}", ends.len());
-    for [from, to] in ends {
-        assert!((to.z - 25.0).abs() < 1e-4 && from.z < 25.0, "{from} {to}");
+    for beam in ends {
+        let near = (beam.to.z - 25.0).abs() < 1e-4 && beam.from.z < 25.0;
+        assert!(near && beam.radius == 0.4, "{beam:?}");
     }
 }
 
@@ -420,6 +422,146 @@ fn waves_pass_other_creatures() {
     let seen = attack_among(&giant, people, |_| {
         [vec![&ground as &dyn Obstacle], vec![&skin]]
     });
+    let struck: Vec<u64> = seen.blows.iter().map(|(_, blow)| blow.person).collect();
+    assert_eq!(struck, [1]);
+}
+
+/// A limb, its wave and its beam together strike a person once, in each of several stomps whose waves overlap.
+#[test]
+fn limb_wave_and_beam_strike_once_in_each_attack() {
+    let ground = HalfSpace::below(0.0);
+    let mut act = act(
+        "stomp_right",
+        json!({
+            "wave": { "radius": 30.0, "speed": 1.5, "damage": 0.2, "throw": 2.0 },
+            "beam": { "length": 60.0, "radius": 0.5, "damage": 0.1, "throw": 1.0 }
+        }),
+    );
+    (act["attack"]["damage"], act["attack"]["throw"]) = (0.6.into(), 9.0.into());
+    let states = json!({
+        "stomps": { "act": act, "transitions": [{ "to": "again" }] },
+        "again": { "transitions": [{ "to": "stomps", "after": 0.1 }] },
+        "ends": { "final": true }
+    });
+    let kind = crate::support::kind(&crate::support::brain_with("stomps", &states.to_string()));
+    let mut giant = Creature::new(kind, CreatureConfig::default()).unwrap();
+    // One at the foot, who is the prey of the beam, and others whom only waves reach, also while the foot is raised again.
+    let far = (2..22u32).map(|id| somebody(id.into(), DVec3::new(-6.0 - f64::from(id), 0.0, 7.0)));
+    let people: Vec<_> = far
+        .chain([somebody(1, DVec3::new(-3.6, 0.0, 7.0))])
+        .collect();
+    let (mut begun, mut blows) = (0u32, Vec::new());
+    for _ in 0..4_000 {
+        let around = Surroundings {
+            terrain: &[&ground],
+            people: &people,
+            ..Surroundings::default()
+        };
+        let report = giant.step(&around).unwrap();
+        let is_wave = |event: &&CreatureEvent| matches!(event, CreatureEvent::Wave { .. });
+        begun += report.events.iter().filter(is_wave).count() as u32;
+        blows.extend(report.blows.iter().map(|blow| (blow.person, blow.damage)));
+        if begun == 4 {
+            giant.enter("ends");
+        }
+    }
+    assert_eq!((begun, giant.waves().count()), (4, 0));
+    for id in 1..22 {
+        let count = blows.iter().filter(|(person, _)| *person == id).count();
+        assert_eq!(count, 4, "{id}: {blows:?}");
+    }
+}
+
+/// What does nothing itself spares nobody from what does.
+#[test]
+fn what_has_neither_damage_nor_throw_spares_nobody() {
+    let ground = HalfSpace::below(0.0);
+    let wave = json!({ "radius": 5.0, "damage": 0.5, "throw": 5.0 });
+    let shell = json!({ "speed": 30.0, "radius": 0.0, "damage": 0.0, "throw": 0.0, "wave": wave });
+    let giant = before(&act("swipe_right", json!({ "shot": shell })));
+    for at in [DVec3::new(2.0, 0.0, 20.0), DVec3::new(-8.0, 0.0, 26.0)] {
+        let people = |_| vec![somebody(1, at), somebody(2, at + DVec3::X)];
+        let seen = attack(&giant, people, |_| vec![&ground]);
+        let mut struck: Vec<u64> = seen.blows.iter().map(|(_, blow)| blow.person).collect();
+        struck.sort_unstable();
+        assert_eq!(struck, [1, 2]);
+        let harm = seen.blows.iter().all(|(_, blow)| blow.damage > 0.1);
+        assert!(harm, "{:?}", seen.blows);
+        // Also who only stands near where it bursts on the ground.
+        let people = |time: f64| {
+            let ran = if time > 0.3 { 2.0 } else { 0.0 };
+            vec![somebody(1, at + DVec3::X * ran)]
+        };
+        let seen = attack(&giant, people, |_| vec![&ground]);
+        assert_eq!(seen.blows.len(), 1);
+        assert!(seen.blows[0].1.damage < 0.4, "{:?}", seen.blows);
+    }
+    let show = json!({ "radius": 30.0, "damage": 0.0, "throw": 0.0 });
+    let mut act = act(
+        "stomp_right",
+        json!({ "wave": show.clone(), "beam": {
+        "length": 60.0, "radius": 0.5, "damage": 0.0, "throw": 0.0 } }),
+    );
+    act["attack"]["damage"] = 0.5.into();
+    let giant = before(&act);
+    let under = crate::attacks::spot(&giant, &act).with_y(0.0);
+    let seen = attack(&giant, |_| vec![somebody(1, under)], |_| vec![&ground]);
+    assert_eq!(seen.blows.len(), 1);
+}
+
+/// On a slab that is closed below, also where it rises about the limb, and below a bridge, waves begin on the ground.
+#[test]
+fn waves_begin_on_slabs_and_below_bridges() {
+    let slab = |heights: [f64; 2]| {
+        let corners = [(-40.0, -40.0), (40.0, -40.0), (40.0, 40.0), (-40.0, 40.0)];
+        let quad = |y: f64| corners.map(|(x, z)| DVec3::new(x, y, z).as_vec3());
+        let places: Vec<_> = heights.into_iter().flat_map(quad).collect();
+        let triangles = [[0, 2, 1], [0, 3, 2], [4, 5, 6], [4, 6, 7]];
+        TriangleTerrain::new(&places, &triangles, &[], DVec3::ZERO).unwrap()
+    };
+    let (floor, bridge) = (slab([0.0, -3.0]), slab([90.0, 80.0]));
+    // It rises by so much in the wind-up.
+    for (state, rise) in [
+        ("stomp_right", 0.0),
+        ("kick_left", 0.0),
+        ("stomp_right", 2.0),
+    ] {
+        let risen = slab([rise, -3.0]);
+        let wave = json!({ "radius": 15.0, "damage": 0.5, "throw": 5.0 });
+        let giant = before(&act(state, json!({ "wave": wave })));
+        let seen = attack(
+            &giant,
+            |_| Vec::new(),
+            |time| {
+                let floor = if time > 1.8 { &risen } else { &floor };
+                vec![floor as &dyn Obstacle, &bridge]
+            },
+        );
+        let place = waves(&seen)[0].1;
+        let height = place.y - rise;
+        assert!((height - 0.5).abs() < 1e-3, "{state} at {rise}: {height}");
+    }
+}
+
+/// Who stands on an edge, or on a slope, stands on the ground.
+#[test]
+fn low_waves_strike_who_stands_on_edges_and_slopes() {
+    let wave = json!({ "radius": 40.0, "height": 0.05, "damage": 0.5, "throw": 5.0 });
+    let giant = before(&act("stomp_right", json!({ "wave": wave })));
+    let ground = HalfSpace::below(-3.0);
+    let quad = [(-40.0, -40.0), (20.0, -40.0), (20.0, 40.0), (-40.0, 40.0)];
+    let places = quad.map(|(x, z)| DVec3::new(x, 0.0, z).as_vec3());
+    let table = TriangleTerrain::new(&places, &[[0, 2, 1], [0, 3, 2]], &[], DVec3::ZERO);
+    let table = table.unwrap();
+    // A ball of 0.3 m on the edge of the table, with its middle 0.1 m beyond it.
+    let rise = 0.3 - (0.3f64 * 0.3 - 0.1 * 0.1).sqrt();
+    let people = |_| {
+        vec![
+            somebody(1, DVec3::new(20.1, -rise, 5.0)),
+            somebody(2, DVec3::new(20.1, 0.2, 8.0)),
+        ]
+    };
+    let seen = attack(&giant, people, |_| vec![&table as &dyn Obstacle, &ground]);
     let struck: Vec<u64> = seen.blows.iter().map(|(_, blow)| blow.person).collect();
     assert_eq!(struck, [1]);
 }

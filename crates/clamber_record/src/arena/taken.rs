@@ -4,13 +4,12 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use clamber_climber::{ClimberConfig, ClimberInput, ClimberState};
-use clamber_colossus::{ActiveShot, ActiveWave, Creature};
+use clamber_colossus::{ActiveBeam, ActiveShot, ActiveWave, Creature, CreatureEvent};
 use clamber_fight::{Arena, ArenaPart, Blade, CreatureId, FighterId, Order, ProjectilePlace};
 use clamber_surface::geometry::Affine;
 use clamber_surface::mesh::ColliderMesh;
 use clamber_world::{Obstacle, ObstacleId};
 use foxglove::messages::Log;
-use glam::DVec3;
 
 use crate::RecordError;
 use crate::chunks::TakenTick;
@@ -42,7 +41,7 @@ pub(crate) struct TakenCreature {
     pub(crate) skin: Option<(Arc<ColliderMesh>, Vec<Affine>)>,
     pub(crate) shots: Vec<ActiveShot>,
     pub(crate) waves: Vec<ActiveWave>,
-    pub(crate) beam: Option<[DVec3; 2]>,
+    pub(crate) beam: Option<ActiveBeam>,
 }
 
 #[derive(Clone, Debug)]
@@ -155,9 +154,28 @@ impl TakenCreature {
             figure: TakenFigure::new(Arc::clone(joints), palette, *surface.world_from_model()),
             brain: brain(creature),
             shots: creature.shots().collect(),
-            waves: creature.waves().collect(),
+            waves: creature.waves().chain(sudden_waves(creature)).collect(),
             beam: creature.report().beam,
             skin: with_skin.then(|| (Arc::clone(surface.mesh()), palette.matrices().to_vec())),
         }
     }
+}
+
+/// Waves that have struck all at once in this tick.
+fn sudden_waves(creature: &Creature) -> impl Iterator<Item = ActiveWave> + '_ {
+    let begun = creature.report().events.iter();
+    let begun = begun.filter_map(|event| match event {
+        CreatureEvent::Wave {
+            state,
+            place,
+            radius,
+        } => Some(ActiveWave {
+            state: *state,
+            place: *place,
+            reach: *radius,
+            radius: *radius,
+        }),
+        _ => None,
+    });
+    begun.filter(|wave| !creature.waves().any(|one| one.place == wave.place))
 }

@@ -224,7 +224,10 @@ fn attacks(now: u64, creatures: &[TakenCreature]) -> SceneEntity {
         let waves = waves.map(|wave| ball(wave.place, wave.reach, 0.25));
         entity.spheres.extend(shots.chain(waves));
         let beam = creature.beam;
-        let beam = beam.map(|[from, to]| arrow(from, to, [0.2, 0.2], [1.0, 0.9, 0.4]));
+        let beam = beam.map(|beam| {
+            let thick = 2.0 * beam.radius;
+            arrow(beam.from, beam.to, [thick, thick], [1.0, 0.9, 0.4])
+        });
         entity.arrows.extend(beam);
     }
     entity

@@ -3,7 +3,7 @@ use serde::{Deserialize, Serialize};
 
 use super::line::Line;
 use crate::brain::{Beam, StateId};
-use crate::creature::report::Blow;
+use crate::creature::report::{ActiveBeam, Blow};
 use crate::creature::{Creature, Surroundings};
 
 /// A beam that turns is looked at where its end has moved by this, metres, beside its own radius, and so often in a tick
@@ -51,8 +51,14 @@ impl Creature {
             radius: file.radius,
         };
         let end = line.stop(0.0, around).map_or(1.0, |(share, _)| share);
-        self.report.beam = Some([ray.from, line.at(end)]);
-        for person in around.people {
+        self.report.beam = Some(ActiveBeam {
+            state,
+            from: ray.from,
+            to: line.at(end),
+            radius: file.radius,
+        });
+        let people = if file.strikes() { around.people } else { &[] };
+        for person in people {
             if self.state.struck.contains(&person.id) {
                 continue;
             }
@@ -61,7 +67,7 @@ impl Creature {
                 continue;
             };
             self.state.struck.push(person.id);
-            self.deal(Blow {
+            self.report.blows.push(Blow {
                 person: person.id,
                 velocity: ray.direction * file.throw,
                 damage: file.damage,

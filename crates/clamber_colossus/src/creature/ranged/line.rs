@@ -21,8 +21,7 @@ impl Line {
 
     /// The share of its way after which its middle meets terrain or another creature, and the direction out of that.
     ///
-    /// It is looked for from `behind` metres before the way's beginning on, so that ways which follow each other leave
-    /// no gap.
+    /// The search begins `behind` metres before the start of the way, so that ways which follow each other leave no gap.
     pub(super) fn stop(&self, behind: f64, around: &Surroundings<'_>) -> Option<(f64, DVec3)> {
         let length = self.way.length();
         let along = self.way.try_normalize()?;

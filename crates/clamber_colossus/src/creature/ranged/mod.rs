@@ -10,7 +10,7 @@ mod wave;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::report::{AttackPhase, Blow};
+use super::report::AttackPhase;
 use super::state::FARTHEST;
 use super::{Creature, Surroundings};
 use crate::brain::{Act, Attack, StateId, WaveOf};
@@ -38,6 +38,8 @@ pub(super) struct Ranged {
     beam: Option<Ray>,
     /// What has left the creature in the attack that it is at.
     is_out: Out,
+    /// Number of that attack.
+    attack: u32,
     waves: Vec<WaveState>,
     shots: Vec<ShotState>,
     /// Number of the next shot.
@@ -55,11 +57,12 @@ impl Ranged {
     /// Nothing of the next attack has been let out.
     pub(super) fn begin(&mut self) {
         (self.is_out, self.beam) = (Out::default(), None);
+        self.attack = self.attack.wrapping_add(1);
     }
 
     /// The creature is elsewhere, and aims at a place there. What its attacks have let out stays.
     pub(super) fn be_put(&mut self, mark: DVec3) {
-        (self.mark, self.beam) = (mark, None);
+        (self.mark, self.beam) = (reachable(mark), None);
     }
 
     /// Goes with the ground that the creature stands on, but for what has flown.
@@ -91,6 +94,7 @@ impl Ranged {
                     && reach
                     && attack.is_some_and(|one| one.wave_of(wave.of).is_some())
             })
+            && self.shots.is_sorted_by(|a, b| a.number < b.number)
             && self.shots.iter().all(|shot| {
                 let attack = attack_of(kind, shot.state);
                 is_near(shot.place)
@@ -127,7 +131,8 @@ impl Creature {
     /// Decides where a shot or a beam of the attack that begins goes to.
     pub(super) fn mark_prey(&mut self) {
         let seen = self.state.prey.filter(|_| self.state.unseen == 0);
-        self.state.ranged.mark = seen.map_or_else(|| self.ground_ahead(), |(_, place)| place);
+        let mark = seen.map_or_else(|| self.ground_ahead(), |(_, place)| place);
+        self.state.ranged.mark = reachable(mark);
     }
 
     fn ground_ahead(&self) -> DVec3 {
@@ -169,7 +174,8 @@ impl Creature {
         if attack.wave.is_none() && attack.shot.is_none() && attack.beam.is_none() {
             return;
         }
-        let Some(end) = self.limb_end(strike) else {
+        let end = self.limb_end(strike);
+        let Some(end) = end.filter(|end| end.is_finite() && *end == reachable(*end)) else {
             return;
         };
         self.follow_prey(attack, phase, dt);
@@ -200,13 +206,6 @@ impl Creature {
         }
     }
 
-    /// Tells of a blow, if it is one.
-    fn deal(&mut self, blow: Blow) {
-        if blow.damage != 0.0 || blow.velocity != DVec3::ZERO {
-            self.report.blows.push(blow);
-        }
-    }
-
     /// Where the limb's end is, in world space.
     fn limb_end(&self, strike: &Strike) -> Option<DVec3> {
         let frame = self.palette.model_from_joint(strike.end()?)?;
@@ -223,9 +222,15 @@ impl Creature {
         let prey = self.state.prey.filter(|_| self.state.unseen == 0);
         if let (true, Some((_, place))) = (still_aims, prey) {
             let way = place - self.state.ranged.mark;
-            self.state.ranged.mark += way.clamp_length_max(attack.follows * dt);
+            let mark = self.state.ranged.mark + way.clamp_length_max(attack.follows * dt);
+            self.state.ranged.mark = reachable(mark);
         }
     }
+}
+
+/// The nearest place that a creature's attacks reach.
+fn reachable(place: DVec3) -> DVec3 {
+    place.clamp(DVec3::splat(-FARTHEST), DVec3::splat(FARTHEST))
 }
 
 /// The attack that a state makes.

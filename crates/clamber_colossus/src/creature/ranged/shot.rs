@@ -5,13 +5,13 @@ use serde::{Deserialize, Serialize};
 
 use super::line::Line;
 use super::wave::{self, WaveState};
-use super::{MOST, attack_of, moved_off};
+use super::{MOST, attack_of, moved_off, reachable};
 use crate::brain::{Shot, StateId, WaveOf};
 use crate::creature::report::{Blow, CreatureEvent};
-use crate::creature::state::FARTHEST;
 use crate::creature::{Creature, Surroundings};
 
-/// A shot is no faster than this, metres a second: somewhat more than its own speed, and what gravity adds in its time.
+/// A shot is no faster than this, metres a second: a little more than the fastest one reaches, which has 1,000 m/s at the
+/// start and 60,000 by gravity.
 const FASTEST: f64 = 62_000.0;
 
 /// Obstacles are looked for from so far behind it on, metres.
@@ -64,11 +64,7 @@ impl Creature {
 
     /// Lets a shot go to where the attack aims.
     pub(super) fn shoot(&mut self, state: StateId, end: DVec3, file: &Shot) {
-        if !end.is_finite() || end.abs().max_element() > FARTHEST {
-            return;
-        }
-        let ranged = &mut self.state.ranged;
-        let way = ranged.mark - end;
+        let way = self.state.ranged.mark - end;
         let velocity = direction(way, file).unwrap_or(self.state.heading()) * file.speed;
         let ranged = &mut self.state.ranged;
         if ranged.shots.len() >= MOST {
@@ -114,29 +110,28 @@ impl Creature {
             (share <= end).then_some((share, person))
         });
         let first = touches.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.id.cmp(&b.1.id)));
-        let (place, struck) = match (first, stop) {
+        let (place, out, struck) = match (first, stop) {
             (Some((share, person)), _) => {
                 let place = line.at(share);
-                let along = line.way.normalize_or_zero();
-                self.deal(Blow {
-                    person: person.id,
-                    velocity: along * file.throw,
-                    damage: file.damage,
-                    place,
-                    state: shot.state,
-                });
-                (place, vec![person.id])
+                if file.strikes() {
+                    self.report.blows.push(Blow {
+                        person: person.id,
+                        velocity: line.way.normalize_or_zero() * file.throw,
+                        damage: file.damage,
+                        place,
+                        state: shot.state,
+                    });
+                    (place, DVec3::Y, vec![person.id])
+                } else {
+                    (place, DVec3::Y, Vec::new())
+                }
             }
-            (None, Some((share, out))) => {
-                let most = file.wave.as_ref().map_or(0.0, wave::lift);
-                let off = file.radius.min(most);
-                (moved_off(line.at(share), out, off, around), Vec::new())
-            }
+            (None, Some((share, out))) => (line.at(share), out, Vec::new()),
             (None, None) => {
                 shot.place = line.at(1.0);
                 shot.velocity += pull * dt;
                 shot.ticks = shot.ticks.saturating_add(1);
-                let is_near = shot.place.abs().max_element() <= FARTHEST;
+                let is_near = shot.place == reachable(shot.place) && is_reached(shot.velocity);
                 return is_near && f64::from(shot.ticks) * dt < file.lasts;
             }
         };
@@ -150,7 +145,8 @@ impl Creature {
             let begun = WaveState {
                 state,
                 of: WaveOf::Shot,
-                place,
+                attack: self.state.ranged.attack,
+                place: moved_off(place, out, wave::lift(wave), around),
                 reach: 0.0,
                 struck,
             };

@@ -1,5 +1,7 @@
 use core::f64::consts::FRAC_1_SQRT_2;
 
+use clamber_surface::surface::TargetMotion;
+use clamber_world::Obstacle;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -20,6 +22,9 @@ const NEAR: f64 = 0.2;
 /// Ground is no steeper than this: the height of its normal.
 const LEVEL: f64 = 0.5;
 
+/// Two rays meet the same ground if they do so within this, metres.
+const SAME: f64 = 1e-3;
+
 /// A wave that spreads.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ActiveWave {
@@ -39,6 +44,8 @@ pub(super) struct WaveState {
     pub(super) state: StateId,
     pub(super) of: WaveOf,
     pub(super) place: DVec3,
+    /// Number of the attack.
+    pub(super) attack: u32,
     /// How far it has come, metres.
     pub(super) reach: f64,
     /// Whom it has struck.
@@ -77,6 +84,7 @@ impl Creature {
         let wave = WaveState {
             state,
             of: WaveOf::Limb,
+            attack: self.state.ranged.attack,
             place: moved_off(ground, DVec3::Y, lift(file), around),
             reach: 0.0,
             struck: self.state.struck.clone(),
@@ -84,18 +92,29 @@ impl Creature {
         self.begin_wave(wave, file, around, dt);
     }
 
-    /// The ground at a limb's end, below it, or above it if it is in the ground.
+    /// The ground that is nearest to a limb's end: below it, or above it if the limb is in the ground.
     fn ground_at(&self, end: DVec3, around: &Surroundings<'_>) -> Option<DVec3> {
         let near = NEAR * self.size.height;
-        [0.0, near].into_iter().find_map(|above| {
-            let from = end + DVec3::Y * above;
+        let first = |from: DVec3, direction: DVec3, most: f64| {
             let hits = around.terrain.iter().filter_map(|terrain| {
-                let hit = terrain.cast_ray(from, DVec3::NEG_Y, near + above)?;
+                let hit = terrain.cast_ray(from, direction, most)?;
                 (hit.distance > 0.0 && hit.normal.y.abs() >= LEVEL).then_some(hit.distance)
             });
-            let nearest = hits.fold(f64::INFINITY, f64::min);
-            nearest.is_finite().then(|| from - DVec3::Y * nearest)
-        })
+            hits.min_by(f64::total_cmp)
+        };
+        let below = first(end, DVec3::NEG_Y, near);
+        let above = first(end + DVec3::Y * near, DVec3::NEG_Y, near).map(|down| near - down);
+        // Nothing is between a limb and the ground that it is in: that is no bridge above it.
+        let above = above.filter(|above| {
+            let up = first(end, DVec3::Y, *above);
+            up.is_none_or(|up| up > above - SAME)
+        });
+        match (below, above) {
+            (Some(below), Some(above)) if below < above => Some(-below),
+            (_, Some(above)) => Some(above),
+            (below, None) => below.map(|below| -below),
+        }
+        .map(|rise| end + DVec3::Y * rise)
     }
 
     pub(super) fn begin_wave(
@@ -141,7 +160,8 @@ impl Creature {
         let grown = |speed: f64| (from + speed * dt).min(file.radius);
         let to = file.speed.map_or(file.radius, grown);
         wave.reach = to;
-        for person in around.people {
+        let people = if file.strikes() { around.people } else { &[] };
+        for person in people {
             if person.riding.is_some()
                 || !person.body.is_valid()
                 || wave.struck.contains(&person.id)
@@ -167,11 +187,10 @@ impl Creature {
             let away = DVec3::new(way.x, 0.0, way.z).try_normalize();
             let direction = away.map_or(DVec3::Y, |away| (away + DVec3::Y) * FRAC_1_SQRT_2);
             wave.struck.push(person.id);
-            let is_of = |(state, _)| wave.of == WaveOf::Limb && state == wave.state;
-            if self.attack().is_some_and(is_of) {
+            if wave.of == WaveOf::Limb && wave.attack == self.state.ranged.attack {
                 self.state.struck.push(person.id);
             }
-            self.deal(Blow {
+            self.report.blows.push(Blow {
                 person: person.id,
                 velocity: direction * (file.throw * share),
                 damage: file.damage * share,
@@ -196,13 +215,12 @@ fn nearest_on(person: &Person, place: DVec3) -> DVec3 {
     start + axis * share
 }
 
-/// True if there is no ground within a height below somebody.
+/// True if a body would touch no terrain if it were lower by a height.
 fn is_above(person: &Person, height: f64, around: &Surroundings<'_>) -> bool {
-    let [a, b] = person.body.ends;
-    let low = if a.y < b.y { a } else { b };
-    let reach = person.body.radius + height;
-    let ground = |obstacle: &&dyn clamber_world::Obstacle| {
-        obstacle.cast_ray(low, DVec3::NEG_Y, reach).is_some()
+    let down = [DVec3::NEG_Y * height; 2];
+    let touches = |obstacle: &&dyn Obstacle| {
+        let hit = obstacle.cast_capsule(&person.body, down, TargetMotion::Still);
+        hit.is_some()
     };
-    !around.terrain.iter().any(ground)
+    !around.terrain.iter().any(touches)
 }
