@@ -1,0 +1,189 @@
+//! Whether there is room: how far the way ahead is free, how far it may turn, and whether a blow would go through rock.
+//!
+//! Ground is looked for by rays down along three lanes. What stands on it is looked for by sweeps of thin capsules that
+//! lie across the body, or along it where it turns, one for each band of its height.
+
+mod ahead;
+mod strike;
+mod turn;
+
+use core::ops::Range;
+
+use clamber_surface::geometry::WorldCapsule;
+use clamber_surface::surface::TargetMotion;
+use clamber_world::{Obstacle, SweepContact};
+use glam::DVec3;
+
+use super::ground::GROUND_SPACING;
+use super::state::NO_GROUND;
+use super::{Creature, Surroundings};
+use crate::feet::Ground;
+use crate::kind::{Band, EDGES, Extent};
+
+/// What is no higher above the ground than this share of its height it steps over.
+pub(super) const STEPS_OVER: f64 = 0.06;
+
+/// It keeps this far from what stands in its way, as a share of its height.
+const MARGIN: f64 = 0.015;
+
+/// From this band on one straight sweep of all that are higher is enough, if nothing is in its way.
+const STRAIGHT_FROM: usize = 2;
+
+/// What a sweep touches does not stop it if it moves along that: the sine of the angle between both.
+const ALONG: f64 = 0.01;
+
+/// What is looked for.
+#[derive(Clone, Copy)]
+enum Among {
+    Terrain,
+    Creatures,
+}
+
+/// The surroundings of a creature, seen from where it stands, in the direction in which it may go.
+pub(super) struct Room<'a> {
+    around: &'a Surroundings<'a>,
+    extent: &'a Extent,
+    pub(super) origin: DVec3,
+    forward: DVec3,
+    left: DVec3,
+    scale: f64,
+    height: f64,
+    /// Tangent of the steepest ground that it walks onto.
+    steepest: f64,
+}
+
+impl Creature {
+    /// Its surroundings in the direction of its heading.
+    pub(super) fn room<'a>(&self, around: &'a Surroundings<'a>, extent: &'a Extent) -> Room<'a> {
+        self.room_towards(around, extent, self.state.heading())
+    }
+
+    /// Its surroundings in the direction of a level vector.
+    pub(super) fn room_towards<'a>(
+        &self,
+        around: &'a Surroundings<'a>,
+        extent: &'a Extent,
+        way: DVec3,
+    ) -> Room<'a> {
+        let forward = way.try_normalize().unwrap_or(DVec3::Z);
+        Room {
+            around,
+            extent,
+            origin: self.state.position,
+            forward,
+            left: DVec3::new(forward.z, 0.0, -forward.x),
+            scale: self.size.scale,
+            height: self.size.height,
+            steepest: libm::tan(self.config.most_slope),
+        }
+    }
+
+    /// The gradient of the ground on which it stands, as it knows it.
+    pub(super) fn slope(&self) -> DVec3 {
+        let heading = self.state.heading();
+        let left = DVec3::new(heading.z, 0.0, -heading.x);
+        let most = libm::tan(self.config.most_slope).min(1.0);
+        let rise = |[from, to]: [usize; 2], steps: f64| {
+            let [from, to] = [from, to].map(|index| self.state.ground[index]);
+            let known = from < NO_GROUND && to < NO_GROUND;
+            let rise = (to - from) / (steps * GROUND_SPACING * self.size.height);
+            if known { rise.clamp(-most, most) } else { 0.0 }
+        };
+        heading * rise([0, 6], 6.0) + left * rise([8, 7], 2.0)
+    }
+}
+
+impl Room<'_> {
+    /// The box around some bands, metres.
+    fn box_of(&self, bands: Range<usize>) -> Band {
+        let bands = bands.map(|index| self.band(index));
+        let around = |a: Band, b: Band| Band {
+            right: a.right.min(b.right),
+            left: a.left.max(b.left),
+            back: a.back.min(b.back),
+            front: a.front.max(b.front),
+        };
+        bands.reduce(around).unwrap_or(self.band(0))
+    }
+
+    fn is_clear(&self, capsule: &WorldCapsule, way: DVec3) -> bool {
+        let all = [self.around.terrain, self.around.creatures];
+        let mut any = |_: &SweepContact| true;
+        all.into_iter()
+            .all(|obstacles| first(obstacles, capsule, [way; 2], &mut any).is_none())
+    }
+
+    /// A band's box, metres.
+    fn band(&self, index: usize) -> Band {
+        let Band {
+            right,
+            left,
+            back,
+            front,
+        } = self.extent.bands[index];
+        Band {
+            right: right * self.scale,
+            left: left * self.scale,
+            back: back * self.scale,
+            front: front * self.scale,
+        }
+    }
+
+    /// Half the thickness of a band, and the height of its middle above the ground, metres.
+    fn thick(&self, index: usize) -> f64 {
+        0.5 * (EDGES[index + 1] - EDGES[index]) * self.height
+    }
+
+    fn middle(&self, index: usize) -> f64 {
+        0.5 * (EDGES[index + 1] + EDGES[index]) * self.height
+    }
+
+    fn below(&self, place: DVec3) -> Option<f64> {
+        let ground = Ground {
+            terrain: self.around.terrain,
+            reach: 0.5 * self.height,
+        };
+        ground.below(place).map(|(level, _)| level)
+    }
+
+    /// The time of the first touch of a capsule that is in its way, from 0 to 1.
+    fn sweep(
+        &self,
+        capsule: &WorldCapsule,
+        ways: [DVec3; 2],
+        goes: &dyn Fn(DVec3) -> DVec3,
+        among: &[Among],
+    ) -> Option<f64> {
+        let mut is_in_the_way =
+            |hit: &SweepContact| hit.separation_normal.dot(goes(hit.contact.point)) < -ALONG;
+        let times = among.iter().filter_map(|among| {
+            let obstacles = match among {
+                Among::Terrain => self.around.terrain,
+                Among::Creatures => self.around.creatures,
+            };
+            first(obstacles, capsule, ways, &mut is_in_the_way)
+        });
+        times.min_by(f64::total_cmp)
+    }
+}
+
+/// The time at which a capsule first touches something that counts, from 0 to 1.
+fn first(
+    obstacles: &[&dyn Obstacle],
+    capsule: &WorldCapsule,
+    ways: [DVec3; 2],
+    counts: &mut dyn FnMut(&SweepContact) -> bool,
+) -> Option<f64> {
+    let reach = ways[0].length().max(ways[1].length()) + capsule.radius;
+    let middle = 0.5 * (capsule.ends[0] + capsule.ends[1]);
+    let reach = reach + 0.5 * capsule.ends[0].distance(capsule.ends[1]);
+    let near = obstacles.iter().filter(|obstacle| {
+        let bounds = obstacle.bounds();
+        bounds.is_none_or(|(center, radius)| center.distance(middle) <= radius + reach)
+    });
+    let hits = near.filter_map(|obstacle| {
+        let still = TargetMotion::Still;
+        obstacle.cast_capsule_where(capsule, ways, still, counts)
+    });
+    hits.map(|hit| hit.time).min_by(f64::total_cmp)
+}

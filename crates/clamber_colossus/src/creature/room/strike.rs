@@ -1,0 +1,50 @@
+//! Whether a blow would go through rock.
+
+use clamber_surface::geometry::WorldCapsule;
+use clamber_world::SweepContact;
+use glam::DVec3;
+
+use super::{STEPS_OVER, first};
+use crate::creature::{Creature, Surroundings};
+use crate::kind::{Strike, Swept};
+
+/// Blows may go into ground: what has a normal that is as upright as this cosine.
+const STEEP: f64 = 0.7;
+
+impl Creature {
+    /// False if anything of it would go through rock or another creature in an attack. What it steps over does not count,
+    /// nor ground: feet come down on that, and hands may strike it.
+    pub(in crate::creature) fn may_strike(
+        &self,
+        strike: &Strike,
+        around: &Surroundings<'_>,
+    ) -> bool {
+        let world = self.state.world_from_model(self.size.scale);
+        let low = self.state.position.y + STEPS_OVER * self.size.height;
+        for Swept { radius, aims, way } in &strike.swept {
+            let count = way.len().max(2) as f64 - 1.0;
+            let places = way.iter().enumerate().map(|(index, place)| {
+                // A leg goes to where it aims little by little.
+                let share = if *aims { index as f64 / count } else { 0.0 };
+                let place = world.transform_point(*place) + self.state.aim * share;
+                place.with_y(place.y.max(low + radius * self.size.scale))
+            });
+            let places: Vec<DVec3> = places.collect();
+            for pair in places.windows(2) {
+                let ball = WorldCapsule::ball(pair[0], radius * self.size.scale);
+                let way = pair[1] - pair[0];
+                // What it stands in or leaves is not in its way.
+                let mut is_rock = |hit: &SweepContact| {
+                    let normal = hit.separation_normal;
+                    !hit.started_inside && normal.y < STEEP && normal.dot(way) < 0.0
+                };
+                for obstacles in [around.terrain, around.creatures] {
+                    if first(obstacles, &ball, [way; 2], &mut is_rock).is_some() {
+                        return false;
+                    }
+                }
+            }
+        }
+        true
+    }
+}
