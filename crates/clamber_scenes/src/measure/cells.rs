@@ -3,6 +3,10 @@ use std::path::{Path, PathBuf};
 
 use super::Table;
 
+/// A bench fails if a number misses its bound by more than this factor: noise and brief runs do not, but what costs ten
+/// times as much as it did does.
+const FAR: f64 = 4.0;
+
 /// The bound that a measured number should keep.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Bound {
@@ -24,6 +28,15 @@ impl Bound {
         }
     }
 
+    /// True if a number misses the bound by more than [`FAR`].
+    fn is_far_missed(self, value: f64) -> bool {
+        match self {
+            Self::Least(bound) => value * FAR < bound,
+            Self::Most(bound) => value > bound * FAR,
+            Self::None => false,
+        }
+    }
+
     fn text(self) -> String {
         match self {
             Self::Least(bound) => format!(">= {bound}"),
@@ -35,12 +48,19 @@ impl Bound {
 
 /// The results of a bench, one row per number: its name, its value, its bound, and whether the bound holds.
 #[derive(Clone, Debug)]
-pub struct Cells(Table);
+pub struct Cells {
+    table: Table,
+    /// Names of the rows whose bound is missed by far.
+    far_missed: Vec<String>,
+}
 
 impl Default for Cells {
     /// No rows.
     fn default() -> Self {
-        Self(Table::new(&["name", "value", "bound", "holds"]))
+        Self {
+            table: Table::new(&["name", "value", "bound", "holds"]),
+            far_missed: Vec::new(),
+        }
     }
 }
 
@@ -55,7 +75,10 @@ impl Cells {
             bound.holds(value).to_owned(),
         ];
         println!("{}: {} {} {}", row[0], row[1], row[2], row[3]);
-        self.0.push(row.to_vec());
+        if bound.is_far_missed(value) {
+            self.far_missed.push(name.to_owned());
+        }
+        self.table.push(row.to_vec());
     }
 
     /// Appends a row without a bound and prints it.
@@ -64,17 +87,21 @@ impl Cells {
     }
 
     /// Prints all rows, and writes them to `BENCH.csv` in [`measure_folder`]; a brief run writes
-    /// `BENCH_brief.csv`. A bound that does not hold is no error.
+    /// `BENCH_brief.csv`. A bound that is missed by less than four times is no error.
     ///
     /// # Errors
-    /// If the file cannot be written.
+    /// If a number misses its bound by more than that, or the file cannot be written.
     pub fn finish(self, bench: &str, brief: bool) -> Result<(), Box<dyn Error>> {
-        println!("\n{}", self.0);
+        println!("\n{}", self.table);
         let brief = if brief { "_brief" } else { "" };
         let path = measure_folder().join(format!("{bench}{brief}.csv"));
-        self.0.write_csv(&path)?;
+        self.table.write_csv(&path)?;
         println!("written to {}", path.display());
-        Ok(())
+        if self.far_missed.is_empty() {
+            return Ok(());
+        }
+        let names = self.far_missed.join("; ");
+        Err(format!("bounds are missed by more than {FAR} times: {names}").into())
     }
 }
 
@@ -84,4 +111,22 @@ pub fn measure_folder() -> PathBuf {
     let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2);
     let target = target.or_else(|| Some(workspace?.join("target")));
     target.unwrap_or_default().join("measure")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bounds_are_missed_by_far_on_their_side() {
+        let cases = [
+            (Bound::Most(4.0), [3.0, 5.0, 15.9], [16.1, f64::INFINITY]),
+            (Bound::Least(4.0), [5.0, 3.0, 1.1], [0.9, 0.0]),
+        ];
+        for (bound, near, far) in cases {
+            assert!(near.iter().all(|value| !bound.is_far_missed(*value)));
+            assert!(far.iter().all(|value| bound.is_far_missed(*value)));
+        }
+        assert!(!Bound::None.is_far_missed(f64::INFINITY));
+    }
 }
