@@ -23,6 +23,7 @@ enum Command {
 }
 
 fn main() -> ExitCode {
+    end_with_reader();
     let ended = match Arguments::parse().command {
         Command::Inspect(options) => inspect::print(&options).map_err(|error| error.to_string()),
         Command::Climbability(options) => {
@@ -38,4 +39,16 @@ fn main() -> ExitCode {
             ExitCode::from(2)
         }
     }
+}
+
+/// Ends quietly when whoever reads the output has gone away, as `head` does: Rust's standard output tells of it by a panic.
+fn end_with_reader() {
+    let others = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |panic| {
+        let text = panic.payload().downcast_ref::<String>();
+        if text.is_some_and(|text| text.starts_with("failed printing to stdout")) {
+            std::process::exit(0);
+        }
+        others(panic);
+    }));
 }

@@ -6,7 +6,7 @@
 )]
 
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 
 use clamber_cli::inspect::{InspectOptions, inspect};
 use clamber_gltf::load;
@@ -416,5 +416,20 @@ fn climbability_refuses_what_it_does_not_know() {
         let error = String::from_utf8(ended.stderr).unwrap();
         assert_eq!(ended.status.code(), Some(2), "{wrong:?}: {error}");
         assert!(!error.contains("panicked"), "{error}");
+    }
+}
+
+/// Whoever reads the output may go away at any time, as `head` does.
+#[test]
+fn it_ends_with_its_reader() {
+    for arguments in [vec!["--joints"], vec!["--propose-brain"]] {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_clamber"));
+        command.arg("inspect").args(arguments).arg(giant::path());
+        let piped = command.stdout(Stdio::piped()).stderr(Stdio::piped());
+        let mut child = piped.spawn().unwrap();
+        drop(child.stdout.take());
+        let ended = child.wait_with_output().unwrap();
+        assert_eq!(String::from_utf8_lossy(&ended.stderr), "");
+        assert!(ended.status.success(), "{:?}", ended.status);
     }
 }

@@ -52,6 +52,8 @@ pub(crate) struct Chunks<T: TakenTick, W> {
     /// their memory.
     chunk: Vec<T>,
     gathered: usize,
+    /// New meshes of ticks that were left out: the next tick that is not has them.
+    meshes: Vec<TakenScenery>,
     /// `None` once writing has ended.
     thread: Option<WriterThread<T, W>>,
 }
@@ -100,6 +102,7 @@ impl<T: TakenTick + Send + 'static, W: Send + 'static> Chunks<T, W> {
             saved: 0,
             chunk: Vec::new(),
             gathered: 0,
+            meshes: Vec::new(),
             thread: Some(WriterThread {
                 chunks: to_thread,
                 written,
@@ -249,6 +252,7 @@ impl<T: TakenTick, W> Chunks<T, W> {
         if self.gap > 0 {
             // A gap ends where a replay can begin.
             let first = ticks.iter().position(TakenTick::is_saved).unwrap_or(count);
+            keep_meshes(&mut ticks[..first], &mut self.meshes);
             ticks.rotate_left(first);
             count -= first;
             self.dropped += first as u64;
@@ -258,6 +262,9 @@ impl<T: TakenTick, W> Chunks<T, W> {
             } else if !waits {
                 return Some(true);
             }
+        }
+        if count > 0 {
+            self.chunk[0].scenery().splice(0..0, self.meshes.drain(..));
         }
         // At the end what is missing there is told.
         let lost = if count == 0 { self.gap } else { 0 };
@@ -272,6 +279,7 @@ impl<T: TakenTick, W> Chunks<T, W> {
                 self.dropped += count as u64;
                 self.gap += count as u64;
                 self.chunk = chunk;
+                keep_meshes(&mut self.chunk[..count], &mut self.meshes);
                 Some(true)
             }
             Passed::Ended => Some(false),
@@ -285,6 +293,14 @@ impl<T: TakenTick, W> Chunks<T, W> {
             Ok(ended) => ended,
             Err(panic) => std::panic::resume_unwind(panic),
         }
+    }
+}
+
+/// Takes the new meshes out of ticks that are left out.
+fn keep_meshes<T: TakenTick>(ticks: &mut [T], meshes: &mut Vec<TakenScenery>) {
+    for tick in ticks {
+        let taken = std::mem::take(tick.scenery());
+        meshes.extend(taken.into_iter().filter(TakenScenery::has_shape));
     }
 }
 
@@ -306,13 +322,20 @@ mod tests {
     type Ticks = Vec<(u64, u64)>;
 
     /// A tick of which something is saved if its number is a multiple of 5.
-    impl TakenTick for (u64, u64) {
+    #[derive(Default)]
+    struct Tick {
+        number: u64,
+        gap: u64,
+        meshes: Vec<TakenScenery>,
+    }
+
+    impl TakenTick for Tick {
         fn is_saved(&self) -> bool {
-            self.0.is_multiple_of(5)
+            self.number.is_multiple_of(5)
         }
 
         fn follows_gap(&mut self, ticks: u64) {
-            self.1 = ticks;
+            self.gap = ticks;
         }
 
         fn is_due(&self) -> bool {
@@ -320,17 +343,18 @@ mod tests {
         }
 
         fn scenery(&mut self) -> &mut Vec<TakenScenery> {
-            unreachable!("these ticks have no meshes")
+            &mut self.meshes
         }
     }
 
     /// Stores the ticks that it is given, slower than the test makes them.
     struct Slow(Ticks, Duration);
 
-    impl WriteTicks<(u64, u64), Ticks> for Slow {
-        fn chunk(&mut self, ticks: &mut [(u64, u64)]) -> Result<(), RecordError> {
+    impl WriteTicks<Tick, Ticks> for Slow {
+        fn chunk(&mut self, ticks: &mut [Tick]) -> Result<(), RecordError> {
             std::thread::sleep(self.1);
-            self.0.extend(ticks.iter());
+            self.0
+                .extend(ticks.iter().map(|tick| (tick.number, tick.gap)));
             Ok(())
         }
 
@@ -343,15 +367,19 @@ mod tests {
         }
     }
 
-    fn play(chunks: &mut Chunks<(u64, u64), Ticks>, tick: u64) {
-        let take = |known: Option<&mut (u64, u64)>| match known {
+    fn play(chunks: &mut Chunks<Tick, Ticks>, number: u64) {
+        let new = Tick {
+            number,
+            ..Tick::default()
+        };
+        let take = |known: Option<&mut Tick>| match known {
             Some(known) => {
-                *known = (tick, 0);
+                *known = new;
                 None
             }
-            None => Some((tick, 0)),
+            None => Some(new),
         };
-        chunks.push(tick, take).unwrap();
+        chunks.push(number, take).unwrap();
     }
 
     #[test]

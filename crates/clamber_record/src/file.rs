@@ -31,7 +31,7 @@ const NAMES: [&str; 3] = [
 ];
 
 /// The largest metadata record that is read, bytes.
-const METADATA: u64 = 1 << 24;
+pub(crate) const METADATA: u64 = 1 << 24;
 
 /// The contents of an MCAP file that recorders write.
 #[derive(Debug)]

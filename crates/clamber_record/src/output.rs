@@ -8,6 +8,8 @@ use mcap::records::{MessageHeader, Metadata};
 use mcap::write::NoSeek;
 use mcap::{WriteOptions, Writer};
 
+use crate::file::METADATA;
+use crate::source::LARGEST;
 use crate::{RecordError, RecordingInfo};
 
 /// A channel: its number, and its topic for errors.
@@ -17,11 +19,21 @@ pub(crate) struct Channel {
     topic: &'static str,
 }
 
+/// A chunk is ended after the tick in which it becomes larger than this, bytes: readers hold a whole chunk in memory, and
+/// refuse those of more than 512 MiB.
+const LARGE: u64 = 64 << 20;
+
+/// What a message or a record takes beside its data, bytes, and a text beside its letters, at most.
+const MORE: u64 = 1024;
+const TEXTS: usize = 8;
+
 pub(crate) struct Output<W: Write> {
     writer: Writer<NoSeek<W>>,
     tick_seconds: f64,
     sequence: u32,
     now: u64,
+    /// Bytes in the chunk that is being written.
+    chunk: u64,
     /// Kept for its memory.
     buffer: Vec<u8>,
 }
@@ -45,6 +57,16 @@ impl<W: Write> Output<W> {
             .library(format!("clamber_record {}", RecordingInfo::VERSION));
         let mut writer = write.create(NoSeek::new(out))?;
         for (name, metadata) in metadata {
+            let sizes = metadata
+                .iter()
+                .map(|(key, value)| key.len() + value.len() + TEXTS);
+            if sizes.sum::<usize>() as u64 + MORE > METADATA {
+                return Err(RecordError::Encode {
+                    topic: "metadata",
+                    reason: "names and settings are more than 16 MiB, which no reader takes"
+                        .to_owned(),
+                });
+            }
             let name = name.to_owned();
             writer.write_metadata(&Metadata { name, metadata })?;
         }
@@ -53,6 +75,7 @@ impl<W: Write> Output<W> {
             tick_seconds,
             sequence: 0,
             now: 0,
+            chunk: 0,
             buffer: Vec::new(),
         })
     }
@@ -120,6 +143,13 @@ impl<W: Write> Output<W> {
             topic: channel.topic,
             reason,
         })?;
+        self.chunk += self.buffer.len() as u64 + MORE;
+        if self.chunk > LARGEST - MORE {
+            return Err(RecordError::Encode {
+                topic: channel.topic,
+                reason: "a tick takes more than 512 MiB, which no reader takes".to_owned(),
+            });
+        }
         let header = MessageHeader {
             channel_id: channel.id,
             sequence: self.sequence,
@@ -131,7 +161,16 @@ impl<W: Write> Output<W> {
 
     /// Ends a chunk.
     pub(crate) fn flush(&mut self) -> Result<(), RecordError> {
+        self.chunk = 0;
         Ok(self.writer.flush()?)
+    }
+
+    /// Ends a chunk that is large after a tick, however few ticks are in it.
+    pub(crate) fn flush_if_large(&mut self) -> Result<(), RecordError> {
+        if self.chunk > LARGE {
+            self.flush()?;
+        }
+        Ok(())
     }
 
     /// Writes the index and gives back the output.

@@ -163,6 +163,7 @@ impl<W: Write + Send + 'static> WriteTicks<Taken, W> for Writing<W> {
     fn chunk(&mut self, ticks: &mut [Taken]) -> Result<(), RecordError> {
         for taken in ticks {
             self.tick(taken)?;
+            self.output.flush_if_large()?;
         }
         self.output.flush()
     }

@@ -167,6 +167,7 @@ impl<W: Write + Send + 'static> WriteTicks<TakenArena, W> for ArenaWriting<W> {
     fn chunk(&mut self, ticks: &mut [TakenArena]) -> Result<(), RecordError> {
         for taken in ticks {
             self.write(taken)?;
+            self.output.flush_if_large()?;
         }
         self.output.flush()
     }

@@ -45,6 +45,13 @@ pub struct TakenScenery {
     shape: Option<Shape>,
 }
 
+impl TakenScenery {
+    /// True if the mesh is new, so that its shape is here and nowhere else.
+    pub(crate) fn has_shape(&self) -> bool {
+        self.shape.is_some()
+    }
+}
+
 /// Names of the meshes that were recorded.
 #[derive(Debug, Default)]
 pub(crate) struct SceneryNames(HashSet<Arc<str>>);

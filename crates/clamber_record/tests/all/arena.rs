@@ -12,7 +12,7 @@ use std::process::Command;
 use std::sync::{Arc, OnceLock};
 
 use clamber_climber::{Blow, ClimberInput, StepRules};
-use clamber_colossus::{CreatureConfig, CreatureKind};
+use clamber_colossus::{Brain, CreatureConfig, CreatureKind};
 use clamber_fight::{
     Arena, ArenaConfig, ArenaError, ArenaPart, CreatureId, FighterConfig, FighterId, Order,
 };
@@ -21,6 +21,7 @@ use clamber_record::{
     SceneryView,
 };
 use clamber_scenes::duel::Duel;
+use clamber_scenes::giant;
 use clamber_surface::geometry::Similarity;
 use clamber_world::{HalfSpace, Obstacle, ObstacleId};
 use glam::{DVec3, Vec3};
@@ -471,4 +472,100 @@ fn numbers_that_are_far_on_cost_nothing() {
     step(&mut arena, &inputs, &[]).unwrap();
     recorder.tick(&arena, &inputs, &[], &[]).unwrap();
     assert!(recorder.finish().unwrap().len() < 1 << 20);
+}
+
+/// What a giant throws, sends out over the ground and shines is drawn where it is, as long as it is there.
+#[test]
+fn what_attacks_have_let_out_is_drawn() {
+    let mut file: serde_json::Value =
+        serde_json::from_str(&std::fs::read_to_string(giant::brain_path()).unwrap()).unwrap();
+    file["start"] = "throws".into();
+    file["states"] = serde_json::json!({
+        "throws": {
+            "act": { "attack": { "clip": "swipe", "limb": ["hand.R"], "shot": {
+                "speed": 22, "radius": 0.7, "damage": 0.1, "throw": 2,
+                "wave": { "radius": 9, "speed": 10, "damage": 0.1, "throw": 2 } } } },
+            "transitions": [{ "to": "shines" }]
+        },
+        "shines": {
+            "act": { "attack": { "clip": "swipe", "limb": ["hand.R"],
+                "beam": { "length": 80, "radius": 0.4, "damage": 0.1, "throw": 2 } } },
+            "transitions": [{ "to": "throws" }]
+        }
+    });
+    let brain = Brain::from_json(&file.to_string(), 1.0 / 60.0).unwrap();
+    let kind = giant::giant().unwrap().with_brain(brain).unwrap();
+    let mut arena = Arena::new(ArenaConfig::default()).unwrap();
+    let config = CreatureConfig {
+        position: DVec3::X * 12.0,
+        ..CreatureConfig::default()
+    };
+    arena.add_creature(Arc::new(kind), config).unwrap();
+    let place = DVec3::new(0.0, 1.0, 30.0);
+    arena.add_fighter(FighterConfig::hero(), place).unwrap();
+    let options = RecordOptions::waiting();
+    let info = ArenaInfo::of(&arena);
+    let mut recorder = ArenaRecorder::new(Vec::new(), &info, &arena, options).unwrap();
+    let ground = HalfSpace::below(0.0);
+    let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &ground)];
+    let inputs = [ClimberInput::IDLE];
+    // Balls: place and radius; beams: from where, and how long.
+    let drawn = |arena: &Arena| {
+        let giant = arena.creature(CreatureId(0)).unwrap();
+        let shots = giant.shots().map(|shot| (shot.place, shot.radius));
+        let waves = giant.waves().map(|wave| (wave.place, wave.reach));
+        let beam = giant.report().beam;
+        let beams = beam.map(|beam| (beam.from, beam.from.distance(beam.to)));
+        (shots.chain(waves).collect(), Vec::from_iter(beams))
+    };
+    let mut expected: Vec<[Vec<(DVec3, f64)>; 2]> = vec![[Vec::new(), Vec::new()]];
+    for tick in 1..=1200 {
+        arena.step(&inputs, &terrain).unwrap();
+        recorder.tick(&arena, &inputs, &[], &terrain).unwrap();
+        if tick % 4 == 0 {
+            let (balls, beams) = drawn(&arena);
+            expected.push([balls, beams]);
+        }
+    }
+    let file = recorder.finish().unwrap();
+    let all = mcap::MessageStream::new(&file).unwrap().map(Result::unwrap);
+    let scenes = all.filter(|message| message.channel.topic == "/scene");
+    let mut counts = [0; 2];
+    for (index, message) in scenes.enumerate() {
+        let scene =
+            <foxglove::messages::SceneUpdate as foxglove::Decode>::decode(&message.data[..]);
+        let scene = scene.unwrap();
+        let attacks = scene
+            .entities
+            .iter()
+            .find(|entity| entity.id == "attacks")
+            .unwrap();
+        let place = |pose: &Option<foxglove::messages::Pose>| {
+            let at = pose.as_ref().unwrap().position.as_ref().unwrap();
+            DVec3::new(at.x, at.y, at.z)
+        };
+        let spheres = attacks.spheres.iter();
+        let balls: Vec<(DVec3, f64)> = spheres
+            .map(|ball| (place(&ball.pose), 0.5 * ball.size.as_ref().unwrap().y))
+            .collect();
+        let arrows = attacks.arrows.iter();
+        let beams: Vec<(DVec3, f64)> = arrows
+            .map(|beam| (place(&beam.pose), beam.shaft_length + beam.head_length))
+            .collect();
+        for (kind, (ours, theirs)) in [&balls, &beams]
+            .into_iter()
+            .zip(&expected[index])
+            .enumerate()
+        {
+            counts[kind] += ours.len();
+            assert_eq!(ours.len(), theirs.len(), "view {index}");
+            for (a, b) in ours.iter().zip(theirs) {
+                let off = a.0.distance(b.0).max((a.1 - b.1).abs());
+                assert!(off < 1e-6, "view {index}: {a:?} {b:?}");
+            }
+        }
+        assert_eq!(index + 1 == expected.len(), index == 300);
+    }
+    println!("{counts:?}");
+    assert!(counts[0] > 30 && counts[1] > 10, "{counts:?}");
 }

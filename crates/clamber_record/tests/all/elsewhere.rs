@@ -12,10 +12,11 @@ use std::sync::OnceLock;
 use clamber_climber::ClimberInput;
 use clamber_fight::{Arena, ArenaConfig, FighterConfig};
 use clamber_record::{
-    AnyRecording, ArenaInfo, ArenaRecorder, ArenaRecording, Ending, RecordOptions,
+    AnyRecording, ArenaInfo, ArenaRecorder, ArenaRecording, Ending, RecordOptions, SceneryView,
 };
+use clamber_surface::geometry::Similarity;
 use clamber_world::{HalfSpace, Obstacle, ObstacleId};
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 const TICKS: u64 = 200;
 
@@ -296,4 +297,95 @@ fn a_slow_disk_leaves_gaps_and_never_holds_up_the_game() {
     let gap = runs[0].end() + 1;
     let none = recording.replay(&mut self::arena(), Some(gap), |_, _, _| Ok(()));
     assert!(none.is_err());
+}
+
+/// A rock that is there for the first time in a tick which is left out is drawn all the same.
+#[test]
+fn what_appears_in_a_gap_is_drawn() {
+    const TICKS: u64 = 1200;
+    let ground = HalfSpace::below(0.0);
+    let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(0), &ground)];
+    let mut arena = arena();
+    let options = RecordOptions {
+        chunk_ticks: 20,
+        ..RecordOptions::default()
+    };
+    let disk = Slow(Vec::new(), std::time::Duration::from_millis(30));
+    let info = ArenaInfo::of(&arena);
+    let mut recorder = ArenaRecorder::new(disk, &info, &arena, options).unwrap();
+    let points = [Vec3::ZERO, Vec3::X, Vec3::Z];
+    let mut names = Vec::new();
+    for tick in 0..TICKS {
+        arena.step(&inputs(tick), &terrain).unwrap();
+        recorder.tick(&arena, &inputs(tick), &[], &terrain).unwrap();
+        if tick % 7 == 0 {
+            names.push(format!("rock of tick {tick}"));
+            let rock = SceneryView {
+                name: names.last().unwrap(),
+                world_from_own: Similarity::IDENTITY,
+                points: &points,
+                triangles: &[[0, 1, 2]],
+                color: [0.5; 3],
+            };
+            recorder.scenery(&rock).unwrap();
+        }
+    }
+    assert!(recorder.dropped() > 100, "{}", recorder.dropped());
+    let file = recorder.finish().unwrap().0;
+    let all = mcap::MessageStream::new(&file).unwrap().map(Result::unwrap);
+    let last = all
+        .filter(|message| message.channel.topic == "/scenery")
+        .last()
+        .unwrap();
+    let scene =
+        <foxglove::messages::SceneUpdate as foxglove::Decode>::decode(&last.data[..]).unwrap();
+    let drawn: Vec<&str> = scene
+        .entities
+        .iter()
+        .map(|entity| entity.id.as_str())
+        .collect();
+    assert_eq!(drawn, names);
+}
+
+/// What is recorded can be read: chunks are ended before they are too large, and what is too large in itself is refused.
+#[test]
+fn what_is_recorded_is_never_too_large_to_be_read() {
+    let ground = HalfSpace::below(0.0);
+    let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(0), &ground)];
+    let mut arena = arena();
+    let mut info = ArenaInfo::of(&arena);
+    let options = RecordOptions {
+        chunk_ticks: u32::MAX,
+        ..RecordOptions::waiting()
+    };
+    let mut recorder = ArenaRecorder::new(Vec::new(), &info, &arena, options).unwrap();
+    // Of 2 MB each; a viewer that is wound back shows the last message alone, so each has all of them.
+    let points = vec![Vec3::ONE; 80_000];
+    for tick in 0..12 {
+        arena.step(&inputs(tick), &terrain).unwrap();
+        recorder.tick(&arena, &inputs(tick), &[], &terrain).unwrap();
+        let rock = SceneryView {
+            name: &format!("rock {tick}"),
+            world_from_own: Similarity::IDENTITY,
+            points: &points,
+            triangles: &[[0, 1, 2]],
+            color: [0.5; 3],
+        };
+        recorder.scenery(&rock).unwrap();
+    }
+    let file = recorder.finish().unwrap();
+    let summary = mcap::Summary::read(&file).unwrap().unwrap();
+    let sizes = summary.chunk_indexes.iter();
+    let sizes: Vec<u64> = sizes.map(|chunk| chunk.uncompressed_size >> 20).collect();
+    println!("chunks of {sizes:?} MB");
+    assert!(file.len() > 100 << 20);
+    assert!(sizes.iter().all(|size| *size < 64 + 30), "{sizes:?}");
+    let recording = ArenaRecording::from_bytes(file).unwrap();
+    assert_eq!(*recording.ending(), Ending::Whole);
+    assert_eq!(recording.len(), 13);
+    info.settings = [("notes".to_owned(), "x".repeat(17 << 20))].into();
+    let error = ArenaRecorder::new(Vec::new(), &info, &arena, options)
+        .map(drop)
+        .unwrap_err();
+    assert!(error.to_string().contains("16 MiB"), "{error}");
 }
