@@ -1,14 +1,14 @@
 //! What takes too long for CI: every case of tests that have short forms, each heavy feature alone, other engines,
 //! golden runs in other builds, packages that build by themselves, other libraries held against ours, the app on all of
-//! Bevy, and the soak.
+//! Bevy, every bench as it is measured, and the soak.
 
 use crate::build::owned;
 use crate::run::IGNORE_RUST_VERSION;
 use crate::steps::Step;
 use crate::test_run::{Ignored, Packages, Profile, Targets, TestRun};
-use crate::{app, battle, ci, features, golden, packages, peers, soak};
+use crate::{app, battle, benches, ci, features, golden, packages, peers, soak};
 
-pub(crate) const STEPS: [Step; 8] = [
+pub(crate) const STEPS: [Step; 9] = [
     Step::runs("all cases", |_| vec![all_cases()]),
     Step {
         name: "features",
@@ -32,6 +32,7 @@ pub(crate) const STEPS: [Step; 8] = [
         runs: |_| app::runs(),
         rest: |_| app::format(),
     },
+    Step::runs("benches", benches::whole),
     Step::runs("soak", |_| vec![soak::nightly()]),
 ];
 
