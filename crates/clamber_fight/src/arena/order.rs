@@ -191,8 +191,11 @@ impl Joining {
         check(fighters + creatures < MOST_JOINS, || {
             format!("more than {MOST_JOINS} would join in one step")
         })?;
-        let is_left = arena.next_fighter.max(arena.next_creature) < LAST;
-        check(is_left, || "all numbers were given".to_owned())
+        let next = |given: u32, joining: usize| u64::from(given) + joining as u64;
+        let next = next(arena.next_fighter, fighters).max(next(arena.next_creature, creatures));
+        check(next < u64::from(LAST), || {
+            "all numbers were given".to_owned()
+        })
     }
 }
 

@@ -187,7 +187,7 @@ impl Fighter {
         Ok(())
     }
 
-    /// In its first step: goes aside if somebody is where it begins, or a creature. It stays if there is no room.
+    /// In its first step: goes aside if somebody is where it begins, or a creature, or rock. It stays if there is no room.
     pub(crate) fn begin_with_room(&mut self, room: &Room<'_>) -> Result<(), ClimberError> {
         if std::mem::replace(&mut self.state.has_begun, true) {
             return Ok(());
@@ -200,7 +200,8 @@ impl Fighter {
             obstacles: &creatures,
             bodies: room.bodies,
         };
-        if !living.is_free(&self.climber.body())
+        let body = self.climber.body();
+        if (room.is_in_rock(&body) || !living.is_free(&body))
             && let Some(place) = self.free_place(self.climber.state().position, room)
         {
             self.put(place)?;

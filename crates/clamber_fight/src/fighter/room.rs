@@ -14,8 +14,17 @@ const RINGS: u32 = 16;
 const MORE: u32 = 6;
 const APART: f64 = 2.5;
 
+/// More rings, of so many places and each farther away than the one before it by this factor, for a spawn in a creature:
+/// that may be larger than all the others.
+const FAR_RINGS: u32 = 9;
+const FAR_PLACES: u32 = 24;
+const FARTHER: f64 = 1.5;
+
 /// A body has room where nothing is nearer than this share of its radius: it may stand on the ground.
 const SHARE: f64 = 0.8;
+
+/// The core of a body, as a share of its radius.
+const CORE: f64 = 0.3;
 
 /// How far below a spawn its ground may be, as a share of the body's height: a place without any is none, if the spawn has
 /// some.
@@ -30,7 +39,8 @@ pub(crate) struct Room<'a> {
 }
 
 impl Fighter {
-    /// The place nearest to another one where this fighter has room; `None` if there is none within some 40 radii.
+    /// The place nearest to another one where this fighter has room; `None` if there is none within some 40 radii, or
+    /// 1,500 for a place in a creature.
     pub(crate) fn free_place(&self, near: DVec3, room: &Room<'_>) -> Option<DVec3> {
         let size = self.config.climber.body.radius;
         let body = |place: DVec3| Climber::new(self.config.climber, place).map(|new| new.body());
@@ -38,18 +48,43 @@ impl Fighter {
             let depth = GROUND * self.config.climber.body.height;
             let from = place + DVec3::Y * size;
             let mut all = room.obstacles.iter();
-            all.any(|(_, obstacle)| obstacle.cast_ray(from, DVec3::NEG_Y, depth).is_some())
+            all.any(|(_, obstacle)| {
+                // What it is in is none.
+                let hit = obstacle.cast_ray(from, DVec3::NEG_Y, depth);
+                hit.is_some_and(|hit| hit.distance > 0.0)
+            })
         };
         let needs_ground = has_ground(near);
         let is_free = |place: &DVec3| {
             let is_clear = body(*place).is_ok_and(|body| room.is_free(&body));
             is_clear && (!needs_ground || has_ground(*place))
         };
-        places(near, APART * size).find(is_free)
+        let in_creature = room.obstacles.iter().any(|(id, obstacle)| {
+            creature_of(*id).is_some() && is_inside(*obstacle, near + DVec3::Y * size)
+        });
+        let rings = if in_creature { FAR_RINGS } else { 0 };
+        places(near, APART * size, rings).find(is_free)
     }
 }
 
 impl Room<'_> {
+    /// True if the core of a body is in terrain: that pushes out only what is put into it a little.
+    pub(crate) fn is_in_rock(&self, body: &WorldCapsule) -> bool {
+        let core = WorldCapsule {
+            radius: CORE * body.radius,
+            ..*body
+        };
+        let mut contacts: Vec<Contact> = Vec::new();
+        let terrain = self
+            .obstacles
+            .iter()
+            .filter(|(id, _)| creature_of(*id).is_none());
+        for (_, rock) in terrain {
+            rock.overlap_capsule(&core, &mut contacts);
+        }
+        !contacts.is_empty()
+    }
+
     /// True if a body overlaps nothing, and is in no creature.
     pub(crate) fn is_free(&self, body: &WorldCapsule) -> bool {
         let middle = 0.5 * (body.ends[0] + body.ends[1]);
@@ -90,14 +125,19 @@ fn overlap(one: &WorldCapsule, other: &WorldCapsule) -> bool {
     low < other_high && other_low < high && level < SHARE * (one.radius + other.radius)
 }
 
-/// A place, and places on rings about it, from the inside out.
-fn places(middle: DVec3, apart: f64) -> impl Iterator<Item = DVec3> {
-    let rings = (1..=RINGS).flat_map(move |ring| {
-        let count = MORE * ring;
+/// A place, and places on rings about it, from the inside out; and on so many that are far away.
+fn places(middle: DVec3, apart: f64, far_rings: u32) -> impl Iterator<Item = DVec3> {
+    let near = (1..=RINGS).map(move |ring| (MORE * ring, apart * f64::from(ring)));
+    let last = apart * f64::from(RINGS);
+    let far = (0..far_rings).scan(last, |radius, _| {
+        *radius *= FARTHER;
+        Some((FAR_PLACES, *radius))
+    });
+    let rings = near.chain(far).flat_map(move |(count, radius)| {
         (0..count).map(move |index| {
             let angle = core::f64::consts::TAU * f64::from(index) / f64::from(count);
             let (sin, cos) = libm::sincos(angle);
-            middle + DVec3::new(sin, 0.0, cos) * (apart * f64::from(ring))
+            middle + DVec3::new(sin, 0.0, cos) * radius
         })
     });
     core::iter::once(middle).chain(rings)

@@ -3,10 +3,11 @@
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
 use crate::support::{GROUND, giant};
-use clamber_climber::ClimberInput;
+use clamber_climber::{ClimberInput, StepRules};
 use clamber_colossus::CreatureConfig;
-use clamber_fight::{Arena, ArenaConfig, ArenaEvent, CreatureId, FighterConfig, FighterId};
-use clamber_world::{HalfSpace, Obstacle, ObstacleId};
+use clamber_fight::{Arena, ArenaConfig, ArenaEvent, CreatureId, FighterConfig, FighterId, Order};
+use clamber_world::rapier3d::prelude::{ColliderBuilder, PhysicsWorld, Pose};
+use clamber_world::{BodyPoses, HalfSpace, Obstacle, ObstacleId, RapierTerrain};
 use glam::DVec3;
 
 fn arena() -> Arena {
@@ -68,15 +69,24 @@ fn nobody_rises_inside_a_creature() {
     let ground = HalfSpace::below(0.0);
     let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &ground)];
     let kind = giant();
-    for joint in ["foot.L", "shin.L", "pelvis", "chest"] {
+    for (joint, scale) in [
+        ("foot.L", 1.0),
+        ("shin.L", 1.0),
+        ("pelvis", 1.0),
+        ("chest", 1.0),
+        ("chest", 7.0),
+        ("foot.L", 7.0),
+    ] {
         for dies in [false, true] {
             let mut arena = arena();
-            arena
-                .add_creature(kind.clone(), CreatureConfig::default())
-                .unwrap();
+            let config = CreatureConfig {
+                scale,
+                ..CreatureConfig::default()
+            };
+            arena.add_creature(kind.clone(), config).unwrap();
             let frame = arena.creature(CreatureId(0)).unwrap().palette();
             let frame = frame.model_from_joint(kind.skeleton().find(joint).unwrap());
-            let spawn = frame.unwrap().translation;
+            let spawn = frame.unwrap().translation * scale;
             let mut config = FighterConfig::hero();
             config.respawn = Some(0.5);
             arena.add_fighter(config, spawn).unwrap();
@@ -101,7 +111,7 @@ fn nobody_rises_inside_a_creature() {
                     let angle = f64::from(*index) * 0.7;
                     let way =
                         DVec3::new(libm::cos(angle), libm::sin(1.3 * angle), libm::sin(angle));
-                    let hit = Obstacle::cast_ray(skin, middle, way, 1e3);
+                    let hit = Obstacle::cast_ray(skin, middle, way, 1e4);
                     hit.is_some_and(|hit| hit.normal.dot(way) > 0.0)
                 };
                 let inside = (0..20).filter(leaves).count();
@@ -115,7 +125,11 @@ fn nobody_rises_inside_a_creature() {
                 let near = near.fold(f64::INFINITY, f64::min);
                 assert!(near > 0.7 * body.radius, "{joint}, tick {tick}: {near} m");
             }
-            assert_eq!(looked, 1 + usize::from(dies), "{joint}");
+            assert_eq!(
+                looked,
+                1 + usize::from(dies),
+                "{joint}, {scale} times as large"
+            );
         }
     }
 }
@@ -156,4 +170,61 @@ fn who_finds_no_room_waits() {
         }
     }
     assert!(rose.is_some_and(|tick| tick <= 31), "{rose:?}");
+}
+
+/// Who is told to rise, to be elsewhere, or to join where rock is by now finds room beside it.
+#[test]
+fn nobody_is_put_into_rock() {
+    let ground = HalfSpace::below(0.0);
+    let mut world = PhysicsWorld::default();
+    let pose = Pose::translation(0.0, 3.0, 0.0);
+    world.insert_collider(ColliderBuilder::cuboid(4.0, 3.0, 4.0).position(pose), None);
+    world.detect_collisions(&(), &());
+    let poses = BodyPoses::default();
+    let rock = RapierTerrain::of_world(&world, &poses);
+    let open: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &ground)];
+    let full: [(ObstacleId, &dyn Obstacle); 2] = [(GROUND, &ground), (ObstacleId(9), &rock)];
+    let rules = StepRules::default();
+    let there = DVec3::new(0.3, 0.9, 0.2);
+    let config = Box::new(FighterConfig::hero());
+    let fighter = FighterId(0);
+    for what in ["rises", "is put", "joins"] {
+        let mut arena = arena();
+        arena.add_fighter(*config, there).unwrap();
+        for _ in 0..20 {
+            arena.step(&[ClimberInput::IDLE], &open).unwrap();
+        }
+        let order = match what {
+            "rises" => {
+                let mut state = arena.save();
+                state.fighters[0].state.climber.hit_points = 0.0;
+                arena.restore(&state).unwrap();
+                arena.step(&[ClimberInput::IDLE], &open).unwrap();
+                Order::Rise { fighter }
+            }
+            "is put" => Order::PlaceFighter {
+                fighter,
+                position: there,
+            },
+            _ => {
+                // The other one makes room.
+                let leaves = Order::RemoveFighter { fighter };
+                let idle = [ClimberInput::IDLE];
+                arena.step_with(&idle, &[leaves], &open, &rules).unwrap();
+                Order::AddFighter {
+                    config: config.clone(),
+                    position: there,
+                }
+            }
+        };
+        let idle = vec![ClimberInput::IDLE; arena.fighters().len()];
+        arena.step_with(&idle, &[order], &full, &rules).unwrap();
+        for _ in 0..30 {
+            let at = arena.fighters()[0].climber().state().position;
+            let out = at.x.abs().max(at.z.abs()) - 4.0;
+            assert!(out > 0.2, "{what}: at {at}");
+            arena.step(&[ClimberInput::IDLE], &full).unwrap();
+        }
+        assert!(arena.fighters()[0].climber().state().hit_points > 0.9);
+    }
 }
