@@ -353,3 +353,66 @@ fn a_changed_file_changes_it_while_it_lives() {
     assert!(body(&app, spawned.root).creature().state().ticks() > ticks);
     std::fs::remove_dir_all(folder).unwrap();
 }
+
+/// A giant far from the world's origin throws a stone that bursts, which an app hears of, in its own space: it is at the
+/// climber then, who is struck.
+#[test]
+fn it_throws_stones_that_burst() {
+    let mut app = app(&std::env::temp_dir(), TICK);
+    let origin = DVec3::new(2e5, 0.0, -1e5);
+    app.insert_resource(WorldOrigin(origin));
+    watch::<ColossusThrew>(&mut app);
+    watch::<ColossusBurst>(&mut app);
+    watch::<ColossusWave>(&mut app);
+    watch::<ColossusStruck>(&mut app);
+    let text = brain(Some(
+        r#"{
+        "waits": { "transitions": [{ "to": "start", "after": 0.5 }] },
+        "start": {
+            "act": { "attack": { "clip": "swipe", "limb": ["hand.R"], "follows": 1, "shot": {
+                "speed": 22, "radius": 0.7, "damage": 0.1, "throw": 2,
+                "wave": { "radius": 9, "speed": 10, "damage": 0.1, "throw": 2 } } } },
+            "transitions": [{ "to": "waits" }]
+        }
+    }"#,
+    ));
+    let handle = add(&mut app, &text);
+    let spawned = giant(&mut app, handle, Transform::from_xyz(30.0, 0.0, 10.0));
+    let at = Vec3::new(30.0, 1.0, 35.0);
+    let climber = (Climber::colossus_climber(), Transform::from_translation(at));
+    let hero = app.world_mut().spawn(climber).id();
+    for _ in 0..900 {
+        app.update();
+    }
+    let threw = &app.world().resource::<Seen<ColossusThrew>>().0;
+    let burst = &app.world().resource::<Seen<ColossusBurst>>().0;
+    let waves = &app.world().resource::<Seen<ColossusWave>>().0;
+    let struck = &app.world().resource::<Seen<ColossusStruck>>().0;
+    println!("{threw:?}\n{burst:?}\n{waves:?}\n{struck:?}");
+    for (threw, burst) in threw.iter().zip(burst) {
+        assert_eq!([threw.entity, burst.entity], [spawned.root; 2]);
+        assert_eq!(
+            (threw.number, threw.attack.as_str()),
+            (burst.number, "start")
+        );
+        assert!((threw.velocity.length() - 22.0).abs() < 1e-3);
+        assert!(threw.place.distance(Vec3::new(30.0, 15.0, 10.0)) < 25.0);
+    }
+    // It had not seen the climber when it threw the first one.
+    let last = burst.len() - 1;
+    assert!(burst[last].place.distance(at) < 2.5);
+    assert!((waves[last].place - burst[last].place).with_y(0.0).length() < 1e-3);
+    assert_eq!(
+        (waves[last].entity, waves[last].radius),
+        (spawned.root, 9.0)
+    );
+    assert_eq!(
+        (struck[0].climber, struck[0].attack.as_str()),
+        (hero, "start")
+    );
+    let numbers: Vec<u64> = threw.iter().map(|threw| threw.number).collect();
+    assert!(
+        numbers.len() > 1 && numbers.is_sorted_by(|a, b| a < b),
+        "{numbers:?}"
+    );
+}

@@ -4,7 +4,7 @@ use clamber_world::PointMotion;
 use glam::{DQuat, DVec3};
 
 use super::move_on::{LOOKS, SELDOM};
-use super::state::{GroundPoint, NO_GROUND};
+use super::state::{Drift, GroundPoint, NO_GROUND};
 use super::{Creature, Surroundings};
 use crate::angle::nearest_turn;
 use crate::feet::Carried;
@@ -23,6 +23,7 @@ impl Creature {
     /// Goes with the ground, as that has moved in this tick: the creature's place and heading, its feet, and the places
     /// that it knows. Returns true if the ground moved.
     pub(super) fn be_carried(&mut self, around: &Surroundings<'_>, dt: f64) -> bool {
+        self.state.carried = Drift::default();
         let Some(motion) = self.ground_motion(around, dt) else {
             return false;
         };
@@ -36,7 +37,12 @@ impl Creature {
             return false;
         }
         let state = &mut self.state;
-        state.position = carried.place(state.position);
+        let before = state.position;
+        state.position = carried.place(before);
+        state.carried = Drift {
+            velocity: (state.position - before) / dt,
+            yaw_rate: carried.yaw / dt,
+        };
         // Those may be far away: they go with the ground as if that were level.
         let known = [&mut state.home, &mut state.patrol, &mut state.noise];
         let prey = state.prey.iter_mut().map(|(_, place)| place);

@@ -85,11 +85,16 @@ impl Creature {
 
     /// Something is ahead: it looks for another way soon, unless it has found none.
     pub(super) fn doubt_corners(&mut self) {
+        if self.state.walked.failed == 0 {
+            self.look_soon();
+        }
+    }
+
+    /// It looks for a way before long.
+    pub(super) fn look_soon(&mut self) {
         let soon = self.ticks_of(ANEW);
         let walked = &mut self.state.walked;
-        if walked.failed == 0 {
-            walked.ticks_left = walked.ticks_left.min(soon);
-        }
+        walked.ticks_left = walked.ticks_left.min(soon);
     }
 
     /// Ticks of seconds that are told for a giant.

@@ -155,7 +155,8 @@ impl Creature {
         let within = way.within_angle.max(LEAST_WITHIN);
         let is_turned = way.bearing.is_none() || aside.abs() <= within;
         let braked = |distance: f64| (2.0 * 0.7 * SLOWS_DOWN * distance.max(0.0)).sqrt();
-        let slowest = SLOWEST * careful;
+        // Nor faster than it can stop within its height: it would never begin to walk where it does not see far.
+        let slowest = (SLOWEST * careful).min(braked(self.size.height));
         let may_turn = |aside: f64| {
             let room = course.turn.map(|turn| turn * aside.signum());
             room.map_or(f64::INFINITY, |room| self.stoppable(room))

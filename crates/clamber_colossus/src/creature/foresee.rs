@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use super::Creature;
 use super::course::Course;
-use super::state::Playing;
+use super::state::{Drift, Playing};
 use crate::error::ColossusError;
 
 /// A course is foreseen in steps of so many seconds for a giant, and in at most so many steps. Steps are longer for times
@@ -29,8 +29,8 @@ impl Creature {
     /// until then: its clips and fades go on, and so does its way: it walks on, turns, and slows down to where it goes.
     /// Fills in the palette, and gives its place in the world.
     ///
-    /// Feet are not put on the ground and the head is not turned: what rides on those is carried elsewhere by as much
-    /// as they are corrected now.
+    /// Ground that moves carries it on as it did in the last tick, in a circle if it turns. Feet are not put on the ground
+    /// and the head is not turned: what rides on those is carried elsewhere by as much as they are corrected now.
     ///
     /// # Errors
     /// [`ColossusError::Animation`] if `seconds` is negative or not finite.
@@ -91,10 +91,40 @@ impl Creature {
         let by_clips = (now.rotation * moved.translation) * scale;
         let translation = course.position + by_clips;
         let turn = rotation_from_axis_angle(DVec3::Y, course.yaw + moved.yaw);
-        Ok(Similarity {
-            translation,
-            rotation: turn,
-            ..now
-        })
+        Ok(self.state.carried.carry(
+            Similarity {
+                translation,
+                rotation: turn,
+                ..now
+            },
+            state.position,
+            seconds,
+        ))
+    }
+}
+
+impl Drift {
+    /// Where a place is after some seconds that is seen from ground which moves in this way at `origin`: in a circle, if
+    /// it turns.
+    fn carry(&self, place: Similarity, origin: DVec3, seconds: f64) -> Similarity {
+        if *self == Self::default() {
+            return place;
+        }
+        let angle = self.yaw_rate * seconds;
+        let half = 0.5 * angle;
+        // The chord of an arc.
+        let chord = if half == 0.0 {
+            1.0
+        } else {
+            libm::sin(half) / half
+        };
+        let way = rotation_from_axis_angle(DVec3::Y, half) * self.velocity.with_y(0.0) * chord;
+        let way = way.with_y(self.velocity.y) * seconds;
+        let turn = rotation_from_axis_angle(DVec3::Y, angle);
+        Similarity {
+            rotation: turn * place.rotation,
+            translation: origin + way + turn * (place.translation - origin),
+            ..place
+        }
     }
 }

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::hips::approach;
+use super::hips::{NEARS, approach};
 use super::state::{GROUND, NO_GROUND};
 use super::{Creature, Surroundings};
 use crate::feet::Ground;
@@ -17,8 +17,10 @@ const CAREFUL: f64 = 1.2;
 /// Time constant with which a giant takes the ground ahead into account, seconds.
 const LOOKS_AHEAD: f64 = 1.0;
 
-/// The largest vertical acceleration from following the ground, metres a second squared.
+/// The largest vertical acceleration from following the ground, metres a second squared; and more for who runs, as a share
+/// of that on a circle of its height at its speed: it would be above slopes or in them otherwise.
 const CLIMBS: f64 = 0.5;
+const RUNS: f64 = 0.4;
 
 impl Creature {
     /// How long its steps are, as a share of those of its clip.
@@ -36,10 +38,11 @@ impl Creature {
         let heading = self.state.heading();
         let spacing = GROUND_SPACING * height;
         let aside = DVec3::new(heading.z, 0.0, -heading.x) * spacing;
-        // One place in each tick, and all of them in the first one.
+        // One place in each tick, and all of them in the first one, or if it passes more than one of them in a tick.
         let is_first = self.state.ticks <= 1;
+        let all = is_first || self.state.speed * dt > spacing;
         let turn = (self.state.ticks % GROUND as u64) as usize;
-        for index in (0..GROUND).filter(|index| is_first || *index == turn) {
+        for index in (0..GROUND).filter(|index| all || *index == turn) {
             let place = match index {
                 7 => aside,
                 8 => -aside,
@@ -73,13 +76,11 @@ impl Creature {
             self.state.position.y = sum / count;
             self.state.steepness = steepest;
         }
-        let (height, climb) = approach(
-            self.state.position.y,
-            self.state.climb,
-            sum / count,
-            CLIMBS,
-            dt,
-        );
+        let speed = self.state.speed;
+        let most = CLIMBS.max(RUNS * speed * speed / height);
+        let nears = NEARS.max(NEARS * speed / height);
+        let now = [self.state.position.y, self.state.climb];
+        let (height, climb) = approach(now, sum / count, [most, nears], dt);
         (self.state.position.y, self.state.climb) = (height, climb);
     }
 }

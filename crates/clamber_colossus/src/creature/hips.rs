@@ -98,10 +98,9 @@ impl Hips {
     fn go(&mut self, to: DVec3, most: DVec3, dt: f64) {
         for axis in 0..3 {
             let (value, velocity) = approach(
-                self.offset[axis],
-                self.velocity[axis],
+                [self.offset[axis], self.velocity[axis]],
                 to[axis],
-                most[axis],
+                [most[axis], NEARS],
                 dt,
             );
             (self.offset[axis], self.velocity[axis]) = (value, velocity);
@@ -109,10 +108,21 @@ impl Hips {
     }
 }
 
-/// Moves a number towards a goal with at most an acceleration: as fast as it can still be stopped, gently near it.
-pub(super) fn approach(value: f64, velocity: f64, goal: f64, most: f64, dt: f64) -> (f64, f64) {
+/// Near a goal it is approached at this share of what is left, in a second.
+pub(super) const NEARS: f64 = 2.0;
+
+/// Moves a number towards a goal with at most an acceleration: as fast as it can still be stopped, and gently near it, by a
+/// share of what is left in a second.
+pub(super) fn approach(
+    [value, velocity]: [f64; 2],
+    goal: f64,
+    [most, nears]: [f64; 2],
+    dt: f64,
+) -> (f64, f64) {
     let away = goal - value;
-    let fast = (2.0 * 0.6 * most * away.abs()).sqrt().min(2.0 * away.abs());
+    let fast = (2.0 * 0.6 * most * away.abs())
+        .sqrt()
+        .min(nears * away.abs());
     let change = (away.signum() * fast - velocity).clamp(-most * dt, most * dt);
     let velocity = velocity + change;
     (value + velocity * dt, velocity)

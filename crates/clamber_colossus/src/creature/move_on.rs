@@ -234,8 +234,12 @@ impl Creature {
         let clip_speed = self.clip_speed(gait, playing, &moved);
         let size = (self.size.height / HUMAN).max(1e-4).sqrt();
         self.play(playing, clip_speed, FADE * size)?;
+        let state = self.state.acting;
+        let sleeps =
+            state.is_some_and(|state| matches!(self.kind.brain().act(state), Some(Act::Sleep)));
         if let Some(layer) = self.state.animator.layers_mut().first_mut()
             && !matches!(playing, Playing::Act(_))
+            && !(sleeps && playing == Playing::Idle)
         {
             layer.speed = clip_speed;
         }

@@ -1,5 +1,6 @@
 //! What a game makes a creature do: it is placed, sent somewhere, or put into a state.
 
+use clamber_surface::geometry::rotation_from_axis_angle;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -56,6 +57,7 @@ impl Creature {
             gaze: fresh.gaze,
             gaze_weight: fresh.gaze_weight,
             lean: fresh.lean,
+            aim: rotation_from_axis_angle(DVec3::Y, fresh.yaw - self.state.yaw) * self.state.aim,
             home: fresh.home,
             patrol: fresh.patrol,
             sleeps: fresh.sleeps,
@@ -66,20 +68,37 @@ impl Creature {
     }
 
     /// Sends the creature to a place, whatever its brain wants; `None` calls it back. The act that it is at ends at
-    /// once. It walks round obstacles, and may leave its arena. Its brain still changes states on the way, but their
-    /// acts begin only at the end, of which [`CreatureEvent::Arrived`] or [`CreatureEvent::Stopped`] tells. Returns
-    /// false, and nothing is changed, if it cannot walk, or if the place is not finite or beyond 1e12 m.
+    /// once. It walks round obstacles, and may leave its arena; the height of the place does not count. Its brain still
+    /// changes states on the way, but their acts begin only at the end, of which [`CreatureEvent::Arrived`] or
+    /// [`CreatureEvent::Stopped`] tells. One that is under way may be sent elsewhere in each tick: it goes on, and looks
+    /// for a way no more often than it does anyway. Returns false, and nothing is changed, if it cannot walk, if its
+    /// brain is in a final state, or if the place is not finite or beyond 1e12 m.
     pub fn send(&mut self, to: Option<DVec3>) -> bool {
         let is_far = |place: DVec3| !place.is_finite() || place.abs().max_element() > FARTHEST;
-        let cannot = self.kind.gait().is_none() && to.is_some();
+        let is_over = self.kind.brain().is_final(self.state.brain.current());
+        let cannot = (self.kind.gait().is_none() || is_over) && to.is_some();
         if cannot || to.is_some_and(is_far) {
             return false;
         }
-        self.leave_act();
-        self.state.errand = to.map(|to| Errand {
-            to,
-            has_begun: false,
-        });
+        match (&mut self.state.errand, to) {
+            (None, None) => {}
+            (Some(errand), Some(to)) => {
+                let moved = (to - errand.to).with_y(0.0).length();
+                errand.to = to;
+                self.state.walked.is_blocked = false;
+                if moved > WITHIN * self.size.height {
+                    self.state.walked.corners.clear();
+                    self.look_soon();
+                }
+            }
+            _ => {
+                self.leave_act();
+                self.state.errand = to.map(|to| Errand {
+                    to,
+                    has_begun: false,
+                });
+            }
+        }
         true
     }
 

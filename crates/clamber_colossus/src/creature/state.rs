@@ -41,6 +41,8 @@ pub struct CreatureState {
     pub(super) ground: [f64; GROUND],
     /// The point of the ground that it goes with, if that moves.
     pub(super) stands_on: Option<GroundPoint>,
+    /// How that has moved it in the last tick.
+    pub(super) carried: Drift,
     /// What it knows of the way that it is on.
     pub(super) walked: Walked,
     /// How steep the ground ahead is, as a tangent.
@@ -144,6 +146,15 @@ pub(super) struct GroundPoint {
     pub(super) at: DVec3,
 }
 
+/// How moving ground takes a creature along.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Drift {
+    /// Metres a second, in world space.
+    pub(super) velocity: DVec3,
+    /// Radians a second to the left.
+    pub(super) yaw_rate: f64,
+}
+
 /// What a creature knows of the way that it is on.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Walked {
@@ -245,6 +256,7 @@ impl CreatureState {
             climb: 0.0,
             ground: [NO_GROUND; GROUND],
             stands_on: None,
+            carried: Drift::default(),
             walked: Walked::default(),
             steepness: 0.0,
             yaw: config.yaw,
@@ -290,7 +302,8 @@ impl CreatureState {
     }
 
     /// This state of a creature of the kind `from`, for one of the kind `to`, which has the same skeleton and another
-    /// brain. All that it does goes on. States and moods are found by their names. `None` if this state is not of `from`.
+    /// brain. All that it does goes on. States and moods are found by their names, and so are weak points and plates: new
+    /// ones are unhurt. With another number of legs its feet begin anew. `None` if this state is not of `from`.
     pub fn carry_over(&self, from: &CreatureKind, to: &CreatureKind) -> Option<Self> {
         let brain = to.brain().carry_over(from.brain(), &self.brain)?;
         let same = |state: StateId| {
@@ -302,9 +315,33 @@ impl CreatureState {
         let (regions, own) = (to.brain().regions().len(), to.brain().own_senses().len());
         let has_senses =
             from.brain().own_senses() == to.brain().own_senses() && self.senses.fits(regions, own);
+        let fresh = Self::new(to, &CreatureConfig::default(), 1.0);
         Some(Self {
             sound: Sound::default(),
             brain,
+            errand: self.errand.filter(|_| to.gait().is_some()),
+            feet: if from.legs().len() == to.legs().len() {
+                self.feet.clone()
+            } else {
+                fresh.feet
+            },
+            hit_points: kept(
+                (from.weak_points(), to.weak_points()),
+                |point| point.name.as_str(),
+                &self.hit_points,
+                fresh.hit_points,
+                |left, most| left.min(most),
+            ),
+            plates: kept(
+                (from.plates(), to.plates()),
+                |plate| plate.name.as_str(),
+                &self.plates,
+                fresh.plates,
+                |had, fresh| PlateState {
+                    left: had.left.min(fresh.left),
+                    ..had
+                },
+            ),
             acting: self.acting.and_then(same),
             playing: match self.playing {
                 Playing::Act(state) => same(state).map_or(Playing::Idle, Playing::Act),
@@ -322,6 +359,12 @@ impl CreatureState {
                 self.senses.clone()
             } else {
                 to.brain().no_senses()
+            },
+            told: {
+                // States had other numbers.
+                let mut told = self.told.clone();
+                told.retain(|event| !matches!(event, CreatureEvent::Entered { .. }));
+                told
             },
             ..self.clone()
         })
@@ -421,6 +464,17 @@ impl CreatureState {
                 "it has another number of weak points",
             ));
         }
+        let is_left = |left: &f64| (0.0..=f64::MAX).contains(left);
+        let is_wall = |wall: &f32| (0.0..=f32::MAX).contains(wall);
+        let is_hurt = |felt: &Felt| (0.0..=f64::MAX).contains(&felt.damage);
+        if !self.hit_points.iter().all(is_left)
+            || !self.walls.iter().all(is_wall)
+            || !self.wounds.iter().all(is_hurt)
+        {
+            return Err(ColossusError::OtherKind(
+                "its hit points, wounds or distances to walls are negative or no numbers",
+            ));
+        }
         let fits = |state: &PlateState, plate: &crate::kind::Plate| {
             state.left <= plate.count && (0.0..=f64::MAX).contains(&state.strain)
         };
@@ -456,6 +510,8 @@ impl CreatureState {
             self.yaw_rate,
             self.climb,
             self.steepness,
+            self.carried.yaw_rate,
+            self.carried.velocity.length(),
         ];
         let far = |number: f64| number.is_nan() || number.abs() > FARTHEST;
         let fast = |number: &f64| number.is_nan() || number.abs() > FASTEST;
@@ -506,4 +562,25 @@ impl CreatureState {
         kind.skeleton().palette(&self.pose)?;
         Ok(())
     }
+}
+
+/// What parts of the same names had with another brain, as far as they can have it now, or what they begin with. Names
+/// need not be unique: the second of a name is the second of it there.
+fn kept<T, S: Copy>(
+    (from, to): (&[T], &[T]),
+    name: impl Fn(&T) -> &str,
+    had: &[S],
+    fresh: Vec<S>,
+    limit: impl Fn(S, S) -> S,
+) -> Vec<S> {
+    let find = |index: usize| {
+        let ours = name(&to[index]);
+        let before = to[..index].iter().filter(|part| name(part) == ours);
+        let mut same = (0..from.len()).filter(|old| name(&from[*old]) == ours);
+        had.get(same.nth(before.count())?).copied()
+    };
+    let parts = fresh.into_iter().enumerate();
+    parts
+        .map(|(index, fresh)| find(index).map_or(fresh, |had| limit(had, fresh)))
+        .collect()
 }

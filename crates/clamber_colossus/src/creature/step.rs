@@ -131,6 +131,9 @@ impl Creature {
         self.state.ranged.begin();
         self.state.aim = DVec3::ZERO;
         self.state.walked.is_blocked = false;
+        if !matches!(act, Some(Act::Sleep)) {
+            self.wake();
+        }
         match act {
             Some(Act::Walk(_) | Act::Turn(_)) => self.begin_way(),
             Some(Act::Play(_)) => self.begin(state, Playback::Loop)?,
@@ -208,6 +211,15 @@ impl Creature {
     fn fall_asleep(&mut self) {
         for layer in self.state.animator.layers_mut() {
             layer.speed = 0.0;
+        }
+    }
+
+    /// Clips that have stopped go on.
+    fn wake(&mut self) {
+        for layer in self.state.animator.layers_mut() {
+            if layer.speed == 0.0 {
+                layer.speed = 1.0;
+            }
         }
     }
 

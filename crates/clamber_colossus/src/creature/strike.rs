@@ -1,14 +1,15 @@
 //! Whom an attack strikes: whoever the skin of its limb touches while it hurts.
 
+use clamber_animation::rig::JointId;
 use clamber_surface::geometry::{Similarity, WorldCapsule};
 use clamber_surface::mesh::TriangleId;
 use clamber_surface::surface::TargetMotion;
-use clamber_world::{Obstacle, SweepContact};
+use clamber_world::{Contact, MaterialPoint, Obstacle, SweepContact};
 use glam::DVec3;
 
 use super::report::{AttackPhase, Blow};
 use super::state::{Lean, Playing};
-use super::{Creature, Surroundings};
+use super::{Creature, Person, Surroundings};
 use crate::brain::{Act, StateId};
 use crate::kind::Strike;
 
@@ -20,6 +21,9 @@ const REACH: f64 = 0.05;
 const SETTLED: f64 = 0.3;
 const QUICKEST: f64 = 0.15;
 const RETURNS: f64 = 0.4;
+
+/// What is as upright as this cosine is ground: it hides nobody from a limb that comes down on it.
+const GROUND: f64 = 0.7;
 
 /// It is back when it is nearer than this, in heights of the creature.
 const LEAST: f64 = 1e-4;
@@ -69,7 +73,8 @@ impl Creature {
                 radius: person.body.radius + REACH,
                 ..person.body
             };
-            let Some(hit) = self.touch(strike, &body) else {
+            let hit = self.touch(strike, &body);
+            let Some(hit) = hit.filter(|hit| self.reaches(hit, person, around)) else {
                 continue;
             };
             let motion = self.surface.motion(&hit.contact.material, dt);
@@ -86,6 +91,39 @@ impl Creature {
         }
     }
 
+    /// True if no rock and no other creature is between somebody's skin and the joint that moves what touches it, nor
+    /// between that and the body: along the limb, from joint to joint.
+    fn reaches(&self, hit: &SweepContact, person: &Person, around: &Surroundings<'_>) -> bool {
+        let Some(joint) = self.joint_at(&hit.contact.material) else {
+            return true;
+        };
+        let joints = self.kind.skeleton().joints();
+        let parent = |joint: &JointId| joints.get(joint.0 as usize)?.parent;
+        // A root may be anywhere.
+        let limb = std::iter::successors(Some(joint), parent);
+        let limb = limb.filter(|joint| parent(joint).is_some());
+        let world = self.surface.world_from_model();
+        let mut from = person.middle();
+        let mut skips = person.body.radius;
+        for joint in limb {
+            let Some(frame) = self.palette.model_from_joint(joint) else {
+                return true;
+            };
+            let to = world.transform_point(frame.translation);
+            if !is_free(from, to, skips, around) {
+                return false;
+            }
+            (from, skips) = (to, 0.0);
+        }
+        true
+    }
+
+    /// The joint that moves a point of the skin.
+    fn joint_at(&self, material: &MaterialPoint) -> Option<JointId> {
+        let triangle = u32::try_from(material.key).ok().map(TriangleId)?;
+        self.surface.mesh().joint_of(triangle)
+    }
+
     /// The first touch of the limb's skin with a body in this tick.
     fn touch(&self, strike: &Strike, body: &WorldCapsule) -> Option<SweepContact> {
         let (center, radius) = self.surface.bounding_ball()?;
@@ -94,10 +132,8 @@ impl Creature {
         if middle.distance(center) > radius + size {
             return None;
         }
-        let mesh = self.surface.mesh();
         let mut is_limb = |hit: &SweepContact| {
-            let triangle = u32::try_from(hit.contact.material.key).ok().map(TriangleId);
-            let joint = triangle.and_then(|triangle| mesh.joint_of(triangle));
+            let joint = self.joint_at(&hit.contact.material);
             joint.is_some_and(|joint| strike.hurts(joint))
         };
         let still = [DVec3::ZERO; 2];
@@ -166,4 +202,22 @@ impl Creature {
         let in_model = world.rotation.conjugate() * aim / self.size.scale;
         self.state.aim = aim * strike.reach(in_model);
     }
+}
+
+/// True if no rock and no other creature is between two places, but for so many metres after the first one.
+fn is_free(from: DVec3, to: DVec3, skips: f64, around: &Surroundings<'_>) -> bool {
+    let way = to - from;
+    let length = way.length() - skips;
+    let Some(along) = way.try_normalize().filter(|_| length > 0.0) else {
+        return true;
+    };
+    let from = from + along * skips;
+    // What it begins in is ground, or was met on the way there.
+    let mut is_rock = |hit: &Contact| hit.normal.y < GROUND && hit.distance > 0.0;
+    let mut rocks = around.terrain.iter();
+    let mut others = around.creatures.iter();
+    !rocks.any(|rock| {
+        rock.cast_ray_where(from, along, length, &mut is_rock)
+            .is_some()
+    }) && !others.any(|other| other.cast_ray(from, along, length).is_some())
 }

@@ -91,6 +91,10 @@ impl Senses {
         let per_region = RegionSense::ALL.len();
         (self.numbers.len(), self.regions.len(), self.own.len())
             == (Sense::COUNT, regions * per_region, own)
+            && [&self.numbers[..], &self.regions, &self.own]
+                .into_iter()
+                .flatten()
+                .all(|number| !number.is_nan())
     }
 }
 

@@ -2,12 +2,14 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
+use crate::ranged::{attack as ranged_attack, places, somebody, wall};
 use crate::support::{TICK, brain_file, brain_with, creature, kind, kind_at, person};
 use clamber_animation::rig::Playback;
 use clamber_animation::{joint_in_model, rig::JointId};
 use clamber_colossus::brain::Act;
 use clamber_colossus::{Creature, CreatureConfig, CreatureEvent, Surroundings};
-use clamber_world::{HalfSpace, Obstacle};
+use clamber_world::rapier3d::prelude::{ColliderBuilder, PhysicsWorld, Pose};
+use clamber_world::{BodyPoses, HalfSpace, Obstacle, RapierTerrain};
 use glam::DVec3;
 
 /// The states of the giant's own brain that attack, each with its act as text.
@@ -337,4 +339,56 @@ fn an_attack_ends_with_its_act() {
             assert_eq!(blows, 0, "{name}, then {next}");
         }
     }
+}
+
+/// A gate that closes once an attack has begun hides who is behind it: from a limb that goes through it, too. A low wall
+/// does so from limbs whose joints do not come over it.
+#[test]
+fn nobody_is_struck_through_a_gate_that_closes() {
+    let ground = HalfSpace::below(0.0);
+    // Ground that is solid is not in the way of a foot whose joints are in it.
+    let mut world = PhysicsWorld::default();
+    let pose = Pose::translation(0.0, -1.0, 0.0);
+    world.insert_collider(
+        ColliderBuilder::cuboid(200.0, 1.0, 200.0).position(pose),
+        None,
+    );
+    world.detect_collisions(&(), &());
+    let poses = BodyPoses::default();
+    let slab = RapierTerrain::of_world(&world, &poses);
+    let (mut open, mut behind, mut low) = (0, 0, 0);
+    for (name, act) in attacks() {
+        let giant = before(&act);
+        for (place, _) in places(DVec3::new(0.0, 0.0, 9.0), 9.0, 5)
+            .into_iter()
+            .take(40)
+        {
+            let to = place.with_y(0.0).normalize_or(DVec3::Z);
+            let aside = DVec3::new(to.z, 0.0, -to.x);
+            let gate = |height| wall(place - to * 0.6 - aside * 30.0, aside * 60.0, height);
+            let struck = |gate: Option<&dyn Obstacle>| {
+                let terrain = |since: f64| {
+                    let gate = gate.filter(|_| since > 0.1);
+                    std::iter::once(&ground as &dyn Obstacle)
+                        .chain(gate)
+                        .collect()
+                };
+                let seen = ranged_attack(&giant, |_| vec![somebody(1, place)], terrain);
+                seen.blows.len()
+            };
+            if struck(None) > 0 {
+                let on_slab = ranged_attack(&giant, |_| vec![somebody(1, place)], |_| vec![&slab]);
+                assert!(!on_slab.blows.is_empty(), "{name} at {place} on a slab");
+                let through = struck(Some(&gate(40.0)));
+                assert_eq!(through, 0, "{name} at {place}");
+                low += struck(Some(&gate(2.4)));
+                open += 1;
+            }
+            behind += 1;
+        }
+    }
+    println!(
+        "{open} of {behind} in the open, {low} of them behind a wall of 2.4 m, none behind one of 40 m"
+    );
+    assert!(open > 30 && low < open);
 }

@@ -173,25 +173,29 @@ fn on_a_deck_that_moves_it_lives_as_on_one_that_does_not() {
     assert!(failed.is_empty(), "{}", failed.join("\n"));
 }
 
-/// A plate of 3 m that slides through between a giant's feet does not take it along; nor does one that spins.
-#[test]
-fn what_moves_between_its_feet_does_not_carry_it() {
-    let (_, kind, _) = creatures().remove(0);
-    let corners = [(-1.5, -1.5), (-1.5, 1.5), (1.5, 1.5), (1.5, -1.5)];
-    let positions = corners.map(|(x, z)| Vec3::new(x, 0.2, z));
+/// Two triangles that move as one.
+pub(crate) fn plate(corners: [Vec3; 4]) -> SkinnedSurface {
     let bone = Influence {
         joint: JointId(0),
         weight: 1.0,
     };
     let source = MeshSource {
-        positions: &positions,
+        positions: &corners,
         triangles: &[[0, 1, 2], [0, 2, 3]],
         influences: &[bone; 4],
         joint_count: 1,
         ..MeshSource::default()
     };
     let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
-    let mut plate = SkinnedSurface::new(Arc::new(mesh));
+    SkinnedSurface::new(Arc::new(mesh))
+}
+
+/// A plate of 3 m that slides through between a giant's feet does not take it along; nor does one that spins.
+#[test]
+fn what_moves_between_its_feet_does_not_carry_it() {
+    let (_, kind, _) = creatures().remove(0);
+    let corners = [(-1.5, -1.5), (-1.5, 1.5), (1.5, 1.5), (1.5, -1.5)];
+    let mut plate = plate(corners.map(|(x, z)| Vec3::new(x, 0.2, z)));
     let still = Palette::from_matrices([Affine::IDENTITY]);
     let ground = HalfSpace::below(0.0);
     let mut creature = Creature::new(kind, config()).unwrap();

@@ -266,3 +266,74 @@ fn two_creatures_do_not_walk_into_each_other() {
     }
     assert!(failed.is_empty(), "{}", failed.join("\n"));
 }
+
+/// Who is small and fast sees far enough, in steps that are small enough, to stop as well as who is large and slow.
+#[test]
+fn edges_stop_who_runs() {
+    let mut failed = Vec::new();
+    for (height, speed, tick) in [
+        (1.0, 40.0, TICK),
+        (1.0, 8.0, TICK),
+        (1.0, 3.0, TICK),
+        (2.0, 12.0, TICK),
+        (1.5, 6.0, 2.0 * TICK),
+    ] {
+        let mut file: serde_json::Value =
+            serde_json::from_str(&crate::support::brain_with("stands", crate::walls::HUNTS))
+                .unwrap();
+        file["body"]["height"] = height.into();
+        file["body"]["made_for"] = height.into();
+        file["body"]["gait"]["speed"] = (speed / height).into();
+        let kind = crate::support::kind_at(&file.to_string(), tick);
+        for (what, profile, passes) in GROUNDS {
+            let away = 60.0 + 20.0 * height;
+            let ground = strips(&profile(away, height));
+            let terrain: [&dyn Obstacle; 1] = [&ground];
+            let walk = run(&kind, &terrain, 2.0 * away, away + 2.0 * height);
+            let told = format!("{height} m at {speed} m/s, {what}: {walk:.2?}");
+            println!("{told}");
+            let is_right = if passes {
+                walk.far > away + height && !walk.blocked
+            } else {
+                walk.blocked && walk.far < away
+            };
+            if !is_right || walk.fastest < 0.8 * speed.min(7.0) {
+                failed.push(told);
+            }
+        }
+    }
+    assert!(failed.is_empty(), "{}", failed.join("\n"));
+}
+
+/// How far it came in a minute on its way to a noise, or until it was stopped or far enough, whether it was stopped, and how fast it was.
+#[derive(Debug, Default)]
+struct Run {
+    far: f64,
+    blocked: bool,
+    fastest: f64,
+}
+
+fn run(kind: &Arc<CreatureKind>, terrain: &[&dyn Obstacle], goal: f64, enough: f64) -> Run {
+    let mut creature = Creature::new(Arc::clone(kind), config()).unwrap();
+    let mut run = Run::default();
+    for _ in 0..(60.0 / kind.brain().tick()) as u32 {
+        let noises = [Noise {
+            place: DVec3::Z * goal,
+            loudness: 5.0,
+        }];
+        let around = Surroundings {
+            terrain,
+            noises: &noises,
+            ..Surroundings::default()
+        };
+        creature.step(&around).unwrap();
+        let state = creature.state();
+        run.blocked |= state.senses().get(Sense::Blocked) > 0.0;
+        run.far = run.far.max(state.position().z);
+        run.fastest = run.fastest.max(state.speed());
+        if run.blocked || run.far > enough {
+            break;
+        }
+    }
+    run
+}

@@ -2,9 +2,11 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
+use crate::carried::Deck;
 use crate::support::{TICK, brain_with, creature, kind};
 use clamber_animation::rig::Palette;
 use clamber_colossus::{CreatureConfig, Foresight, Noise, Surroundings};
+use clamber_surface::geometry::{Similarity, rotation_from_axis_angle};
 use clamber_world::{HalfSpace, Obstacle};
 use glam::DVec3;
 
@@ -102,4 +104,60 @@ fn a_hand_is_foreseen_walking_and_turning() {
         assert!(giant.foresee(seconds, &mut memory, &mut palette).is_err());
     }
     assert!(giant.foresee(1e9, &mut memory, &mut palette).is_ok());
+}
+
+/// On a ship that sails, turns and rises, standing and walking, as on ground at rest.
+#[test]
+fn on_moving_ground_a_hand_is_foreseen_too() {
+    let kind = kind(&brain_with("waits", HUNTS));
+    let hand = kind.skeleton().find("hand.L").unwrap();
+    for (velocity, turns) in [
+        (DVec3::new(3.0, 0.0, 0.0), 0.0),
+        (DVec3::new(2.0, 0.5, -2.0), 0.0),
+        (DVec3::ZERO, 0.2),
+        (DVec3::new(0.0, 0.0, 4.0), -0.1),
+    ] {
+        for walks in [false, true] {
+            let mut giant = creature(&kind, CreatureConfig::default());
+            let (mut memory, mut palette) = (Foresight::default(), Palette::default());
+            let mut at = Similarity::IDENTITY;
+            let (mut foreseen, mut worst, mut judged) = (Vec::new(), 0f64, 0);
+            for tick in 0..600 {
+                let before = at;
+                // It sails where it looks.
+                let turn = rotation_from_axis_angle(DVec3::Y, turns * TICK);
+                at.rotation = turn * at.rotation;
+                at.translation += at.rotation * velocity * TICK;
+                let deck = Deck { before, now: at };
+                let terrain: [&dyn Obstacle; 1] = [&deck];
+                let noises = [Noise {
+                    place: at.transform_point(DVec3::Z * 90.0),
+                    loudness: 5.0,
+                }];
+                let around = Surroundings {
+                    terrain: &terrain,
+                    noises: &noises[..usize::from(walks)],
+                    ..Surroundings::default()
+                };
+                giant.step(&around).unwrap();
+                let place = |palette: &Palette, world: &Similarity| {
+                    let frame = palette.model_from_joint(hand).unwrap();
+                    world.transform_point(frame.translation)
+                };
+                let now = place(giant.palette(), giant.surface().world_from_model());
+                // It has begun to walk by then.
+                if tick >= 420 {
+                    let before: DVec3 = foreseen[tick - 120];
+                    worst = worst.max(before.distance(now));
+                    judged += 1;
+                }
+                let world = giant
+                    .foresee(120.0 * TICK, &mut memory, &mut palette)
+                    .unwrap();
+                foreseen.push(place(&palette, &world));
+            }
+            println!("{velocity} {turns}, walks {walks}: {worst:.3} m of {judged}");
+            assert!(worst < 0.35, "{velocity} {turns} {walks}: {worst}");
+        }
+    }
 }

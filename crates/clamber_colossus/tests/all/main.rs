@@ -19,6 +19,7 @@ mod ranged;
 mod ranged_elsewhere;
 mod senses;
 mod sizes;
+mod sleep;
 mod support;
 mod trex;
 mod walls;

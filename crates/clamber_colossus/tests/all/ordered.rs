@@ -6,11 +6,15 @@ use std::sync::Arc;
 
 use clamber_colossus::{Creature, CreatureConfig, CreatureEvent, CreatureKind, Surroundings};
 use clamber_surface::mesh::TriangleId;
+use clamber_surface::surface::TargetMotion;
 use clamber_world::rapier3d::prelude::{ColliderBuilder, PhysicsWorld, Pose};
-use clamber_world::{BodyPoses, HalfSpace, MaterialPoint, Obstacle, RapierTerrain};
+use clamber_world::{
+    BodyPoses, Contact, HalfSpace, MaterialPoint, Obstacle, PointMotion, RapierTerrain,
+    SweepContact, WorldCapsule,
+};
 use glam::DVec3;
 
-use crate::support::{TICK, brain_file, creature, kind as giant};
+use crate::support::{TICK, brain_file, brain_with, creature, kind as giant, person};
 use crate::walls::creatures;
 
 fn level(a: DVec3, b: DVec3) -> f64 {
@@ -252,4 +256,223 @@ fn states_are_entered_by_name_and_weak_points_are_hurt_by_number() {
     assert_eq!(one.harm(0, 9.0 * full), Some(0.75 * full));
     assert_eq!(one.harm(0, 1.0), Some(0.0));
     assert_eq!(one.state().hit_points()[0], 0.0);
+}
+
+/// Calling back who was not sent changes nothing: what it is at goes on, and strikes once.
+#[test]
+fn calling_back_who_was_not_sent_changes_nothing() {
+    let ground = HalfSpace::below(0.0);
+    let terrain: [&dyn Obstacle; 1] = [&ground];
+    let file: serde_json::Value = serde_json::from_str(&brain_file()).unwrap();
+    let stomp = &file["states"]["alive"]["states"]["alert"]["states"]["stomp_right"]["act"];
+    assert!(stomp["attack"].is_object(), "{stomp}");
+    let states = serde_json::json!({ "strikes": { "act": stomp } });
+    let kind = giant(&brain_with("strikes", &states.to_string()));
+    let mut both = [0, 1].map(|_| creature(&kind, at(DVec3::ZERO, 0.0)));
+    let mut blows = [0, 0];
+    for tick in 0..400 {
+        if tick == 100 {
+            blows = [0, 0];
+            both.iter_mut()
+                .for_each(|one| assert!(one.enter("strikes")));
+        }
+        for (index, one) in both.iter_mut().enumerate() {
+            if index == 1 {
+                assert!(one.send(None));
+            }
+            let around = Surroundings {
+                terrain: &terrain,
+                people: &[person(DVec3::new(-3.0, 0.0, 6.0))],
+                ..Surroundings::default()
+            };
+            blows[index] += one.step(&around).unwrap().blows.len();
+        }
+        assert_eq!(both[0].state(), both[1].state(), "tick {tick}");
+    }
+    assert_eq!(blows[0], blows[1]);
+}
+
+/// Somebody for whom a game sends it in each tick is reached, round a wall, and costs about as much to look for as
+/// somebody who stands.
+#[test]
+fn who_is_sent_in_each_tick_gets_there_and_looks_no_more_often() {
+    let kind = giant(&brain_file());
+    let mut asked = [0; 3];
+    for (index, moves) in [None, Some(0.0), Some(0.01)].into_iter().enumerate() {
+        let mut wall = PhysicsWorld::default();
+        let pose = Pose::translation(0.0, 20.0, 45.0);
+        wall.insert_collider(
+            ColliderBuilder::cuboid(30.0, 25.0, 2.0).position(pose),
+            None,
+        );
+        wall.detect_collisions(&(), &());
+        let poses = BodyPoses::default();
+        let counting = Counting {
+            ground: HalfSpace::below(0.0),
+            wall: RapierTerrain::of_world(&wall, &poses),
+            asked: std::sync::atomic::AtomicUsize::new(0),
+        };
+        let mut one = creature(&kind, at(DVec3::ZERO, 0.0));
+        let mut to = DVec3::new(0.0, 0.0, 110.0);
+        assert!(one.send(Some(to)));
+        let mut end = None;
+        let mut ticks = 0;
+        while end.is_none() && ticks < 60 * 120 {
+            if let Some(moved) = moves {
+                to.x += moved;
+                assert!(one.send(Some(to)));
+            }
+            end = go(&mut one, &counting, 1).0;
+            ticks += 1;
+        }
+        assert_eq!(end, Some(CreatureEvent::Arrived { place: to }), "{moves:?}");
+        asked[index] = counting.asked.into_inner() / ticks as usize;
+        println!("{moves:?}: {ticks} ticks, {} queries in each", asked[index]);
+    }
+    assert!(
+        asked[1] <= asked[0] + asked[0] / 10 && asked[2] <= 2 * asked[0],
+        "{asked:?}"
+    );
+}
+
+/// Level ground and a wall that count what they are asked.
+struct Counting<'a> {
+    ground: HalfSpace,
+    wall: RapierTerrain<'a>,
+    asked: std::sync::atomic::AtomicUsize,
+}
+
+impl Counting<'_> {
+    fn all(&self) -> [&dyn Obstacle; 2] {
+        self.asked
+            .fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+        [&self.ground, &self.wall]
+    }
+}
+
+impl Obstacle for Counting<'_> {
+    fn overlap_capsule(&self, capsule: &WorldCapsule, contacts: &mut Vec<Contact>) {
+        self.all()
+            .into_iter()
+            .for_each(|one| one.overlap_capsule(capsule, contacts));
+    }
+
+    fn cast_capsule(
+        &self,
+        capsule: &WorldCapsule,
+        displacements: [DVec3; 2],
+        target: TargetMotion,
+    ) -> Option<SweepContact> {
+        let hits = self.all().into_iter();
+        let hits = hits.filter_map(|one| one.cast_capsule(capsule, displacements, target));
+        hits.min_by(|a, b| a.time.total_cmp(&b.time))
+    }
+
+    fn cast_capsule_where(
+        &self,
+        capsule: &WorldCapsule,
+        displacements: [DVec3; 2],
+        target: TargetMotion,
+        counts: &mut dyn FnMut(&SweepContact) -> bool,
+    ) -> Option<SweepContact> {
+        let hits = self.all().into_iter();
+        let hits =
+            hits.filter_map(|one| one.cast_capsule_where(capsule, displacements, target, counts));
+        hits.min_by(|a, b| a.time.total_cmp(&b.time))
+    }
+
+    fn motion(&self, _: &MaterialPoint, _: f64) -> Option<PointMotion> {
+        None
+    }
+}
+
+#[test]
+fn who_has_come_to_its_end_is_not_sent() {
+    let kind = giant(&brain_with(
+        "dead",
+        r#"{ "dead": { "final": true }, "lives": {} }"#,
+    ));
+    let mut one = creature(&kind, at(DVec3::ZERO, 0.0));
+    let before = one.state().clone();
+    assert!(!one.send(Some(DVec3::Z * 50.0)));
+    assert!(one.send(None));
+    assert_eq!(one.state(), &before);
+    assert!(one.enter("lives"));
+    assert!(one.send(Some(DVec3::Z * 50.0)));
+}
+
+/// A brain whose weak points, plates and legs are others takes over what has the same name.
+#[test]
+fn another_body_keeps_what_it_knows_by_name() {
+    let mut file: serde_json::Value = serde_json::from_str(&brain_file()).unwrap();
+    let point = |name: &str, hit_points: f64| serde_json::json!({ "name": name, "joint": "chest", "radius": 1.0, "hit_points": hit_points });
+    file["body"]["weak_points"] =
+        serde_json::json!([point("a", 10.0), point("b", 10.0), point("a", 20.0)]);
+    let mut one = creature(&giant(&file.to_string()), at(DVec3::ZERO, 0.0));
+    let ground = HalfSpace::below(0.0);
+    go(&mut one, &ground, 30);
+    // Those of the file are before them.
+    let first = one.state().hit_points().len() - 3;
+    for (index, damage) in [(0, 4.0), (1, 1.0), (2, 7.0)] {
+        assert_eq!(one.harm(first + index, damage), Some(damage));
+    }
+    assert!(one.send(Some(DVec3::Z * 50.0)));
+    let changes: [(&str, serde_json::Value, &[f64]); 3] = [
+        (
+            "weak_points",
+            serde_json::json!([
+                point("c", 5.0),
+                point("a", 10.0),
+                point("b", 3.0),
+                point("a", 20.0)
+            ]),
+            &[5.0, 6.0, 3.0, 13.0],
+        ),
+        ("legs", serde_json::json!([]), &[6.0, 9.0, 13.0]),
+        ("gait", serde_json::Value::Null, &[6.0, 9.0, 13.0]),
+    ];
+    for (key, value, left) in changes {
+        let mut file = file.clone();
+        file["body"][key] = value;
+        if key != "weak_points" {
+            file["start"] = "stands".into();
+            file["states"] = serde_json::json!({ "stands": {} });
+        }
+        let kind = giant(&file.to_string());
+        let carried = one.state().carry_over(one.kind(), &kind);
+        let Some(carried) = carried else {
+            panic!("{key}")
+        };
+        let mut other = creature(&kind, at(DVec3::ZERO, 0.0));
+        other
+            .restore(carried)
+            .unwrap_or_else(|error| panic!("{key}: {error}"));
+        assert_eq!(&other.state().hit_points()[first..], left, "{key}");
+        assert_eq!(other.sent_to().is_some(), key != "gait");
+        go(&mut other, &ground, 30);
+    }
+}
+
+/// Hit points, wounds, distances and senses that are no numbers are refused.
+#[test]
+fn forged_wounds_are_refused() {
+    let kind = giant(&brain_file());
+    let mut one = creature(&kind, at(DVec3::ZERO, 0.0));
+    go(&mut one, &HalfSpace::below(0.0), 5);
+    one.harm(0, 0.1).unwrap();
+    let saved = serde_json::to_value(one.state()).unwrap();
+    let not = serde_json::json!(f64::NAN.to_bits());
+    for (place, value) in [
+        ("/hit_points/0", serde_json::json!(-1.0)),
+        ("/walls/0", serde_json::json!(-1.0)),
+        ("/senses/numbers/3", not),
+        ("/carried/yaw_rate", serde_json::json!(1e9)),
+    ] {
+        let mut forged = saved.clone();
+        *forged
+            .pointer_mut(place)
+            .unwrap_or_else(|| panic!("{place}")) = value;
+        let forged = serde_json::from_value(forged).unwrap();
+        assert!(one.restore(forged).is_err(), "{place}");
+    }
 }

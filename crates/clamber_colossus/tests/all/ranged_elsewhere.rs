@@ -4,14 +4,15 @@
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
 use crate::attacks::{before, before_at};
-use crate::carried::Deck;
+use crate::carried::{Deck, plate};
 use crate::ranged::{Seen, act, attack, attack_among, places, somebody, wall};
 use crate::support::TICK;
 use clamber_colossus::{Creature, CreatureConfig, CreatureEvent, Person, Riding, Surroundings};
-use clamber_surface::geometry::{Similarity, rotation_from_axis_angle};
+use clamber_surface::geometry::{Affine, Similarity, rotation_from_axis_angle};
 use clamber_surface::mesh::TriangleId;
+use clamber_surface::rig::Palette;
 use clamber_world::{HalfSpace, MaterialPoint, Obstacle, TriangleTerrain};
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use serde_json::{Value, json};
 
 /// A wave, a shot and a beam that nobody escapes.
@@ -564,4 +565,62 @@ fn low_waves_strike_who_stands_on_edges_and_slopes() {
     let seen = attack(&giant, people, |_| vec![&table as &dyn Obstacle, &ground]);
     let struck: Vec<u64> = seen.blows.iter().map(|(_, blow)| blow.person).collect();
     assert_eq!(struck, [1]);
+}
+
+/// A sheet that comes towards a stone, however fast, stops it: no stone is ever behind it, at any rate.
+#[test]
+fn stones_do_not_go_through_gates_that_move() {
+    let ground = HalfSpace::below(0.0);
+    let file = json!({ "shot": { "speed": 25.0, "radius": 0.8, "gravity": 0.0, "damage": 0.5, "throw": 5.0 } });
+    let mut met = 0;
+    for rate in [30.0, 60.0] {
+        let dt = 1.0 / rate;
+        for (speed, from) in [
+            (0.0, 24.0),
+            (-3.0, 34.3),
+            (-40.0, 90.0),
+            (-40.0, 91.1),
+            (12.0, 17.0),
+        ] {
+            let act = act("swipe_right", file.clone());
+            let mut giant = before_at(&act, dt, CreatureConfig::default());
+            let corners = [(-90.0, -1.0), (90.0, -1.0), (90.0, 90.0), (-90.0, 90.0)];
+            let mut gate = plate(corners.map(|(x, y)| Vec3::new(x, y, 0.0)));
+            let still = Palette::from_matrices([Affine::IDENTITY]);
+            let mut put = |z: f64| {
+                let place = Similarity {
+                    translation: DVec3::Z * z,
+                    ..Similarity::IDENTITY
+                };
+                gate.advance(&still, place).unwrap();
+                gate.clone()
+            };
+            put(from);
+            let person = somebody(1, DVec3::new(0.0, 0.0, 60.0));
+            let (mut thrown, mut at) = (false, from);
+            for tick in 0..(10.0 * rate) as u32 {
+                if thrown {
+                    at += speed * dt;
+                }
+                let gate = put(at);
+                let terrain: [&dyn Obstacle; 2] = [&ground, &gate];
+                let terrain = if thrown { &terrain[..] } else { &terrain[..1] };
+                let events = step(&mut giant, std::slice::from_ref(&person), terrain);
+                let throws = |event: &CreatureEvent| matches!(event, CreatureEvent::Threw { .. });
+                thrown |= events.iter().any(throws);
+                for shot in giant.shots() {
+                    assert!(
+                        shot.place.z < at + 1e-3,
+                        "{rate} {speed}, tick {tick}: {} {at}",
+                        shot.place
+                    );
+                }
+                met += events
+                    .iter()
+                    .filter(|event| matches!(event, CreatureEvent::Burst { .. }))
+                    .count();
+            }
+        }
+    }
+    assert_eq!(met, 10);
 }

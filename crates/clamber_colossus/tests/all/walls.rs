@@ -14,7 +14,7 @@ use crate::animals::{animals, kind as animal};
 use crate::support::{TICK, brain_with, kind as giant};
 
 /// It hears something, turns there and walks there.
-const HUNTS: &str = r#"{
+pub(crate) const HUNTS: &str = r#"{
     "stands": { "transitions": [{ "to": "turns", "when": ["noise > 0"], "after": 1 }] },
     "turns": { "act": { "turn": { "to": "noise", "within_deg": 5 } }, "transitions": [
         { "to": "walks", "when": ["done"] }] },

@@ -40,7 +40,8 @@ pub struct BattleOptions {
     #[arg(long, value_name = "FILE")]
     pub brain: Option<PathBuf>,
 
-    /// Height of the creature [default: 40 for the giant, 20 for a creature from a file].
+    /// Height of the creature [default: that of the file of --brain; without one 40 for the giant, and 20 for a creature
+    /// from a file].
     #[arg(long, value_name = "METRES")]
     #[arg(value_parser = positive, allow_negative_numbers = true)]
     pub height: Option<f64>,
@@ -197,13 +198,21 @@ impl BattleOptions {
         })
     }
 
-    /// Height that the creature is scaled to, metres: the option or its default.
+    /// Height that the creature is scaled to, metres: the option, or that of the brain's file, or the default.
     pub fn height(&self) -> f64 {
         let default = match &self.creature {
             Some(_) => FILE_HEIGHT,
             None => GIANT_HEIGHT,
         };
-        self.height.unwrap_or(default)
+        let height = self.height.or_else(|| self.height_of_brain());
+        height.unwrap_or(default)
+    }
+
+    /// `None` without a brain, and with one that cannot be read, which [`Battle::new`](super::Battle::new) tells.
+    fn height_of_brain(&self) -> Option<f64> {
+        let text = std::fs::read_to_string(self.brain.as_ref()?).ok()?;
+        let brain = Brain::from_json(&text, TICK).ok()?;
+        brain.file().body.height
     }
 
     /// What the climber does: the option or its default.

@@ -76,7 +76,7 @@ pub(super) struct Sight {
     pub(super) is_calm: bool,
     /// It stays where it is.
     pub(super) stays: bool,
-    /// It raises a limb against somebody, or strikes.
+    /// It raises a limb against somebody, or strikes, or what it has let out is on its way.
     pub(super) attacks: bool,
 }
 
@@ -288,7 +288,9 @@ impl<'a> Performer<'a> {
                 let act = life.kind().brain().act(life.state().current());
                 let is_quiet =
                     !matches!(act, Some(Act::Walk(_) | Act::Once(_))) && life.state().speed() < 0.5;
-                let attacks = matches!(attack, Some(AttackPhase::WindUp | AttackPhase::Active));
+                let attacks = matches!(attack, Some(AttackPhase::WindUp | AttackPhase::Active))
+                    || life.waves().next().is_some()
+                    || life.shots().next().is_some();
                 Sight {
                     is_calm: is_quiet && !attacks,
                     stays: life.state().speed() < 0.5,

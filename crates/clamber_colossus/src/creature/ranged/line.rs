@@ -1,6 +1,7 @@
 //! A ball on a straight way, and what it meets there.
 
 use clamber_surface::geometry::WorldCapsule;
+use clamber_surface::surface::TargetMotion;
 use glam::DVec3;
 
 use crate::creature::{Person, Surroundings};
@@ -32,6 +33,22 @@ impl Line {
         let out = first.normal.try_normalize();
         let out = out.filter(|out| out.dot(along) < 0.0).unwrap_or(-along);
         Some((((first.distance - behind) / length).clamp(0.0, 1.0), out))
+    }
+
+    /// The same while everything moves through a tick, which its way takes.
+    pub(super) fn meet(&self, behind: f64, around: &Surroundings<'_>) -> Option<(f64, DVec3)> {
+        let length = self.way.length();
+        let along = self.way.try_normalize()?;
+        let middle = WorldCapsule::ball(self.from - along * behind, 0.0);
+        let way = along * (length + behind);
+        let all = around.terrain.iter().chain(around.creatures);
+        let moving = TargetMotion::Moving;
+        let hits = all.filter_map(|obstacle| obstacle.cast_capsule(&middle, [way; 2], moving));
+        let first = hits.min_by(|a, b| a.time.total_cmp(&b.time))?;
+        let out = first.separation_normal.try_normalize();
+        let out = out.filter(|out| out.dot(along) < 0.0).unwrap_or(-along);
+        let share = (first.time * (length + behind) - behind) / length;
+        Some((share.clamp(0.0, 1.0), out))
     }
 
     /// The share of its way after which it touches somebody who does not ride, and whom no terrain and no other creature

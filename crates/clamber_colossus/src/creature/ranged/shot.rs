@@ -103,7 +103,7 @@ impl Creature {
         };
         // It has come from there, but for its first tick.
         let behind = if shot.ticks > 0 { BEHIND } else { 0.0 };
-        let stop = line.stop(behind, around);
+        let stop = line.meet(behind, around);
         let end = stop.map_or(1.0, |(share, _)| share);
         let touches = around.people.iter().filter_map(|person| {
             let share = line.touch(person, around)?;

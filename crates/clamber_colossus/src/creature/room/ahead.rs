@@ -10,9 +10,10 @@ use crate::kind::{BANDS, Band, EDGES};
 /// How much further it keeps from other creatures, since their skin moves while they stand.
 const SWAYS: f64 = 0.05;
 
-/// The ground ahead is looked at in steps of this share of its height, and in at most so many.
+/// The ground ahead is looked at in steps of this share of its height, and in at most so many: it does not see what is
+/// farther away than 20 heights.
 const SPACING: f64 = 0.08;
-const STATIONS: usize = 64;
+const STATIONS: usize = 256;
 
 /// Lower bands follow the ground in pieces of so many steps, those from [`STRAIGHT_FROM`] on go straight.
 const PIECE: usize = 3;
@@ -21,12 +22,14 @@ const PIECE: usize = 3;
 const ABOUT: f64 = 0.04;
 
 impl Room<'_> {
-    /// How far it may walk straight ahead, metres, up to `far`. Negative where it stands in something, or too near.
+    /// How far it may walk straight ahead, metres, up to `far` and as far as it sees. Negative where it stands in
+    /// something, or too near.
     pub(in crate::creature) fn ahead(&self, far: f64) -> f64 {
-        let far = far.max(0.0);
         let margin = MARGIN * self.height;
         let feet = self.band(0);
         let spacing = SPACING * self.height;
+        let sees = spacing * STATIONS as f64 - feet.front - margin;
+        let far = far.min(sees).max(0.0);
         let reach = feet.front + margin + far;
         let count = ((reach / spacing).ceil() as usize).clamp(1, STATIONS);
         let spacing = reach / count as f64;

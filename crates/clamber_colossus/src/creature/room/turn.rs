@@ -189,10 +189,8 @@ mod tests {
                 height,
                 steepest: 1.0,
             };
-            for bands in (0..BANDS)
-                .map(|index| index..index + 1)
-                .chain([STRAIGHT_FROM..BANDS])
-            {
+            let single = (0..BANDS).map(|index| index..index + 1);
+            for bands in single.chain(std::iter::once(STRAIGHT_FROM..BANDS)) {
                 let mut ends = bands
                     .clone()
                     .map(|index| room.turn_band(index, turn, slope));
