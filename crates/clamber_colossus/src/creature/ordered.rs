@@ -49,6 +49,7 @@ impl Creature {
             steepness: fresh.steepness,
             ground: fresh.ground,
             stands_on: fresh.stands_on,
+            carried: fresh.carried,
             walked: fresh.walked,
             walls: fresh.walls,
             feet: fresh.feet,

@@ -8,6 +8,7 @@ use clamber_world::{Contact, MaterialPoint, Obstacle, SweepContact};
 use glam::DVec3;
 
 use super::report::{AttackPhase, Blow};
+use super::room::STEEP;
 use super::state::{Lean, Playing};
 use super::{Creature, Person, Surroundings};
 use crate::brain::{Act, StateId};
@@ -21,9 +22,6 @@ const REACH: f64 = 0.05;
 const SETTLED: f64 = 0.3;
 const QUICKEST: f64 = 0.15;
 const RETURNS: f64 = 0.4;
-
-/// What is as upright as this cosine is ground: it hides nobody from a limb that comes down on it.
-const GROUND: f64 = 0.7;
 
 /// It is back when it is nearer than this, in heights of the creature.
 const LEAST: f64 = 1e-4;
@@ -213,7 +211,7 @@ fn is_free(from: DVec3, to: DVec3, skips: f64, around: &Surroundings<'_>) -> boo
     };
     let from = from + along * skips;
     // What it begins in is ground, or was met on the way there.
-    let mut is_rock = |hit: &Contact| hit.normal.y < GROUND && hit.distance > 0.0;
+    let mut is_rock = |hit: &Contact| hit.normal.y < STEEP && hit.distance > 0.0;
     let mut rocks = around.terrain.iter();
     let mut others = around.creatures.iter();
     !rocks.any(|rock| {

@@ -5,6 +5,7 @@
 use std::sync::Arc;
 
 use clamber_colossus::{Creature, CreatureConfig, CreatureEvent, CreatureKind, Surroundings};
+use clamber_surface::geometry::Similarity;
 use clamber_surface::mesh::TriangleId;
 use clamber_surface::surface::TargetMotion;
 use clamber_world::rapier3d::prelude::{ColliderBuilder, PhysicsWorld, Pose};
@@ -14,6 +15,7 @@ use clamber_world::{
 };
 use glam::DVec3;
 
+use crate::carried::Deck;
 use crate::support::{TICK, brain_file, brain_with, creature, kind as giant, person};
 use crate::walls::creatures;
 
@@ -475,4 +477,34 @@ fn forged_wounds_are_refused() {
         let forged = serde_json::from_value(forged).unwrap();
         assert!(one.restore(forged).is_err(), "{place}");
     }
+}
+
+/// Put elsewhere in the middle of an attack, it strikes where it did, seen from itself; and nothing carries it there yet.
+#[test]
+fn put_in_an_attack_it_aims_as_before() {
+    let deck = |time: f64| Deck {
+        before: Similarity::from_translation(DVec3::X * (3.0 * (time - TICK))),
+        now: Similarity::from_translation(DVec3::X * (3.0 * time)),
+    };
+    let kind = giant(&brain_file());
+    let mut one = creature(&kind, at(DVec3::ZERO, 0.0));
+    for tick in 1..30 {
+        go(&mut one, &deck(f64::from(tick) * TICK), 1);
+    }
+    let mut saved = serde_json::to_value(one.state()).unwrap();
+    assert!(saved["carried"]["velocity"][0].as_f64().unwrap() > 2.9);
+    saved["aim"] = serde_json::json!([1.0, 0.5, 2.0]);
+    one.restore(serde_json::from_value(saved).unwrap()).unwrap();
+    let yaw = one.state().yaw();
+    one.put(DVec3::X * 50.0, yaw + core::f64::consts::FRAC_PI_2)
+        .unwrap();
+    let saved = serde_json::to_value(one.state()).unwrap();
+    let aim: Vec<f64> = serde_json::from_value(saved["aim"].clone()).unwrap();
+    for (found, expected) in aim.iter().zip([2.0, 0.5, -1.0]) {
+        assert!((found - expected).abs() < 1e-9, "{aim:?}");
+    }
+    assert_eq!(
+        saved["carried"]["velocity"],
+        serde_json::json!([0.0, 0.0, 0.0])
+    );
 }

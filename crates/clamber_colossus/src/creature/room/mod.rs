@@ -23,6 +23,9 @@ use crate::kind::{Band, EDGES, Extent};
 /// What is no higher above the ground than this share of its height it steps over.
 pub(super) const STEPS_OVER: f64 = 0.06;
 
+/// Blows may go into ground: what has a normal that is as upright as this cosine.
+pub(super) const STEEP: f64 = 0.7;
+
 /// It keeps this far from what stands in its way, as a share of its height.
 const MARGIN: f64 = 0.015;
 

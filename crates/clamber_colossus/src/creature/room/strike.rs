@@ -4,12 +4,9 @@ use clamber_surface::geometry::WorldCapsule;
 use clamber_world::SweepContact;
 use glam::DVec3;
 
-use super::{STEPS_OVER, first};
+use super::{STEEP, STEPS_OVER, first};
 use crate::creature::{Creature, Surroundings};
 use crate::kind::{Strike, Swept};
-
-/// Blows may go into ground: what has a normal that is as upright as this cosine.
-const STEEP: f64 = 0.7;
 
 impl Creature {
     /// False if anything of it would go through rock or another creature in an attack. What it steps over does not count,
