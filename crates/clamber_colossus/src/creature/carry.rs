@@ -47,7 +47,9 @@ impl Creature {
         let known = [&mut state.home, &mut state.patrol, &mut state.noise];
         let prey = state.prey.iter_mut().map(|(_, place)| place);
         let known = known.into_iter().chain(prey);
-        for place in known.chain(&mut state.walked.corners) {
+        let walked = &mut state.walked;
+        let way = walked.corners.iter_mut().chain([&mut walked.stuck_at]);
+        for place in known.chain(way) {
             *place = carried.level_place(*place);
         }
         state.gaze.value = carried.place(state.gaze.value);
@@ -75,7 +77,7 @@ impl Creature {
     ///
     /// A point of the ground is remembered, since its motion costs less than a ray, and is looked for anew now and then.
     fn ground_motion(&mut self, around: &Surroundings<'_>, dt: f64) -> Option<PointMotion> {
-        let often = if self.state.speed > 0.0 { 1 } else { SELDOM };
+        let often = if self.state.speed != 0.0 { 1 } else { SELDOM };
         let looks = self.state.ticks.is_multiple_of(often * LOOKS);
         let among = around.terrain.len() as u32;
         let known = self.state.stands_on.take();

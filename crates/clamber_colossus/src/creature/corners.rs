@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 use pathfinding::directed::astar::astar;
 
+use super::state::Wide;
 use super::way::Way;
 use super::{Creature, Surroundings};
 use crate::kind::Extent;
@@ -23,6 +24,10 @@ const FARTHEST: f64 = 16.0;
 
 /// So many places of a way are left out at a time, if it is straight.
 const SKIPPED: usize = 12;
+
+/// So near to where it is and to where it goes, in heights, a way may be as narrow as it can walk: as near as its corner
+/// that is furthest out is, at least.
+const NEAR: f64 = 1.2;
 
 /// A corner is passed when it is this near, as a share of the creature's height.
 const PASSED: f64 = 0.12;
@@ -57,7 +62,26 @@ impl Creature {
             return;
         }
         let slim = extent.slim();
-        let found = self.corners(around, &slim, way);
+        let narrow = Width {
+            slim: &slim,
+            stout: None,
+            goal: way.goal,
+            near: 0.0,
+        };
+        let mut found = None;
+        if self.state.walked.wide == Wide::Looks {
+            let stout = extent.stout();
+            let wide = Width {
+                stout: Some(&stout),
+                near: (NEAR * self.size.height).max(extent.farthest() * self.size.scale),
+                ..narrow
+            };
+            found = self.corners(around, &wide, way);
+            if found.is_none() {
+                self.state.walked.wide = Wide::Failed;
+            }
+        }
+        let found = found.or_else(|| self.corners(around, &narrow, way));
         let walked = &mut self.state.walked;
         walked.failed = match found {
             Some(_) => 0,
@@ -104,14 +128,19 @@ impl Creature {
     }
 
     /// The corners of a way; `None` if there is none, or it is too long.
-    fn corners(&self, around: &Surroundings<'_>, slim: &Extent, way: &Way) -> Option<Vec<DVec3>> {
+    fn corners(
+        &self,
+        around: &Surroundings<'_>,
+        width: &Width<'_>,
+        way: &Way,
+    ) -> Option<Vec<DVec3>> {
         let start = self.state.position;
         let end = |from: DVec3| {
             let to = (way.goal - from).with_y(0.0);
             let left = (to.length() - way.within).clamp(0.0, FARTHEST * self.size.height);
             from + to.normalize_or_zero() * left
         };
-        if self.passes(around, slim, start, end(start)).is_some() {
+        if self.passes(around, width, start, end(start)).is_some() {
             return Some(Vec::new());
         }
         // Those that it has are as good as new ones, as long as they lead there.
@@ -120,14 +149,14 @@ impl Creature {
             let from = core::iter::once(start).chain(known.iter().copied());
             let to = known.iter().copied().chain([end(*last)]);
             let mut pieces = from.zip(to);
-            if pieces.all(|(from, to)| self.passes(around, slim, from, to).is_some()) {
+            if pieces.all(|(from, to)| self.passes(around, width, from, to).is_some()) {
                 return Some(known.clone());
             }
         }
         let grid = Grid {
             creature: self,
             around,
-            slim,
+            width,
             start,
             cell: CELL * self.size.height,
         };
@@ -138,7 +167,7 @@ impl Creature {
         while index + 1 < places.len() {
             let passes = |next: &usize| {
                 let [from, to] = [places[index], places[*next]];
-                self.passes(around, slim, from, to).is_some()
+                self.passes(around, width, from, to).is_some()
             };
             let far = places.len().min(index + SKIPPED);
             let far = (index + 2..far).rev().find(passes);
@@ -152,7 +181,7 @@ impl Creature {
     fn passes(
         &self,
         around: &Surroundings<'_>,
-        slim: &Extent,
+        width: &Width<'_>,
         from: DVec3,
         to: DVec3,
     ) -> Option<f64> {
@@ -163,20 +192,43 @@ impl Creature {
         }
         let pieces = (heights / PIECE).ceil().max(1.0);
         let step = way / pieces;
-        let mut room = self.room_towards(around, slim, step);
-        room.origin = from;
+        let mut origin = from;
         for _ in 0..pieces as u32 {
-            room.origin = room.walked(step.length())?;
+            let extent = self.takes_up(width, origin + 0.5 * step);
+            let mut room = self.room_towards(around, extent, step);
+            room.origin = origin;
+            origin = room.walked(step.length())?;
         }
-        Some(room.origin.y)
+        Some(origin.y)
     }
+
+    /// The room that it takes up at a place on its way.
+    fn takes_up<'a>(&self, width: &Width<'a>, place: DVec3) -> &'a Extent {
+        let is_far = |from: DVec3| (place - from).with_y(0.0).length() > width.near;
+        let stout = width
+            .stout
+            .filter(|_| is_far(self.state.position) && is_far(width.goal));
+        stout.unwrap_or(width.slim)
+    }
+}
+
+/// How wide a way has to be.
+#[derive(Clone, Copy)]
+struct Width<'a> {
+    /// As wide as the creature is that walks.
+    slim: &'a Extent,
+    /// As wide as it is while it turns, on a way of which no place is too narrow for that but near its ends.
+    stout: Option<&'a Extent>,
+    goal: DVec3,
+    /// So near to its ends it may be narrow, metres.
+    near: f64,
 }
 
 /// A grid around a creature.
 struct Grid<'a> {
     creature: &'a Creature,
     around: &'a Surroundings<'a>,
-    slim: &'a Extent,
+    width: &'a Width<'a>,
     start: DVec3,
     /// Width of its cells, metres.
     cell: f64,
@@ -230,7 +282,7 @@ impl Grid<'_> {
         let is_inside = is_sent || far(to) <= self.creature.config.arena.max(far(self.start));
         let passes = || {
             let from = self.place(at);
-            self.creature.passes(self.around, self.slim, from, to)
+            self.creature.passes(self.around, self.width, from, to)
         };
         let level = is_inside.then(passes).flatten();
         let to = level.map(|level| {
@@ -238,7 +290,7 @@ impl Grid<'_> {
             [at[0] + x, at[1] + z, storey.round() as i32]
         });
         known.steps.insert((at, side), to);
-        if let Some(to) = to {
+        if let Some(to) = to.filter(|_| self.width.stout.is_none()) {
             // What it can walk, it can walk back.
             known.steps.insert((to, (side + 2) % 4), Some(at));
         }

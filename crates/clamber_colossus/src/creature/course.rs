@@ -53,6 +53,8 @@ pub(super) struct Course {
     /// may turn as far as it wants.
     pub(super) ahead: f64,
     pub(super) turn: Option<f64>,
+    /// How far it goes back, metres.
+    pub(super) back: f64,
     /// True while it turns on the spot, and while it stops abruptly.
     turning: bool,
     pub(super) halts: bool,
@@ -67,6 +69,7 @@ impl Course {
             yaw_rate: state.yaw_rate,
             ahead: state.walked.ahead,
             turn: Some(state.walked.turn),
+            back: state.walked.back,
             turning: matches!(state.playing, Playing::Turn(_)),
             halts: state.halts,
         }
@@ -161,6 +164,11 @@ impl Creature {
             let room = course.turn.map(|turn| turn * aside.signum());
             room.map_or(f64::INFINITY, |room| self.stoppable(room))
         };
+        if course.back > 0.0 {
+            let most = self.backs(gait);
+            wanted.speed = -braked(course.back).clamp(0.1 * most, most);
+            return wanted;
+        }
         let free = braked(course.ahead);
         // On the circle to its goal that its heading touches it turns by twice the angle that the goal is aside, on a way
         // of the distance over the sine of that; faster than this it would go round and round its goal.
@@ -211,6 +219,10 @@ impl Creature {
                 wanted.turn = 0.0;
             }
         }
+        // Not before it stands, after it went back.
+        if course.speed < 0.0 {
+            (wanted.speed, wanted.turn) = (0.0, 0.0);
+        }
         wanted
     }
 
@@ -219,8 +231,15 @@ impl Creature {
         let mut moved = course;
         let change = wanted.speed - course.speed;
         let slows_down = if course.halts { HALTS } else { SLOWS_DOWN };
-        moved.speed += change.clamp(-slows_down * dt, SPEEDS_UP * dt);
-        moved.halts &= moved.speed > 0.0;
+        // Ahead, and back.
+        let mut most = [SPEEDS_UP; 2];
+        if course.speed > 0.0 {
+            most[1] = slows_down;
+        } else if course.speed < 0.0 {
+            most[0] = slows_down;
+        }
+        moved.speed += change.clamp(-most[1] * dt, most[0] * dt);
+        moved.halts &= moved.speed != 0.0;
         if wanted.speed > 0.0 {
             // A foot that hardly moves is no walk: the first step already has some speed.
             moved.speed = moved.speed.max(0.02 * self.full_speed(gait));
@@ -233,7 +252,7 @@ impl Creature {
     /// How fast a clip of its gait is played at a course.
     pub(super) fn clip_speed(&self, gait: &Gait, playing: Playing, course: &Course) -> f64 {
         match playing {
-            Playing::Walk => course.speed / (self.full_speed(gait) * self.stride()),
+            Playing::Walk => course.speed.max(0.0) / (self.full_speed(gait) * self.stride()),
             Playing::Turn(_) => {
                 (course.yaw_rate.abs() / (gait.turn_rate * self.size.rate)).min(1.0)
             }

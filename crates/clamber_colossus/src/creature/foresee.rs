@@ -76,6 +76,7 @@ impl Creature {
                 course = next;
                 (course.position, course.yaw) = (position, yaw);
                 course.ahead -= speed * dt;
+                course.back = (course.back + speed.min(0.0) * dt).max(0.0);
                 let plays = !matches!(state.playing, Playing::Act(_));
                 if let Some(layer) = animator.layers_mut().first_mut().filter(|_| plays) {
                     layer.speed = self.clip_speed(gait, state.playing, &course);

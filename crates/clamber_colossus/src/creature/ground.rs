@@ -40,7 +40,7 @@ impl Creature {
         let aside = DVec3::new(heading.z, 0.0, -heading.x) * spacing;
         // One place in each tick, and all of them in the first one, or if it passes more than one of them in a tick.
         let is_first = self.state.ticks <= 1;
-        let all = is_first || self.state.speed * dt > spacing;
+        let all = is_first || self.state.speed.abs() * dt > spacing;
         let turn = (self.state.ticks % GROUND as u64) as usize;
         for index in (0..GROUND).filter(|index| all || *index == turn) {
             let place = match index {
@@ -76,7 +76,7 @@ impl Creature {
             self.state.position.y = sum / count;
             self.state.steepness = steepest;
         }
-        let speed = self.state.speed;
+        let speed = self.state.speed.abs();
         let most = CLIMBS.max(RUNS * speed * speed / height);
         let nears = NEARS.max(NEARS * speed / height);
         let now = [self.state.position.y, self.state.climb];

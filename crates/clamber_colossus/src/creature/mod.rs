@@ -1,5 +1,6 @@
 //! A creature: a value that is stepped once a tick.
 
+mod back;
 mod carry;
 mod config;
 mod corners;

@@ -72,6 +72,9 @@ impl Creature {
         self.state.position += self.state.heading() * (self.state.speed * dt);
         self.state.walked.ahead -= self.state.speed * dt;
         self.state.walked.turn -= self.state.yaw_rate * dt;
+        let back = -self.state.speed.min(0.0) * dt;
+        self.state.walked.back = (self.state.walked.back - back).max(0.0);
+        self.state.walked.gone_back += back;
         self.state.walked.ticks_left = self.state.walked.ticks_left.saturating_sub(1);
         self.follow_ground(around, dt);
         let is_over = match kind.brain().act(state) {
@@ -99,6 +102,11 @@ impl Creature {
         let Some(extent) = kind.extent() else { return };
         self.state.walked.is_blocked = false;
         let mut course = Course::of(&self.state);
+        if self.state.walked.back > 0.0 {
+            let goes = self.wanted(gait, Some(way), &course);
+            self.look_back(around, extent, goes.aside);
+            return;
+        }
         if way.walks && !self.wanted(gait, Some(way), &course).arrived {
             self.find_corners(around, extent, way);
         }
@@ -126,6 +134,8 @@ impl Creature {
             walked.round = 0;
         }
         walked.has_gone_round &= goes.turns_on_spot;
+        walked.has_gone_back &= goes.turns_on_spot;
+        walked.has_looked_round &= goes.turns_on_spot;
         if goes.turns_on_spot {
             self.look_aside(gait, &goes, around, extent);
         } else if goes.walks && !goes.is_stopped {
@@ -137,16 +147,11 @@ impl Creature {
                 far
             };
         } else if goes.is_stopped && self.state.speed == 0.0 {
-            // It is as near to a corner as it gets: perhaps it comes round it from here.
-            if walked.corners.is_empty() {
-                walked.is_blocked = true;
-            } else {
-                walked.corners.remove(0);
-            }
+            self.stop(around, extent);
         }
     }
 
-    /// Looks how far it may turn on the spot.
+    /// Looks how far it may turn on the spot. Where it cannot turn all the way, to either side, it goes back if it can.
     fn look_aside(
         &mut self,
         gait: &Gait,
@@ -154,22 +159,24 @@ impl Creature {
         around: &Surroundings<'_>,
         extent: &Extent,
     ) {
-        let (room, slope) = (self.room(around, extent), self.slope());
         let most = (2.0 * self.turning_room(gait, false)).max(2.0 * LEAST_TURN);
         let most = most.min(goes.aside.abs() + LEAST_TURN);
-        let turn = room.turn(most.copysign(goes.aside), slope);
-        let other = || room.turn(-most.copysign(goes.aside), slope).abs();
-        let walked = &mut self.state.walked;
-        walked.turn = turn;
-        let free = turn.abs();
-        if free < LEAST_TURN && free < goes.aside.abs() {
-            if !walked.has_gone_round && other() >= LEAST_TURN {
-                walked.round = if goes.aside > 0.0 { -1 } else { 1 };
-                walked.has_gone_round = true;
-            } else {
-                walked.is_blocked = true;
-            }
+        let room = self.room(around, extent);
+        self.state.walked.turn = room.turn(most.copysign(goes.aside), self.slope());
+        if self.state.speed > 0.0 {
+            // Not where it still walks.
+            return;
         }
+        let is_first = !std::mem::replace(&mut self.state.walked.has_looked_round, true);
+        let free = self.state.walked.turn.abs();
+        let is_blocked = free < LEAST_TURN && free < goes.aside.abs();
+        if !is_first && !is_blocked {
+            return;
+        }
+        let gets_on = self.finds_turn(around, extent, goes.aside)
+            || self.begin_back(around, extent)
+            || !is_blocked;
+        self.state.walked.is_blocked = !gets_on;
     }
 
     /// True in ticks in which it looks where it goes: in one of [`LOOKS`], and less often while it walks straight on and
@@ -209,6 +216,7 @@ impl Creature {
             self.look(gait, way, around);
             course.ahead = self.state.walked.ahead;
             course.turn = Some(self.state.walked.turn);
+            course.back = self.state.walked.back;
             wanted = self.wanted(gait, Some(way), &course);
         }
         let Wanted {
@@ -224,7 +232,7 @@ impl Creature {
         let acts = matches!(self.state.playing, Playing::Act(_)) && way.is_none();
         let playing = if moves {
             Playing::Walk
-        } else if turns_on_spot && gait.turn.is_some() {
+        } else if turns_on_spot && gait.turn.is_some() && self.state.speed >= 0.0 {
             Playing::Turn(u8::from(turn < 0.0))
         } else if acts {
             self.state.playing

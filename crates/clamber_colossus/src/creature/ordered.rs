@@ -88,7 +88,16 @@ impl Creature {
                 errand.to = to;
                 self.state.walked.is_blocked = false;
                 if moved > WITHIN * self.size.height {
-                    self.state.walked.corners.clear();
+                    let known = &self.state.walked;
+                    self.state.walked = Walked {
+                        ticks_left: known.ticks_left,
+                        failed: known.failed,
+                        is_known: known.is_known,
+                        ahead: known.ahead,
+                        turn: known.turn,
+                        faces: known.faces,
+                        ..Walked::default()
+                    };
                     self.look_soon();
                 }
             }

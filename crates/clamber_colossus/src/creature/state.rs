@@ -176,15 +176,39 @@ pub(super) struct Walked {
     pub(super) round: i8,
     /// True if it has turned the long way round since it began to turn.
     pub(super) has_gone_round: bool,
+    /// True if it has looked for room for the whole of its turn since it began to turn, and if it has gone back since.
+    pub(super) has_looked_round: bool,
+    pub(super) has_gone_back: bool,
+    /// How far it still goes back, since it could neither turn nor go on, and how far it has gone so, metres.
+    pub(super) back: f64,
+    pub(super) gone_back: f64,
+    /// Whether it looks for ways on which it can turn everywhere.
+    pub(super) wide: Wide,
+    /// Where it did not get on, how often it stood before something about there, and how often it went back.
+    pub(super) stuck_at: DVec3,
+    pub(super) stops: u8,
+    pub(super) retreats: u8,
     /// True if it does not get on.
     pub(super) is_blocked: bool,
+}
+
+/// Whether a creature looks for ways on which it can turn everywhere, as it does once it got stuck on one that is just wide
+/// enough to walk.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) enum Wide {
+    #[default]
+    No,
+    Looks,
+    /// There was none.
+    Failed,
 }
 
 impl Walked {
     /// True if all its numbers are some that a creature reaches.
     fn is_within(&self, most: f64) -> bool {
         let places = self.corners.iter().flat_map(|corner| corner.to_array());
-        let mut numbers = places.chain([self.ahead, self.turn]);
+        let numbers = [self.ahead, self.turn, self.back, self.gone_back];
+        let mut numbers = places.chain(numbers).chain(self.stuck_at.to_array());
         let is_way = self.corners.len() <= MOST_CORNERS && (-1..=1).contains(&self.round);
         is_way && numbers.all(|number| number.abs() <= most)
     }
@@ -400,7 +424,7 @@ impl CreatureState {
         self.yaw
     }
 
-    /// Speed along its heading, metres a second.
+    /// Speed along its heading, metres a second; negative while it goes back.
     pub fn speed(&self) -> f64 {
         self.speed
     }

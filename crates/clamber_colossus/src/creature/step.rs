@@ -121,12 +121,12 @@ impl Creature {
         let act = kind.brain().act(state);
         let walks = matches!(act, Some(Act::Walk(_)));
         let speed = kind.gait().map_or(0.0, |gait| self.full_speed(gait));
-        if !walks && !self.state.halts && self.state.speed > STANDS * speed {
+        if !walks && !self.state.halts && self.state.speed.abs() > STANDS * speed {
             return Ok(());
         }
         self.state.acting = Some(state);
         // What is left of a walk ends under the act.
-        self.state.halts = !walks && self.state.speed > 0.0;
+        self.state.halts = !walks && self.state.speed != 0.0;
         self.state.struck.clear();
         self.state.ranged.begin();
         self.state.aim = DVec3::ZERO;
@@ -171,7 +171,7 @@ impl Creature {
         let state = self.state.brain.current();
         let sleeps = matches!(self.kind.brain().act(state), Some(Act::Sleep))
             && self.state.acting == Some(state);
-        if !sleeps || self.state.animator.is_fading() || self.state.speed > 0.0 {
+        if !sleeps || self.state.animator.is_fading() || self.state.speed != 0.0 {
             self.state.sleeps = 0;
             return Ok(false);
         }

@@ -87,6 +87,43 @@ impl Extent {
     }
 }
 
+impl Extent {
+    /// The room that it needs to turn anywhere: in each band as much to all sides as its corner that is furthest out.
+    pub(crate) fn stout(&self) -> Self {
+        let bands = self.bands.map(|band| {
+            let aside = band.left.max(-band.right);
+            let half = libm::hypot(aside, band.front.max(-band.back));
+            Band {
+                right: -half,
+                left: half,
+                back: -half,
+                front: half,
+            }
+        });
+        Self { bands }
+    }
+
+    /// How far its corner that is furthest out is from its origin.
+    pub(crate) fn farthest(&self) -> f64 {
+        self.stout()
+            .bands
+            .iter()
+            .map(|band| band.left)
+            .fold(0.0, f64::max)
+    }
+
+    /// Its room as seen looking back.
+    pub(crate) fn behind(&self) -> Self {
+        let bands = self.bands.map(|band| Band {
+            right: -band.left,
+            left: -band.right,
+            back: -band.front,
+            front: -band.back,
+        });
+        Self { bands }
+    }
+}
+
 impl Band {
     fn hold(&mut self, place: DVec3) {
         self.right = self.right.min(place.x);

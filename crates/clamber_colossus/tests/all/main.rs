@@ -21,5 +21,6 @@ mod senses;
 mod sizes;
 mod sleep;
 mod support;
+mod traps;
 mod trex;
 mod walls;

@@ -7,7 +7,7 @@ use crate::support;
 use std::sync::Arc;
 
 use crate::support::{GROUND, Slab, weak_point};
-use clamber_climber::ClimberInput;
+use clamber_climber::{ClimberInput, ClimberMode};
 use clamber_colossus::{CreatureConfig, CreatureKind};
 use clamber_fight::actions::{CUT, STAB, THROW};
 use clamber_fight::{
@@ -294,4 +294,38 @@ fn two_cuts(hero: FighterConfig, joints: u32) -> [f64; 2] {
         }
     }
     [hits, damage]
+}
+
+/// Nor by who hops off fur, raises the sword in the air, and grips the fur again, whenever that is.
+#[test]
+fn a_charge_is_not_kept_by_gripping_again() {
+    let (mut held, mut fell) = (0, 0);
+    for grips_at in 34..64u32 {
+        let ground = HalfSpace::below(-20.0);
+        let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &ground)];
+        let mut arena = Slab::default().arena(FighterConfig::hero(), &[DVec3::Y]);
+        let mut after = None;
+        for tick in 0..140u32 {
+            let input = ClimberInput {
+                jump: tick == 30,
+                grip: tick >= grips_at,
+                ..pressed(if tick == 32 { STAB } else { 0 })
+            };
+            arena.step(&[input], &terrain).unwrap();
+            let fighter = arena.fighter(FighterId(0)).unwrap();
+            match fighter.act() {
+                Act::Charge { falls: true, .. } => fell += 1,
+                Act::Charge {
+                    charge,
+                    falls: false,
+                } if after.is_none() => after = Some((*charge, fighter.climber().state().mode)),
+                _ => {}
+            }
+        }
+        let (charge, mode) = after.unwrap();
+        assert!(charge < 0.1, "{grips_at}: {charge} in {mode:?}");
+        held += u32::from(mode == ClimberMode::Holding);
+    }
+    println!("held again in {held} of 30, charged in {fell} ticks of falls");
+    assert!(held > 20 && fell > 20);
 }

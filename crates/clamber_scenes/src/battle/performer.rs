@@ -286,14 +286,14 @@ impl<'a> Performer<'a> {
                 let life = life(arena);
                 let attack = life.attack().map(|(_, phase)| phase);
                 let act = life.kind().brain().act(life.state().current());
-                let is_quiet =
-                    !matches!(act, Some(Act::Walk(_) | Act::Once(_))) && life.state().speed() < 0.5;
+                let is_quiet = !matches!(act, Some(Act::Walk(_) | Act::Once(_)))
+                    && life.state().speed().abs() < 0.5;
                 let attacks = matches!(attack, Some(AttackPhase::WindUp | AttackPhase::Active))
                     || life.waves().next().is_some()
                     || life.shots().next().is_some();
                 Sight {
                     is_calm: is_quiet && !attacks,
-                    stays: life.state().speed() < 0.5,
+                    stays: life.state().speed().abs() < 0.5,
                     attacks,
                 }
             }
