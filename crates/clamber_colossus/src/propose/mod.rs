@@ -20,7 +20,6 @@ use crate::kind::{
 };
 use clips::Clips;
 use look::{Look, rounded};
-use strike::Struck;
 
 /// Length of ticks, seconds: nothing that is proposed depends on it.
 const TICK: f64 = 1.0 / 60.0;
@@ -34,6 +33,19 @@ const STEERS: f64 = 40.0;
 const SLOWEST: f64 = 0.1;
 const STROLLS: f64 = 0.4;
 
+/// How far an attack goes for its prey from where its clip strikes, heights.
+const AIM: f64 = 0.1;
+
+/// A limb passes over people that stays higher than this share of a human.
+const HIGH: f64 = 0.8;
+
+/// It comes so near before it attacks, in heights; and its limb passes by people if that is more than this, metres.
+const NEAR: f64 = 0.15;
+const ASIDE: f64 = 5.0;
+
+/// How much further the shock wave of a limb goes that is high above people than that is high, heights.
+const WAVE: f64 = 0.3;
+
 /// Radius of the weak point in heights, and its hit points: three charged stabs of a sword.
 const WEAK: f64 = 0.05;
 const HIT_POINTS: f64 = 3.0;
@@ -43,10 +55,11 @@ impl BrainFile {
     /// goes to them, attacks and shakes off who rides, as far as its clips go, and dies when its weak point is used up.
     ///
     /// It is `height` metres tall, 0.001 to 100,000. Clips are told apart by their names, such as `Walk` and
-    /// `Attack_Headbutt`; legs are the pairs of chains of joints whose ends move the lowest skin; the limb of an attack is
-    /// what goes ahead fastest in its clip, and hurts while it does. All of its skin is fur unless its file has some, and its weak
-    /// point is on top of its head. Whatever does not fit the creature is left out, so that [`CreatureKind::new`] takes
-    /// it. It is a file to begin with, not to keep: `clamber inspect --propose-brain` writes it as text.
+    /// `Attack_Headbutt`. Legs are the pairs of chains of joints whose ends move the lowest skin. The limb of an attack is
+    /// what goes ahead fastest in its clip, and hurts while it does; where it passes over people or by them, a shock wave
+    /// goes out from it. All of its skin is fur unless its file has some, and its weak point is on top of its head. Whatever
+    /// does not fit the creature is left out, so that [`CreatureKind::new`] takes it. It is a file to begin with, not to
+    /// keep: `clamber inspect --propose-brain` writes it as text.
     ///
     /// # Errors
     /// As [`CreatureKind::new`] for a brain that names nothing of the creature, with this height.
@@ -92,9 +105,16 @@ struct Proposal<'a> {
 struct Strikes {
     clip: String,
     limb: Vec<String>,
+    /// How far its shock wave goes, in heights, if its limb passes over people on the ground, or by them.
+    wave: Option<f64>,
 }
 
 impl Proposal<'_> {
+    /// How tall it is, metres.
+    fn height(&self) -> f64 {
+        self.body.height.unwrap_or(1.0)
+    }
+
     /// The creature with what is proposed.
     fn kind(&self) -> Result<CreatureKind, ColossusError> {
         self.kind_with(self.body.clone())
@@ -212,21 +232,36 @@ impl Proposal<'_> {
             return Ok(None);
         };
         let feet: Vec<&String> = self.body.legs.iter().flat_map(|leg| &leg.joints).collect();
-        let Some(Struck { limb, active }) = strike::find(&look, clip, &feet).ok().flatten() else {
+        let Some(found) = strike::find(&look, clip, &feet).ok().flatten() else {
             return Ok(None);
         };
-        let has = |name: &str| clip.markers().iter().any(|marker| marker.name == name);
-        if has("active") && has("recovery") {
-            return Ok(Some(Strikes { clip: name, limb }));
+        let marker = |name: &str| {
+            let mut all = clip.markers().iter();
+            all.find(|marker| marker.name == name)
+                .map(|marker| marker.time)
+        };
+        let own = marker("active").zip(marker("recovery"));
+        let [from, to] = own.map_or(found.active, |(from, to)| [from, to]);
+        let Ok(above) = strike::above(&look, clip, &found.limb, [from, to]) else {
+            return Ok(None);
+        };
+        let passes_over = above.lowest * self.height() > HIGH * HUMAN;
+        let passes_by = NEAR * self.height() > ASIDE;
+        let strikes = Strikes {
+            clip: name.clone(),
+            limb: found.limb,
+            wave: (passes_over || passes_by).then_some(above.end + WAVE),
+        };
+        if own.is_some() {
+            return Ok(Some(strikes));
         }
-        let [from, to] = active.map(Times::One);
-        let clip = name.clone();
+        let [from, to] = [from, to].map(Times::One);
         let marks = |body: &mut BodyFile| {
             let ClipFile { markers, .. } = body.clips.entry(name).or_default();
             markers.insert("active".to_owned(), from);
             markers.insert("recovery".to_owned(), to);
         };
-        Ok(self.take(marks).map(|_| Strikes { clip, limb }))
+        Ok(self.take(marks).map(|_| strikes))
     }
 
     /// Head and neck.

@@ -2,10 +2,10 @@
 
 use serde_json::{Map, Value, json};
 
-use super::{Proposal, Strikes};
+use super::{AIM, NEAR, Proposal, Strikes};
 use crate::brain::{BrainFile, BrainProblem};
 use crate::error::ColossusError;
-use crate::kind::whole;
+use crate::kind::{HUMAN, whole};
 
 /// The brain file of a body.
 pub(super) fn file(
@@ -39,10 +39,16 @@ fn waits(proposal: &Proposal<'_>, transitions: Value) -> Value {
 
 /// A number of metres for so many heights.
 fn metres(proposal: &Proposal<'_>, heights: f64) -> f64 {
-    let metres = heights * proposal.body.height.unwrap_or(1.0);
+    let metres = heights * proposal.height();
     // Two digits are enough.
     let steps = libm::exp10(1.0 - libm::floor(libm::log10(metres.max(1e-9))));
     super::rounded(metres, steps)
+}
+
+/// A number of seconds for so many of a human, by Froude's law: what is larger takes more time.
+fn seconds(proposal: &Proposal<'_>, human: f64) -> u32 {
+    let seconds = human * (proposal.height() / HUMAN).sqrt();
+    seconds.round().clamp(1.0, 3600.0) as u32
 }
 
 /// It looks about, wanders, and sleeps.
@@ -79,20 +85,27 @@ fn alert(proposal: &Proposal<'_>, strikes: Option<&Strikes>) -> Value {
     let mut states = Map::new();
     let walks = proposal.body.gait.is_some();
     let start = if walks { "turns" } else { "watches" };
-    if let Some(Strikes { clip, limb }) = strikes {
-        let (throw, aim) = (8, metres(proposal, 0.1));
-        let attack =
-            json!({ "clip": clip, "limb": limb, "damage": 0.4, "throw": throw, "aim": aim });
+    if let Some(Strikes { clip, limb, wave }) = strikes {
+        let aim = metres(proposal, AIM);
+        let mut attack =
+            json!({ "clip": clip, "limb": limb, "damage": 0.4, "throw": 8, "aim": aim });
+        if let Some(radius) = wave {
+            let radius = metres(proposal, *radius);
+            attack["wave"] = json!({ "radius": radius, "damage": 0.3, "throw": 8 });
+        }
         states.insert(
             "strikes".into(),
             json!({ "act": { "attack": attack }, "transitions": [{ "to": start }] }),
         );
     }
     if walks {
-        states.insert("turns".into(), turns("prey", "nears", 2));
+        states.insert(
+            "turns".into(),
+            turns("prey", "nears", seconds(proposal, 1.0)),
+        );
         let (walk, next) = match strikes {
             Some(Strikes { clip, .. }) => {
-                let within = metres(proposal, 0.15);
+                let within = metres(proposal, NEAR);
                 (
                     json!({ "to": "prey", "within": within, "strike": clip }),
                     "strikes",
@@ -121,7 +134,7 @@ fn alert(proposal: &Proposal<'_>, strikes: Option<&Strikes>) -> Value {
         "gaze": "prey",
         "transitions": [
             { "to": "ridden", "when": ["riders"] },
-            { "to": "calm", "when": ["!prey_seen"], "after": 8 }
+            { "to": "calm", "when": ["prey_unseen_seconds > 8"] }
         ],
         "states": states
     });

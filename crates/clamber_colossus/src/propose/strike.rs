@@ -28,6 +28,14 @@ pub(super) struct Struck {
     pub(super) active: [f64; 2],
 }
 
+/// How high a limb is, above what the creature stands on at rest, in heights.
+pub(super) struct Above {
+    /// Its lowest skin while it hurts.
+    pub(super) lowest: f64,
+    /// Its end when it stops to hurt.
+    pub(super) end: f64,
+}
+
 /// Words in the names of clips in which legs strike, and the head.
 const LEGS: [&str; 2] = ["kick", "stomp"];
 const HEADS: [&str; 2] = ["bite", "headbutt"];
@@ -151,4 +159,43 @@ pub(super) fn find(
         limb: limb.map(|joint| look.name(joint).to_owned()).collect(),
         active,
     }))
+}
+
+/// How high a limb is between two times of a clip.
+pub(super) fn above(
+    look: &Look<'_>,
+    clip: &Clip,
+    limb: &[String],
+    [from, to]: [f64; 2],
+) -> Result<Above, ColossusError> {
+    let joints = limb.iter().filter_map(|name| look.skeleton.find(name));
+    let limb: Vec<JointId> = joints.collect();
+    let rest = look.skeleton.palette(&look.skeleton.rest_pose())?;
+    let count = ((to - from) * LOOKS).ceil().max(1.0) as usize;
+    let (mut lowest, mut end) = (f64::INFINITY, 0.0);
+    for sample in 0..=count {
+        let time = from + (to - from) * sample as f64 / count as f64;
+        let mut pose = look.skeleton.rest_pose();
+        clip.sample_into(time, Playback::Clamp, &mut pose)?;
+        let posed = look.skeleton.palette(&pose)?;
+        if let Some(last) = limb.last() {
+            end = place(look.skeleton, &pose, *last).y - look.low;
+        }
+        for joint in &limb {
+            let frames = rest
+                .model_from_joint(*joint)
+                .zip(posed.model_from_joint(*joint));
+            let Some((rest, posed)) = frames else {
+                continue;
+            };
+            let moved = posed * rest.inverse();
+            let heights = look.skin(*joint).iter();
+            let heights = heights.map(|place| moved.transform_point3(*place).y - look.low);
+            lowest = heights.fold(lowest, f64::min);
+        }
+    }
+    Ok(Above {
+        lowest: look.in_heights(lowest),
+        end: look.in_heights(end),
+    })
 }

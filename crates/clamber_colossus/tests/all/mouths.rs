@@ -33,6 +33,8 @@ fn animal(file: &str, height: f64, aim: f64) -> Option<Arc<CreatureKind>> {
     let mut act: Value =
         proposed["states"]["alive"]["states"]["alert"]["states"]["strikes"]["act"].clone();
     act["attack"]["aim"] = aim.into();
+    // The mouth alone, without the shock wave of one that is high above people.
+    act["attack"].as_object_mut().unwrap().remove("wave");
     let brain = json!({
         "body": proposed["body"],
         "start": "waits",

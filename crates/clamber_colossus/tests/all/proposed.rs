@@ -199,6 +199,59 @@ fn creatures_from_elsewhere_live_by_what_is_proposed() {
     lives(20.0, 0.3);
 }
 
+/// Somebody who stands before a creature that attacks is struck by what is proposed.
+#[test]
+fn attacks_that_are_proposed_strike_who_stays() {
+    let (mut count, mut missed) = (0, Vec::new());
+    for path in models() {
+        let Some(parts) = parts(&path) else { continue };
+        for height in [3.0, 20.0, 60.0] {
+            let file = BrainFile::propose(&parts, height).unwrap();
+            let text = serde_json::to_string(&file).unwrap();
+            if !text.contains("\"attack\"") {
+                continue;
+            }
+            let kind = kind(&parts, &file);
+            let mut creature = Creature::new(Arc::clone(&kind), CreatureConfig::default()).unwrap();
+            let prey = [person(if kind.can_walk() {
+                DVec3::new(0.3, 0.0, 2.0) * height
+            } else {
+                DVec3::Z * (0.6 * height)
+            })];
+            let ground = HalfSpace::below(0.0);
+            let terrain: [&dyn Obstacle; 1] = [&ground];
+            let most = (180.0 * (height / 20.0).sqrt().max(1.0) / TICK) as u32;
+            let struck = (0..most).any(|_| {
+                let around = Surroundings {
+                    terrain: &terrain,
+                    people: &prey,
+                    ..Surroundings::default()
+                };
+                let blows = !creature.step(&around).unwrap().blows.is_empty();
+                blows
+            });
+            // One that cannot walk strikes whom it reaches.
+            if struck || kind.can_walk() {
+                count += 1;
+            }
+            if !struck {
+                missed.push(format!("{} at {height} m", name(&path)));
+            }
+        }
+    }
+    println!("{count} attack, without a blow: {missed:#?}");
+    // The frog cannot walk to anybody. At 60 m a limb may come down too far away.
+    let near = missed
+        .iter()
+        .filter(|name| !name.contains("Frog") && !name.contains("60 m"));
+    let near: Vec<&String> = near.collect();
+    let is_there = std::env::var_os("CLAMBER_TEST_DATA").is_some();
+    assert!(
+        !is_there || count > 36 && near.is_empty() && missed.len() <= 6,
+        "{count}: {missed:?}"
+    );
+}
+
 #[test]
 #[ignore = "takes minutes: ten of each creature, at three sizes"]
 fn creatures_from_elsewhere_live_for_ten_minutes() {
