@@ -8,7 +8,7 @@ use pathfinding::directed::astar::astar;
 use super::state::Wide;
 use super::way::Way;
 use super::{Creature, Surroundings};
-use crate::kind::Extent;
+use crate::kind::{Extent, Extents};
 
 /// Width of the grid's cells, as a share of the creature's height.
 const CELL: f64 = 0.35;
@@ -57,11 +57,15 @@ const SAME_STOREY: i32 = 100;
 
 impl Creature {
     /// Finds the corners of the way to a goal, if it is time for that.
-    pub(super) fn find_corners(&mut self, around: &Surroundings<'_>, extent: &Extent, way: &Way) {
+    pub(super) fn find_corners(&mut self, around: &Surroundings<'_>, way: &Way) {
         if self.state.walked.ticks_left > 0 {
             return;
         }
-        let slim = extent.slim();
+        let kind = std::sync::Arc::clone(&self.kind);
+        let Some(Extents { on_spot, walking }) = kind.extents() else {
+            return;
+        };
+        let slim = walking.slim();
         let narrow = Width {
             slim: &slim,
             stout: None,
@@ -70,10 +74,10 @@ impl Creature {
         };
         let mut found = None;
         if self.state.walked.wide == Wide::Looks {
-            let stout = extent.stout();
+            let stout = on_spot.stout().and(&slim);
             let wide = Width {
                 stout: Some(&stout),
-                near: (NEAR * self.size.height).max(extent.farthest() * self.size.scale),
+                near: (NEAR * self.size.height).max(on_spot.farthest() * self.size.scale),
                 ..narrow
             };
             found = self.corners(around, &wide, way);

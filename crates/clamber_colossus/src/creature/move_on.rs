@@ -9,7 +9,7 @@ use super::{Creature, CreatureEvent, Surroundings};
 use crate::angle::nearest_turn;
 use crate::brain::Act;
 use crate::error::ColossusError;
-use crate::kind::{Extent, Gait, HUMAN};
+use crate::kind::{Extent, Extents, Gait, HUMAN};
 use crate::senses::Sense;
 
 /// It looks for what is in its way in one of so many ticks.
@@ -99,22 +99,24 @@ impl Creature {
     /// Looks where it goes: for corners of its way, how far the next piece of it is free, and how far it may turn.
     fn look(&mut self, gait: &Gait, way: &Way, around: &Surroundings<'_>) {
         let kind = std::sync::Arc::clone(&self.kind);
-        let Some(extent) = kind.extent() else { return };
+        let Some(Extents { on_spot, walking }) = kind.extents() else {
+            return;
+        };
         self.state.walked.is_blocked = false;
         let mut course = Course::of(&self.state);
         if self.state.walked.back > 0.0 {
             let goes = self.wanted(gait, Some(way), &course);
-            self.look_back(around, extent, goes.aside);
+            self.look_back(around, on_spot, goes.aside);
             return;
         }
         if way.walks && !self.wanted(gait, Some(way), &course).arrived {
-            self.find_corners(around, extent, way);
+            self.find_corners(around, way);
         }
         let goes = self.wanted(gait, Some(way), &course);
         self.state.walked.ahead = if goes.faces {
             let sight = self.sight(gait);
             let far = sight.min(goes.distance + sight / 2.0);
-            let free = self.room(around, extent).ahead(far);
+            let free = self.room(around, walking).ahead(far);
             if free >= far {
                 2.0 * FREE
             } else {
@@ -137,17 +139,17 @@ impl Creature {
         walked.has_gone_back &= goes.turns_on_spot;
         walked.has_looked_round &= goes.turns_on_spot;
         if goes.turns_on_spot {
-            self.look_aside(gait, &goes, around, extent);
+            self.look_aside(gait, &goes, around, on_spot);
         } else if goes.walks && !goes.is_stopped {
             // Its head and its tail go aside when it steers.
             let far = self.turning_room(gait, true).copysign(goes.aside);
             self.state.walked.turn = if goes.aside.abs() > LEAST_STEER {
-                self.room(around, extent).turn(far, self.slope())
+                self.room(around, walking).turn(far, self.slope())
             } else {
                 far
             };
         } else if goes.is_stopped && self.state.speed == 0.0 {
-            self.stop(around, extent);
+            self.stop(around, on_spot);
         }
     }
 

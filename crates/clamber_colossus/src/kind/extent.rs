@@ -5,7 +5,7 @@ use clamber_surface::skin::skin_into;
 use clamber_surface::surface::SurfaceError;
 use glam::DVec3;
 
-use super::RestSkin;
+use super::{Gait, RestSkin};
 use crate::error::ColossusError;
 
 /// Where bands of height begin and end, as shares of the height. What is lower belongs to the first one, what is higher
@@ -16,8 +16,8 @@ pub(crate) const BANDS: usize = 5;
 /// Each clip is looked at in so many phases.
 const PHASES: u32 = 16;
 
-/// The room that a kind of creature takes up beside and before its origin while it stands, walks and turns, in model
-/// space: a box for each band of height, around the skin in all phases of those clips.
+/// The room that a kind of creature takes up beside and before its origin in some clips, in model space: a box for each
+/// band of height, around the skin in all phases of those clips.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Extent {
     /// From low to high. A band without skin has a box without width.
@@ -33,8 +33,35 @@ pub(crate) struct Band {
     pub(crate) front: f64,
 }
 
-impl Extent {
+/// The room that a kind of creature takes up in its clips of moving, and while it turns on the spot: with its feet where
+/// they stand and turn, and not where they walk.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Extents {
+    pub(crate) on_spot: Extent,
+    pub(crate) walking: Extent,
+}
+
+impl Extents {
     pub(crate) fn new(
+        skeleton: &Skeleton,
+        clips: &AnimationSet,
+        mesh: &ColliderMesh,
+        rest: &RestSkin,
+        gait: &Gait,
+    ) -> Result<Self, ColossusError> {
+        let on_spot = Extent::new(skeleton, clips, mesh, rest, gait.on_spot())?;
+        let walk = core::iter::once(gait.walk);
+        let walking = on_spot.and(&Extent::new(skeleton, clips, mesh, rest, walk)?);
+        // Its body may still swing from its walk.
+        let mut bands = walking.bands;
+        bands[0] = on_spot.bands[0];
+        let on_spot = Extent { bands };
+        Ok(Self { on_spot, walking })
+    }
+}
+
+impl Extent {
+    fn new(
         skeleton: &Skeleton,
         clips: &AnimationSet,
         mesh: &ColliderMesh,
@@ -70,6 +97,20 @@ impl Extent {
 }
 
 impl Extent {
+    /// The room of both.
+    pub(crate) fn and(&self, other: &Self) -> Self {
+        let bands = core::array::from_fn(|index| {
+            let (a, b) = (self.bands[index], other.bands[index]);
+            Band {
+                right: a.right.min(b.right),
+                left: a.left.max(b.left),
+                back: a.back.min(b.back),
+                front: a.front.max(b.front),
+            }
+        });
+        Self { bands }
+    }
+
     /// What takes up as much room to both sides as the widest band, and none before and behind: enough to walk along a
     /// way, if it turns where that is wide enough.
     pub(crate) fn slim(&self) -> Self {

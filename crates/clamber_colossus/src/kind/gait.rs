@@ -104,11 +104,10 @@ impl Gait {
 }
 
 impl Gait {
-    /// All clips that it plays.
-    pub(crate) fn clips(&self) -> impl Iterator<Item = ClipId> {
-        [self.idle, self.walk]
-            .into_iter()
-            .chain(self.turn.into_iter().flatten())
+    /// All clips that it plays on the spot: all but the walk.
+    pub(crate) fn on_spot(&self) -> impl Iterator<Item = ClipId> {
+        let turns = self.turn.into_iter().flatten();
+        core::iter::once(self.idle).chain(turns)
     }
 }
 

@@ -26,7 +26,7 @@ use clamber_surface::surface::creature_fingerprint;
 use glam::{DAffine3, DVec3};
 
 pub(crate) use blended::BlendedSole;
-pub(crate) use extent::{BANDS, Band, EDGES, Extent};
+pub(crate) use extent::{BANDS, Band, EDGES, Extent, Extents};
 pub use file::{
     BodyFile, ClipFile, Facing, FurFile, GaitFile, HeadFile, Knee, LegFile, PlateFile, Times,
     WeakPointFile,
@@ -66,7 +66,7 @@ pub struct CreatureKind {
     hips: Option<JointId>,
     gait: Option<Gait>,
     /// The room that it takes up while it stands, walks and turns; `None` without a gait, as it goes nowhere.
-    extent: Option<Extent>,
+    extents: Option<Extents>,
     look: Option<LookAt>,
     /// The head's joint, and the eye in its space.
     head: Option<(JointId, DVec3)>,
@@ -171,9 +171,9 @@ impl CreatureKind {
             .as_ref()
             .map(|file| Gait::new(&names, file, &legs, height))
             .transpose()?;
-        let extent = gait
+        let extents = gait
             .as_ref()
-            .map(|gait| Extent::new(&skeleton, &clips, &mesh, &rest, gait.clips()))
+            .map(|gait| Extents::new(&skeleton, &clips, &mesh, &rest, gait))
             .transpose()?;
         let balls = rest.balls(&skeleton, &mesh);
         let mut acts = Vec::new();
@@ -224,7 +224,7 @@ impl CreatureKind {
             hips: common_parent(&skeleton, &legs),
             legs,
             gait,
-            extent,
+            extents,
             look,
             head,
             breathe,
@@ -387,8 +387,8 @@ impl CreatureKind {
         self.gait.as_ref()
     }
 
-    pub(crate) fn extent(&self) -> Option<&Extent> {
-        self.extent.as_ref()
+    pub(crate) fn extents(&self) -> Option<&Extents> {
+        self.extents.as_ref()
     }
 
     pub(crate) fn look(&self) -> Option<&LookAt> {

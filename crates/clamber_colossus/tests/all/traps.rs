@@ -40,10 +40,9 @@ struct Errands<'a> {
     terrain: &'a dyn Obstacle,
     /// The longest time for which it neither walked nor turned on an errand, seconds.
     still: f64,
-    /// The furthest to each side that its skin was between the walls of an alley of this length and height, metres.
-    widest: f64,
-    long: f64,
-    high: f64,
+    /// Half the width, the height and the length of an alley; and how deep its skin was in the walls, metres.
+    alley: [f64; 3],
+    deepest: f64,
     /// True if it went back; and how far its place was then from where it was foreseen a second before, metres.
     backs: bool,
     off: f64,
@@ -95,9 +94,9 @@ impl Errands<'_> {
                 let origin = self.one.surface().world_from_model();
                 for place in &skin {
                     let place = origin.transform_point(place.as_dvec3());
-                    if (0.0..self.long).contains(&place.z) && place.y < self.high {
-                        self.widest = self.widest.max(place.x.abs());
-                    }
+                    let [half, high, long] = self.alley;
+                    let depth = (place.x.abs() - half).min(high - place.y);
+                    self.deepest = self.deepest.max(depth.min(place.z).min(long - place.z));
                 }
             }
         }
@@ -162,9 +161,8 @@ fn who_walked_into_a_blind_alley_comes_out_again() {
                 one: creature(&kind, config),
                 terrain: &terrain,
                 still: 0.0,
-                widest: 0.0,
-                long,
-                high: 0.5 * height,
+                alley: [half, 0.5 * height, long],
+                deepest: 0.0,
                 backs: false,
                 off: 0.0,
             };
@@ -177,9 +175,9 @@ fn who_walked_into_a_blind_alley_comes_out_again() {
                 continue;
             }
             entered += 1;
-            errands.widest = 0.0;
+            errands.deepest = 0.0;
             let out = errands.go(outside, most);
-            let deep = errands.widest - half;
+            let deep = errands.deepest;
             println!(
                 "{name:<24} {height} m, {share}: {end:?} {out:?} still {:.1} s, {:.3} m off, {deep:.3} m in the walls",
                 errands.still, errands.off,
@@ -230,9 +228,8 @@ fn lanes_in_which_it_cannot_turn_do_not_keep_it_for_ever() {
                 one: creature(&kind, config),
                 terrain: &terrain,
                 still: 0.0,
-                widest: 0.0,
-                long: 0.0,
-                high: 0.0,
+                alley: [0.0; 3],
+                deepest: 0.0,
                 backs: false,
                 off: 0.0,
             };
@@ -269,9 +266,8 @@ fn boulders_all_around_are_no_trap() {
                 one: creature(&kind, CreatureConfig::default()),
                 terrain: &terrain,
                 still: 0.0,
-                widest: 0.0,
-                long: 0.0,
-                high: 0.0,
+                alley: [0.0; 3],
+                deepest: 0.0,
                 backs: false,
                 off: 0.0,
             };

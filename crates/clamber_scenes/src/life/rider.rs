@@ -119,6 +119,11 @@ impl Rider {
             Wish::Climb(level + DVec3::Y * lot(-0.5, 1.5))
         } else if lot(0.0, 1.0) < 0.35 {
             Wish::Come
+        } else if lot(0.0, 1.0) < 0.2 {
+            // Where its hands strike.
+            let yaw = giant.state().yaw();
+            let ahead = DVec3::new(libm::sin(yaw), 0.0, libm::cos(yaw));
+            Wish::Wander(giant.state().position() + ahead * lot(15.0, 18.0))
         } else {
             Wish::Wander(giant.state().position() + level * lot(10.0, 90.0))
         };
