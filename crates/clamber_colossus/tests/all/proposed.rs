@@ -227,8 +227,7 @@ fn attacks_that_are_proposed_strike_who_stays() {
                     people: &prey,
                     ..Surroundings::default()
                 };
-                let blows = !creature.step(&around).unwrap().blows.is_empty();
-                blows
+                !creature.step(&around).unwrap().blows.is_empty()
             });
             // One that cannot walk strikes whom it reaches.
             if struck || kind.can_walk() {
