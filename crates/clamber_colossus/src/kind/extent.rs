@@ -99,15 +99,7 @@ impl Extent {
 impl Extent {
     /// The room of both.
     pub(crate) fn and(&self, other: &Self) -> Self {
-        let bands = core::array::from_fn(|index| {
-            let (a, b) = (self.bands[index], other.bands[index]);
-            Band {
-                right: a.right.min(b.right),
-                left: a.left.max(b.left),
-                back: a.back.min(b.back),
-                front: a.front.max(b.front),
-            }
-        });
+        let bands = core::array::from_fn(|index| self.bands[index].and(other.bands[index]));
         Self { bands }
     }
 
@@ -166,6 +158,16 @@ impl Extent {
 }
 
 impl Band {
+    /// The box around both.
+    pub(crate) fn and(self, other: Self) -> Self {
+        Self {
+            right: self.right.min(other.right),
+            left: self.left.max(other.left),
+            back: self.back.min(other.back),
+            front: self.front.max(other.front),
+        }
+    }
+
     fn hold(&mut self, place: DVec3) {
         self.right = self.right.min(place.x);
         self.left = self.left.max(place.x);

@@ -100,13 +100,7 @@ impl Room<'_> {
     /// The box around some bands, metres.
     fn box_of(&self, bands: Range<usize>) -> Band {
         let bands = bands.map(|index| self.band(index));
-        let around = |a: Band, b: Band| Band {
-            right: a.right.min(b.right),
-            left: a.left.max(b.left),
-            back: a.back.min(b.back),
-            front: a.front.max(b.front),
-        };
-        bands.reduce(around).unwrap_or(self.band(0))
+        bands.reduce(Band::and).unwrap_or(self.band(0))
     }
 
     fn is_clear(&self, capsule: &WorldCapsule, way: DVec3) -> bool {
