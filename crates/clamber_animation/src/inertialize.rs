@@ -4,6 +4,11 @@
 //! velocity and acceleration 0 (Bollo 2018, "Inertialization: High-Performance Animation Transitions in Gears of War",
 //! GDC). Only the new pose is evaluated, at the cost of one polynomial a joint.
 //!
+//! An offset that starts while another one decays takes over its acceleration. Bollo's starts with none, unless it would
+//! shoot past 0: restarted in each frame it would never be slowed down, and the pose would fly away. With x, v and a taken
+//! over, the jerk at the start of a time T is -60 x / T^3 - 36 v / T^2 - 9 a / T, whose solutions decay, however often it
+//! starts anew.
+//!
 //! Bollo decays the length of an offset and drops the velocity across it. Here the polynomial has vectors as
 //! coefficients, so that position and velocity have no jump in any direction. He also shortens the time so that an
 //! offset whose velocity leads to 0 does not shoot past it; here to no less than [`SHORTEST`] of the time, since a
@@ -29,13 +34,21 @@ pub(crate) struct Decay {
     /// The offset and its velocity at the start.
     offset: Vec3,
     velocity: Vec3,
+    /// The acceleration of the offset before it.
+    taken_over: Vec3,
     /// Seconds until it is 0.
     time: f32,
 }
 
 impl Decay {
     /// The decay of an offset within `time` seconds, or sooner if it would shoot past 0; `None` if there is no offset.
-    pub(crate) fn new(offset: DVec3, velocity: DVec3, time: f64) -> Option<Self> {
+    /// `taken_over` is the acceleration of the offset that decayed before it.
+    pub(crate) fn new(
+        offset: DVec3,
+        velocity: DVec3,
+        taken_over: DVec3,
+        time: f64,
+    ) -> Option<Self> {
         if offset.length() < NONE && velocity.length() < NONE {
             return None;
         }
@@ -50,6 +63,7 @@ impl Decay {
         Some(Self {
             offset: offset.as_vec3(),
             velocity: velocity.as_vec3(),
+            taken_over: taken_over.as_vec3(),
             time: time as f32,
         })
     }
@@ -60,19 +74,40 @@ impl Decay {
         if elapsed >= end {
             return DVec3::ZERO;
         }
+        let [x, vs, accelerations, c3, c4, c5] = self.coefficients();
+        let t = elapsed / end;
+        let series = c3 + (c4 + c5 * t) * t;
+        x + (vs + (accelerations * 0.5 + series * t) * t) * t
+    }
+
+    /// Its acceleration at a time since the start.
+    fn acceleration_at(&self, elapsed: f64) -> DVec3 {
+        let end = f64::from(self.time);
+        if elapsed >= end {
+            return DVec3::ZERO;
+        }
+        let [_, _, accelerations, c3, c4, c5] = self.coefficients();
+        let t = elapsed / end;
+        (accelerations + (c3 * 6.0 + (c4 * 12.0 + c5 * (20.0 * t)) * t) * t) / (end * end)
+    }
+
+    /// Of its polynomial in the share of its time that has passed; the third one twice.
+    fn coefficients(&self) -> [DVec3; 6] {
+        let end = f64::from(self.time);
         let (x, v) = (self.offset.as_dvec3(), self.velocity.as_dvec3());
         // The acceleration at the start, along the offset: what Bollo chooses so that it does not shoot past 0.
         let direction = x.normalize_or_zero();
         let along = v.dot(direction).min(0.0);
         let wanted = (-8.0 * along * end - 20.0 * x.length()) / (end * end);
-        let a = direction * wanted.max(0.0);
+        let mut a = self.taken_over.as_dvec3();
+        if wanted > 0.0 {
+            a += direction * (wanted - a.dot(direction)).max(0.0);
+        }
         let (xs, vs, accelerations) = (x, v * end, a * (end * end));
         let c5 = -(accelerations + vs * 6.0 + xs * 12.0) * 0.5;
         let c4 = (accelerations * 3.0 + vs * 16.0 + xs * 30.0) * 0.5;
         let c3 = -(accelerations * 3.0 + vs * 12.0 + xs * 20.0) * 0.5;
-        let t = elapsed / end;
-        let series = c3 + (c4 + c5 * t) * t;
-        x + (vs + (accelerations * 0.5 + series * t) * t) * t
+        [xs, vs, accelerations, c3, c4, c5]
     }
 
     fn is_over(&self, elapsed: f64) -> bool {
@@ -107,20 +142,39 @@ pub(crate) struct Course<'a> {
 
 impl Offsets {
     /// Starts anew: from poses as they would have gone on, to poses as they go on now, `step` seconds after each other.
-    pub(crate) fn restart(&mut self, from: &Course<'_>, to: &Course<'_>, step: f64, time: f64) {
+    /// `before` are the offsets that decayed until then.
+    pub(crate) fn restart(
+        &mut self,
+        before: &Self,
+        from: &Course<'_>,
+        to: &Course<'_>,
+        [step, time]: [f64; 2],
+    ) {
         self.clear();
         let course = from.now.transforms.iter().zip(&from.then.transforms);
         let goal = to.now.transforms.iter().zip(&to.then.transforms);
+        let mut running = before.joints.iter().peekable();
         for (joint, (from, to)) in course.zip(goal).enumerate() {
+            let joint = joint as u32;
+            let before_it = running.next_if(|offset| offset.joint == joint);
+            let taken_over = |part: fn(&JointOffset) -> &Option<Decay>| {
+                let decay = before_it.and_then(|offset| part(offset).as_ref());
+                decay.map_or(DVec3::ZERO, |decay| decay.acceleration_at(before.elapsed))
+            };
+            let decay = |[start, next]: [DVec3; 2], taken_over| {
+                Decay::new(start, (next - start) / step, taken_over, time)
+            };
+            let turns = turns([from.0, from.1], [to.0, to.1]);
+            let moves = [
+                difference(from.0.translation, to.0.translation),
+                difference(from.1.translation, to.1.translation),
+            ];
+            let grows = grows([from.0, from.1], [to.0, to.1]);
             let offset = JointOffset {
-                joint: joint as u32,
-                rotation: rotation_decay([from.0, from.1], [to.0, to.1], step, time),
-                translation: {
-                    let start = difference(from.0.translation, to.0.translation);
-                    let next = difference(from.1.translation, to.1.translation);
-                    Decay::new(start, (next - start) / step, time)
-                },
-                scale: scale_decay([from.0, from.1], [to.0, to.1], step, time),
+                joint,
+                rotation: decay(turns, taken_over(|offset| &offset.rotation)),
+                translation: decay(moves, taken_over(|offset| &offset.translation)),
+                scale: grows.and_then(|grows| decay(grows, taken_over(|offset| &offset.scale))),
             };
             let parts = [offset.rotation, offset.translation, offset.scale];
             if parts.iter().any(Option::is_some) {
@@ -174,16 +228,11 @@ fn difference(from: Vec3, to: Vec3) -> DVec3 {
     from.as_dvec3() - to.as_dvec3()
 }
 
-fn rotation_decay(
-    from: [&Transform; 2],
-    to: [&Transform; 2],
-    step: f64,
-    time: f64,
-) -> Option<Decay> {
+/// The rotation vectors from poses to others, now and a moment later.
+fn turns(from: [&Transform; 2], to: [&Transform; 2]) -> [DVec3; 2] {
     let turn = |k: usize| rotation_of(from[k]) * rotation_of(to[k]).conjugate();
     let start = rotation_vector(turn(0));
-    let next = nearest_vector(turn(1), start);
-    Decay::new(start, (next - start) / step, time)
+    [start, nearest_vector(turn(1), start)]
 }
 
 /// The rotation vector nearest to another one. Near half a turn, vectors of nearly opposite direction are nearly the
@@ -202,15 +251,16 @@ fn nearest_vector(rotation: DQuat, to: DVec3) -> DVec3 {
     }
 }
 
-/// A joint of scale 0 is hidden; it appears and disappears at once.
-fn scale_decay(from: [&Transform; 2], to: [&Transform; 2], step: f64, time: f64) -> Option<Decay> {
+/// The same of scales. A joint of scale 0 is hidden; it appears and disappears at once.
+fn grows(from: [&Transform; 2], to: [&Transform; 2]) -> Option<[DVec3; 2]> {
     let is_hidden = |joint: &Transform| joint.scale.abs().min_element() == 0.0;
     if from.into_iter().chain(to).any(is_hidden) {
         return None;
     }
-    let start = difference(from[0].scale, to[0].scale);
-    let next = difference(from[1].scale, to[1].scale);
-    Decay::new(start, (next - start) / step, time)
+    Some([
+        difference(from[0].scale, to[0].scale),
+        difference(from[1].scale, to[1].scale),
+    ])
 }
 
 #[cfg(test)]
@@ -230,7 +280,7 @@ mod tests {
         let mut random = |size: f64| DVec3::from([(); 3].map(|()| (rng.f64() * 2.0 - 1.0) * size));
         for _ in 0..1000 {
             let (x, v) = (random(1.0), random(8.0));
-            let decay = Decay::new(x, v, 0.4).unwrap();
+            let decay = Decay::new(x, v, DVec3::ZERO, 0.4).unwrap();
             let [x0, v0, _] = derivatives(&decay, 0.0);
             assert!(
                 (x0 - x).length() < 1e-6 && (v0 - v).length() < 2e-2,
@@ -251,7 +301,7 @@ mod tests {
     fn an_offset_that_closes_quickly_does_not_shoot_past_zero() {
         // Within Bollo's shortened time, for velocities up to twice that of the unshortened one.
         for speed in [0.0, 1.0, 5.0, 10.0] {
-            let decay = Decay::new(DVec3::X, DVec3::NEG_X * speed, 1.0).unwrap();
+            let decay = Decay::new(DVec3::X, DVec3::NEG_X * speed, DVec3::ZERO, 1.0).unwrap();
             for k in 0..=100 {
                 let x = decay.at(f64::from(k) * 0.01).x;
                 assert!((-1e-6..=1.0 + 1e-6).contains(&x), "{speed}: {x}");
@@ -261,7 +311,7 @@ mod tests {
 
     #[test]
     fn nothing_to_decay_is_nothing() {
-        assert_eq!(Decay::new(DVec3::ZERO, DVec3::ZERO, 1.0), None);
+        assert_eq!(Decay::new(DVec3::ZERO, DVec3::ZERO, DVec3::ZERO, 1.0), None);
         let mut offsets = Offsets::default();
         let pose = Pose {
             transforms: vec![Transform::IDENTITY; 3],
@@ -270,7 +320,7 @@ mod tests {
             now: &pose,
             then: &pose,
         };
-        offsets.restart(&course, &course, 1e-3, 0.3);
+        offsets.restart(&Offsets::default(), &course, &course, [1e-3, 0.3]);
         assert!(offsets.is_empty());
     }
 

@@ -156,6 +156,60 @@ fn b21_interruptions_do_not_build_up() {
     assert!(!animator.is_fading());
 }
 
+/// A game that cannot decide changes the animation in each frame, for as long as it likes. The pose comes to where the
+/// clips are all the same, however fast it moved before.
+#[test]
+fn changes_in_each_frame_do_not_let_the_pose_fly_away() {
+    let (skeleton, set) = giant();
+    let find = |name: &str| set.find(name).unwrap();
+    let mut random = fastrand::Rng::with_seed(3);
+    let (mut worst, mut settled) = (0f64, 0f64);
+    for (from, clips) in [
+        ("swipe", ["idle", "turn_left"]),
+        ("shake", ["idle", "idle"]),
+        ("stomp", ["idle", "walk"]),
+    ] {
+        let clips = clips.map(find);
+        for (rate, fade, often) in [
+            (60.0, 0.8, 1),
+            (60.0, 0.3, 2),
+            (30.0, 1.7, 1),
+            (240.0, 0.5, 1),
+            (60.0, 0.8, 0),
+        ] {
+            for start in [0.35, 0.7123, 1.1] {
+                let mut animator = Animator::new(vec![Layer::new(find(from))]);
+                animator.layers_mut()[0].time = start;
+                let frames = (6.0 * rate) as u32;
+                for frame in 0..frames {
+                    let changes = match often {
+                        0 => random.f64() < 0.5,
+                        often => frame % often == 0,
+                    };
+                    if changes {
+                        let to = clips[random.usize(0..2)];
+                        animator.play(&set, 0, to, fade).unwrap();
+                        // The same pose of each, so that only the changes move anything.
+                        animator.layers_mut()[0].speed = 0.0;
+                    }
+                    let now = places(&skeleton, &set, &animator);
+                    let ends = clips.map(|clip| {
+                        places(&skeleton, &set, &Animator::new(vec![Layer::new(clip)]))
+                    });
+                    let away = farthest(&now, &ends[0]).min(farthest(&now, &ends[1]));
+                    worst = worst.max(away);
+                    if frame + 1 == frames {
+                        settled = settled.max(away);
+                    }
+                    animator.advance(&set, 1.0 / rate, &mut Vec::new()).unwrap();
+                }
+            }
+        }
+    }
+    println!("at most {worst} m from both clips, {settled} m in the end");
+    assert!(worst < 0.9 && settled < 0.3, "{worst} {settled}");
+}
+
 #[test]
 fn a_fade_is_the_same_at_any_frame_rate() {
     let (_, set) = giant();

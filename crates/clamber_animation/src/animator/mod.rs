@@ -139,9 +139,9 @@ impl Animator {
         if fade > 0.0 {
             let from = self.course(set)?;
             let courses = [&from, &to].map(|[now, then]| Course { now, then });
-            changed
-                .offsets
-                .restart(&courses[0], &courses[1], STEP, fade);
+            let [from, to] = &courses;
+            let offsets = &mut changed.offsets;
+            offsets.restart(&self.offsets, from, to, [STEP, fade]);
         }
         *self = changed;
         Ok(())

@@ -27,6 +27,10 @@ const STEADY: f64 = 0.1;
 /// What is further ahead than this stands for a way that is free as far as it looks, metres.
 const FREE: f64 = 1e5;
 
+/// A giant that does not get on in a walk or a turn tries for so many seconds at least: a brain that then enters a state
+/// that leads back to it would change states in each tick.
+const TRIES: f64 = 1.0;
+
 /// Less than this is no turn, radians; and one that walks turns to a goal that is no further aside without a look.
 const LEAST_TURN: f64 = 0.05;
 const LEAST_STEER: f64 = 0.02;
@@ -77,8 +81,16 @@ impl Creature {
         self.state.walked.gone_back += back;
         self.state.walked.ticks_left = self.state.walked.ticks_left.saturating_sub(1);
         self.follow_ground(around, dt);
+        let is_way = matches!(kind.brain().act(state), Some(Act::Walk(_) | Act::Turn(_)));
+        let ticks = self.state.brain.ticks_in_state(kind.brain());
+        let has_tried = f64::from(ticks) * dt >= TRIES * self.size.pace;
+        let is_blocked = self.state.walked.is_blocked
+            && self.state.acting == Some(state)
+            && (has_tried || !is_way);
         let is_over = match kind.brain().act(state) {
-            Some(Act::Walk(_) | Act::Turn(_)) => done && !is_sent,
+            Some(Act::Walk(_) | Act::Turn(_)) => {
+                done && !is_sent && (is_blocked || !self.state.walked.is_blocked)
+            }
             Some(Act::Once(_) | Act::Attack(_)) => {
                 begun && (self.state.playing != Playing::Act(state) || self.clip_is_over())
             }
@@ -88,7 +100,6 @@ impl Creature {
         self.state
             .senses
             .set(Sense::Done, f64::from(u8::from(is_over)));
-        let is_blocked = self.state.walked.is_blocked && self.state.acting == Some(state);
         self.state
             .senses
             .set(Sense::Blocked, f64::from(u8::from(is_blocked)));

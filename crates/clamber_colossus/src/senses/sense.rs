@@ -45,8 +45,8 @@ pub enum Sense {
     /// 1 if the current act is over: the clip at its end, the place reached; else 0. A walk or a turn that is blocked is
     /// over as well.
     Done,
-    /// 1 if the creature cannot do its current act: it does not get on in a walk or a turn, or a blow would go through
-    /// rock and is not begun; else 0.
+    /// 1 if the creature cannot do its current act: it does not get on in a walk or a turn, at which it tries for a second
+    /// at least if it is as high as a giant of 41 m, or a blow would go through rock and is not begun; else 0.
     Blocked,
 }
 

@@ -23,4 +23,5 @@ mod sleep;
 mod support;
 mod traps;
 mod trex;
+mod undecided;
 mod walls;

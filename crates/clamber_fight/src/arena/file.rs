@@ -8,7 +8,7 @@ use crate::error::ArenaError;
 const MAGIC: [u8; 8] = *b"clamarna";
 
 /// Version of the format. Whatever changes what is saved raises it.
-const VERSION: u32 = 7;
+const VERSION: u32 = 8;
 
 /// Length of what comes before the state: [`MAGIC`], version, hash of the configuration, checksum.
 const HEADER: usize = 8 + 4 + 8 + 8;

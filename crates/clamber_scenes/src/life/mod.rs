@@ -1,5 +1,6 @@
 //! The giant's life in fast forward: it wanders in a valley with boulders and a wall, five riders wander and climb on
-//! it, arrows and blades hit it now and then, and when it dies the next one lives.
+//! it, arrows and blades hit it now and then, the game sends it away when the riders have left it, and when it dies the
+//! next one lives.
 
 mod options;
 mod rider;
@@ -44,7 +45,10 @@ const LIFTS: f64 = 37.0;
 
 /// Of each so many seconds, riders leave the giant alone for so many.
 const DAY: f64 = 400.0;
-const QUIET: f64 = 120.0;
+const QUIET: f64 = 160.0;
+
+/// How far from its home the giant is sent when riders have left it, metres.
+const SENT: f64 = 80.0;
 
 /// Where riders are lifted to: anywhere, or onto joints whose names begin so.
 const LIFTED_TO: [&[&str]; 5] = [
@@ -217,10 +221,14 @@ impl Life {
 
     /// True while riders leave the giant alone.
     fn is_quiet(&self) -> bool {
-        (self.ticks as f64 * TICK).rem_euclid(DAY) > DAY - QUIET
+        Self::is_quiet_at(self.ticks)
     }
 
-    /// What happens from outside: arrows and blades, riders that are lifted, and the next giant after a death.
+    fn is_quiet_at(ticks: u64) -> bool {
+        (ticks as f64 * TICK).rem_euclid(DAY) > DAY - QUIET
+    }
+
+    /// What happens from outside: arrows and blades, riders that are lifted, errands, and the next giant after a death.
     fn fate(&mut self) -> Result<(), LifeError> {
         let every = |seconds: f64| self.ticks.is_multiple_of((seconds / TICK) as u64);
         let (arrow, wound, lift) = (every(ARROWS), every(WOUNDS), every(LIFTS));
@@ -242,6 +250,11 @@ impl Life {
             let index = self.random.usize(..self.riders.len());
             let joints = LIFTED_TO[self.random.usize(..LIFTED_TO.len())];
             self.riders[index].lift(&self.giant, joints)?;
+        }
+        if self.is_quiet() && !Self::is_quiet_at(self.ticks - 1) {
+            let angle = self.random.f64() * core::f64::consts::TAU;
+            let way = DVec3::new(libm::sin(angle), 0.0, libm::cos(angle));
+            self.giant.send(Some(way * SENT));
         }
         let is_dead = self.kind.brain().is_final(self.giant.state().current());
         if is_dead && self.giant.state().brain().ticks_in_state(self.kind.brain()) > 600 {

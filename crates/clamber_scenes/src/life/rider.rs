@@ -17,11 +17,16 @@ const TIRED: f64 = 0.3;
 /// How far it goes away, metres.
 const FAR: f64 = 100.0;
 
+/// The rider that teases the giant.
+const TEASER: u64 = 0;
+
 /// What it wants.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Wish {
     /// Walks to a place.
     Wander(DVec3),
+    /// Stays so far ahead of the giant, metres, where its hands strike.
+    Tease(f64),
     /// Runs to the giant.
     Come,
     /// Climbs in a direction.
@@ -75,6 +80,11 @@ impl Rider {
         let blow = self.blow.take();
         let to = |place: DVec3| (place - state.position).with_y(0.0);
         match self.wish {
+            Wish::Tease(far) => ClimberInput {
+                walk: to(ahead(giant, far)).clamp_length_max(1.0),
+                blow,
+                ..ClimberInput::default()
+            },
             Wish::Wander(place) => ClimberInput {
                 walk: (to(place) * 0.3).clamp_length_max(0.6),
                 blow,
@@ -117,13 +127,10 @@ impl Rider {
         let support = self.climber.state().support;
         self.wish = if support.is_some_and(|support| support.attachment.obstacle == id) {
             Wish::Climb(level + DVec3::Y * lot(-0.5, 1.5))
+        } else if self.id == TEASER {
+            Wish::Tease(lot(15.5, 18.0))
         } else if lot(0.0, 1.0) < 0.35 {
             Wish::Come
-        } else if lot(0.0, 1.0) < 0.2 {
-            // Where its hands strike.
-            let yaw = giant.state().yaw();
-            let ahead = DVec3::new(libm::sin(yaw), 0.0, libm::cos(yaw));
-            Wish::Wander(giant.state().position() + ahead * lot(15.0, 18.0))
         } else {
             Wish::Wander(giant.state().position() + level * lot(10.0, 90.0))
         };
@@ -180,6 +187,12 @@ impl Rider {
             .cast_ray(place + DVec3::Y * 5.0, -DVec3::Y, 200.0)
             .is_none()
     }
+}
+
+/// The place so far ahead of the giant, metres.
+fn ahead(giant: &Creature, far: f64) -> DVec3 {
+    let yaw = giant.state().yaw();
+    giant.state().position() + DVec3::new(libm::sin(yaw), 0.0, libm::cos(yaw)) * far
 }
 
 /// True for skin of a joint whose name begins with one of these.
