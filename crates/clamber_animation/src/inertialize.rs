@@ -5,14 +5,12 @@
 //! GDC). Only the new pose is evaluated, at the cost of one polynomial a joint.
 //!
 //! An offset that starts while another one decays takes over its acceleration. Bollo's starts with none, unless it would
-//! shoot past 0: restarted in each frame it would never be slowed down, and the pose would fly away. With x, v and a taken
-//! over, the jerk at the start of a time T is -60 x / T^3 - 36 v / T^2 - 9 a / T, whose solutions decay, however often it
-//! starts anew.
-//!
-//! Bollo decays the length of an offset and drops the velocity across it. Here the polynomial has vectors as
-//! coefficients, so that position and velocity have no jump in any direction. He also shortens the time so that an
-//! offset whose velocity leads to 0 does not shoot past it; here to no less than [`SHORTEST`] of the time, since a
-//! small offset with a large velocity would stop within a frame.
+//! shoot past 0: restarted in each frame it would hardly be slowed down, and the pose would fly away. With x, v and a taken
+//! over, the jerk at the start of a time T is -60 x / T^3 - 36 v / T^2 - 9 a / T, whose solutions decay however often it
+//! starts anew. What is taken over from a shorter fade is bounded: the acceleration by what a decay of least jerk starts
+//! with, whose last three derivatives are not asked to be 0 at once, (12 x + 6 v T) / T^2; and if the speed would carry it
+//! far away in its own time, it takes less time ([`FURTHER`]). So offsets that start anew at random, with fades between
+//! 0.05 s and 3 s, stay within 1.6 times the reach of a single one; without the bounds they grow by each.
 
 use clamber_surface::geometry::rotation_vector;
 use clamber_surface::rig::{Pose, Transform};
@@ -23,6 +21,13 @@ use crate::spring::rotation_from_vector;
 
 /// The share of the time to which an offset's decay is shortened at most.
 const SHORTEST: f64 = 0.5;
+
+/// An offset takes no longer than that the speed which it takes over would carry it so many times as far as it is, or as
+/// the one before it was or would have gone at a third of its speed.
+const FURTHER: f64 = 3.0;
+
+/// It takes no less time for that, seconds.
+const SHORT: f64 = 0.05;
 
 /// Offsets shorter than this, in metres or radians, and slower than this a second, are left out: f32 has rounded them.
 const NONE: f64 = 1e-7;
@@ -42,15 +47,25 @@ pub(crate) struct Decay {
 
 impl Decay {
     /// The decay of an offset within `time` seconds, or sooner if it would shoot past 0; `None` if there is no offset.
-    /// `taken_over` is the acceleration of the offset that decayed before it.
+    /// `before` is the decay that it takes over, if any, and since when that has decayed, seconds.
     pub(crate) fn new(
         offset: DVec3,
         velocity: DVec3,
-        taken_over: DVec3,
         time: f64,
+        before: Option<(&Self, f64)>,
     ) -> Option<Self> {
         if offset.length() < NONE && velocity.length() < NONE {
             return None;
+        }
+        let (mut time, mut taken_over) = (time, DVec3::ZERO);
+        if let Some((before, elapsed)) =
+            before.filter(|(before, elapsed)| !before.is_over(*elapsed))
+        {
+            let [speed, acceleration] = before.motion_at(elapsed);
+            let size = before.size().max(offset.length());
+            time = time.min((FURTHER * size / speed.length()).max(SHORT));
+            let most = (12.0 * offset.length() + 6.0 * velocity.length() * time) / (time * time);
+            taken_over = acceleration.clamp_length_max(most);
         }
         let length_sq = offset.length_squared();
         let closing = -velocity.dot(offset);
@@ -68,6 +83,12 @@ impl Decay {
         })
     }
 
+    /// How far it is at most at its start, or goes at a third of its speed.
+    fn size(&self) -> f64 {
+        let way = f64::from(self.velocity.length()) * f64::from(self.time);
+        f64::from(self.offset.length()).max(way / FURTHER)
+    }
+
     /// The offset at a time since the start, seconds.
     pub(crate) fn at(&self, elapsed: f64) -> DVec3 {
         let end = f64::from(self.time);
@@ -80,15 +101,14 @@ impl Decay {
         x + (vs + (accelerations * 0.5 + series * t) * t) * t
     }
 
-    /// Its acceleration at a time since the start.
-    fn acceleration_at(&self, elapsed: f64) -> DVec3 {
+    /// Its velocity and its acceleration at a time since the start, before its end.
+    fn motion_at(&self, elapsed: f64) -> [DVec3; 2] {
         let end = f64::from(self.time);
-        if elapsed >= end {
-            return DVec3::ZERO;
-        }
-        let [_, _, accelerations, c3, c4, c5] = self.coefficients();
+        let [_, vs, accelerations, c3, c4, c5] = self.coefficients();
         let t = elapsed / end;
-        (accelerations + (c3 * 6.0 + (c4 * 12.0 + c5 * (20.0 * t)) * t) * t) / (end * end)
+        let velocity = vs + (accelerations + (c3 * 3.0 + (c4 * 4.0 + c5 * (5.0 * t)) * t) * t) * t;
+        let acceleration = accelerations + (c3 * 6.0 + (c4 * 12.0 + c5 * (20.0 * t)) * t) * t;
+        [velocity / end, acceleration / (end * end)]
     }
 
     /// Of its polynomial in the share of its time that has passed; the third one twice.
@@ -108,6 +128,20 @@ impl Decay {
         let c4 = (accelerations * 3.0 + vs * 16.0 + xs * 30.0) * 0.5;
         let c3 = -(accelerations * 3.0 + vs * 12.0 + xs * 20.0) * 0.5;
         [xs, vs, accelerations, c3, c4, c5]
+    }
+
+    /// No part of the offset is longer than this, from its start to its end; infinite if its numbers are none.
+    fn bound(&self) -> f64 {
+        let end = f64::from(self.time);
+        let parts =
+            [self.offset, self.velocity, self.taken_over].map(|part| part.as_dvec3().length());
+        // The coefficients of its polynomial, one after the other, and what Bollo's rule adds to the acceleration.
+        let bound = 112.0 * parts[0] + 50.0 * parts[1] * end + 4.0 * parts[2] * end * end;
+        if bound.is_finite() && end >= 0.0 {
+            bound
+        } else {
+            f64::INFINITY
+        }
     }
 
     fn is_over(&self, elapsed: f64) -> bool {
@@ -157,12 +191,10 @@ impl Offsets {
         for (joint, (from, to)) in course.zip(goal).enumerate() {
             let joint = joint as u32;
             let before_it = running.next_if(|offset| offset.joint == joint);
-            let taken_over = |part: fn(&JointOffset) -> &Option<Decay>| {
-                let decay = before_it.and_then(|offset| part(offset).as_ref());
-                decay.map_or(DVec3::ZERO, |decay| decay.acceleration_at(before.elapsed))
-            };
-            let decay = |[start, next]: [DVec3; 2], taken_over| {
-                Decay::new(start, (next - start) / step, taken_over, time)
+            let decay = |[start, next]: [DVec3; 2], part: fn(&JointOffset) -> &Option<Decay>| {
+                let running = before_it.and_then(|offset| part(offset).as_ref());
+                let running = running.map(|decay| (decay, before.elapsed));
+                Decay::new(start, (next - start) / step, time, running)
             };
             let turns = turns([from.0, from.1], [to.0, to.1]);
             let moves = [
@@ -172,9 +204,9 @@ impl Offsets {
             let grows = grows([from.0, from.1], [to.0, to.1]);
             let offset = JointOffset {
                 joint,
-                rotation: decay(turns, taken_over(|offset| &offset.rotation)),
-                translation: decay(moves, taken_over(|offset| &offset.translation)),
-                scale: grows.and_then(|grows| decay(grows, taken_over(|offset| &offset.scale))),
+                rotation: decay(turns, |offset| &offset.rotation),
+                translation: decay(moves, |offset| &offset.translation),
+                scale: grows.and_then(|grows| decay(grows, |offset| &offset.scale)),
             };
             let parts = [offset.rotation, offset.translation, offset.scale];
             if parts.iter().any(Option::is_some) {
@@ -201,6 +233,18 @@ impl Offsets {
     /// True if nothing is left of the last pose.
     pub(crate) fn is_empty(&self) -> bool {
         self.joints.is_empty()
+    }
+
+    /// No offset is longer than this until it is over, in metres, radians or as a scale; infinite if one of the numbers is
+    /// none.
+    pub(crate) fn bound(&self) -> f64 {
+        if !(0.0..=f64::MAX).contains(&self.elapsed) {
+            return f64::INFINITY;
+        }
+        let parts = self.joints.iter();
+        let parts = parts.flat_map(|offset| [offset.rotation, offset.translation, offset.scale]);
+        let bounds = parts.flatten().map(|decay| decay.bound());
+        bounds.fold(0.0, f64::max)
     }
 
     /// Adds the offsets of `shift` seconds from now to a pose.
@@ -280,7 +324,7 @@ mod tests {
         let mut random = |size: f64| DVec3::from([(); 3].map(|()| (rng.f64() * 2.0 - 1.0) * size));
         for _ in 0..1000 {
             let (x, v) = (random(1.0), random(8.0));
-            let decay = Decay::new(x, v, DVec3::ZERO, 0.4).unwrap();
+            let decay = Decay::new(x, v, 0.4, None).unwrap();
             let [x0, v0, _] = derivatives(&decay, 0.0);
             assert!(
                 (x0 - x).length() < 1e-6 && (v0 - v).length() < 2e-2,
@@ -301,7 +345,7 @@ mod tests {
     fn an_offset_that_closes_quickly_does_not_shoot_past_zero() {
         // Within Bollo's shortened time, for velocities up to twice that of the unshortened one.
         for speed in [0.0, 1.0, 5.0, 10.0] {
-            let decay = Decay::new(DVec3::X, DVec3::NEG_X * speed, DVec3::ZERO, 1.0).unwrap();
+            let decay = Decay::new(DVec3::X, DVec3::NEG_X * speed, 1.0, None).unwrap();
             for k in 0..=100 {
                 let x = decay.at(f64::from(k) * 0.01).x;
                 assert!((-1e-6..=1.0 + 1e-6).contains(&x), "{speed}: {x}");
@@ -309,9 +353,62 @@ mod tests {
         }
     }
 
+    /// Starts anew at random, to goals that stand and that move, with fades of many lengths: what is left of the last pose
+    /// stays about as near as a single fade lets it go. Before there was a bound, it grew without end.
+    #[test]
+    fn offsets_that_start_anew_stay_near() {
+        let goals = [0.0, 1.0, 0.5, 0.5, 1.0, 0.0].map(|x| DVec3::X * x);
+        let speeds = [0.0, 0.0, 1.0, -1.0, 3.0, -3.0].map(|v| DVec3::X * v);
+        let mut rng = fastrand::Rng::with_seed(5);
+        for fades in [
+            &[1.0][..],
+            &[0.3, 0.6],
+            &[0.2, 1.67],
+            &[0.3, 2.9],
+            &[0.05, 0.2, 0.6, 1.67, 3.0],
+        ] {
+            // What the largest difference of speeds does in the longest fade, and the goals' own reach.
+            let longest = fades.iter().copied().fold(0.0, f64::max);
+            let reach = 6.0 * longest * 0.16 + 1.0;
+            let mut worst = 0f64;
+            for frames in [1, 2, 4, 6, 10, 11, 14, 16, 0] {
+                let mut goal = 0;
+                let mut running: Option<(Decay, f64)> = None;
+                for change in 0..4000 {
+                    let [before, next] = [goal, rng.usize(0..goals.len())];
+                    let (at, speed) = running.map_or_else(Default::default, |(decay, since)| {
+                        let h = 1e-5;
+                        (decay.at(since), (decay.at(since + h) - decay.at(since)) / h)
+                    });
+                    let fade = match frames {
+                        0 => fades[rng.usize(0..fades.len())],
+                        _ => fades[change % fades.len()],
+                    };
+                    let decay = Decay::new(
+                        at + goals[before] - goals[next],
+                        speed + speeds[before] - speeds[next],
+                        fade,
+                        running.as_ref().map(|(decay, since)| (decay, *since)),
+                    );
+                    goal = next;
+                    let frames = if frames == 0 { rng.u32(1..90) } else { frames };
+                    let lasts = f64::from(frames) / 60.0;
+                    for frame in 0..=frames {
+                        let at =
+                            decay.map_or(DVec3::ZERO, |decay| decay.at(f64::from(frame) / 60.0));
+                        worst = worst.max((at + goals[goal]).length());
+                    }
+                    running = decay.map(|decay| (decay, lasts));
+                }
+            }
+            println!("fades of {fades:?}: at most {worst:.2} away, {reach:.2} with a single one");
+            assert!(worst < 1.6 * reach, "{fades:?}: {worst}, {reach}");
+        }
+    }
+
     #[test]
     fn nothing_to_decay_is_nothing() {
-        assert_eq!(Decay::new(DVec3::ZERO, DVec3::ZERO, DVec3::ZERO, 1.0), None);
+        assert_eq!(Decay::new(DVec3::ZERO, DVec3::ZERO, 1.0, None), None);
         let mut offsets = Offsets::default();
         let pose = Pose {
             transforms: vec![Transform::IDENTITY; 3],

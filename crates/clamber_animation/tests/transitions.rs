@@ -170,17 +170,21 @@ fn changes_in_each_frame_do_not_let_the_pose_fly_away() {
         ("stomp", ["idle", "walk"]),
     ] {
         let clips = clips.map(find);
-        for (rate, fade, often) in [
-            (60.0, 0.8, 1),
-            (60.0, 0.3, 2),
-            (30.0, 1.7, 1),
-            (240.0, 0.5, 1),
-            (60.0, 0.8, 0),
+        for (rate, fades, often) in [
+            (60.0, [0.8; 2], 1),
+            (60.0, [0.3; 2], 2),
+            (30.0, [1.7; 2], 1),
+            (240.0, [0.5; 2], 1),
+            (60.0, [0.8; 2], 0),
+            (60.0, [0.2, 1.7], 1),
+            (60.0, [0.2, 1.7], 10),
+            (60.0, [0.3, 2.9], 14),
+            (60.0, [0.1, 1.7], 0),
         ] {
             for start in [0.35, 0.7123, 1.1] {
                 let mut animator = Animator::new(vec![Layer::new(find(from))]);
                 animator.layers_mut()[0].time = start;
-                let frames = (6.0 * rate) as u32;
+                let (frames, mut changed) = ((8.0 * rate) as u32, 0);
                 for frame in 0..frames {
                     let changes = match often {
                         0 => random.f64() < 0.5,
@@ -188,7 +192,8 @@ fn changes_in_each_frame_do_not_let_the_pose_fly_away() {
                     };
                     if changes {
                         let to = clips[random.usize(0..2)];
-                        animator.play(&set, 0, to, fade).unwrap();
+                        animator.play(&set, 0, to, fades[changed % 2]).unwrap();
+                        changed += 1;
                         // The same pose of each, so that only the changes move anything.
                         animator.layers_mut()[0].speed = 0.0;
                     }

@@ -174,6 +174,12 @@ impl Animator {
         !self.offsets.is_empty()
     }
 
+    /// A bound of what the current fade adds to any joint until it is over: in the units of translations, in radians, or to
+    /// a scale. It is coarse, and only to find restored animators that are broken: infinite if one of its numbers is none.
+    pub fn fade_bound(&self) -> f64 {
+        self.offsets.bound()
+    }
+
     /// The pose now, and a moment later if it goes on as it does.
     fn course(&self, set: &AnimationSet) -> Result<[Pose; 2], AnimationError> {
         let mut buffers = PoseBuffers::default();

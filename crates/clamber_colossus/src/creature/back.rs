@@ -46,7 +46,7 @@ impl Creature {
 
     /// It stands before something on its way, as near to its next corner as it gets: perhaps it comes round it from here,
     /// or by a wider way, or from further back.
-    pub(super) fn stop(&mut self, around: &Surroundings<'_>, extent: &Extent) {
+    pub(super) fn stop(&mut self, around: &Surroundings<'_>, on_spot: &Extent) {
         self.get_stuck();
         let walked = &mut self.state.walked;
         walked.stops = walked.stops.saturating_add(1);
@@ -58,7 +58,7 @@ impl Creature {
         } else if walked.wide == Wide::No && walked.failed == 0 {
             (walked.wide, walked.ticks_left) = (Wide::Looks, 0);
         } else {
-            self.state.walked.is_blocked = !has_corners || !self.begin_back(around, extent);
+            self.state.walked.is_blocked = !has_corners || !self.begin_back(around, on_spot);
         }
     }
 
@@ -76,10 +76,10 @@ impl Creature {
     pub(super) fn finds_turn(
         &mut self,
         around: &Surroundings<'_>,
-        extent: &Extent,
+        on_spot: &Extent,
         aside: f64,
     ) -> bool {
-        let (room, slope) = (self.room(around, extent), self.slope());
+        let (room, slope) = (self.room(around, on_spot), self.slope());
         let is_free = |far: f64| room.turn(far, slope).abs() >= far.abs() - LEFT;
         if is_free(aside) {
             return true;
@@ -94,12 +94,12 @@ impl Creature {
     }
 
     /// Begins to go back, if there is room behind it and it has not done so too often. Returns true if it does.
-    pub(super) fn begin_back(&mut self, around: &Surroundings<'_>, extent: &Extent) -> bool {
+    pub(super) fn begin_back(&mut self, around: &Surroundings<'_>, on_spot: &Extent) -> bool {
         let least = LEAST * self.size.height;
         self.get_stuck();
         if self.state.walked.has_gone_back
             || self.state.walked.retreats >= MOST_RETREATS
-            || self.room_behind(around, extent, least) < least
+            || self.room_behind(around, on_spot, least) < least
         {
             return false;
         }
@@ -115,13 +115,13 @@ impl Creature {
     }
 
     /// Looks whether it still has room behind it, and whether it has to go back any further.
-    pub(super) fn look_back(&mut self, around: &Surroundings<'_>, extent: &Extent, aside: f64) {
+    pub(super) fn look_back(&mut self, around: &Surroundings<'_>, on_spot: &Extent, aside: f64) {
         let height = self.size.height;
         let left = self.state.walked.back.min(MOST * height);
         let sees = left.min(SEES * height);
-        let back = self.room_behind(around, extent, sees).max(0.0);
+        let back = self.room_behind(around, on_spot, sees).max(0.0);
         let is_enough = self.state.walked.gone_back >= ENOUGH * height;
-        let turns = is_enough && self.finds_turn(around, extent, aside);
+        let turns = is_enough && self.finds_turn(around, on_spot, aside);
         self.state.walked.back = if turns {
             back.min(MORE * height)
         } else if back < sees {
@@ -132,8 +132,8 @@ impl Creature {
     }
 
     /// How far it may go back, metres: as far as its way is free, but not out of its arena unless it was sent.
-    fn room_behind(&self, around: &Surroundings<'_>, extent: &Extent, most: f64) -> f64 {
-        let behind = extent.behind();
+    fn room_behind(&self, around: &Surroundings<'_>, on_spot: &Extent, most: f64) -> f64 {
+        let behind = on_spot.behind();
         let back = -self.state.heading();
         let free = self.room_towards(around, &behind, back).ahead(most);
         let far = |by: f64| {

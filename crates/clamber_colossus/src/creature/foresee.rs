@@ -47,8 +47,10 @@ impl Creature {
         animator.clone_from(&state.animator);
         memory.events.clear();
         let mut course = Course::of(state);
-        // It looks anew before it comes there.
-        course.turn = None;
+        // It looks anew before it comes there, but where it cannot turn.
+        if !state.walked.is_blocked {
+            course.turn = None;
+        }
         if !state.walked.faces {
             course.ahead = f64::INFINITY;
         }

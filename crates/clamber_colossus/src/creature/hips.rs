@@ -153,12 +153,15 @@ impl Creature {
         let wants_step = legs.len() == 2 && legs.iter().any(|leg| leg.wants_step);
         let mut to = DVec3::NEG_Y * self.state.hips.drop;
         let mut shift = DVec3::ZERO;
+        // Where both feet want to step, there is none to stand over.
+        let mut waits = false;
         if wants_step {
             let (mut sum, mut count) = (DVec3::ZERO, 0.0);
             for leg in legs.iter().filter(|leg| leg.is_planted && !leg.wants_step) {
                 (sum, count) = (sum + leg.ball - leg.hip, count + 1.0);
             }
             if count > 0.0 {
+                waits = true;
                 let level = world.transform_vector(sum / count);
                 // Hips stand between the legs: half of the way is over one of two feet.
                 shift = DVec3::new(level.x, 0.0, level.z) * SHIFT;
@@ -174,7 +177,7 @@ impl Creature {
             .go(to, DVec3::new(SHIFTS, DROPS, SHIFTS), dt);
         let at = self.state.hips.offset;
         let left = DVec3::new(at.x - shift.x, 0.0, at.z - shift.z).length();
-        self.state.hips.waits = wants_step && left > (1.0 - SHIFTED) * shift.length();
+        self.state.hips.waits = waits && left > (1.0 - SHIFTED) * shift.length();
         let rate = TREMOR_RATE / length.max(1e-3).sqrt();
         self.tremble(rate);
         self.state.hips.ring(rate, dt);

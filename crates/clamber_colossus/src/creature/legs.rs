@@ -9,7 +9,7 @@ use glam::{DQuat, DVec3};
 use super::Creature;
 use super::report::CreatureEvent;
 use super::state::Playing;
-use crate::feet::{Foot, FootGoal, Ground, MOST_ASIDE, SHARES, Sole};
+use crate::feet::{Foot, FootGoal, Ground, MOST_ASIDE, MOST_UP, SHARES, Sole};
 use crate::kind::{Contacts, Leg, rotation_of};
 
 /// From which share of its length on a leg in flight is stretched softly.
@@ -24,7 +24,8 @@ const STRETCHED: f64 = 0.994;
 /// Ground that is this much above a foot is a wall, as a share of the leg's length: feet do not step on it.
 const WALL: f64 = 0.25;
 
-/// The most acceleration with which a foot goes to whom it strikes, metres a second squared.
+/// The most acceleration with which a foot goes to whom it strikes, and with which it goes after a clip that is no gait,
+/// metres a second squared.
 const BLOW: f64 = 40.0;
 
 /// How much more a foot counts that stands for a whole clip, when a clip's time is chosen.
@@ -243,6 +244,11 @@ impl Creature {
         } else {
             aside + self.past_others(index, forward)
         };
+        // Clips that strike or fall may lift a foot that stands faster than corrections are felt.
+        let most_up = match self.state.playing {
+            Playing::Act(_) => BLOW,
+            _ => MOST_UP,
+        };
         // A blow is meant, and no correction.
         let most_aside = if aims == Some(index) {
             BLOW
@@ -262,6 +268,7 @@ impl Creature {
             ahead,
             aside,
             most_aside,
+            most_up,
             stands,
             stands_for,
             lands_in,

@@ -27,8 +27,8 @@ const STEADY: f64 = 0.1;
 /// What is further ahead than this stands for a way that is free as far as it looks, metres.
 const FREE: f64 = 1e5;
 
-/// A giant that does not get on in a walk or a turn tries for so many seconds at least: a brain that then enters a state
-/// that leads back to it would change states in each tick.
+/// A giant that does not get on tries for so many seconds at least from the beginning of its act on: a brain whose next
+/// state leads back to that one would change states in each tick.
 const TRIES: f64 = 1.0;
 
 /// Less than this is no turn, radians; and one that walks turns to a goal that is no further aside without a look.
@@ -81,29 +81,27 @@ impl Creature {
         self.state.walked.gone_back += back;
         self.state.walked.ticks_left = self.state.walked.ticks_left.saturating_sub(1);
         self.follow_ground(around, dt);
-        let is_way = matches!(kind.brain().act(state), Some(Act::Walk(_) | Act::Turn(_)));
-        let ticks = self.state.brain.ticks_in_state(kind.brain());
-        let has_tried = f64::from(ticks) * dt >= TRIES * self.size.pace;
-        let is_blocked = self.state.walked.is_blocked
-            && self.state.acting == Some(state)
-            && (has_tried || !is_way);
-        let is_over = match kind.brain().act(state) {
-            Some(Act::Walk(_) | Act::Turn(_)) => {
-                done && !is_sent && (is_blocked || !self.state.walked.is_blocked)
-            }
-            Some(Act::Once(_) | Act::Attack(_)) => {
-                begun && (self.state.playing != Playing::Act(state) || self.clip_is_over())
-            }
-            Some(Act::Play(_) | Act::Sleep) => false,
-            None => true,
-        };
+        let walked = &mut self.state.walked;
+        walked.tried = walked.tried.saturating_add(1);
+        let tries = walked.is_blocked && f64::from(walked.tried) * dt < TRIES * self.size.pace;
+        let is_blocked = walked.is_blocked && !tries;
+        let is_over = !tries
+            && match kind.brain().act(state) {
+                Some(Act::Walk(_) | Act::Turn(_)) => done && !is_sent,
+                Some(Act::Once(_) | Act::Attack(_)) => {
+                    begun && (self.state.playing != Playing::Act(state) || self.clip_is_over())
+                }
+                Some(Act::Play(_) | Act::Sleep) => false,
+                None => true,
+            };
         self.state
             .senses
             .set(Sense::Done, f64::from(u8::from(is_over)));
+        let is_act = self.state.acting == Some(state);
         self.state
             .senses
-            .set(Sense::Blocked, f64::from(u8::from(is_blocked)));
-        self.end_errand(done);
+            .set(Sense::Blocked, f64::from(u8::from(is_blocked && is_act)));
+        self.end_errand(done, is_blocked);
         Ok(())
     }
 
@@ -170,11 +168,11 @@ impl Creature {
         gait: &Gait,
         goes: &Wanted,
         around: &Surroundings<'_>,
-        extent: &Extent,
+        on_spot: &Extent,
     ) {
         let most = (2.0 * self.turning_room(gait, false)).max(2.0 * LEAST_TURN);
         let most = most.min(goes.aside.abs() + LEAST_TURN);
-        let room = self.room(around, extent);
+        let room = self.room(around, on_spot);
         self.state.walked.turn = room.turn(most.copysign(goes.aside), self.slope());
         if self.state.speed > 0.0 {
             // Not where it still walks.
@@ -186,8 +184,8 @@ impl Creature {
         if !is_first && !is_blocked {
             return;
         }
-        let gets_on = self.finds_turn(around, extent, goes.aside)
-            || self.begin_back(around, extent)
+        let gets_on = self.finds_turn(around, on_spot, goes.aside)
+            || self.begin_back(around, on_spot)
             || !is_blocked;
         self.state.walked.is_blocked = !gets_on;
     }

@@ -9,7 +9,6 @@ use super::state::{FARTHEST, Walked};
 use super::way::Way;
 use super::{Creature, CreatureConfig, CreatureState};
 use crate::error::ColossusError;
-use crate::senses::Sense;
 
 /// A creature that was sent has arrived within this share of its height.
 const WITHIN: f64 = 0.1;
@@ -96,6 +95,7 @@ impl Creature {
                         ahead: known.ahead,
                         turn: known.turn,
                         faces: known.faces,
+                        tried: known.tried,
                         ..Walked::default()
                     };
                     self.look_soon();
@@ -130,6 +130,11 @@ impl Creature {
         self.leave_act();
         self.state.halts = true;
         self.state.told.push(CreatureEvent::Entered { from, to });
+        let is_final = self.kind.brain().is_final(to);
+        if let Some(errand) = self.state.errand.take_if(|_| is_final) {
+            let place = errand.to;
+            self.state.told.push(CreatureEvent::Stopped { place });
+        }
         true
     }
 
@@ -154,7 +159,7 @@ impl Creature {
         self.state.ranged.begin();
         self.state.aim = DVec3::ZERO;
         self.state.walked = Walked::default();
-        self.state.senses.set(Sense::Done, 0.0);
+        self.state.senses.begin_act();
     }
 
     /// Where it goes: where it was sent, or where its act leads it.
@@ -173,20 +178,26 @@ impl Creature {
     }
 
     /// Ends its errand if it is there, or does not get on.
-    pub(super) fn end_errand(&mut self, is_there: bool) {
+    pub(super) fn end_errand(&mut self, is_there: bool, is_blocked: bool) {
         let Some(errand) = self.state.errand.filter(|errand| errand.has_begun) else {
             return;
         };
         let place = errand.to;
-        let event = if self.state.walked.is_blocked {
-            CreatureEvent::Stopped { place }
-        } else if is_there {
-            CreatureEvent::Arrived { place }
-        } else {
-            return;
-        };
-        self.state.errand = None;
-        self.state.walked = Walked::default();
-        self.report.events.push(event);
+        if is_blocked {
+            self.drop_errand();
+        } else if is_there && !self.state.walked.is_blocked {
+            self.state.errand = None;
+            self.state.walked = Walked::default();
+            self.report.events.push(CreatureEvent::Arrived { place });
+        }
+    }
+
+    /// It gives its errand up, if it is on one.
+    pub(super) fn drop_errand(&mut self) {
+        if let Some(errand) = self.state.errand.take() {
+            let place = errand.to;
+            self.state.walked = Walked::default();
+            self.report.events.push(CreatureEvent::Stopped { place });
+        }
     }
 }

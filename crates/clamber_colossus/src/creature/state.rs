@@ -190,6 +190,8 @@ pub(super) struct Walked {
     pub(super) retreats: u8,
     /// True if it does not get on.
     pub(super) is_blocked: bool,
+    /// Ticks since it began its act or its errand.
+    pub(super) tried: u32,
 }
 
 /// Whether a creature looks for ways on which it can turn everywhere, as it does once it got stuck on one that is just wide
@@ -574,6 +576,11 @@ impl CreatureState {
         {
             return Err(ColossusError::OtherKind(
                 "its place or its motion is no number that a creature reaches",
+            ));
+        }
+        if self.animator.fade_bound() > FARTHEST {
+            return Err(ColossusError::OtherKind(
+                "what is left of its last clip is no number that a pose has",
             ));
         }
         // Clips that cannot pose it now never can.

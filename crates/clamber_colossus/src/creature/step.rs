@@ -11,7 +11,6 @@ use super::{Creature, Surroundings};
 use crate::brain::{Act, StateId};
 use crate::error::ColossusError;
 use crate::feet::Ground;
-use crate::senses::Sense;
 
 /// An act of another kind begins when the creature has come to a stand: below this share of its walking speed.
 const STANDS: f64 = 0.12;
@@ -101,7 +100,10 @@ impl Creature {
         if changed {
             self.state.acting = None;
             self.state.halts = interrupts;
-            self.state.senses.set(Sense::Done, 0.0);
+            self.state.senses.begin_act();
+            if kind.brain().is_final(self.state.brain.current()) {
+                self.drop_errand();
+            }
         }
     }
 
@@ -130,7 +132,7 @@ impl Creature {
         self.state.struck.clear();
         self.state.ranged.begin();
         self.state.aim = DVec3::ZERO;
-        self.state.walked.is_blocked = false;
+        (self.state.walked.is_blocked, self.state.walked.tried) = (false, 0);
         if !matches!(act, Some(Act::Sleep)) {
             self.wake();
         }

@@ -10,7 +10,7 @@ use crate::angle::nearest_turn;
 /// How a foot is held.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 enum Hold {
-    /// It stands here, on ground that was at this height below its ball.
+    /// It stands here, on ground that was at this height below its ball, if there was any.
     Planted {
         at: Footing,
         heading: f64,
@@ -95,6 +95,8 @@ pub(crate) struct FootGoal {
     /// squared.
     pub(crate) aside: DVec3,
     pub(crate) most_aside: f64,
+    /// With how much it may go up and down in a swing.
+    pub(crate) most_up: f64,
     /// Height of the clip's ball at [`SHARES`] of the time until then.
     pub(crate) ahead: [f64; 3],
     /// Where the clip's foot points to, radians about up.
@@ -127,7 +129,7 @@ const STEP_HEIGHT: f64 = 0.04;
 
 /// The most acceleration of an offset up and down, and to the sides, metres a second squared, and of a foot's turn,
 /// radians a second squared. Together the first two are 5.6: below 6, which skin below the knee may have in a swing.
-const MOST_UP: f64 = 4.4;
+pub(crate) const MOST_UP: f64 = 4.4;
 pub(crate) const MOST_ASIDE: f64 = 3.4;
 const MOST_TURN: f64 = 3.0;
 
@@ -197,7 +199,10 @@ impl Foot {
         let moving = |spring: &Spring<DVec3>| spring.value.length() + spring.velocity.length();
         let footing = |at: &Footing| at.ball.length() + at.normal.length();
         let held = match &self.hold {
-            Hold::Planted { at, heading, below } => footing(at) + heading.abs() + below.abs(),
+            Hold::Planted { at, heading, below } => {
+                let below = if *below == NO_GROUND { 0.0 } else { *below };
+                footing(at) + heading.abs() + below.abs()
+            }
             Hold::Swings => 0.0,
             Hold::Lands { ball, to, left } => moving(ball) + footing(to) + left.abs(),
             Hold::Steps(step) => {
@@ -291,7 +296,9 @@ impl Foot {
                 let before = at.ball.y;
                 footing(at);
                 *heading = nearest_turn(*heading + carried.yaw);
-                *below += at.ball.y - before;
+                if *below != NO_GROUND {
+                    *below += at.ball.y - before;
+                }
             }
             Hold::Swings => {}
             Hold::Lands { ball, to, .. } => {
@@ -349,9 +356,10 @@ impl Foot {
                 let is_off = level > STEPS_BEYOND * goal.leg || self.yaw.value.abs() > STEPS_TURNED;
                 self.wants_step = is_off && !goal.is_gait && !goal.is_lifted;
                 let is_gone = goal.looks
-                    && sole
-                        .below(at.ball)
-                        .is_none_or(|now| (now - below).abs() > GONE * goal.leg);
+                    && match sole.below(at.ball) {
+                        Some(now) => (now - below).abs() > GONE * goal.leg,
+                        None => below != NO_GROUND,
+                    };
                 if is_gone && sole.has_ground() {
                     self.hold = Hold::Lands {
                         ball: Spring::at(at.ball),
@@ -449,7 +457,7 @@ impl Foot {
             velocity: DVec3::new(0.0, self.offset.velocity.y.min(0.0), 0.0),
         };
         self.landing = None;
-        let below = sole.below(at.ball).unwrap_or(at.ball.y);
+        let below = sole.below(at.ball).unwrap_or(NO_GROUND);
         let heading = goal.heading + self.yaw.value;
         self.hold = Hold::Planted { at, heading, below };
     }
@@ -473,7 +481,7 @@ impl Foot {
             self.path = self.path_over(goal, sole, &lands, left);
         }
         self.path.left -= dt;
-        let most = self.offset.velocity.y + MOST_UP * dt;
+        let most = self.offset.velocity.y + goal.most_up * dt;
         let mut up = Spring {
             value: self.offset.value.y,
             velocity: self.offset.velocity.y,
@@ -482,7 +490,7 @@ impl Foot {
             &mut up,
             self.path.offset,
             (self.path.left + dt).max(LEAST),
-            MOST_UP,
+            goal.most_up,
             dt,
         );
         let mut level = Spring {
@@ -500,7 +508,7 @@ impl Foot {
         let ball = goal.clip.y + self.offset.value.y;
         let least = self.path.floor + goal.ball_height;
         if ball < least {
-            let out = (2.0 * MOST_UP * (least - ball)).sqrt();
+            let out = (2.0 * goal.most_up * (least - ball)).sqrt();
             let velocity = out.min(most).max(self.offset.velocity.y);
             self.offset.value.y += 0.5 * (velocity - self.offset.velocity.y) * dt;
             self.offset.velocity.y = velocity;

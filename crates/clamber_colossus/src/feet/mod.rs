@@ -10,7 +10,7 @@ mod foot;
 mod ground;
 mod sole;
 
-pub(crate) use foot::{Foot, FootGoal, GRAVITY, MOST_ASIDE, SHARES, STEP_TIME};
+pub(crate) use foot::{Foot, FootGoal, GRAVITY, MOST_ASIDE, MOST_UP, SHARES, STEP_TIME};
 pub(crate) use ground::Ground;
 pub(crate) use sole::{Footing, Sole};
 

@@ -31,9 +31,10 @@ impl Senses {
         senses
     }
 
-    /// Nothing is sensed any more; the game's own senses stay, and whether the act is done.
+    /// Nothing is sensed any more; the game's own senses stay, and how its act ended in the last tick.
     pub(crate) fn forget(&mut self) {
-        let done = self.numbers.get(Sense::Done as usize).copied();
+        let ends = [Sense::Done, Sense::Blocked];
+        let kept = ends.map(|end| self.numbers[end as usize]);
         self.numbers.fill(0.0);
         self.regions.fill(0.0);
         for far in [
@@ -44,7 +45,15 @@ impl Senses {
             self.set(far, f64::INFINITY);
         }
         self.set(Sense::Health, 1.0);
-        self.set(Sense::Done, done.unwrap_or(0.0));
+        for (end, value) in ends.into_iter().zip(kept) {
+            self.set(end, value);
+        }
+    }
+
+    /// Another act begins: it is neither done nor blocked.
+    pub(crate) fn begin_act(&mut self) {
+        self.set(Sense::Done, 0.0);
+        self.set(Sense::Blocked, 0.0);
     }
 
     /// A sense.

@@ -45,8 +45,9 @@ pub enum Sense {
     /// 1 if the current act is over: the clip at its end, the place reached; else 0. A walk or a turn that is blocked is
     /// over as well.
     Done,
-    /// 1 if the creature cannot do its current act: it does not get on in a walk or a turn, at which it tries for a second
-    /// at least if it is as high as a giant of 41 m, or a blow would go through rock and is not begun; else 0.
+    /// 1 if the creature cannot do its current act: it does not get on in a walk or a turn, or a blow would go through
+    /// rock and is not begun; else 0. It tries for a while before it says so: for a second if it is 41 m high, and else by
+    /// the square root of its height.
     Blocked,
 }
 

@@ -403,6 +403,46 @@ fn who_has_come_to_its_end_is_not_sent() {
     assert!(one.send(Some(DVec3::Z * 50.0)));
 }
 
+/// Who dies on an errand gives it up, by its own brain or by an order.
+#[test]
+fn who_dies_on_the_way_stays_there() {
+    let states = r#"{
+        "lives": { "transitions": [{ "to": "dead", "when": ["health <= 0"], "interrupts": true }] },
+        "dead": { "final": true, "act": { "once": "die" } }
+    }"#;
+    let kind = giant(&brain_with("lives", states));
+    let ground = HalfSpace::below(0.0);
+    let terrain: [&dyn Obstacle; 1] = [&ground];
+    let around = Surroundings {
+        terrain: &terrain,
+        ..Surroundings::default()
+    };
+    for is_ordered in [false, true] {
+        let mut one = creature(&kind, at(DVec3::ZERO, 0.0));
+        assert!(one.send(Some(DVec3::Z * 80.0)));
+        for _ in 0..300 {
+            one.step(&around).unwrap();
+        }
+        if is_ordered {
+            assert!(one.enter("dead"));
+        } else {
+            let points = 0..one.kind().weak_points().len();
+            points.for_each(|point| {
+                one.harm(point, 1e9);
+            });
+        }
+        let (mut stopped, from) = (0, one.state().position());
+        for _ in 0..400 {
+            let report = one.step(&around).unwrap();
+            let is_end = |event: &&CreatureEvent| matches!(event, CreatureEvent::Stopped { .. });
+            stopped += report.events.iter().filter(is_end).count();
+        }
+        assert_eq!((stopped, one.sent_to()), (1, None), "{is_ordered}");
+        let way = level(one.state().position(), from);
+        assert!(way < 8.0, "{is_ordered}: it went on for {way} m");
+    }
+}
+
 /// A brain whose weak points, plates and legs are others takes over what has the same name.
 #[test]
 fn another_body_keeps_what_it_knows_by_name() {

@@ -251,6 +251,59 @@ fn attacks_that_are_proposed_strike_who_stays() {
     );
 }
 
+/// While a creature with legs attacks, nothing of it goes far into the ground, although its clip lifts feet faster than
+/// they may be put elsewhere, and puts them down again.
+#[test]
+fn attacks_that_are_proposed_stay_above_the_ground() {
+    let ground = HalfSpace::below(0.0);
+    let terrain: [&dyn Obstacle; 1] = [&ground];
+    let around = Surroundings {
+        terrain: &terrain,
+        ..Surroundings::default()
+    };
+    let mut worst = [0f64; 2];
+    let mut count = 0;
+    for path in models() {
+        let Some(parts) = parts(&path) else { continue };
+        for height in [3.0, 20.0] {
+            let file = BrainFile::propose(&parts, height).unwrap();
+            let legs = file.body.legs.len();
+            let kind = kind(&parts, &file);
+            let mut one = Creature::new(Arc::clone(&kind), CreatureConfig::default()).unwrap();
+            if legs == 0 || !one.enter("strikes") {
+                continue;
+            }
+            count += 1;
+            let mut deepest = [0f64; 2];
+            let mut skin: Vec<Vec3> = Vec::new();
+            for tick in 0..(8.0 * (height / 20.0).sqrt() / TICK) as u32 {
+                one.step(&around).unwrap();
+                if tick % 5 != 0 {
+                    continue;
+                }
+                let feet = (0..legs).filter_map(|leg| one.foot_clearance(leg, &terrain));
+                deepest[0] = feet.fold(deepest[0], f64::min);
+                one.surface().clone().skin_all(&mut skin);
+                let origin = one.surface().world_from_model();
+                let skin = skin.iter();
+                let low = skin.map(|place| origin.transform_point(place.as_dvec3()).y);
+                deepest[1] = low.fold(deepest[1], f64::min);
+            }
+            let deepest = deepest.map(|depth| -depth / height);
+            println!(
+                "{:<24} at {height} m: feet and skin {deepest:.3?}",
+                name(&path)
+            );
+            worst = [worst[0].max(deepest[0]), worst[1].max(deepest[1])];
+        }
+    }
+    println!("{count}: feet and skin at most {worst:.3?} of the height in the ground");
+    let is_there = std::env::var_os("CLAMBER_TEST_DATA").is_some();
+    assert!(!is_there || count > 20, "{count}");
+    // A head may strike into the ground as its clip has it.
+    assert!(worst[0] < 0.065 && worst[1] < 0.1, "{worst:?}");
+}
+
 #[test]
 #[ignore = "takes minutes: ten of each creature, at three sizes"]
 fn creatures_from_elsewhere_live_for_ten_minutes() {

@@ -48,7 +48,19 @@ struct Errands<'a> {
     off: f64,
 }
 
-impl Errands<'_> {
+impl<'a> Errands<'a> {
+    fn of(one: Creature, terrain: &'a dyn Obstacle) -> Self {
+        Self {
+            one,
+            terrain,
+            still: 0.0,
+            alley: [0.0; 3],
+            deepest: 0.0,
+            backs: false,
+            off: 0.0,
+        }
+    }
+
     fn go(&mut self, to: DVec3, most: f64) -> End {
         assert!(self.one.send(Some(to)));
         let terrain = [self.terrain];
@@ -158,13 +170,8 @@ fn who_walked_into_a_blind_alley_comes_out_again() {
                 ..CreatureConfig::default()
             };
             let mut errands = Errands {
-                one: creature(&kind, config),
-                terrain: &terrain,
-                still: 0.0,
                 alley: [half, 0.5 * height, long],
-                deepest: 0.0,
-                backs: false,
-                off: 0.0,
+                ..Errands::of(creature(&kind, config), &terrain)
             };
             let most = 60.0 * height.sqrt();
             let inside = DVec3::new(0.0, 0.0, long - reach - 0.2 * height);
@@ -224,15 +231,7 @@ fn lanes_in_which_it_cannot_turn_do_not_keep_it_for_ever() {
                 position: DVec3::new(0.0, 0.0, -2.0 * reach),
                 ..CreatureConfig::default()
             };
-            let mut errands = Errands {
-                one: creature(&kind, config),
-                terrain: &terrain,
-                still: 0.0,
-                alley: [0.0; 3],
-                deepest: 0.0,
-                backs: false,
-                off: 0.0,
-            };
+            let mut errands = Errands::of(creature(&kind, config), &terrain);
             let aside = DVec3::new(2.0 * reach, 0.0, 0.0);
             let end = errands.go(aside, 240.0 * height.sqrt());
             println!("{name:<24} {share}: {end:?}, back {}", errands.backs);
@@ -262,15 +261,7 @@ fn boulders_all_around_are_no_trap() {
             world.detect_collisions(&(), &());
             let poses = BodyPoses::default();
             let terrain = RapierTerrain::of_world(&world, &poses);
-            let mut errands = Errands {
-                one: creature(&kind, CreatureConfig::default()),
-                terrain: &terrain,
-                still: 0.0,
-                alley: [0.0; 3],
-                deepest: 0.0,
-                backs: false,
-                off: 0.0,
-            };
+            let mut errands = Errands::of(creature(&kind, CreatureConfig::default()), &terrain);
             for _ in 0..6 {
                 let to = DVec3::new(lot(-4.0, 4.0), 0.0, lot(-4.0, 4.0));
                 let end = errands.go(to, 60.0 * height.sqrt());

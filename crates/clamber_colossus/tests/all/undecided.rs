@@ -2,8 +2,11 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
-use clamber_colossus::{Creature, CreatureConfig, CreatureEvent, Surroundings};
-use clamber_world::rapier3d::prelude::{ColliderBuilder, Pose};
+use core::f64::consts::{PI, TAU};
+
+use clamber_animation::rig::Palette;
+use clamber_colossus::{Creature, CreatureConfig, CreatureEvent, Foresight, Surroundings};
+use clamber_world::rapier3d::prelude::{ColliderBuilder, PhysicsWorld, Pose};
 use clamber_world::{BodyPoses, HalfSpace, Obstacle, RapierTerrain};
 use glam::{DVec3, Vec3};
 
@@ -83,18 +86,13 @@ fn who_changes_states_in_each_tick_keeps_its_shape() {
     }
 }
 
-/// Where it cannot turn to its prey, it tries for a while before its brain hears of it.
-#[test]
-fn who_cannot_turn_tries_for_a_while() {
-    let states = r#"{
-        "hunt": { "transitions": [
-            { "to": "face", "any": ["prey_bearing_deg > 70", "prey_bearing_deg < -70"] }
-        ] },
-        "face": { "act": { "turn": { "to": "prey", "within_deg": 15 } }, "transitions": [
-            { "to": "hunt", "when": ["done"] }
-        ] }
-    }"#;
-    let kind = kind(&brain_with("hunt", states));
+fn heading(one: &Creature) -> DVec3 {
+    let yaw = one.state().yaw();
+    DVec3::new(libm::sin(yaw), 0.0, libm::cos(yaw))
+}
+
+/// A pen of rock around the origin, in which the giant cannot turn.
+fn pen() -> PhysicsWorld {
     let mut world = ground(|_, _| 0.0);
     for (x, z) in [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)] {
         let at = DVec3::new(x, 0.0, z) * 19.0 + DVec3::Y * 8.0;
@@ -102,7 +100,26 @@ fn who_cannot_turn_tries_for_a_while() {
         world.insert_collider(wall.position(Pose::from_translation(at.as_vec3())), None);
     }
     world.detect_collisions(&(), &());
+    world
+}
+
+/// How many states it enters in 20 s.
+fn entered(one: &mut Creature, around: &Surroundings<'_>) -> usize {
+    let mut entered = 0;
+    for _ in 0..1200 {
+        let report = one.step(around).unwrap();
+        let is_entered = |event: &&CreatureEvent| matches!(event, CreatureEvent::Entered { .. });
+        entered += report.events.iter().filter(is_entered).count();
+    }
+    println!("entered {entered} states in 20 s");
+    entered
+}
+
+/// Where it cannot turn to its prey, it tries for a while before its brain hears of it; and it is not foreseen to turn.
+#[test]
+fn who_cannot_turn_tries_for_a_while() {
     let poses = BodyPoses::default();
+    let world = pen();
     let terrain = RapierTerrain::of_world(&world, &poses);
     let terrain: [&dyn Obstacle; 1] = [&terrain];
     let people = [person(DVec3::new(-60.0, 0.0, 6.0))];
@@ -111,14 +128,168 @@ fn who_cannot_turn_tries_for_a_while() {
         people: &people,
         ..Surroundings::default()
     };
-    let mut one = creature(&kind, CreatureConfig::default());
-    let mut entered = 0;
-    for _ in 0..1200 {
-        let report = one.step(&around).unwrap();
-        let is_entered = |event: &&CreatureEvent| matches!(event, CreatureEvent::Entered { .. });
-        entered += report.events.iter().filter(is_entered).count();
+    for end in ["done", "blocked"] {
+        let states = r#"{
+            "hunt": { "transitions": [
+                { "to": "face", "any": ["prey_bearing_deg > 70", "prey_bearing_deg < -70"] }
+            ] },
+            "face": { "act": { "turn": { "to": "prey", "within_deg": 15 } }, "transitions": [
+                { "to": "hunt", "when": ["END"] }
+            ] }
+        }"#;
+        let kind = kind(&brain_with("hunt", &states.replace("END", end)));
+        let mut one = creature(&kind, CreatureConfig::default());
+        let entered = entered(&mut one, &around);
+        assert!((10..=42).contains(&entered), "{end}: {entered}");
+        assert!(one.state().yaw().abs() < 0.2, "it turned");
+        for _ in 0..40 {
+            one.step(&around).unwrap();
+            let mut palette = Palette::default();
+            let then = one.foresee(2.0, &mut Foresight::default(), &mut palette);
+            let ahead = then.unwrap().rotation * DVec3::Z;
+            let turned = ahead.angle_between(heading(&one));
+            assert!(turned < 0.05, "foreseen to turn by {turned}");
+        }
     }
-    println!("entered {entered} states in 20 s");
-    assert!(one.state().yaw().abs() < 0.2, "it turned");
+}
+
+/// An attack that is not begun since rock is in its way, in a brain without a pause.
+#[test]
+fn who_cannot_strike_tries_for_a_while() {
+    let states = r#"{
+        "hunt": { "transitions": [{ "to": "stomp", "when": ["prey_distance < 100"] }] },
+        "stomp": { "act": { "attack": { "clip": "stomp", "limb": ["foot.R", "toe.R"], "damage": 0.6, "throw": 9 } },
+            "transitions": [{ "to": "hunt" }] }
+    }"#;
+    let kind = kind(&brain_with("hunt", states));
+    let mut world = ground(|_, _| 0.0);
+    let wall = ColliderBuilder::cuboid(40.0, 6.0, 2.0);
+    world.insert_collider(
+        wall.position(Pose::from_translation(Vec3::new(0.0, 6.0, 8.0))),
+        None,
+    );
+    world.detect_collisions(&(), &());
+    let poses = BodyPoses::default();
+    let terrain = RapierTerrain::of_world(&world, &poses);
+    let terrain: [&dyn Obstacle; 1] = [&terrain];
+    let people = [person(DVec3::new(0.0, 0.0, 40.0))];
+    let around = Surroundings {
+        terrain: &terrain,
+        people: &people,
+        ..Surroundings::default()
+    };
+    let mut one = creature(&kind, CreatureConfig::default());
+    let entered = entered(&mut one, &around);
     assert!((10..=42).contains(&entered), "{entered}");
+    assert!(one.attack().is_none());
+}
+
+/// A game that sends it again whenever it is told that it does not get there.
+#[test]
+fn who_is_sent_again_and_again_tries_for_a_while() {
+    let poses = BodyPoses::default();
+    let world = pen();
+    let terrain = RapierTerrain::of_world(&world, &poses);
+    let terrain: [&dyn Obstacle; 1] = [&terrain];
+    let around = Surroundings {
+        terrain: &terrain,
+        ..Surroundings::default()
+    };
+    let kind = kind(&brain_with("stands", STATES));
+    let mut one = creature(&kind, CreatureConfig::default());
+    let mut stopped = 0;
+    for _ in 0..1200 {
+        if one.sent_to().is_none() {
+            assert!(one.send(Some(DVec3::new(-60.0, 0.0, 6.0))));
+        }
+        let report = one.step(&around).unwrap();
+        let is_stopped = |event: &&CreatureEvent| matches!(event, CreatureEvent::Stopped { .. });
+        stopped += report.events.iter().filter(is_stopped).count();
+    }
+    println!("stopped {stopped} times in 20 s");
+    assert!((5..=20).contains(&stopped), "{stopped}");
+}
+
+/// Feet come under the body again, whatever it did before, and both at once if both are elsewhere.
+#[test]
+fn feet_come_under_the_body_after_a_turn_without_a_clip() {
+    let ground = HalfSpace::below(0.0);
+    let terrain: [&dyn Obstacle; 1] = [&ground];
+    let mut file: serde_json::Value = serde_json::from_str(&brain_with("stands", STATES)).unwrap();
+    let gait = file["body"]["gait"].as_object_mut().unwrap();
+    gait.remove("turn");
+    let kind = kind(&file.to_string());
+    // From heel to toe.
+    let points = |one: &Creature, leg: usize| {
+        let [heel, _, _, toe] = one.sole(leg).unwrap();
+        let way = (toe - heel).with_y(0.0);
+        let ahead = heading(one);
+        libm::atan2(ahead.cross(way).y, ahead.dot(way))
+    };
+    let mut fresh = creature(&kind, CreatureConfig::default());
+    fresh
+        .step(&Surroundings {
+            terrain: &terrain,
+            ..Surroundings::default()
+        })
+        .unwrap();
+    let rests = [0, 1].map(|leg| points(&fresh, leg));
+    for step in 0..16 {
+        let angle = PI * (0.15 + 0.11 * f64::from(step));
+        let place = DVec3::new(libm::sin(angle), 0.0, libm::cos(angle)) * 40.0;
+        let people = [person(place)];
+        let around = Surroundings {
+            terrain: &terrain,
+            people: &people,
+            ..Surroundings::default()
+        };
+        let mut one = creature(&kind, CreatureConfig::default());
+        for seconds in [f64::from(step) * 0.21, 30.0] {
+            assert!(one.enter(if seconds < 20.0 { "walks" } else { "turns" }));
+            for _ in 0..(seconds / TICK) as u32 {
+                one.step(&around).unwrap();
+            }
+        }
+        assert!(one.enter("stands"));
+        for _ in 0..600 {
+            one.step(&around).unwrap();
+        }
+        for leg in 0..2 {
+            let turned = points(&one, leg) - rests[leg];
+            let turned = (turned + PI).rem_euclid(TAU) - PI;
+            println!("{angle:.2}: leg {leg} turned by {turned:.3}");
+            assert!(turned.abs() < 0.5, "{angle}: leg {leg} {turned}");
+        }
+    }
+}
+
+/// A foot beyond a cliff hangs there, and does not come down again and again.
+#[test]
+fn a_foot_over_nothing_stays_where_it_is() {
+    let kind = kind(&brain_with("stands", STATES));
+    let mut world = PhysicsWorld::default();
+    let rock = ColliderBuilder::cuboid(30.0, 1.0, 60.0);
+    world.insert_collider(
+        rock.position(Pose::from_translation(Vec3::new(-30.0, -1.0, 0.0))),
+        None,
+    );
+    world.detect_collisions(&(), &());
+    let poses = BodyPoses::default();
+    let terrain = RapierTerrain::of_world(&world, &poses);
+    let terrain: [&dyn Obstacle; 1] = [&terrain];
+    let around = Surroundings {
+        terrain: &terrain,
+        ..Surroundings::default()
+    };
+    let mut one = creature(&kind, CreatureConfig::default());
+    let mut planted = 0;
+    for tick in 0..1200 {
+        let report = one.step(&around).unwrap();
+        let is_plant = |event: &&CreatureEvent| matches!(event, CreatureEvent::Plant { .. });
+        if tick > 180 {
+            planted += report.events.iter().filter(is_plant).count();
+        }
+    }
+    println!("came down {planted} times in 17 s");
+    assert!(planted <= 1, "{planted}");
 }

@@ -391,6 +391,7 @@ fn blows_do_not_go_through_walls() {
             let mut giant = Creature::new(Arc::clone(&kind), config()).unwrap();
             let mut skin = Vec::new();
             let (mut began, mut blocked, mut own) = (false, false, 0f64);
+            let mut heard = false;
             for tick in 0..400 {
                 let around = Surroundings {
                     terrain,
@@ -399,6 +400,8 @@ fn blows_do_not_go_through_walls() {
                 giant.step(&around).unwrap();
                 blocked |= giant.state().senses().get(Sense::Blocked) > 0.0;
                 began |= giant.attack().is_some();
+                let brain = giant.kind().brain();
+                heard |= brain.path(giant.state().current()) == "stands";
                 if is_wall && began && tick % 4 == 0 {
                     giant.surface().clone().skin_all(&mut skin);
                     let world = giant.surface().world_from_model();
@@ -409,6 +412,10 @@ fn blows_do_not_go_through_walls() {
             }
             deepest = deepest.max(own);
             assert_ne!(began, blocked, "{attack} {away}");
+            assert_eq!(
+                heard, blocked,
+                "{attack} {away}: its brain did not hear of it"
+            );
             assert!(began || is_wall && away < 60.0, "{attack} {away}");
             walled += u32::from(blocked);
         }
