@@ -153,16 +153,14 @@ impl Creature {
         let wants_step = legs.len() == 2 && legs.iter().any(|leg| leg.wants_step);
         let mut to = DVec3::NEG_Y * self.state.hips.drop;
         let mut shift = DVec3::ZERO;
-        // Where both feet want to step, there is none to stand over.
         let mut waits = false;
         if wants_step {
-            let (mut sum, mut count) = (DVec3::ZERO, 0.0);
-            for leg in legs.iter().filter(|leg| leg.is_planted && !leg.wants_step) {
-                (sum, count) = (sum + leg.ball - leg.hip, count + 1.0);
-            }
-            if count > 0.0 {
+            let planted = || legs.iter().filter(|leg| leg.is_planted);
+            // Where both feet want to step, the first of them does.
+            let stander = planted().find(|leg| !leg.wants_step);
+            if let Some(leg) = stander.or_else(|| planted().next_back()) {
                 waits = true;
-                let level = world.transform_vector(sum / count);
+                let level = world.transform_vector(leg.ball - leg.hip);
                 // Hips stand between the legs: half of the way is over one of two feet.
                 shift = DVec3::new(level.x, 0.0, level.z) * SHIFT;
             }
