@@ -125,6 +125,8 @@ impl Player {
         let stands = stance == Stance::Upright;
         self.gets_up = stands && (self.gets_up || lay) && walk.going < 0.3;
         let base = self.base_of(state, stance);
+        // Who crouches or is crushed gets up otherwise.
+        self.gets_up &= matches!(base, Base::Once(BodyClip::GetUp));
         self.change_to(figure, base)?;
         self.animator
             .set_scale(figure.leg_length() / super::walk::LEG)?;

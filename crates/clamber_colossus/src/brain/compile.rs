@@ -358,11 +358,19 @@ impl Brain {
                 .map_or(0..0, |state| state.transitions.clone());
             self.transitions[range].iter()
         });
-        let mut instant = around.filter(|transition| transition.is_instant());
+        let instant = around.filter(|transition| transition.is_instant());
         if self.is_final(state) || self.act(state).is_some_and(super::Act::is_whole) {
             return None;
         }
-        instant.next().map(|transition| transition.to)
+        // The first of those that go before all others.
+        let best = instant.reduce(|best, next| {
+            if next.priority > best.priority {
+                next
+            } else {
+                best
+            }
+        });
+        best.map(|transition| transition.to)
     }
 }
 

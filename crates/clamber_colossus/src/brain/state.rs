@@ -300,12 +300,12 @@ impl Brain {
     fn enter(&self, state: &mut BrainState, to: StateId) {
         let from = state.current;
         let target = self.innermost(to);
-        // The states that are left: those that are not around the target, and the target itself if it is entered anew.
+        // The states that are left: those that are not around the target, and those that are entered anew.
         for left in self.around(from) {
             let Some(outer) = self.state(left) else {
                 continue;
             };
-            if !self.is_within(target, left) || left == to || left == target {
+            if !self.is_within(target, left) || self.is_within(left, to) {
                 state.ready[left.index()] = state.now.saturating_add(outer.cooldown);
             }
         }
@@ -313,7 +313,7 @@ impl Brain {
             let Some(inner) = self.state(entered) else {
                 continue;
             };
-            if !self.is_within(from, entered) || entered == to || entered == target {
+            if !self.is_within(from, entered) || self.is_within(entered, to) {
                 state.entered[inner.depth] = state.now;
                 state.lots[inner.depth] = state.draw();
             }

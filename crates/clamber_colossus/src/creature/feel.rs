@@ -31,6 +31,8 @@ impl Creature {
         if self.state.sleeps == 0 {
             self.see(around, &mut senses);
             self.feel_walls(around, &mut senses);
+        } else {
+            self.state.unseen = self.state.unseen.saturating_add(1);
         }
         self.hear(around, &mut senses);
         let home = self.state.home - self.state.position;
@@ -126,7 +128,14 @@ impl Creature {
     /// Looks for prey: whoever does not ride, is in front of its head, and is not hidden by terrain.
     fn see(&mut self, around: &Surroundings<'_>, senses: &mut Senses) {
         let eye = self.eye();
-        let looks = self.state.ticks.is_multiple_of(LOOKS);
+        let is_prey = |person: &Person| {
+            let prey = self.state.prey.map(|(id, _)| id);
+            prey == Some(person.id) && person.riding.is_none() && person.body.is_valid()
+        };
+        // When whom it has in view gets on it or leaves, it looks who else is there.
+        let has_prey = self.state.prey.is_some() && self.state.unseen == 0;
+        let is_lost = has_prey && !around.people.iter().any(is_prey);
+        let looks = is_lost || self.state.ticks.is_multiple_of(LOOKS);
         let mut nearest: Option<(f64, u64, DVec3)> = None;
         let mut underfoot = 0;
         for person in around.people {
@@ -146,9 +155,7 @@ impl Creature {
             let is_near = distance < self.size.girth;
             let is_ahead = self.bearing(middle).abs() < FIELD_OF_VIEW;
             // Whoever it had in view a moment ago still is.
-            let is_known = self.state.unseen == 0
-                && !looks
-                && self.state.prey.is_some_and(|(id, _)| id == person.id);
+            let is_known = self.state.unseen == 0 && !looks && is_prey(person);
             if is_near || is_ahead && (is_known || looks && !around.hides(eye, person)) {
                 nearest = Some((distance, person.id, middle));
             }

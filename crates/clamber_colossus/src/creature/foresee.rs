@@ -79,7 +79,8 @@ impl Creature {
                 (course.position, course.yaw) = (position, yaw);
                 course.ahead -= speed * dt;
                 course.back = (course.back + speed.min(0.0) * dt).max(0.0);
-                let plays = !matches!(state.playing, Playing::Act(_));
+                let sleeps = self.is_put_to_sleep() && state.playing == Playing::Idle;
+                let plays = !matches!(state.playing, Playing::Act(_)) && !sleeps;
                 if let Some(layer) = animator.layers_mut().first_mut().filter(|_| plays) {
                     layer.speed = self.clip_speed(gait, state.playing, &course);
                 }

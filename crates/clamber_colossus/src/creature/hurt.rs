@@ -89,11 +89,13 @@ impl Creature {
         let damage = damage.min(*left);
         *left -= damage;
         let used_up = *left <= 0.0;
-        self.state.told.push(CreatureEvent::Hurt {
-            weak_point,
-            damage,
-            used_up,
-        });
+        if damage > 0.0 {
+            self.state.told.push(CreatureEvent::Hurt {
+                weak_point,
+                damage,
+                used_up,
+            });
+        }
         damage
     }
 

@@ -232,6 +232,7 @@ impl Creature {
         }
         let Wanted {
             turn,
+            aside,
             arrived,
             turns_on_spot,
             ..
@@ -244,7 +245,9 @@ impl Creature {
         let playing = if moves {
             Playing::Walk
         } else if turns_on_spot && gait.turn.is_some() && self.state.speed >= 0.0 {
-            Playing::Turn(u8::from(turn < 0.0))
+            // Before it stands it does not turn yet.
+            let side = if turn == 0.0 { aside } else { turn };
+            Playing::Turn(u8::from(side < 0.0))
         } else if acts {
             self.state.playing
         } else {
@@ -253,17 +256,24 @@ impl Creature {
         let clip_speed = self.clip_speed(gait, playing, &moved);
         let size = (self.size.height / HUMAN).max(1e-4).sqrt();
         self.play(playing, clip_speed, FADE * size)?;
-        let state = self.state.acting;
-        let sleeps =
-            state.is_some_and(|state| matches!(self.kind.brain().act(state), Some(Act::Sleep)));
+        let sleeps = self.is_put_to_sleep();
+        if sleeps && playing == Playing::Idle {
+            self.fall_asleep();
+        } else if way.is_some() {
+            self.wake();
+        }
         if let Some(layer) = self.state.animator.layers_mut().first_mut()
             && !matches!(playing, Playing::Act(_))
             && !(sleeps && playing == Playing::Idle)
         {
             layer.speed = clip_speed;
         }
-        let slow = 0.3 * self.size.pace * self.turns();
-        let stands = self.state.speed == 0.0 && self.state.yaw_rate.abs() < slow;
+        let stands = self.state.speed == 0.0 && !self.is_turning();
         Ok(arrived && stands)
+    }
+
+    /// True while it turns so fast that it does not stand yet.
+    pub(super) fn is_turning(&self) -> bool {
+        self.state.yaw_rate.abs() >= 0.3 * self.size.pace * self.turns()
     }
 }

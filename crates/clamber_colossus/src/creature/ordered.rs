@@ -102,6 +102,7 @@ impl Creature {
                 }
             }
             _ => {
+                self.state.errand = None;
                 self.leave_act();
                 self.state.errand = to.map(|to| Errand {
                     to,
@@ -158,7 +159,10 @@ impl Creature {
         self.state.struck.clear();
         self.state.ranged.begin();
         self.state.aim = DVec3::ZERO;
-        self.state.walked = Walked::default();
+        // An errand goes on.
+        if self.state.errand.is_none() {
+            self.state.walked = Walked::default();
+        }
         self.state.senses.begin_act();
     }
 

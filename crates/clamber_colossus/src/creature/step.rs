@@ -18,6 +18,11 @@ const STANDS: f64 = 0.12;
 /// Seconds that a giant needs to come to rest when it falls asleep.
 const SETTLES: f64 = 0.8;
 
+/// It waits longer than that, but no longer than this, for its feet to stand and for its head to be less than the second
+/// of its way aside.
+const MOST_SETTLES: f64 = 16.0;
+const AWAY: f64 = 0.01;
+
 impl Creature {
     /// Lets a tick pass, of the length that its brain was made for.
     ///
@@ -123,7 +128,10 @@ impl Creature {
         let act = kind.brain().act(state);
         let walks = matches!(act, Some(Act::Walk(_)));
         let speed = kind.gait().map_or(0.0, |gait| self.full_speed(gait));
-        if !walks && !self.state.halts && self.state.speed.abs() > STANDS * speed {
+        let is_moving = self.state.speed.abs() > STANDS * speed;
+        // An attack aims once, and would strike elsewhere if it turned on.
+        let turns = matches!(act, Some(Act::Attack(_))) && self.is_turning();
+        if !walks && !self.state.halts && (is_moving || turns) {
             return Ok(());
         }
         self.state.acting = Some(state);
@@ -133,9 +141,6 @@ impl Creature {
         self.state.ranged.begin();
         self.state.aim = DVec3::ZERO;
         (self.state.walked.is_blocked, self.state.walked.tried) = (false, 0);
-        if !matches!(act, Some(Act::Sleep)) {
-            self.wake();
-        }
         match act {
             Some(Act::Walk(_) | Act::Turn(_)) => self.begin_way(),
             Some(Act::Play(_)) => self.begin(state, Playback::Loop)?,
@@ -144,7 +149,21 @@ impl Creature {
             Some(Act::Sleep) => self.fall_asleep(),
             None => self.play(Playing::Idle, 1.0, kind.brain().fade(state))?,
         }
+        // What goes to another clip fades from how it stood still.
+        let is_way = matches!(act, Some(Act::Walk(_) | Act::Turn(_))) && kind.gait().is_some();
+        if !is_way && !matches!(act, Some(Act::Sleep)) {
+            self.wake();
+        }
         Ok(())
+    }
+
+    /// True if its act is to sleep.
+    pub(super) fn is_put_to_sleep(&self) -> bool {
+        let act = self
+            .state
+            .acting
+            .and_then(|state| self.kind.brain().act(state));
+        matches!(act, Some(Act::Sleep))
     }
 
     /// Begins an attack, unless anything of it would go through rock or another creature.
@@ -173,15 +192,21 @@ impl Creature {
         let state = self.state.brain.current();
         let sleeps = matches!(self.kind.brain().act(state), Some(Act::Sleep))
             && self.state.acting == Some(state);
-        if !sleeps || self.state.animator.is_fading() || self.state.speed != 0.0 {
+        let is_still = self.state.speed == 0.0 && self.state.yaw_rate == 0.0;
+        if !sleeps || self.state.animator.is_fading() || !is_still {
             self.state.sleeps = 0;
             return Ok(false);
         }
         self.state.sleeps = self.state.sleeps.saturating_add(1);
         // Feet and head come to rest first.
-        let settled =
-            self.state.sleeps as f64 * self.kind.brain().tick() > SETTLES * self.size.pace;
-        if !settled {
+        let since = self.state.sleeps as f64 * self.kind.brain().tick() / self.size.pace.max(1e-3);
+        let is_quiet = self.state.gaze_weight.value.abs() < AWAY
+            && self
+                .state
+                .feet
+                .iter()
+                .all(|foot| foot.is_planted() && !foot.wants_step());
+        if since <= SETTLES || since <= MOST_SETTLES && !is_quiet {
             return Ok(false);
         }
         // From the second still tick on it is known to be still.
@@ -210,14 +235,14 @@ impl Creature {
     }
 
     /// Clips stop where they are.
-    fn fall_asleep(&mut self) {
+    pub(super) fn fall_asleep(&mut self) {
         for layer in self.state.animator.layers_mut() {
             layer.speed = 0.0;
         }
     }
 
     /// Clips that have stopped go on.
-    fn wake(&mut self) {
+    pub(super) fn wake(&mut self) {
         for layer in self.state.animator.layers_mut() {
             if layer.speed == 0.0 {
                 layer.speed = 1.0;
@@ -232,7 +257,7 @@ impl Creature {
         speed: f64,
         fade: f64,
     ) -> Result<(), ColossusError> {
-        let Some(gait) = self.kind.gait().filter(|_| self.state.playing != playing) else {
+        let Some(gait) = self.kind.gait() else {
             return Ok(());
         };
         let clip = match (playing, gait.turn) {
@@ -240,6 +265,13 @@ impl Creature {
             (Playing::Turn(side), Some(turn)) => turn[usize::from(side.min(1))],
             _ => gait.idle,
         };
+        // With another brain it may still play what that does not have.
+        let layer = self.state.animator.layers().first();
+        let is_played =
+            matches!(playing, Playing::Act(_)) || layer.is_some_and(|layer| layer.clip == clip);
+        if self.state.playing == playing && is_played {
+            return Ok(());
+        }
         self.state.playing = playing;
         let time = self.step_in();
         change(

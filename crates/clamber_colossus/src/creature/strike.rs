@@ -51,6 +51,11 @@ impl Creature {
         };
         Some((state, phase))
     }
+    /// Its attack has struck somebody, whom no other part of it strikes again: nor the wave that its limb has sent out.
+    pub(super) fn mark_struck(&mut self, person: u64) {
+        self.state.struck.push(person);
+        self.state.ranged.mark_struck(person);
+    }
 
     pub(super) fn strike(&mut self, around: &Surroundings<'_>, dt: f64) {
         let Some((state, AttackPhase::Active)) = self.attack() else {
@@ -78,7 +83,7 @@ impl Creature {
             let motion = self.surface.motion(&hit.contact.material, dt);
             let velocity = motion.map_or(DVec3::ZERO, |motion| motion.velocity);
             let direction = velocity.try_normalize().unwrap_or(hit.separation_normal);
-            self.state.struck.push(person.id);
+            self.mark_struck(person.id);
             self.report.blows.push(Blow {
                 person: person.id,
                 velocity: direction * strike.attack.throw,

@@ -18,6 +18,9 @@ pub(super) struct Way {
     pub(super) walks: bool,
 }
 
+/// It walks no nearer to a place than this, in heights: within less it would walk to and fro over it.
+const NEAREST: f64 = 0.015;
+
 impl Creature {
     /// Begins a walk or a turn: draws a place, if it goes on patrol.
     pub(super) fn begin_way(&mut self) {
@@ -37,7 +40,7 @@ impl Creature {
                     return Some(Way {
                         goal,
                         bearing: None,
-                        within: *within,
+                        within: within.max(NEAREST * self.size.height),
                         within_angle: 0.0,
                         walks: true,
                     });

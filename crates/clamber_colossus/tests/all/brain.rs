@@ -404,3 +404,38 @@ fn a_changed_brain_goes_on_by_names() {
     assert_eq!(carried.ticks_in_state(&other), 0);
     assert_eq!(other.carry_over(&other, &state), None);
 }
+
+/// A circle that is taken since it goes before what leads out of it.
+#[test]
+fn a_circle_of_higher_priority_is_refused() {
+    let file = |priority: i32| {
+        format!(
+            r#"{{ "start": "a", "states": {{
+                "a": {{ "transitions": [{{ "to": "b" }}, {{ "to": "c", "priority": {priority} }}] }},
+                "b": {{}}, "c": {{ "transitions": [{{ "to": "a" }}] }} }} }}"#
+        )
+    };
+    let error = Brain::from_json(&file(1), TICK).unwrap_err();
+    assert!(matches!(*error.problem, BrainProblem::Circle(_)), "{error}");
+    assert!(Brain::from_json(&file(-1), TICK).is_ok());
+}
+
+/// A state that is entered anew enters all that is in it anew: times begin anew, too.
+#[test]
+fn what_is_inside_begins_anew_as_well() {
+    let file = r#"{ "start": "c", "senses": ["bell"], "states": {
+        "c": { "start": "d", "transitions": [{ "to": "c", "when": ["bell"] }], "states": {
+            "d": { "start": "e", "transitions": [{ "to": "x", "after": 10 }], "states": {
+                "e": { "transitions": [{ "to": "f", "after": 1 }] }, "f": {} } } } },
+        "x": {} } }"#;
+    let brain = Brain::from_json(file, TICK).unwrap();
+    let mut state = BrainState::new(&brain, 1);
+    let mut senses = brain.no_senses();
+    let ticks = |seconds: f64| (seconds / TICK).round() as u32;
+    assert_eq!(after(&brain, &mut state, &senses, ticks(9.0)), "c/d/f");
+    senses.set_own(0, 1.0);
+    assert_eq!(after(&brain, &mut state, &senses, 1), "c/d/e");
+    senses.set_own(0, 0.0);
+    assert_eq!(after(&brain, &mut state, &senses, ticks(9.5)), "c/d/f");
+    assert_eq!(after(&brain, &mut state, &senses, ticks(1.0)), "x");
+}

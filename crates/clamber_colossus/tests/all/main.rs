@@ -2,6 +2,7 @@
 
 mod animals;
 mod attacks;
+mod between;
 mod brain;
 mod carried;
 mod clips;

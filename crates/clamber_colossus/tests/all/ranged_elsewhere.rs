@@ -473,6 +473,42 @@ fn limb_wave_and_beam_strike_once_in_each_attack() {
     }
 }
 
+/// Nor does the wave strike whom the beam has struck after it left.
+#[test]
+fn a_wave_spares_whom_the_beam_strikes_after_it_left() {
+    let ground = HalfSpace::below(0.0);
+    let stomp = act(
+        "stomp_right",
+        json!({
+            "wave": { "radius": 40.0, "speed": 4.0, "damage": 0.2, "throw": 2.0 },
+            "beam": { "length": 60.0, "radius": 0.5, "damage": 0.1, "throw": 1.0 }
+        }),
+    );
+    let giant = before(&stomp);
+    let mut blown = 0;
+    for step in 0..12 {
+        let comes = 1.80 + 0.02 * f64::from(step);
+        let place = DVec3::new(0.0, 0.0, 25.0);
+        let people = |since: f64| {
+            let away = if since < comes {
+                DVec3::X * 200.0
+            } else {
+                DVec3::ZERO
+            };
+            vec![somebody(1, place), somebody(2, place + away)]
+        };
+        let seen = attack(&giant, people, |_| vec![&ground]);
+        for id in [1, 2] {
+            let blows = seen.blows.iter().filter(|(_, blow)| blow.person == id);
+            let blows = blows.count();
+            assert!(blows <= 1, "{comes}: {id} is struck {blows} times");
+            blown += blows;
+        }
+    }
+    println!("{blown} blows");
+    assert!(blown >= 12, "{blown}");
+}
+
 /// What does nothing itself spares nobody from what does.
 #[test]
 fn what_has_neither_damage_nor_throw_spares_nobody() {

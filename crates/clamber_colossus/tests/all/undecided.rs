@@ -92,7 +92,7 @@ fn heading(one: &Creature) -> DVec3 {
 }
 
 /// A pen of rock around the origin, in which the giant cannot turn.
-fn pen() -> PhysicsWorld {
+pub(crate) fn pen() -> PhysicsWorld {
     let mut world = ground(|_, _| 0.0);
     for (x, z) in [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)] {
         let at = DVec3::new(x, 0.0, z) * 19.0 + DVec3::Y * 8.0;

@@ -18,12 +18,14 @@ impl Fighter {
         })
     }
 
-    /// Puts it somewhere else; it goes aside if somebody is there. What it did with its weapons is over.
+    /// Puts it somewhere else; it goes aside if somebody is there. What it did with its weapons is over, and so is what
+    /// struck or crushed it in the last tick.
     pub(crate) fn place(&mut self, place: DVec3) -> Result<(), ClimberError> {
         self.put(place)?;
         self.state.act = Act::Ready;
         self.state.hit_stop = 0.0;
         self.state.has_begun = false;
+        (self.state.blow, self.state.harm) = (None, 0.0);
         Ok(())
     }
 

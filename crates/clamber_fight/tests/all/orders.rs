@@ -173,6 +173,28 @@ fn who_is_put_somewhere_keeps_its_body_and_finds_room() {
     assert_eq!(state(&arena, HERO).hit_points, 0.5);
 }
 
+/// A blow that it has not felt yet does not follow who is put elsewhere.
+#[test]
+fn who_is_put_somewhere_is_not_struck_there() {
+    let mut arena = pair();
+    let strike = Order::Strike {
+        fighter: HERO,
+        blow: Blow {
+            velocity: DVec3::new(6.0, 5.0, 0.0),
+            damage: 0.25,
+            by: None,
+        },
+    };
+    let put = Order::PlaceFighter {
+        fighter: HERO,
+        position: DVec3::new(-5.0, 2.0, 4.0),
+    };
+    idle(&mut arena, &[strike, put]);
+    let there = state(&arena, HERO);
+    assert!(there.velocity.length() < 1.0, "{}", there.velocity);
+    assert_eq!(there.hit_points, 1.0);
+}
+
 #[test]
 fn who_is_on_a_creature_that_is_put_elsewhere_is_left_behind() {
     let mut arena = pair();

@@ -66,7 +66,7 @@ impl Creature {
             let Some(share) = touched.filter(|share| *share <= end) else {
                 continue;
             };
-            self.state.struck.push(person.id);
+            self.mark_struck(person.id);
             self.report.blows.push(Blow {
                 person: person.id,
                 velocity: ray.direction * file.throw,

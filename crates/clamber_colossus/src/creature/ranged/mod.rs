@@ -60,6 +60,16 @@ impl Ranged {
         self.attack = self.attack.wrapping_add(1);
     }
 
+    /// The attack has struck somebody: the wave of its limb does not strike them again.
+    pub(super) fn mark_struck(&mut self, person: u64) {
+        let attack = self.attack;
+        let own = |wave: &&mut WaveState| wave.of == WaveOf::Limb && wave.attack == attack;
+        self.waves
+            .iter_mut()
+            .filter(own)
+            .for_each(|wave| wave.struck.push(person));
+    }
+
     /// The creature is elsewhere, and aims at a place there. What its attacks have let out stays.
     pub(super) fn be_put(&mut self, mark: DVec3) {
         (self.mark, self.beam) = (reachable(mark), None);
