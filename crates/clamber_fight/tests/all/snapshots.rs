@@ -205,8 +205,16 @@ fn each_field_that_is_left_out_is_noticed_within_a_second() {
     let value = |tick: usize| serde_json::to_value(&states[tick]).unwrap();
     for (index, (name, path)) in FIELDS.into_iter().enumerate() {
         let last = states.len() - 60 - 2 * AGAIN as usize;
+        // Prey in view is seen anew in each tick: it is remembered while it is not.
+        let is_remembered = |from: &usize| {
+            let mut state = value(*from);
+            let unseen = &["creatures", "0", "state", "unseen"];
+            let hides = at(&mut state, unseen).as_u64() > Some(0);
+            name != "prey" || hides && !at(&mut state, path).is_null()
+        };
         let first = (0..last)
-            .find(|from| fields[*from][index] != fields[*from + AGAIN as usize][index])
+            .filter(|from| fields[*from][index] != fields[*from + AGAIN as usize][index])
+            .find(is_remembered)
             .unwrap_or_else(|| panic!("{name} never changes"));
         let caught = (first..first + 60).find(|from| {
             let mut live = value(from + AGAIN as usize);
