@@ -4,13 +4,19 @@
 //! velocity and acceleration 0 (Bollo 2018, "Inertialization: High-Performance Animation Transitions in Gears of War",
 //! GDC). Only the new pose is evaluated, at the cost of one polynomial a joint.
 //!
-//! An offset that starts while another one decays takes over its acceleration. Bollo's starts with none, unless it would
-//! shoot past 0: restarted in each frame it would hardly be slowed down, and the pose would fly away. With x, v and a taken
-//! over, the jerk at the start of a time T is -60 x / T^3 - 36 v / T^2 - 9 a / T, whose solutions decay however often it
-//! starts anew. What is taken over from a shorter fade is bounded: the acceleration by what a decay of least jerk starts
-//! with, whose last three derivatives are not asked to be 0 at once, (12 x + 6 v T) / T^2; and if the speed would carry it
-//! far away in its own time, it takes less time ([`FURTHER`]). So offsets that start anew at random, with fades between
-//! 0.05 s and 3 s, stay within 1.6 times the reach of a single one; without the bounds they grow by each.
+//! Bollo decays the length of an offset and drops the velocity across it. Here the polynomial has vectors as
+//! coefficients, so that position and velocity have no jump in any direction. He also shortens the time so that an
+//! offset whose velocity leads to 0 does not shoot past it; here to no less than [`SHORTEST`] of the time, since a
+//! small offset with a large velocity would stop within a frame.
+//!
+//! Each of his offsets starts with no acceleration, unless it would shoot past 0. Started anew in each frame, an offset
+//! would hardly be slowed down, and the pose would fly away. Here it takes over the acceleration of the one before it.
+//! Then the jerk at the start of a time T is -60 x / T^3 - 36 v / T^2 - 9 a / T, whose solutions decay.
+//!
+//! A long fade may follow a short one, whose speed and acceleration are large for its time. Two bounds keep it near. The
+//! acceleration is at most (12 x + 6 v T) / T^2, with which the decay of least jerk starts. And it takes less time if it
+//! would go far away at that speed ([`FURTHER`]). So offsets that start anew at random, with fades between 0.05 s and
+//! 3 s, stay within 1.6 times the reach of a single one. Without the bounds they grow.
 
 use clamber_surface::geometry::rotation_vector;
 use clamber_surface::rig::{Pose, Transform};
@@ -404,6 +410,40 @@ mod tests {
             println!("fades of {fades:?}: at most {worst:.2} away, {reach:.2} with a single one");
             assert!(worst < 1.6 * reach, "{fades:?}: {worst}, {reach}");
         }
+    }
+
+    /// Decays that took others over, at any time, and such as a forged file may hold.
+    #[test]
+    fn no_offset_is_longer_than_its_bound() {
+        let mut rng = fastrand::Rng::with_seed(7);
+        let mut nearest = 0f64;
+        for _ in 0..3000 {
+            let size = libm::exp((rng.f64() - 0.5) * 12.0);
+            let mut random =
+                |size: f64| Vec3::from([(); 3].map(|()| rng.f32() * 2.0 - 1.0)) * size as f32;
+            let decay = Decay {
+                offset: random(1.0),
+                velocity: random(size),
+                taken_over: random(size * size),
+                time: 0.05 + 3.0 * rng.f32(),
+            };
+            let bound = decay.bound();
+            for step in 0..100 {
+                let at = decay
+                    .at(f64::from(decay.time) * f64::from(step) * 0.01)
+                    .length();
+                assert!(at <= bound, "{decay:?}: {at} > {bound}");
+                nearest = nearest.max(at / bound);
+            }
+        }
+        println!("up to {nearest:.3} of the bound");
+        let endless = Decay {
+            offset: Vec3::ZERO,
+            velocity: Vec3::ZERO,
+            taken_over: Vec3::NAN,
+            time: 1.0,
+        };
+        assert_eq!(endless.bound(), f64::INFINITY);
     }
 
     #[test]

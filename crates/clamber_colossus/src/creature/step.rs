@@ -190,10 +190,9 @@ impl Creature {
     /// True if it is asleep, and so still that nothing of it has to be posed.
     fn sleeps(&mut self, is_carried: bool) -> Result<bool, ColossusError> {
         let state = self.state.brain.current();
-        let sleeps = matches!(self.kind.brain().act(state), Some(Act::Sleep))
-            && self.state.acting == Some(state);
-        let is_still = self.state.speed == 0.0 && self.state.yaw_rate == 0.0;
-        if !sleeps || self.state.animator.is_fading() || !is_still {
+        let sleeps = self.is_put_to_sleep() && self.state.acting == Some(state);
+        let rests = self.state.speed == 0.0 && self.state.yaw_rate == 0.0;
+        if !sleeps || self.state.animator.is_fading() || !rests {
             self.state.sleeps = 0;
             return Ok(false);
         }

@@ -51,6 +51,7 @@ impl Creature {
         };
         Some((state, phase))
     }
+
     /// Its attack has struck somebody, whom no other part of it strikes again: nor the wave that its limb has sent out.
     pub(super) fn mark_struck(&mut self, person: u64) {
         self.state.struck.push(person);

@@ -309,7 +309,7 @@ fn a_walk_to_a_point_ends() {
     }
 }
 
-/// Who is used up is hurt; who is hurt by nothing is not told of.
+/// No event tells of a damage of 0.
 #[test]
 fn no_damage_is_no_hurt() {
     let mut one = giant();

@@ -77,7 +77,7 @@ fn who_changes_states_in_each_tick_keeps_its_shape() {
                 }
                 println!("{before} for {seconds} s, then {between:?}: {most:.3?}");
                 assert!(
-                    most[0] < 1.15 && most[1] < 1.3,
+                    most[0] < 1.04 && most[1] < 1.1,
                     "{before} {between:?}: {most:?}"
                 );
                 assert!(most[2] < 0.005, "{before} {between:?}: {most:?}");
