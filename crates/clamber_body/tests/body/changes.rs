@@ -1,7 +1,9 @@
+use std::cell::Cell;
 use std::collections::BTreeSet;
+use std::rc::Rc;
 
 use clamber_body::{Body, Extremity, Figure};
-use clamber_climber::ClimberMode;
+use clamber_climber::{ClimberInput, ClimberMode};
 use clamber_scenes::bodies::{self, Scene};
 use clamber_world::Obstacle;
 use glam::{DQuat, DVec3};
@@ -136,6 +138,45 @@ fn nothing_jumps_when_the_mode_changes() {
         }
     }
     assert!(changes.len() >= 9, "{changes:?}");
+}
+
+/// Who was knocked over, and crouched while it got up, stands up from there: it does not lie down to get up again.
+#[test]
+fn who_crouched_while_it_got_up_gets_up_once() {
+    for (name, figure) in figures::all() {
+        for seconds in [0.2, 0.7, 3.0] {
+            let stood = Rc::new(Cell::new(f64::INFINITY));
+            let mut scene = bodies::knock().unwrap();
+            scene.seconds = 9.0;
+            let (knock, since) = (scene.input, Rc::clone(&stood));
+            scene.input = Box::new(move |moment| {
+                if moment.time > 1.0 && moment.state.mode == ClimberMode::Standing {
+                    since.set(since.get().min(moment.time));
+                }
+                ClimberInput {
+                    crouch: (0.0..seconds).contains(&(moment.time - since.get())),
+                    ..knock(moment)
+                }
+            });
+            let (mut highest, mut fallen, mut crouched) = (0f64, 0f64, false);
+            play(&scene, &figure, 60.0, |stage, body| {
+                crouched |= stage.climber.state().crouched;
+                if stage.time < stood.get() + seconds {
+                    return;
+                }
+                let hips = figure.humanoid().hips;
+                let model = clamber_animation::joint_in_model(figure.skeleton(), body.pose(), hips);
+                let place = body
+                    .world_from_model()
+                    .transform_point(model.unwrap().translation);
+                highest = highest.max(place.y);
+                fallen = fallen.max(highest - place.y);
+            });
+            println!("{name}, {seconds} s: hips rise to {highest:.2} m and fall by {fallen:.3} m");
+            assert!(crouched && highest > 0.5, "{name}, {seconds} s");
+            assert!(fallen < 0.1, "{name}, {seconds} s: hips fall by {fallen} m");
+        }
+    }
 }
 
 /// A climber that is put elsewhere, and a creature that is: the body is there at once, and tells no steps.
