@@ -6,6 +6,8 @@
     reason = "helpers of tests, of which each file uses some"
 )]
 
+pub(crate) mod life;
+
 use std::sync::Arc;
 
 use clamber_colossus::{
