@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
 use crate::ranged::{attack as ranged_attack, places, somebody, wall};
-use crate::support::{TICK, brain_file, brain_with, creature, kind, kind_at, person};
+use crate::support::{TICK, all_cases, brain_file, brain_with, creature, kind, kind_at, person};
 use clamber_animation::rig::Playback;
 use clamber_animation::{joint_in_model, rig::JointId};
 use clamber_colossus::brain::Act;
@@ -206,8 +206,9 @@ fn blows_come_in_the_window_and_along_the_limb() {
         let window = [time("active") - TICK, time("recovery") + TICK];
         let (mut hits, mut worst) = (0, 0f64);
         let mut places = Vec::new();
-        for x in -14..=14 {
-            for z in -4..=16 {
+        let every = if all_cases() { 1 } else { 2 };
+        for x in (-14..=14).step_by(every) {
+            for z in (-4..=16).step_by(every) {
                 let at = DVec3::new(f64::from(x) * 2.0, 0.0, f64::from(z) * 2.0);
                 let outcome = attack(&giant, at, false);
                 assert!(outcome.hits <= 1, "{name}: {outcome:?}");
@@ -229,7 +230,7 @@ fn blows_come_in_the_window_and_along_the_limb() {
             ]
         };
         println!(
-            "{name}: window {window:.2?}, spot {spot:.1}, hits {hits} of 609 places, x {:?} z {:?}, at most {worst:.1} degrees aside",
+            "{name}: window {window:.2?}, spot {spot:.1}, hits at {hits} places, x {:?} z {:?}, at most {worst:.1} degrees aside",
             range(0),
             range(1)
         );

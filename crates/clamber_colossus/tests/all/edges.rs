@@ -173,15 +173,13 @@ fn to_edge(
     }
 }
 
-/// What is too high, too deep or too steep stops it, before its feet are off the ground: two kinds of ground for each
+/// What is too high, too deep or too steep stops it, before its feet are off the ground: one kind of ground for each
 /// creature.
 #[test]
 fn edges_stop_it() {
     let mut failed = Vec::new();
     for (index, one) in creatures().iter().enumerate() {
-        for ground in [GROUNDS[index], GROUNDS[(index + 6) % GROUNDS.len()]] {
-            to_edge(one, ground, &mut failed);
-        }
+        to_edge(one, GROUNDS[2 * index % GROUNDS.len()], &mut failed);
     }
     assert!(failed.is_empty(), "{}", failed.join("\n"));
 }

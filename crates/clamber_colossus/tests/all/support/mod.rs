@@ -24,6 +24,11 @@ use glam::DVec3;
 
 pub(crate) const TICK: f64 = 1.0 / 60.0;
 
+/// True if tests that have short forms run all of their cases, as `cargo xtask nightly` does.
+pub(crate) fn all_cases() -> bool {
+    std::env::var_os("CLAMBER_ALL_CASES").is_some()
+}
+
 /// The giant's own brain.
 pub(crate) fn brain_file() -> String {
     let path = concat!(
