@@ -133,17 +133,20 @@ pub(crate) fn within(
     }
 }
 
-/// Checks that a number is not negative, and finite.
+/// Numbers of configurations are no larger than this: sums and products of them are finite.
+const MOST: f64 = 1e9;
+
+/// Checks that a number is not negative, and not too large.
 pub(crate) fn not_negative(name: &'static str, found: f64) -> Result<(), ArenaError> {
-    within(name, "not negative and finite", found, [0.0, f64::MAX])
+    within(name, "from 0 to 1e9", found, [0.0, MOST])
 }
 
-/// Checks that a number is positive, and finite.
+/// Checks that a number is positive, and not too large.
 pub(crate) fn positive(name: &'static str, found: f64) -> Result<(), ArenaError> {
     within(
         name,
-        "positive and finite",
+        "positive and at most 1e9",
         found,
-        [f64::MIN_POSITIVE, f64::MAX],
+        [f64::MIN_POSITIVE, MOST],
     )
 }

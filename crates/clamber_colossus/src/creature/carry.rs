@@ -23,8 +23,8 @@ impl Creature {
     /// Goes with the ground, as that has moved in this tick: the creature's place and heading, its feet, and the places
     /// that it knows. Returns true if the ground moved.
     pub(super) fn be_carried(&mut self, around: &Surroundings<'_>, dt: f64) -> bool {
-        self.state.carried = Drift::default();
-        let Some(motion) = self.ground_motion(around, dt) else {
+        let went = std::mem::take(&mut self.state.carried).velocity.length() * dt;
+        let Some(motion) = self.ground_motion(around, dt, went) else {
             return false;
         };
         let carried = Carried {
@@ -76,13 +76,28 @@ impl Creature {
     /// How the ground below it has moved in this tick; `None` if it has not, or if there is none.
     ///
     /// A point of the ground is remembered, since its motion costs less than a ray, and is looked for anew now and then.
-    fn ground_motion(&mut self, around: &Surroundings<'_>, dt: f64) -> Option<PointMotion> {
+    /// `went` is how far the ground went in the last tick.
+    fn ground_motion(
+        &mut self,
+        around: &Surroundings<'_>,
+        dt: f64,
+        went: f64,
+    ) -> Option<PointMotion> {
         let often = if self.state.speed != 0.0 { 1 } else { SELDOM };
         let looks = self.state.ticks.is_multiple_of(often * LOOKS);
         let among = around.terrain.len() as u32;
         let known = self.state.stands_on.take();
-        let known = known.filter(|point| !looks && point.among == among);
-        let mut point = known.or_else(|| self.ground_point(around))?;
+        let known = known.filter(|point| point.among == among);
+        let found = if looks || known.is_none() {
+            self.ground_point(around)
+        } else {
+            None
+        };
+        // A lift may have left the place where it was looked for. What was found had already moved in that tick.
+        let reach = 2.0 * NEAR * self.size.height + went;
+        let known = known
+            .filter(|point| found.is_none() && point.at.distance(self.state.position) <= reach);
+        let mut point = known.or(found)?;
         let rests = |point: &GroundPoint| {
             let obstacle = around.terrain.get(point.obstacle as usize);
             obstacle.is_some_and(|obstacle| obstacle.rests(&point.material))

@@ -78,7 +78,11 @@ impl Creature {
                 }),
             }
         }
-        self.state.rides.retain(|ride| ride.off <= leap);
+        // Who left or died rides no longer.
+        let is_there = |ride: &Ride| people.iter().any(|person| person.id == ride.person);
+        self.state
+            .rides
+            .retain(|ride| ride.off <= leap && is_there(ride));
         let seconds = |ticks: u32| f64::from(ticks) * tick;
         let longest = self.state.rides.iter().map(|ride| ride.ticks).max();
         senses.set(Sense::Riders, self.state.rides.len() as f64);

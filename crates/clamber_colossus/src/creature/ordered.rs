@@ -5,7 +5,7 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use super::report::CreatureEvent;
-use super::state::{FARTHEST, Walked};
+use super::state::Walked;
 use super::way::Way;
 use super::{Creature, CreatureConfig, CreatureState};
 use crate::error::ColossusError;
@@ -19,6 +19,9 @@ pub(super) struct Errand {
     pub(super) to: DVec3,
     pub(super) has_begun: bool,
 }
+
+/// It can be sent no farther from the origin, metres.
+const MOST_SENT: f64 = 1e12;
 
 impl Creature {
     /// Puts the creature somewhere else, at rest, as if it had begun there: its home is there, too. What its brain
@@ -59,6 +62,7 @@ impl Creature {
             lean: fresh.lean,
             aim: rotation_from_axis_angle(DVec3::Y, fresh.yaw - self.state.yaw) * self.state.aim,
             home: fresh.home,
+            rides: fresh.rides,
             patrol: fresh.patrol,
             sleeps: fresh.sleeps,
             ticks: fresh.ticks,
@@ -74,7 +78,7 @@ impl Creature {
     /// for a way no more often than it does anyway. Returns false, and nothing is changed, if it cannot walk, if its
     /// brain is in a final state, or if the place is not finite or beyond 1e12 m.
     pub fn send(&mut self, to: Option<DVec3>) -> bool {
-        let is_far = |place: DVec3| !place.is_finite() || place.abs().max_element() > FARTHEST;
+        let is_far = |place: DVec3| !place.is_finite() || place.abs().max_element() > MOST_SENT;
         let is_over = self.kind.brain().is_final(self.state.brain.current());
         let cannot = (self.kind.gait().is_none() || is_over) && to.is_some();
         if cannot || to.is_some_and(is_far) {

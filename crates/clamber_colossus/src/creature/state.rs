@@ -102,8 +102,9 @@ impl PartialEq for Sound {
 }
 
 /// A creature is no further from the origin than this, metres, and nothing of it moves faster than this, metres a second,
-/// in a state that is restored: what was changed to more could not be stepped.
-pub(super) const FARTHEST: f64 = 1e12;
+/// in a state that is restored: what was changed to more could not be stepped. It is twice as far as one can be put, so that
+/// it can walk on from there.
+pub(super) const FARTHEST: f64 = 2e12;
 const FASTEST: f64 = 1e6;
 
 /// A way has no more corners.

@@ -24,17 +24,27 @@ const MOST_SETTLES: f64 = 16.0;
 const AWAY: f64 = 0.01;
 
 impl Creature {
-    /// Lets a tick pass, of the length that its brain was made for.
+    /// Lets a tick pass, of the length that its brain was made for: [`Creature::step_itself`], then
+    /// [`Creature::step_from_afar`]. Where several creatures are, let all of them do the first before any does the second:
+    /// then what one of them has thrown meets the others where they are in this tick. Step creatures before the climbers
+    /// on them.
+    ///
+    /// # Errors
+    /// As [`Creature::step_itself`].
+    pub fn step(&mut self, around: &Surroundings<'_>) -> Result<&CreatureReport, ColossusError> {
+        self.step_itself(around)?;
+        Ok(self.step_from_afar(around))
+    }
+
+    /// Lets a tick pass for the creature, but not for what its attacks have thrown and sent out.
     ///
     /// In this order: ground that has moved carries it; senses of what was around it at the end of the last tick; the brain;
-    /// what its attacks have thrown and sent out goes on, and strikes; the act that it chose begins or goes on; clips; the
-    /// place in the world; the pose, with feet on the ground and the head turned; the skin; whom limbs and beams strike,
-    /// and what is thrown and sent out. Step the creature before the climbers on it. A creature that is asleep only feels
-    /// and thinks, and what it has thrown and sent out goes on.
+    /// the act that it chose begins or goes on; clips; the place in the world; the pose, with feet on the ground and the
+    /// head turned; the skin; whom limbs strike. A creature that is asleep only feels and thinks.
     ///
     /// # Errors
     /// [`ColossusError::Surface`] if the skin cannot be posed, for example since the creature has left the range of numbers.
-    pub fn step(&mut self, around: &Surroundings<'_>) -> Result<&CreatureReport, ColossusError> {
+    pub fn step_itself(&mut self, around: &Surroundings<'_>) -> Result<(), ColossusError> {
         let dt = self.kind.brain().tick();
         self.report.events.clear();
         self.report.events.append(&mut self.state.told);
@@ -44,9 +54,8 @@ impl Creature {
         let is_carried = self.be_carried(around, dt);
         self.feel(around);
         self.think();
-        self.go_on_from_afar(around, dt);
         if self.sleeps(is_carried)? {
-            return Ok(&self.report);
+            return Ok(());
         }
         self.is_still = false;
         self.act(around)?;
@@ -55,8 +64,17 @@ impl Creature {
         self.take_pose(&world_from_model, around, dt)?;
         self.surface.advance(&self.palette, world_from_model)?;
         self.strike(around, dt);
+        Ok(())
+    }
+
+    /// Lets the same tick pass for what its attacks have thrown and sent out, which goes on and strikes, whatever the
+    /// creature does; then come the beam, and what is thrown and sent out in this tick. To be called once after each
+    /// [`Creature::step_itself`]; the other creatures in `around` have to be where they are at the end of this tick.
+    pub fn step_from_afar(&mut self, around: &Surroundings<'_>) -> &CreatureReport {
+        let dt = self.kind.brain().tick();
+        self.go_on_from_afar(around, dt);
         self.strike_from_afar(around, dt);
-        Ok(&self.report)
+        &self.report
     }
 
     /// Sets one of the game's own senses, by its name in the file. Returns false if there is no such sense.

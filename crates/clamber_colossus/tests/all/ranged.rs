@@ -665,3 +665,38 @@ fn attacks_out_of_range_are_refused() {
     );
     refused(json!({ "wave": wave, "aim": -1.0 }), "`aim`");
 }
+
+/// Of several people at the hand that throws a stone the nearest is struck, whatever their numbers are.
+#[test]
+fn a_stone_strikes_the_nearest_of_those_at_the_hand() {
+    let ground = HalfSpace::below(0.0);
+    let giant = before(&act("swipe_right", shot(9.81, false)));
+    let prey = DVec3::new(0.0, 0.0, 30.0);
+    let begin = |near: Option<DVec3>, swaps: bool| {
+        attack(
+            &giant,
+            |since| {
+                let mut people = vec![somebody(9, prey)];
+                if let Some(hand) = near.filter(|_| since > 0.5) {
+                    let at = |aside: f64| hand + DVec3::new(aside, -0.875, 0.0);
+                    let ids = if swaps { [1, 5] } else { [5, 1] };
+                    people.extend([somebody(ids[0], at(0.1)), somebody(ids[1], at(1.0))]);
+                }
+                people
+            },
+            |_| vec![&ground],
+        )
+    };
+    let hand = begin(None, false)
+        .events
+        .iter()
+        .find_map(|(_, event)| match event {
+            CreatureEvent::Threw { place, .. } => Some(*place),
+            _ => None,
+        });
+    for swaps in [false, true] {
+        let seen = begin(hand, swaps);
+        let struck: Vec<u64> = seen.blows.iter().map(|(_, blow)| blow.person).collect();
+        assert_eq!(struck, [if swaps { 1 } else { 5 }]);
+    }
+}

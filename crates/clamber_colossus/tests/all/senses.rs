@@ -239,3 +239,35 @@ fn noises_fall_off_with_distance() {
         0.0
     );
 }
+
+/// Who is not there any more, since it left or died, is no rider from then on; who hops is one still.
+#[test]
+fn who_is_gone_rides_no_longer() {
+    let kind = kind(&brain_file());
+    let ground = HalfSpace::below(0.0);
+    let terrain: [&dyn Obstacle; 1] = [&ground];
+    let riding = Riding {
+        at: skin_of(&kind, "chest"),
+        hangs: false,
+    };
+    let at = DVec3::Y * 30.0;
+    for (after, riders) in [(vec![], 0.0), (vec![person(at, None)], 1.0)] {
+        let mut giant = alone(&kind, 1);
+        let mut step = |people: &[Person]| {
+            let around = Surroundings {
+                terrain: &terrain,
+                people,
+                ..Surroundings::default()
+            };
+            giant.step(&around).unwrap();
+            let senses = giant.state().senses();
+            [senses.get(Sense::Riders), senses.get(Sense::RiderSeconds)]
+        };
+        for _ in 0..60 {
+            step(&[person(at, Some(riding))]);
+        }
+        let [now, seconds] = step(&after);
+        assert_eq!(now, riders);
+        assert_eq!(seconds > 0.9, riders > 0.0, "{seconds}");
+    }
+}

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Arena, ArenaEvent, CreatureId, KindId, LAST, Member, Outcome};
 use crate::error::ArenaError;
-use crate::fighter::{Fighter, FighterConfig, FighterId};
+use crate::fighter::{Fighter, FighterConfig, FighterId, is_inside};
 use crate::projectile::ProjectileId;
 
 /// Something that a game does to an arena, beside what players do: falling rocks, fruit, checkpoints, scenes, waves of
@@ -372,6 +372,7 @@ impl Arena {
                 Order::AddCreature { .. } => creatures.next().is_some_and(|one| {
                     let creature = self.join_creature(one);
                     self.events.push(ArenaEvent::CreatureJoined { creature });
+                    self.make_room(creature);
                     true
                 }),
                 Order::RemoveCreature { creature } => self.remove_creature(*creature),
@@ -398,6 +399,9 @@ impl Arena {
                 | Order::PlaceCreature { creature, .. }
                 | Order::Harm { creature, .. } => self.order_creature(*creature, order)?,
             };
+            if let Order::PlaceCreature { creature, .. } = order {
+                self.make_room(*creature);
+            }
             if !is_heard {
                 self.events.push(ArenaEvent::Unheard { order: index });
             }
@@ -465,6 +469,21 @@ impl Arena {
             _ => {}
         }
         Ok(is_done)
+    }
+
+    /// Those who are inside a creature that has just come there go out of it in this step.
+    fn make_room(&mut self, creature: CreatureId) {
+        let Some(index) = self.creature_index(creature) else {
+            return;
+        };
+        let skin = self.creatures[index].creature.surface();
+        let living = self.fighters.iter_mut().filter(|one| !one.is_dead());
+        for fighter in living {
+            let [low, high] = fighter.climber().body().ends;
+            if is_inside(skin, 0.5 * (low + high)) {
+                fighter.rest_mut().has_begun = false;
+            }
+        }
     }
 
     /// Takes a creature away; false if it is not there.

@@ -10,7 +10,7 @@ use super::{
     fighter_obstacle,
 };
 use crate::error::ArenaError;
-use crate::fighter::{Around, BodyFrame, Fighter, FighterId, Room, Wielding};
+use crate::fighter::{Around, BodyFrame, Fighter, FighterId, Room, Wielding, looks_every};
 use crate::projectile::{Air, Flown};
 
 /// Memory that is used again in each step.
@@ -19,6 +19,8 @@ pub(super) struct Scratch {
     people: Vec<Person>,
     /// Of those who were there at the beginning of the step.
     inputs: Vec<(FighterId, ClimberInput)>,
+    /// Of those, who have not found room yet.
+    waiting: Vec<FighterId>,
     ids: Vec<ObstacleId>,
     group: ClimberGroup,
     outcome: Outcome,
@@ -31,7 +33,8 @@ const APART: f64 = 20.0;
 impl Arena {
     /// Lets a tick pass. `inputs` has one input for each fighter, by ascending number. Fur can be gripped.
     ///
-    /// In this order: creatures sense what was around them at the end of the last tick, decide, move, and strike;
+    /// In this order: fighters that joined, rose or were put somewhere go aside if there is no room; creatures sense what
+    /// was around them at the end of the last tick, decide, move, and strike, then what they have thrown goes on;
     /// fighters' climbers move among terrain, creatures and each other; weapons go on, then projectiles; what they hit
     /// does damage, by the time of the hit within the tick. A blow that a creature deals reaches its fighter with the
     /// next step.
@@ -73,8 +76,12 @@ impl Arena {
             .map(Fighter::id)
             .zip(inputs.iter().copied());
         scratch.inputs.extend(given);
+        scratch.waiting.clear();
+        let waits = self.fighters.iter().filter(|one| !one.rest().has_begun);
+        scratch.waiting.extend(waits.map(Fighter::id));
         let stepped = self
             .follow(orders, joining)
+            .and_then(|()| self.begin_fighters(terrain, &scratch.waiting))
             .and_then(|()| self.step_checked(terrain, rules, &mut scratch));
         self.scratch = scratch;
         stepped?;
@@ -138,33 +145,74 @@ impl Arena {
         people: &mut Vec<Person>,
     ) -> Result<(), ArenaError> {
         let ground: Vec<&dyn Obstacle> = terrain.iter().map(|(_, obstacle)| *obstacle).collect();
-        for index in 0..self.creatures.len() {
-            let (before, rest) = self.creatures.split_at_mut(index);
-            let Some((member, after)) = rest.split_first_mut() else {
-                break;
-            };
-            let (id, creature) = (member.id, &mut member.creature);
-            let others = before.iter().chain(after.iter());
-            let others = others.map(|other| other.creature.surface());
-            let others: Vec<&dyn Obstacle> = others.map(|skin| skin as &dyn Obstacle).collect();
-            people.clear();
-            // The dead are of no interest.
-            let living = self.fighters.iter().filter(|fighter| !fighter.is_dead());
-            people.extend(living.map(|fighter| person(fighter, creature_obstacle(id))));
-            let around = Surroundings {
-                terrain: &ground,
-                creatures: &others,
-                people,
-                noises: &self.noises,
-            };
-            let report = creature.step(&around)?;
-            self.events
-                .extend(report.events.iter().map(|event| ArenaEvent::Creature {
-                    creature: id,
-                    event: event.clone(),
-                }));
+        // What they have thrown flies when all of them are where they are in this tick, so that their order does not
+        // matter, and nothing but the snapshot does.
+        for from_afar in [false, true] {
+            for index in 0..self.creatures.len() {
+                let (before, rest) = self.creatures.split_at_mut(index);
+                let Some((member, after)) = rest.split_first_mut() else {
+                    break;
+                };
+                let (id, creature) = (member.id, &mut member.creature);
+                let others = before.iter().chain(after.iter());
+                let others = others.map(|other| other.creature.surface());
+                let others: Vec<&dyn Obstacle> = others.map(|skin| skin as &dyn Obstacle).collect();
+                people.clear();
+                // The dead are of no interest.
+                let living = self.fighters.iter().filter(|fighter| !fighter.is_dead());
+                people.extend(living.map(|fighter| person(fighter, creature_obstacle(id))));
+                let around = Surroundings {
+                    terrain: &ground,
+                    creatures: &others,
+                    people,
+                    noises: &self.noises,
+                };
+                if !from_afar {
+                    creature.step_itself(&around)?;
+                    continue;
+                }
+                let report = creature.step_from_afar(&around);
+                self.events
+                    .extend(report.events.iter().map(|event| ArenaEvent::Creature {
+                        creature: id,
+                        event: event.clone(),
+                    }));
+            }
         }
         self.noises.clear();
+        Ok(())
+    }
+
+    /// Finds room for those that have not begun, before a creature strikes them where they will not be. Who finds none
+    /// looks again from time to time, as the dead do.
+    fn begin_fighters(
+        &mut self,
+        terrain: &[(ObstacleId, &dyn Obstacle)],
+        waiting: &[FighterId],
+    ) -> Result<(), ArenaError> {
+        let looks = self.tick == 1 || self.tick.is_multiple_of(looks_every(self.config.tick));
+        let mut obstacles: Vec<(ObstacleId, &dyn Obstacle)> = terrain.to_vec();
+        for member in &self.creatures {
+            obstacles.push((creature_obstacle(member.id), member.creature.surface()));
+        }
+        // Those that have begun keep their places; of others the first in order do.
+        for index in 0..self.fighters.len() {
+            let one = &self.fighters[index];
+            if one.rest().has_begun || (!looks && waiting.contains(&one.id())) {
+                continue;
+            }
+            let all = self.fighters.iter().enumerate();
+            let others = all.filter(|(other, fighter)| {
+                let is_before = *other < index || fighter.rest().has_begun;
+                *other != index && is_before && !fighter.is_dead()
+            });
+            let bodies: Vec<_> = others.map(|(_, other)| other.climber().body()).collect();
+            let room = Room {
+                obstacles: &obstacles,
+                bodies: &bodies,
+            };
+            self.fighters[index].begin_with_room(&room)?;
+        }
         Ok(())
     }
 
@@ -181,23 +229,6 @@ impl Arena {
         let mut obstacles: Vec<(ObstacleId, &dyn Obstacle)> = terrain.to_vec();
         for member in &self.creatures {
             obstacles.push((creature_obstacle(member.id), member.creature.surface()));
-        }
-        // Those that have begun keep their places; of others the first in order do.
-        for index in 0..self.fighters.len() {
-            if self.fighters[index].rest().has_begun {
-                continue;
-            }
-            let all = self.fighters.iter().enumerate();
-            let others = all.filter(|(other, fighter)| {
-                let is_before = *other < index || fighter.rest().has_begun;
-                *other != index && is_before && !fighter.is_dead()
-            });
-            let bodies: Vec<_> = others.map(|(_, other)| other.climber().body()).collect();
-            let room = Room {
-                obstacles: &obstacles,
-                bodies: &bodies,
-            };
-            self.fighters[index].begin_with_room(&room)?;
         }
         // Before any of them moves, so that their order does not matter.
         let living = self.fighters.iter().filter(|fighter| !fighter.is_dead());

@@ -15,6 +15,11 @@ const DRAWN_WALK: f64 = 0.5;
 /// Who finds no room to rise looks again after so many seconds.
 const LOOKS: f64 = 0.5;
 
+/// After so many ticks looks for room who was put where there is none.
+pub(crate) fn looks_every(tick: f64) -> u64 {
+    (LOOKS / tick).ceil().max(1.0) as u64
+}
+
 /// True in the tick in which somebody looks for room who has waited for it so long.
 fn looks(waited: f64, dt: f64) -> bool {
     let round = |seconds: f64| (seconds / LOOKS).floor();
@@ -187,11 +192,9 @@ impl Fighter {
         Ok(())
     }
 
-    /// In its first step: goes aside if somebody is where it begins, or a creature, or rock. It stays if there is no room.
+    /// In its first step: goes aside if somebody is where it begins, or a creature, or rock. Where there is no room it
+    /// stays, and has not begun.
     pub(crate) fn begin_with_room(&mut self, room: &Room<'_>) -> Result<(), ClimberError> {
-        if std::mem::replace(&mut self.state.has_begun, true) {
-            return Ok(());
-        }
         // Terrain pushes out what is put into it a little; skin and people do not, if they are deep in each other.
         let is_creature = |(id, _): &&(ObstacleId, &dyn Obstacle)| creature_of(*id).is_some();
         let creatures = room.obstacles.iter().filter(is_creature);
@@ -201,11 +204,14 @@ impl Fighter {
             bodies: room.bodies,
         };
         let body = self.climber.body();
-        if (room.is_in_rock(&body) || !living.is_free(&body))
-            && let Some(place) = self.free_place(self.climber.state().position, room)
-        {
+        let is_free = !room.is_in_rock(&body) && living.is_free(&body);
+        if !is_free {
+            let Some(place) = self.free_place(self.climber.state().position, room) else {
+                return Ok(());
+            };
             self.put(place)?;
         }
+        self.state.has_begun = true;
         Ok(())
     }
 
@@ -259,6 +265,10 @@ impl Fighter {
             return;
         }
         if tick.is_held {
+            // Time stands still for the blade, but not for the skin that it is in.
+            if let Act::Strike { target, .. } | Act::PullOut { target, .. } = &mut self.state.act {
+                *target = follow(std::mem::replace(target, Target::Air), tick);
+            }
             return;
         }
         let dt = tick.dt;
@@ -316,12 +326,16 @@ impl Fighter {
         let skins = tick.around.skins;
         sword.cut_through(times, frames, tick.dt, skins, &mut struck, &mut hits);
         hits.retain(|found| {
-            let frame = frames[0].to(&frames[1], found.time);
-            let places = [frame.origin, frame.at(sword.shoulder), found.hit.hit.point];
+            // All of it at the end of the tick: then what comes between is where it is.
+            let frame = &frames[1];
+            let hit = &found.hit.hit;
+            let at = MaterialPoint::on_triangle(hit.triangle, hit.barycentric);
+            let place = tick.around.now(found.creature, &at, hit.point, tick.dt);
+            let places = [frame.origin, frame.at(sword.shoulder), place];
             let is_hidden = tick.around.hides(&places, Some(found.creature));
             if is_hidden {
                 // The cut may still get there from another side.
-                let part = found.hit.hit.part.0;
+                let part = hit.part.0;
                 struck.retain(|one| *one != (creature_obstacle(found.creature), part));
             }
             !is_hidden
@@ -352,8 +366,8 @@ impl Fighter {
         }
     }
 
-    /// False for a cut that has hurt that weak point or plate before: one cut does its damage once, however many joints
-    /// move the skin there.
+    /// False for a cut that has hurt that weak point or plate before, or the plate above that weak point: one cut does its
+    /// damage once, however many joints move the skin there, and what is too much for a plate is not passed on.
     pub(crate) fn hurts_anew(
         &mut self,
         weapon: Weapon,
@@ -364,13 +378,17 @@ impl Fighter {
             return true;
         };
         let plate = plate.map(|plate| HARMED_PLATES | plate as u32);
-        let what = plate.or(weak_point.map(|weak_point| weak_point as u32));
-        let Some(what) = what.filter(|_| weapon == Weapon::Cut) else {
+        let weak_point = weak_point.map(|weak_point| weak_point as u32);
+        let Some(what) = plate.or(weak_point).filter(|_| weapon == Weapon::Cut) else {
             return true;
         };
-        let what = (creature_obstacle(creature), what);
-        let is_new = !harmed.contains(&what);
-        harmed.extend(is_new.then_some(what));
+        let creature = creature_obstacle(creature);
+        let is_new = !harmed.contains(&(creature, what));
+        for what in [plate, weak_point].into_iter().flatten() {
+            if !harmed.contains(&(creature, what)) {
+                harmed.push((creature, what));
+            }
+        }
         is_new
     }
 
@@ -424,6 +442,7 @@ impl Fighter {
                 target,
             };
         }
+        let target = self.still_reached(target, &tick.around);
         if let Target::Skin(at) = &target
             && let Some(creature) = creature_of(at.obstacle)
         {
@@ -450,7 +469,7 @@ impl Fighter {
             return Act::Ready;
         };
         let frames = [tick.before, BodyFrame::of(&self.climber)];
-        let Some((creature, hit)) = self.plunge_contact(frames, &tick.around) else {
+        let Some((creature, hit)) = self.plunge_contact(frames, &tick.around, tick.dt) else {
             let falls = self.climber.state().mode == ClimberMode::Falling;
             // It has come down beside.
             return if falls {

@@ -1,6 +1,6 @@
 use clamber_surface::geometry::WorldCapsule;
 use clamber_surface::surface::TargetMotion;
-use clamber_world::{Obstacle, ObstacleId};
+use clamber_world::{MaterialPoint, Obstacle, ObstacleId};
 use glam::DVec3;
 
 use crate::arena::{CreatureId, Skins};
@@ -19,8 +19,21 @@ const SLACK: f64 = 0.01;
 const SHORT: f64 = 0.99;
 
 impl Around<'_> {
+    /// Where a point of a creature's skin, which was somewhere within the tick, is at its end.
+    pub(crate) fn now(
+        &self,
+        creature: CreatureId,
+        at: &MaterialPoint,
+        place: DVec3,
+        dt: f64,
+    ) -> DVec3 {
+        let skin = self.skins.get(creature);
+        let motion = skin.and_then(|skin| Obstacle::motion(skin, at, dt));
+        motion.map_or(place, |motion| motion.position)
+    }
+
     /// True if terrain, or the skin of another creature than that one, is on one of the straight lines from each of these
-    /// places to the next.
+    /// places to the next, all at the end of the tick.
     pub(crate) fn hides(&self, places: &[DVec3], creature: Option<CreatureId>) -> bool {
         let mut lines = places.windows(2).map(|pair| {
             let way = pair[1] - pair[0];

@@ -280,7 +280,7 @@ impl Default for CrushConfig {
 
 fn place(name: &'static str, found: DVec3) -> Result<(), ArenaError> {
     for x in found.to_array() {
-        within(name, "finite", x, [f64::MIN, f64::MAX])?;
+        within(name, "from -1e6 to 1e6", x, [-1e6, 1e6])?;
     }
     Ok(())
 }

@@ -17,12 +17,12 @@ use clamber_world::{Obstacle, ObstacleId};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-pub(crate) use act::Wielding;
+pub(crate) use act::{Wielding, looks_every};
 pub(crate) use around::Around;
 pub use blade::Blade;
 pub use config::{BowConfig, CrushConfig, FighterConfig, StoneConfig, SwordConfig};
 pub use frame::BodyFrame;
-pub(crate) use room::Room;
+pub(crate) use room::{Room, is_inside};
 pub use state::{Act, FighterState, Target};
 
 use crate::arena::hash_of;

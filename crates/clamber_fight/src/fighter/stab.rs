@@ -6,7 +6,7 @@ use clamber_world::{Attachment, Obstacle, SweepContact};
 use glam::DVec3;
 
 use super::{Around, Blade, BodyFrame, Fighter, SwordConfig, Target};
-use crate::arena::{CreatureId, creature_obstacle};
+use crate::arena::{CreatureId, creature_obstacle, creature_of};
 
 /// Where a stab begins to look for skin, from the centre of the climber's ball, as shares of the ball's radius: how far
 /// ahead along the skin, and how far above it.
@@ -64,12 +64,31 @@ impl Fighter {
         Target::Skin(at.moved_to(at.point + into))
     }
 
+    /// Where a stab goes when it lands: to the skin for which it was meant, or, if that is gone, as a plate that broke, too
+    /// far away or behind something by now, to what is before it instead.
+    pub(super) fn still_reached(&self, target: Target, around: &Around<'_>) -> Target {
+        let Some(sword) = &self.config.sword else {
+            return Target::Air;
+        };
+        if let Target::Skin(at) = &target {
+            let origin = BodyFrame::of(&self.climber).origin;
+            let far = sword.reach
+                + (ALONG * ALONG + ABOVE * ABOVE).sqrt() * self.config.climber.body.radius;
+            let is_near = at.point.distance(origin) <= far;
+            if is_near && !around.hides(&[origin, at.point], creature_of(at.obstacle)) {
+                return target;
+            }
+        }
+        self.stab_target(around)
+    }
+
     /// The first skin that the blade below a falling body meets between two places of the body. `None` if terrain or
     /// another creature is in between.
     pub(super) fn plunge_contact(
         &self,
         frames: [BodyFrame; 2],
         around: &Around<'_>,
+        dt: f64,
     ) -> Option<(CreatureId, SweepContact)> {
         let sword = self.config.sword.as_ref()?;
         let [from, to] = frames.map(|frame| sword.below(&frame));
@@ -86,8 +105,10 @@ impl Fighter {
         });
         let first = contacts.min_by(|a, b| a.1.time.total_cmp(&b.1.time).then(a.0.cmp(&b.0)));
         first.filter(|(creature, hit)| {
-            let body = frames[0].to(&frames[1], hit.time).origin;
-            !around.hides(&[body, hit.contact.point], Some(*creature))
+            // At the end of the tick, where what comes between is.
+            let contact = &hit.contact;
+            let place = around.now(*creature, &contact.material, contact.point, dt);
+            !around.hides(&[frames[1].origin, place], Some(*creature))
         })
     }
 }

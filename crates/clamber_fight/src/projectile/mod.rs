@@ -100,6 +100,9 @@ pub struct ProjectilePlace {
     pub direction: DVec3,
 }
 
+/// What sticks is no farther from the skin that it is in than this, metres.
+const MOST_OFFSET: f64 = 1e9;
+
 impl Projectile {
     /// True if it sticks.
     pub fn is_stuck(&self) -> bool {
@@ -121,7 +124,10 @@ impl Projectile {
             ProjectileMotion::Flying { position, velocity } => {
                 position.is_finite() && velocity.is_finite()
             }
-            ProjectileMotion::Stuck { at, direction } => at.is_finite() && direction.is_finite(),
+            ProjectileMotion::Stuck { at, direction } => {
+                let is_near = at.offset.abs().max_element() <= MOST_OFFSET;
+                at.is_finite() && is_near && direction.is_finite()
+            }
             ProjectileMotion::Falling {
                 position,
                 velocity,

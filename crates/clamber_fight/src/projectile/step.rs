@@ -101,7 +101,7 @@ impl Projectile {
                 let meets = air.first_contact(position, to - position, radius);
                 // What it has just come loose from touches it still.
                 let ends = meets.is_some_and(|(.., hit)| !hit.started_inside || self.seconds > 0.5);
-                if ends || self.seconds > LONGEST_FALL {
+                if ends || self.seconds > LONGEST_FALL || !to.is_finite() {
                     return Flown::Gone;
                 }
                 self.motion = ProjectileMotion::Falling {

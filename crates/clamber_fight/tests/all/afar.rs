@@ -2,17 +2,19 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
-use crate::support::{GROUND, giant_with};
+use std::sync::Arc;
+
+use crate::support::{GROUND, Slab, giant_with};
 use clamber_climber::ClimberInput;
-use clamber_colossus::{CreatureConfig, CreatureEvent};
+use clamber_colossus::{CreatureConfig, CreatureEvent, CreatureKind};
 use clamber_fight::{Arena, ArenaConfig, ArenaEvent, CreatureId, FighterConfig, FighterId};
 use clamber_world::{HalfSpace, Obstacle, ObstacleId};
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, Vec3};
 use serde_json::json;
 
-/// Three fighters before the giant, which throws a stone that bursts after a second, and then stomps.
-fn arena() -> Arena {
-    let kind = giant_with(|file| {
+/// A giant that throws a stone that bursts after a second, and then stomps.
+fn thrower() -> Arc<CreatureKind> {
+    giant_with(|file| {
         let wave = json!({ "radius": 4.0, "speed": 10.0, "damage": 0.2, "throw": 5.0 });
         let stone =
             json!({ "speed": 22.0, "radius": 0.7, "damage": 0.3, "throw": 8.0, "wave": wave });
@@ -29,9 +31,20 @@ fn arena() -> Arena {
                 "transitions": [{ "to": "waits" }]
             }
         });
-    });
+    })
+}
+
+/// Three fighters before that giant.
+fn arena() -> Arena {
     let mut arena = Arena::new(ArenaConfig::default()).unwrap();
-    arena.add_creature(kind, CreatureConfig::default()).unwrap();
+    arena
+        .add_creature(thrower(), CreatureConfig::default())
+        .unwrap();
+    add_fighters(&mut arena);
+    arena
+}
+
+fn add_fighters(arena: &mut Arena) {
     for at in [
         DVec2::new(1.0, 24.0),
         DVec2::new(2.5, 25.0),
@@ -40,7 +53,6 @@ fn arena() -> Arena {
         let place = DVec3::new(at.x, 1.0, at.y);
         arena.add_fighter(FighterConfig::hero(), place).unwrap();
     }
-    arena
 }
 
 #[test]
@@ -108,4 +120,78 @@ fn stones_and_waves_of_a_creature_strike_fighters() {
         }
         assert_eq!(fresh.fingerprint(), ours.fingerprint(), "from tick {tick}");
     }
+}
+
+/// A stone that meets another creature, which moves, meets it where it is, and at the same place after a restore; whoever
+/// of the two has the lower number.
+#[test]
+fn stones_meet_creatures_that_move_as_a_fresh_arena_has_it() {
+    let ground = HalfSpace::below(0.0);
+    let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &ground)];
+    let inputs = [ClimberInput::IDLE; 3];
+    let shield = || {
+        // Up and down at 12 m/s.
+        let keys = (0..9).map(|index| {
+            let up = if index % 2 == 0 { 2.0 } else { 8.0 };
+            (0.5 * index as f32, Vec3::Y * up, Vec3::ONE)
+        });
+        let slab = Slab {
+            keys: keys.collect(),
+            ..Slab::default()
+        };
+        let config = CreatureConfig {
+            position: DVec3::Z * 16.0,
+            ..CreatureConfig::default()
+        };
+        (slab.kind(), config)
+    };
+    let mut places = Vec::new();
+    for shield_first in [false, true] {
+        let begin = || {
+            let mut arena = Arena::new(ArenaConfig::default()).unwrap();
+            let (slab, lies) = shield();
+            if shield_first {
+                arena.add_creature(slab.clone(), lies).unwrap();
+            }
+            arena
+                .add_creature(thrower(), CreatureConfig::default())
+                .unwrap();
+            if !shield_first {
+                arena.add_creature(slab, lies).unwrap();
+            }
+            add_fighters(&mut arena);
+            arena
+        };
+        let mut ours = begin();
+        let (mut saved, mut sums, mut burst) = (Vec::new(), Vec::new(), None);
+        for tick in 0..330 {
+            for event in ours.step(&inputs, &terrain).unwrap() {
+                if let ArenaEvent::Creature {
+                    event: CreatureEvent::Burst { place, .. },
+                    ..
+                } = event
+                {
+                    burst = Some(*place);
+                }
+            }
+            sums.push(ours.fingerprint());
+            let giant = CreatureId(u32::from(shield_first));
+            if ours.creature(giant).unwrap().shots().count() > 0 {
+                saved.push((tick, ours.to_bytes().unwrap()));
+            }
+        }
+        let burst = burst.unwrap();
+        assert!(burst.y > 1.0, "it met the shield: {burst}");
+        places.push(burst);
+        assert!(saved.len() > 10);
+        for (tick, bytes) in saved {
+            let mut fresh = begin();
+            fresh.restore_bytes(&bytes).unwrap();
+            for (then, sum) in sums.iter().enumerate().skip(tick + 1) {
+                fresh.step(&inputs, &terrain).unwrap();
+                assert_eq!(fresh.fingerprint(), *sum, "from tick {tick} to {then}");
+            }
+        }
+    }
+    assert!(places[0].distance(places[1]) < 1e-6, "{places:?}");
 }

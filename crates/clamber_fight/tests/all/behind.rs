@@ -17,8 +17,8 @@ type Terrain<'a> = [(ObstacleId, &'a dyn Obstacle)];
 
 const WALL: ObstacleId = ObstacleId(1);
 
-/// A box of triangles.
-fn block(low: Vec3, high: Vec3) -> TriangleTerrain {
+/// Corners and triangles of a box.
+pub(crate) fn box_of(low: Vec3, high: Vec3) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let corners: Vec<Vec3> = (0..8)
         .map(|index| {
             let side = |axis: u32| index >> axis & 1 == 1;
@@ -37,6 +37,12 @@ fn block(low: Vec3, high: Vec3) -> TriangleTerrain {
         .iter()
         .flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]])
         .collect();
+    (corners, triangles)
+}
+
+/// A box of triangles.
+pub(crate) fn block(low: Vec3, high: Vec3) -> TriangleTerrain {
+    let (corners, triangles) = box_of(low, high);
     TriangleTerrain::new(&corners, &triangles, &[], DVec3::ZERO).unwrap()
 }
 

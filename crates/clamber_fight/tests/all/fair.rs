@@ -252,7 +252,7 @@ fn a_cut_hurts_once() {
             let sword = hero.sword.as_mut().unwrap();
             (sword.recover, sword.angle) = (recover, degrees.to_radians());
             let wanted = 2.0 * sword.cut_damage;
-            let [hits, damage] = two_cuts(hero, joints);
+            let [hits, damage, _] = two_cuts(hero, &support::Wall::of(joints));
             parts.push(hits);
             assert!(
                 (damage - wanted).abs() < 1e-9,
@@ -264,11 +264,32 @@ fn a_cut_hurts_once() {
     assert!(parts[0] == 2.0 && parts[4] > 8.0, "{parts:?}");
 }
 
-/// The number of hits and the damage of two cuts, one after the other, at a wall of so many joints.
-fn two_cuts(hero: FighterConfig, joints: u32) -> [f64; 2] {
+/// What a cut breaks, it does not go through, whatever the rig's fineness: the weak point below is left to the next one.
+#[test]
+fn a_cut_that_breaks_a_plate_does_not_hurt_what_is_below() {
+    for joints in [1, 2, 4, 8, 16] {
+        for plate in [0.01, 0.05, 0.1, 0.15, 0.2] {
+            let mut hero = FighterConfig::hero();
+            let damage = hero.sword.as_mut().unwrap().cut_damage;
+            let wall = support::Wall {
+                plate: Some(plate),
+                ..support::Wall::of(joints)
+            };
+            let [.., lost] = two_cuts(hero, &wall);
+            let wanted = if plate <= damage { damage } else { 0.0 };
+            assert!(
+                (lost - wanted).abs() < 1e-9,
+                "{joints} joints, a plate of {plate}: {lost}"
+            );
+        }
+    }
+}
+
+/// The number of hits and the damage of two cuts, one after the other, at a wall, and what its weak point has lost.
+fn two_cuts(hero: FighterConfig, wall: &support::Wall) -> [f64; 3] {
     let mut arena = arena(1.0 / 60.0);
     arena
-        .add_creature(support::wall(joints), CreatureConfig::default())
+        .add_creature(wall.kind(), CreatureConfig::default())
         .unwrap();
     let place = DVec3::new(0.0, -0.2, 3.0);
     arena.add_fighter(hero, place).unwrap();
@@ -293,7 +314,8 @@ fn two_cuts(hero: FighterConfig, joints: u32) -> [f64; 2] {
             }
         }
     }
-    [hits, damage]
+    let left = arena.creature(CreatureId(0)).unwrap().state().hit_points()[0];
+    [hits, damage, 100.0 - left]
 }
 
 /// Nor by who hops off fur, raises the sword in the air, and grips the fur again, whenever that is.

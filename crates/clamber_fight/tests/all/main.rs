@@ -7,6 +7,7 @@ mod behind;
 mod debris;
 mod fair;
 mod joining;
+mod moving;
 mod orders;
 mod people;
 #[cfg(feature = "ggrs")]

@@ -489,3 +489,21 @@ fn orders_come_back_from_their_bytes() {
         assert!(matches!(refused, ArenaError::Damaged(_)), "{refused}");
     }
 }
+
+/// What is put as far as it can be goes on there, and can be saved and restored.
+#[test]
+fn what_is_put_far_away_can_be_restored() {
+    let mut arena = pair();
+    let far = DVec3::new(1e12, 0.0, -1e12);
+    let put = Order::PlaceCreature {
+        creature: GIANT,
+        position: far,
+        yaw: 0.7,
+    };
+    idle(&mut arena, &[put]);
+    for _ in 0..30 {
+        idle(&mut arena, &[]);
+    }
+    let bytes = arena.to_bytes().unwrap();
+    pair().restore_bytes(&bytes).unwrap();
+}

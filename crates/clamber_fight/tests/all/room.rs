@@ -228,3 +228,112 @@ fn nobody_is_put_into_rock() {
         assert!(arena.fighters()[0].climber().state().hit_points > 0.9);
     }
 }
+
+/// Who joins, or is put, deep inside a creature of kilometres finds no room, and looks again until there is some.
+#[test]
+fn who_is_put_where_no_room_is_looks_again() {
+    let ground = HalfSpace::below(0.0);
+    let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &ground)];
+    let rules = StepRules::default();
+    let kind = giant();
+    let config = CreatureConfig {
+        scale: 100.0,
+        ..CreatureConfig::default()
+    };
+    let chest = kind.skeleton().find("chest").unwrap();
+    for joins in [true, false] {
+        for waits in [1, 29, 100] {
+            let mut arena = arena();
+            arena.add_creature(kind.clone(), config).unwrap();
+            let frame = arena.creature(CreatureId(0)).unwrap().palette();
+            let position = frame.model_from_joint(chest).unwrap().translation * 100.0;
+            let hero = FighterConfig::hero();
+            let (order, idle) = if joins {
+                let config = Box::new(hero);
+                (Order::AddFighter { config, position }, Vec::new())
+            } else {
+                let place = DVec3::new(9000.0, 1.0, 0.0);
+                let fighter = arena.add_fighter(hero, place).unwrap();
+                let put = Order::PlaceFighter { fighter, position };
+                (put, vec![ClimberInput::IDLE])
+            };
+            for _ in 0..40 {
+                arena.step(&idle, &terrain).unwrap();
+            }
+            let has_begun = |arena: &Arena| {
+                let state = serde_json::to_value(arena.save()).unwrap();
+                let begun = state.pointer("/fighters/0/state/has_begun").unwrap();
+                begun.as_bool().unwrap()
+            };
+            arena.step_with(&idle, &[order], &terrain, &rules).unwrap();
+            let idle = [ClimberInput::IDLE];
+            for _ in 0..waits {
+                arena.step(&idle, &terrain).unwrap();
+                assert!(!has_begun(&arena));
+            }
+            let away = Order::PlaceCreature {
+                creature: CreatureId(0),
+                position: DVec3::new(1e5, 0.0, 0.0),
+                yaw: 0.0,
+            };
+            arena.step_with(&idle, &[away], &terrain, &rules).unwrap();
+            for _ in 0..31 {
+                arena.step(&idle, &terrain).unwrap();
+            }
+            assert!(has_begun(&arena), "joins: {joins}, {waits} ticks");
+        }
+    }
+}
+
+/// Who stands where a creature is put, or joins, is outside of it in the same tick, and is not struck by what it does
+/// there before.
+#[test]
+fn creatures_that_are_put_on_people_make_room() {
+    let ground = HalfSpace::below(0.0);
+    let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &ground)];
+    let rules = StepRules::default();
+    let kind = giant();
+    for scale in [0.5, 1.0, 7.0] {
+        let foot = {
+            let mut arena = arena();
+            let config = CreatureConfig {
+                scale,
+                ..CreatureConfig::default()
+            };
+            arena.add_creature(kind.clone(), config).unwrap();
+            let foot = arena.creature(CreatureId(0)).unwrap().sole(0).unwrap();
+            0.25 * foot.iter().sum::<DVec3>()
+        };
+        let mut arena = arena();
+        let config = CreatureConfig {
+            scale,
+            position: DVec3::new(900.0, 0.0, 0.0),
+            ..CreatureConfig::default()
+        };
+        arena.add_creature(kind.clone(), config).unwrap();
+        let mut hero = FighterConfig::hero();
+        hero.crush = None;
+        arena.add_fighter(hero, DVec3::Y).unwrap();
+        let idle = [ClimberInput::IDLE];
+        for _ in 0..40 {
+            arena.step(&idle, &terrain).unwrap();
+        }
+        let put = Order::PlaceCreature {
+            creature: CreatureId(0),
+            position: -foot.with_y(0.0),
+            yaw: 0.0,
+        };
+        let events = arena.step_with(&idle, &[put], &terrain, &rules).unwrap();
+        let is_struck = |event: &ArenaEvent| matches!(event, ArenaEvent::Struck { .. });
+        assert!(!events.iter().any(is_struck), "{scale}");
+        let skin = arena.creature(CreatureId(0)).unwrap().surface();
+        let body = arena.fighters()[0].climber().body();
+        let middle = 0.5 * (body.ends[0] + body.ends[1]);
+        assert!(!skin.in_world().is_inside(middle), "{scale}: {middle}");
+        let mut contacts = Vec::new();
+        skin.overlap_capsule(&body, &mut contacts);
+        let near = contacts.iter().map(|contact| contact.distance);
+        let near = near.fold(f64::INFINITY, f64::min);
+        assert!(near > 0.7 * body.radius, "{scale}: {near} m");
+    }
+}

@@ -350,6 +350,10 @@ fn states_that_were_changed_are_refused_or_played() {
             // What is taken can be played.
             melee_step(&mut melee);
         }
+        // And what comes of it can be saved and taken again.
+        let bytes = melee.arena.to_bytes().unwrap();
+        let again = melee.arena.restore_bytes(&bytes);
+        assert!(again.is_ok(), "round {round}: {again:?}");
         melee.arena.restore(&good).unwrap();
     }
     println!("{refused} refused, {played} played");

@@ -2,10 +2,14 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
-use crate::support::{GIANT, HERO, Slab, hits, land, mode, pressing, step, step_with, weak_point};
+use crate::behind::block;
+use crate::support::{
+    GIANT, GROUND, HERO, Slab, hits, land, mode, pressing, step, step_with, weak_point,
+};
 use clamber_climber::{ClimberInput, ClimberMode};
 use clamber_fight::actions::STAB;
 use clamber_fight::{Act, Arena, ArenaEvent, FighterConfig, Order, SwordConfig, Target};
+use clamber_world::{Obstacle, ObstacleId};
 use glam::{DVec3, Vec3};
 
 const RATES: [f64; 4] = [30.0, 60.0, 120.0, 240.0];
@@ -361,4 +365,82 @@ fn a_stab_out_of_a_fall_is_full_and_slow_to_pull_out() {
     assert!(events.contains(&ArenaEvent::CreatureLeft { creature: GIANT }));
     let broken = events.contains(&ArenaEvent::BrokenOff { fighter: HERO });
     assert!(broken, "{:?}", mode(&arena));
+}
+
+/// The blade goes with the skin that it is in, also while the impact holds it.
+#[test]
+fn the_blade_stays_in_moving_skin_at_every_rate() {
+    for rate in RATES {
+        let keys = vec![
+            (0.0, Vec3::ZERO, Vec3::ONE),
+            (60.0, Vec3::X * 300.0, Vec3::ONE),
+        ];
+        let slab = Slab {
+            keys,
+            ..with_weak_point(rate, 9.0)
+        };
+        let hero = FighterConfig::hero();
+        assert!(hero.hit_stop > 0.05);
+        let mut arena = slab.arena(hero, &[DVec3::Y]);
+        land(&mut arena);
+        raise(&mut arena, &ClimberInput::IDLE);
+        step(&mut arena, &pressing(STAB));
+        let mut held = 0;
+        while act(&arena) != Act::Ready {
+            if let Act::PullOut { target, .. } = act(&arena) {
+                let Target::Skin(at) = target else {
+                    panic!("{rate} Hz: {target:?}");
+                };
+                let surface = arena.creature(GIANT).unwrap().surface();
+                let anchor = at.material.anchor_on(surface).unwrap();
+                let motion = surface.in_world().motion(&anchor, 1.0 / rate).unwrap();
+                let off = at.point.distance(motion.position);
+                assert!(off < 0.01, "{rate} Hz: {off} m");
+                held += 1;
+            }
+            step(&mut arena, &ClimberInput::IDLE);
+        }
+        assert!(f64::from(held) > 0.6 * rate, "{rate} Hz: {held}");
+    }
+}
+
+/// A stab into a plate that somebody else breaks before it lands goes into what is below the plate.
+#[test]
+fn a_stab_goes_on_when_its_plate_breaks() {
+    let slab = Slab {
+        weak_points: vec![weak_point("heart", Vec3::new(3.0, 0.0, 5.0), 9.0, 0)],
+        plate: true,
+        ..Slab::default()
+    };
+    let mut config = hero();
+    config.sword.as_mut().unwrap().stab_damage = 3.0;
+    // The other one stands beside, where its footing stays.
+    let edge = block(Vec3::new(-9.0, -9.0, 6.0), Vec3::new(9.0, 0.8, 15.0));
+    let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &edge)];
+    for later in 0..8 {
+        let places = [DVec3::new(3.0, 1.5, 4.0), DVec3::new(3.0, 1.5, 6.12)];
+        let mut arena = slab.arena(config, &places);
+        let mut struck = Vec::new();
+        for tick in 0..400 {
+            let presses = |at: &[i32]| pressing(if at.contains(&tick) { STAB } else { 0 });
+            let inputs = [presses(&[60, 220]), presses(&[60, 220 + later])];
+            for event in arena.step(&inputs, &terrain).unwrap() {
+                if let ArenaEvent::Hit {
+                    by,
+                    weak_point,
+                    plate,
+                    ..
+                } = event
+                {
+                    struck.push((*by, *weak_point, *plate));
+                }
+            }
+        }
+        assert_eq!(struck.len(), 2, "{later} ticks later: {struck:?}");
+        assert_eq!((struck[0].0, struck[0].2), (HERO, Some(0)));
+        assert_eq!(struck[1].2, None, "{later} ticks later");
+        assert_eq!(struck[1].1, Some(0), "{later} ticks later");
+        let left = arena.creature(GIANT).unwrap().state().hit_points()[0];
+        assert_eq!(left, 6.0, "{later} ticks later");
+    }
 }

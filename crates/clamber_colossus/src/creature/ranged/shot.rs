@@ -107,11 +107,16 @@ impl Creature {
         let end = stop.map_or(1.0, |(share, _)| share);
         let touches = around.people.iter().filter_map(|person| {
             let share = line.touch(person, around)?;
-            (share <= end).then_some((share, person))
+            let gap = line.at(share).distance(person.middle());
+            (share <= end).then_some((share, gap, person))
         });
-        let first = touches.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.id.cmp(&b.1.id)));
+        // Of several whom it touches at once, as where it begins, the nearest.
+        let first = touches.min_by(|a, b| {
+            let by_share = a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1));
+            by_share.then(a.2.id.cmp(&b.2.id))
+        });
         let (place, out, struck) = match (first, stop) {
-            (Some((share, person)), _) => {
+            (Some((share, _, person)), _) => {
                 let place = line.at(share);
                 if file.strikes() {
                     self.report.blows.push(Blow {

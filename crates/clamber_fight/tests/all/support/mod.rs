@@ -155,54 +155,97 @@ impl Slab {
     }
 }
 
-/// A wall at z = 0 that faces +Z, 3.2 m wide and high, of this many joints side by side, with a weak point over all of it.
+/// A wall at z = 0 that faces +Z, 3.2 m wide and high, with a weak point over all of it.
+#[derive(Clone, Debug)]
+pub(crate) struct Wall {
+    /// Joints, side by side.
+    pub(crate) joints: u32,
+    /// Ticks a second.
+    pub(crate) rate: f64,
+    /// After how much damage the plate breaks that is 5 cm before all of it, if there is one.
+    pub(crate) plate: Option<f64>,
+}
+
+/// A wall of this many joints, at rest.
 pub(crate) fn wall(joints: u32) -> Arc<CreatureKind> {
-    const CELLS: u32 = 32;
-    let place = |index: u32| 3.2 * (index as f32 / CELLS as f32 - 0.5);
-    let (mut positions, mut influences) = (Vec::new(), Vec::new());
-    for row in 0..=CELLS {
-        for column in 0..=CELLS {
-            positions.push(Vec3::new(place(column), place(row), 0.0));
-            let joint = JointId(column * joints / (CELLS + 1));
-            influences.push(Influence { joint, weight: 1.0 });
+    Wall::of(joints).kind()
+}
+
+impl Wall {
+    pub(crate) fn of(joints: u32) -> Self {
+        Self {
+            joints,
+            rate: 60.0,
+            plate: None,
         }
     }
-    let mut triangles = Vec::new();
-    for row in 0..CELLS {
-        for column in 0..CELLS {
-            let a = row * (CELLS + 1) + column;
-            let (b, c, d) = (a + 1, a + CELLS + 1, a + CELLS + 2);
-            triangles.extend([[a, b, d], [a, d, c]]);
+
+    pub(crate) fn kind(&self) -> Arc<CreatureKind> {
+        const CELLS: u32 = 32;
+        let joints = self.joints;
+        let place = |index: u32| 3.2 * (index as f32 / CELLS as f32 - 0.5);
+        let (mut positions, mut influences) = (Vec::new(), Vec::new());
+        let (mut triangles, mut tags) = (Vec::new(), Vec::new());
+        let flesh = (0.0, 0);
+        let plate = (0.05, 7);
+        for (before, user) in [flesh, plate]
+            .into_iter()
+            .take(1 + usize::from(self.plate.is_some()))
+        {
+            let first = positions.len() as u32;
+            for row in 0..=CELLS {
+                for column in 0..=CELLS {
+                    positions.push(Vec3::new(place(column), place(row), before));
+                    let joint = JointId(column * joints / (CELLS + 1));
+                    influences.push(Influence { joint, weight: 1.0 });
+                }
+            }
+            for row in 0..CELLS {
+                for column in 0..CELLS {
+                    let a = first + row * (CELLS + 1) + column;
+                    let (b, c, d) = (a + 1, a + CELLS + 1, a + CELLS + 2);
+                    triangles.extend([[a, b, d], [a, d, c]]);
+                    tags.extend([SurfaceTag::new(SurfaceKind::Skin).with_user(user); 2]);
+                }
+            }
         }
+        let source = MeshSource {
+            positions: &positions,
+            triangles: &triangles,
+            influences: &influences,
+            tags: &tags,
+            joint_count: joints as usize,
+            ..MeshSource::default()
+        };
+        let mesh = ColliderMesh::build(&source, &BuildOptions::default())
+            .unwrap()
+            .0;
+        let all = (0..joints).map(|index| Joint {
+            name: format!("strip {index}"),
+            parent: (index > 0).then_some(JointId(0)),
+            rest: Transform::IDENTITY,
+            inverse_bind: Affine::IDENTITY,
+        });
+        let mut heart = weak_point("heart", Vec3::ZERO, 100.0, 0);
+        heart.radius = 3.0;
+        let parts = CreatureParts {
+            skeleton: Skeleton::new(all.collect()).unwrap(),
+            clips: Vec::new(),
+            mesh: Arc::new(mesh),
+            materials: std::collections::BTreeMap::new(),
+            weak_points: vec![heart],
+        };
+        let plates = self.plate.map_or_else(String::new, |stagger| {
+            format!(
+                r#""plates": [{{ "name": "shell", "user": 7, "stagger": {stagger}, "count": 1 }}]"#
+            )
+        });
+        let brain = format!(
+            r#"{{ "body": {{ {plates} }}, "start": "stands", "states": {{ "stands": {{}} }} }}"#
+        );
+        let brain = Brain::from_json(&brain, 1.0 / self.rate).unwrap();
+        Arc::new(CreatureKind::new(parts, brain).unwrap())
     }
-    let source = MeshSource {
-        positions: &positions,
-        triangles: &triangles,
-        influences: &influences,
-        joint_count: joints as usize,
-        ..MeshSource::default()
-    };
-    let mesh = ColliderMesh::build(&source, &BuildOptions::default())
-        .unwrap()
-        .0;
-    let all = (0..joints).map(|index| Joint {
-        name: format!("strip {index}"),
-        parent: (index > 0).then_some(JointId(0)),
-        rest: Transform::IDENTITY,
-        inverse_bind: Affine::IDENTITY,
-    });
-    let mut heart = weak_point("heart", Vec3::ZERO, 100.0, 0);
-    heart.radius = 3.0;
-    let parts = CreatureParts {
-        skeleton: Skeleton::new(all.collect()).unwrap(),
-        clips: Vec::new(),
-        mesh: Arc::new(mesh),
-        materials: std::collections::BTreeMap::new(),
-        weak_points: vec![heart],
-    };
-    let brain = r#"{ "start": "stands", "states": { "stands": {} } }"#;
-    let brain = Brain::from_json(brain, 1.0 / 60.0).unwrap();
-    Arc::new(CreatureKind::new(parts, brain).unwrap())
 }
 
 pub(crate) fn sword() -> SwordConfig {
