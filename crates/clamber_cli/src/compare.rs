@@ -37,6 +37,9 @@ pub enum CompareError {
         /// The reason.
         error: RecordError,
     },
+    /// A recording has no tick that can be read.
+    #[error("{}: there is no tick in it", .0.display())]
+    Empty(PathBuf),
     /// The recordings are not of one scene.
     #[error("the recordings cannot be compared: their {0} differ")]
     Scene(&'static str),
@@ -52,7 +55,7 @@ pub enum Comparison {
     Differ(Box<Difference>),
     /// The first tick in which arenas differ.
     ArenasDiffer(Box<ArenaDifference>),
-    /// The step to this tick has other inputs for a fighter, in arenas that are equal so far.
+    /// The step to this tick has other inputs for a fighter, or for the climber; all is equal so far.
     InputsDiffer {
         /// The tick.
         tick: u64,
@@ -66,6 +69,13 @@ pub enum Comparison {
     },
     /// One ends after so many ticks that are equal, the other goes on.
     Shorter(u64),
+    /// What both have is equal in every bit, but each may lack ticks of the other one: recorders left them out.
+    Partly {
+        /// Ticks that both have.
+        equal: u64,
+        /// Ticks that only the first one has, and only the second.
+        alone: [u64; 2],
+    },
 }
 
 /// Compares two recordings. The first counts as the recorded one, the second as the replayed one.
@@ -73,7 +83,13 @@ pub enum Comparison {
 /// # Errors
 /// [`CompareError`] if one cannot be read, or they are of different creatures or of different ticks.
 pub fn compare(options: &CompareOptions) -> Result<Comparison, CompareError> {
-    match [open(&options.first)?, open(&options.second)?] {
+    let both = [open(&options.first)?, open(&options.second)?];
+    for (recording, path) in both.iter().zip([&options.first, &options.second]) {
+        if recording.is_empty() {
+            return Err(CompareError::Empty(path.clone()));
+        }
+    }
+    match both {
         [AnyRecording::Climber(one), AnyRecording::Climber(other)] => {
             climbers([&one, &other], options)
         }
@@ -105,9 +121,11 @@ fn climbers(
     if first.first() != second.first() {
         return Err(CompareError::Scene("first ticks"));
     }
-    let mut equal = 0;
+    let mut met = Met::default();
     let (mut one, mut other) = (first.ticks(), second.ticks());
-    while let Some((ours, theirs)) = both([&mut one, &mut other], options, |tick| tick.tick)? {
+    while let Some((ours, theirs)) =
+        both([&mut one, &mut other], options, |tick| tick.tick, &mut met)?
+    {
         let replayed = Replayed {
             state: theirs.state,
             palette_fingerprint: theirs.palette_fingerprint,
@@ -116,9 +134,14 @@ fn climbers(
         if let Some(difference) = Difference::between(&ours, &replayed) {
             return Ok(Comparison::Differ(Box::new(difference)));
         }
-        equal += 1;
+        if ours.input != theirs.input {
+            return Ok(Comparison::InputsDiffer {
+                tick: ours.tick,
+                fighter: "the climber".to_owned(),
+            });
+        }
     }
-    Ok(ended(equal, first.len() == second.len()))
+    Ok(met.ended())
 }
 
 fn arenas(
@@ -131,11 +154,27 @@ fn arenas(
     if first.first() != second.first() {
         return Err(CompareError::Scene("first ticks"));
     }
-    let mut equal = 0;
-    // Whose inputs a step has.
-    let mut fighters: Vec<usize> = Vec::new();
+    let mut met = Met::default();
+    // Whose inputs a step has, and the tick before it.
+    let (mut fighters, mut before): (Vec<usize>, _) = (Vec::new(), None);
     let (mut one, mut other) = (first.ticks_from(0), second.ticks_from(0));
-    while let Some((ours, theirs)) = both([&mut one, &mut other], options, |tick| tick.tick)? {
+    while let Some((ours, theirs)) =
+        both([&mut one, &mut other], options, |tick| tick.tick, &mut met)?
+    {
+        if before
+            .replace(ours.tick)
+            .and_then(|tick| tick.checked_add(1))
+            != Some(ours.tick)
+        {
+            fighters.clear();
+        }
+        if ours.inputs.len() != theirs.inputs.len() {
+            let fighter = "somebody who is in one of them".to_owned();
+            return Ok(Comparison::InputsDiffer {
+                tick: ours.tick,
+                fighter,
+            });
+        }
         let mut inputs = ours.inputs.iter().zip(&theirs.inputs);
         if let Some(fighter) = inputs.position(|(one, other)| one != other) {
             return Ok(Comparison::InputsDiffer {
@@ -155,9 +194,8 @@ fn arenas(
         }
         fighters.clear();
         fighters.extend(ours.fighters());
-        equal += 1;
     }
-    Ok(ended(equal, first.len() == second.len()))
+    Ok(met.ended())
 }
 
 /// The next tick that both recordings have: either may have gaps.
@@ -165,6 +203,7 @@ fn both<T>(
     [first, second]: [&mut dyn Iterator<Item = Result<T, RecordError>>; 2],
     options: &CompareOptions,
     number: impl Fn(&T) -> u64,
+    met: &mut Met,
 ) -> Result<Option<(T, T)>, CompareError> {
     let mut one = || {
         let tick = first.next().transpose();
@@ -177,20 +216,53 @@ fn both<T>(
     let (mut ours, mut theirs) = (one()?, other()?);
     loop {
         match (ours, theirs) {
-            (Some(a), Some(b)) if number(&a) == number(&b) => return Ok(Some((a, b))),
-            (Some(a), Some(b)) if number(&a) < number(&b) => (ours, theirs) = (one()?, Some(b)),
-            (Some(a), Some(_)) => (ours, theirs) = (Some(a), other()?),
-            _ => return Ok(None),
+            (Some(a), Some(b)) if number(&a) == number(&b) => {
+                met.equal += 1;
+                return Ok(Some((a, b)));
+            }
+            (Some(a), Some(b)) if number(&a) < number(&b) => {
+                met.alone[0] += 1;
+                met.has_gaps = true;
+                (ours, theirs) = (one()?, Some(b));
+            }
+            (Some(a), Some(_)) => {
+                met.alone[1] += 1;
+                met.has_gaps = true;
+                (ours, theirs) = (Some(a), other()?);
+            }
+            (Some(_), None) => {
+                met.alone[0] += 1;
+                (ours, theirs) = (one()?, None);
+            }
+            (None, Some(_)) => {
+                met.alone[1] += 1;
+                (ours, theirs) = (None, other()?);
+            }
+            (None, None) => return Ok(None),
         }
     }
 }
 
-/// After so many ticks that are equal, both end, or one of them.
-fn ended(equal: u64, both: bool) -> Comparison {
-    if both {
-        Comparison::Equal(equal)
-    } else {
-        Comparison::Shorter(equal)
+/// Ticks that two recordings have.
+#[derive(Default)]
+struct Met {
+    /// Both.
+    equal: u64,
+    /// One alone.
+    alone: [u64; 2],
+    /// True if one lacks ticks before its end.
+    has_gaps: bool,
+}
+
+impl Met {
+    /// How recordings compare that are equal wherever both have ticks.
+    fn ended(&self) -> Comparison {
+        let Self { equal, alone, .. } = *self;
+        match (self.has_gaps, alone) {
+            (_, [0, 0]) => Comparison::Equal(equal),
+            (false, _) => Comparison::Shorter(equal),
+            (true, _) => Comparison::Partly { equal, alone },
+        }
     }
 }
 
@@ -200,10 +272,15 @@ fn ended(equal: u64, both: bool) -> Comparison {
 /// As [`compare`].
 pub fn print(options: &CompareOptions) -> Result<bool, CompareError> {
     for path in [&options.first, &options.second] {
-        if let Ok(recording) = AnyRecording::open(path)
-            && *recording.ending() != Ending::Whole
-        {
+        let Ok(recording) = AnyRecording::open(path) else {
+            continue;
+        };
+        if *recording.ending() != Ending::Whole {
             println!("{}: {}", path.display(), recording.ending());
+        }
+        let lost = recording.lost_at_end();
+        if lost > 0 {
+            println!("{}: {lost} ticks are left out at its end", path.display());
         }
     }
     Ok(match compare(options)? {
@@ -213,6 +290,16 @@ pub fn print(options: &CompareOptions) -> Result<bool, CompareError> {
         }
         Comparison::Shorter(ticks) => {
             println!("{ticks} ticks are equal in every bit; then one recording ends");
+            false
+        }
+        Comparison::Partly {
+            equal,
+            alone: [first, second],
+        } => {
+            println!(
+                "{equal} ticks are in both, and equal in every bit; {first} are only in the first recording and {second} \
+                 only in the second: a recorder whose disk is too slow leaves ticks out"
+            );
             false
         }
         Comparison::Differ(difference) => {

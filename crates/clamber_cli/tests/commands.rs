@@ -255,6 +255,72 @@ fn recorded_duel(name: &str, aims_otherwise: Option<u64>, ticks: u64) -> String 
     file
 }
 
+/// A recording without one of its chunks, as a recorder leaves one out whose disk is too slow.
+fn without_chunk(file: &str, index: usize) -> String {
+    let bytes = std::fs::read(file).unwrap();
+    let (mut at, mut chunks, mut out) = (8, 0, bytes[..8].to_vec());
+    while at < bytes.len() - 8 {
+        let length = u64::from_le_bytes(bytes[at + 1..at + 9].try_into().unwrap()) as usize;
+        let record = &bytes[at..at + 9 + length];
+        at += 9 + length;
+        match record[0] {
+            0x06 => {
+                if chunks != index {
+                    out.extend(record);
+                }
+                chunks += 1;
+            }
+            // The end of the data, with its checksum; the summary is not needed.
+            0x0f => {
+                out.extend(&record[..9]);
+                out.extend([0; 4]);
+                break;
+            }
+            _ => out.extend(record),
+        }
+    }
+    out.extend(&bytes[..8]);
+    let name = format!("{file}.without_{index}.mcap");
+    std::fs::write(&name, out).unwrap();
+    name
+}
+
+/// Where ticks are missing, no more is said than is known.
+#[test]
+fn recordings_with_gaps_are_compared_where_both_have_ticks() {
+    let duel = recorded_duel("gaps", None, 240);
+    let [second, third] = [1, 2].map(|index| without_chunk(&duel, index));
+    let empty = (0..5).fold(duel.clone(), |file, _| without_chunk(&file, 0));
+    for (first, other, code, told) in [
+        (&second, &second, 0, "all 181 ticks are equal"),
+        (
+            &second,
+            &third,
+            1,
+            "121 ticks are in both, and equal in every bit; 60 are only in the first",
+        ),
+        (
+            &duel,
+            &second,
+            1,
+            "60 are only in the first recording and 0 only in the second",
+        ),
+        (
+            &second,
+            &duel,
+            1,
+            "0 are only in the first recording and 60 only in the second",
+        ),
+        (&empty, &empty, 2, "there is no tick in it"),
+    ] {
+        let ended = clamber(&["compare", first, other]);
+        let text = [ended.stdout, ended.stderr].concat();
+        let text = String::from_utf8(text).unwrap();
+        assert_eq!(ended.status.code(), Some(code), "{first} {other}: {text}");
+        assert!(text.contains(told), "{first} {other}: {text}");
+    }
+}
+
 #[test]
 fn recordings_of_arenas_are_equal_or_who_differs_is_told() {
     let first = recorded_duel("duel", None, 90);

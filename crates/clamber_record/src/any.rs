@@ -25,6 +25,22 @@ impl AnyRecording {
         })
     }
 
+    /// True if it has no ticks.
+    pub fn is_empty(&self) -> bool {
+        match self {
+            Self::Climber(recording) => recording.is_empty(),
+            Self::Arena(recording) => recording.is_empty(),
+        }
+    }
+
+    /// How many ticks the recorder has left out after the last one.
+    pub fn lost_at_end(&self) -> u64 {
+        match self {
+            Self::Climber(recording) => recording.lost_at_end(),
+            Self::Arena(recording) => recording.lost_at_end(),
+        }
+    }
+
     /// How the file ends.
     pub fn ending(&self) -> &Ending {
         match self {

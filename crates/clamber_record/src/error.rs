@@ -64,6 +64,12 @@ pub enum RecordError {
         /// Inputs given.
         found: usize,
     },
+    /// Creatures or fighters were added to the arena since the last tick, and not by an order: no replay has them.
+    #[error(
+        "creatures or fighters were added to the arena without an order since the recorder saw it last: begin the recording \
+         after that, or add them by orders"
+    )]
+    Joined,
     /// The arena is not the one of the recording, by the hash of its configuration.
     #[error(
         "this is another arena than the recorded one: its `ArenaConfig` differs (hash {found:016x}, recorded \

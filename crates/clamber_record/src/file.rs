@@ -9,13 +9,14 @@ use std::io::Read;
 use std::path::Path;
 use std::sync::PoisonError;
 
+use mcap::MAGIC;
 use mcap::records::{Record, op};
-use mcap::{MAGIC, parse_record};
 use prost::Message;
 
 use crate::messages::{ArenaSnapshot, Snapshot};
+use crate::output::GAP;
 use crate::places::Places;
-use crate::source::{Bytes, CHUNK_HEADER, ChunkPlace, LARGEST, Place, Source, data_of};
+use crate::source::{Bytes, CHUNK_HEADER, ChunkPlace, LARGEST, Place, Source, data_of, parse};
 use crate::{
     ArenaInfo, Ending, RecordError, RecordedArenaTick, RecordedTick, RecordingInfo, topics,
 };
@@ -24,10 +25,11 @@ use crate::{
 const PREFIX: usize = 9;
 
 /// Names of the metadata records that are read.
-const NAMES: [&str; 3] = [
+const NAMES: [&str; 4] = [
     ArenaInfo::METADATA,
     RecordingInfo::METADATA,
     RecordingInfo::SETTINGS,
+    GAP,
 ];
 
 /// The largest metadata record that is read, bytes.
@@ -187,7 +189,7 @@ fn walk(file: impl Read, found: &mut Found) -> Result<(), Stop> {
                     return Err(damaged("metadata of more than 16 MiB"));
                 }
                 reader.take(length, &mut buffer)?;
-                let Ok(Record::Metadata(metadata)) = parse_record(opcode, &buffer) else {
+                let Some(Record::Metadata(metadata)) = parse(opcode, &buffer) else {
                     return Err(damaged("metadata that cannot be read"));
                 };
                 // Other programs may add any number of them.
@@ -209,7 +211,7 @@ fn walk(file: impl Read, found: &mut Found) -> Result<(), Stop> {
                     return Err(damaged("a broken data end record"));
                 }
                 reader.take(length, &mut buffer)?;
-                let Ok(Record::DataEnd(end)) = parse_record(opcode, &buffer) else {
+                let Some(Record::DataEnd(end)) = parse(opcode, &buffer) else {
                     return Err(damaged("a broken data end record"));
                 };
                 // Zero stands for no checksum.
@@ -359,9 +361,7 @@ impl Found {
 
 /// Parses only the kinds that are needed: the parser of the others is not made for arbitrary bytes.
 fn parse_inner(opcode: u8, body: &[u8]) -> Option<Record<'_>> {
-    if matches!(opcode, op::CHANNEL | op::MESSAGE) {
-        parse_record(opcode, body).ok()
-    } else {
-        None
-    }
+    matches!(opcode, op::CHANNEL | op::MESSAGE)
+        .then(|| parse(opcode, body))
+        .flatten()
 }

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 use std::io::Write;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use foxglove::Encode;
 use mcap::records::{MessageHeader, Metadata};
@@ -23,12 +25,18 @@ pub(crate) struct Channel {
 /// refuse those of more than 512 MiB.
 const LARGE: u64 = 64 << 20;
 
+/// The metadata record that tells how many ticks were left out at the end, and its key.
+pub(crate) const GAP: &str = "clamber gap";
+pub(crate) const GAP_TICKS: &str = "ticks";
+
 /// What a message or a record takes beside its data, bytes, and a text beside its letters, at most.
 const MORE: u64 = 1024;
 const TEXTS: usize = 8;
 
 pub(crate) struct Output<W: Write> {
-    writer: Writer<NoSeek<W>>,
+    /// `None` once it is finished.
+    writer: Option<Writer<NoSeek<Gate<W>>>>,
+    is_open: Arc<AtomicBool>,
     tick_seconds: f64,
     sequence: u32,
     now: u64,
@@ -36,6 +44,32 @@ pub(crate) struct Output<W: Write> {
     chunk: u64,
     /// Kept for its memory.
     buffer: Vec<u8>,
+}
+
+/// Passes bytes on as long as it is open. A writer that is dropped would end its file as if that was whole.
+struct Gate<W> {
+    out: W,
+    is_open: Arc<AtomicBool>,
+}
+
+impl<W: Write> Write for Gate<W> {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        if self.is_open.load(Ordering::Relaxed) {
+            self.out.write(bytes)
+        } else {
+            Err(std::io::Error::other("the recording has ended at an error"))
+        }
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        self.out.flush()
+    }
+}
+
+impl<W: Write> Drop for Output<W> {
+    fn drop(&mut self) {
+        self.is_open.store(false, Ordering::Relaxed);
+    }
 }
 
 impl<W: Write> Output<W> {
@@ -55,7 +89,12 @@ impl<W: Write> Output<W> {
             .disable_seeking(true)
             .profile("")
             .library(format!("clamber_record {}", RecordingInfo::VERSION));
-        let mut writer = write.create(NoSeek::new(out))?;
+        let is_open = Arc::new(AtomicBool::new(true));
+        let gate = Gate {
+            out,
+            is_open: Arc::clone(&is_open),
+        };
+        let mut writer = write.create(NoSeek::new(gate))?;
         for (name, metadata) in metadata {
             let sizes = metadata
                 .iter()
@@ -71,7 +110,8 @@ impl<W: Write> Output<W> {
             writer.write_metadata(&Metadata { name, metadata })?;
         }
         Ok(Self {
-            writer,
+            writer: Some(writer),
+            is_open,
             tick_seconds,
             sequence: 0,
             now: 0,
@@ -98,13 +138,10 @@ impl<W: Write> Output<W> {
             topic,
             reason: "it has no schema".to_owned(),
         })?;
-        let schema = self
-            .writer
-            .add_schema(&schema.name, &schema.encoding, &schema.data)?;
+        let writer = self.writer()?;
+        let schema = writer.add_schema(&schema.name, &schema.encoding, &schema.data)?;
         let encoding = M::get_message_encoding();
-        let id = self
-            .writer
-            .add_channel(schema, name, &encoding, &Default::default())?;
+        let id = writer.add_channel(schema, name, &encoding, &Default::default())?;
         Ok(Channel { id, topic })
     }
 
@@ -156,13 +193,27 @@ impl<W: Write> Output<W> {
             log_time: now,
             publish_time: now,
         };
-        Ok(self.writer.write_to_known_channel(&header, &self.buffer)?)
+        let writer = self.writer.as_mut().ok_or(RecordError::Ended)?;
+        Ok(writer.write_to_known_channel(&header, &self.buffer)?)
     }
 
     /// Ends a chunk.
     pub(crate) fn flush(&mut self) -> Result<(), RecordError> {
         self.chunk = 0;
-        Ok(self.writer.flush()?)
+        Ok(self.writer()?.flush()?)
+    }
+
+    /// Tells readers how many ticks were left out at the end.
+    pub(crate) fn ends_in_gap(&mut self, ticks: u64) -> Result<(), RecordError> {
+        let metadata = BTreeMap::from([(GAP_TICKS.to_owned(), ticks.to_string())]);
+        let name = GAP.to_owned();
+        Ok(self
+            .writer()?
+            .write_metadata(&Metadata { name, metadata })?)
+    }
+
+    fn writer(&mut self) -> Result<&mut Writer<NoSeek<Gate<W>>>, RecordError> {
+        self.writer.as_mut().ok_or(RecordError::Ended)
     }
 
     /// Ends a chunk that is large after a tick, however few ticks are in it.
@@ -175,8 +226,9 @@ impl<W: Write> Output<W> {
 
     /// Writes the index and gives back the output.
     pub(crate) fn finish(mut self) -> Result<W, RecordError> {
-        self.writer.finish()?;
-        let mut out = self.writer.into_inner().into_inner();
+        let mut writer = self.writer.take().ok_or(RecordError::Ended)?;
+        writer.finish()?;
+        let mut out = writer.into_inner().into_inner().out;
         out.flush().map_err(|source| RecordError::Io {
             what: "cannot write the end of the recording".to_owned(),
             source,

@@ -48,7 +48,11 @@ impl Places {
         if self.last() != Some(tick) {
             return Err(self.order(tick));
         }
-        self.saved.push((tick, place));
+        // Only the last one of a tick counts.
+        match self.saved.last_mut().filter(|(last, _)| *last == tick) {
+            Some(last) => last.1 = place,
+            None => self.saved.push((tick, place)),
+        }
         Ok(())
     }
 
@@ -145,7 +149,10 @@ mod tests {
         // After a gap there is something saved first.
         assert!(places.add_tick(21, place(21)).is_err());
         assert!(places.add_tick(40, place(40)).is_err());
-        places.add_saved(20, place(120)).unwrap();
+        for at in [118, 119, 120] {
+            places.add_saved(20, place(at)).unwrap();
+        }
+        assert_eq!(places.saved.len(), 1);
         places.add_tick(21, place(21)).unwrap();
         let runs: Vec<_> = places.runs().collect();
         assert_eq!(runs, [5..=7, 20..=21]);

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use crate::file::{self, Contents};
 use crate::messages::{Snapshot, Tick};
+use crate::output::{GAP, GAP_TICKS};
 use crate::places::Places;
 use crate::source::{Bytes, Place, Source};
 use crate::{OfArena, OfClimber, RecordError, RecordingInfo, RecordingKind, topics};
@@ -74,6 +75,7 @@ pub struct RecordingOf<K: RecordingKind> {
     pub(crate) source: Source,
     pub(crate) places: Places,
     ending: Ending,
+    lost_at_end: u64,
 }
 
 /// A recording of one climber and its creature, by a [`Recorder`](crate::Recorder).
@@ -118,6 +120,8 @@ impl<K: RecordingKind> RecordingOf<K> {
                 })
             })
         };
+        let gap = take(GAP).ok();
+        let lost = gap.and_then(|gap| gap.get(GAP_TICKS)?.parse().ok());
         let metadata = take(K::METADATA)?;
         let info = K::info(&metadata, take(RecordingInfo::SETTINGS)?)?;
         Ok(Self {
@@ -129,6 +133,7 @@ impl<K: RecordingKind> RecordingOf<K> {
             },
             source: contents.source,
             ending: contents.ending,
+            lost_at_end: lost.unwrap_or(0),
         })
     }
 
@@ -140,6 +145,11 @@ impl<K: RecordingKind> RecordingOf<K> {
     /// How the file ends.
     pub fn ending(&self) -> &Ending {
         &self.ending
+    }
+
+    /// How many ticks the recorder has left out after the last one, since its disk was too slow: the run went on for so long.
+    pub fn lost_at_end(&self) -> u64 {
+        self.lost_at_end
     }
 
     /// The ticks that it has: ranges, and between each two of them a gap, where the recorder has left ticks out since its disk

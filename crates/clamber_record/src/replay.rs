@@ -140,6 +140,17 @@ pub enum ReplayError<E> {
     /// The recording cannot be read.
     #[error(transparent)]
     Record(#[from] RecordError),
+    /// Ticks are missing: the recorder left them out, since its disk was too slow.
+    #[error(
+        "ticks are missing between {last} and {found}: replay each run of the recording by itself, from its first \
+         tick's snapshot on"
+    )]
+    Gap {
+        /// The last tick before the gap.
+        last: u64,
+        /// The first tick after it.
+        found: u64,
+    },
     /// The scene could not be stepped.
     #[error("the scene failed at tick {tick}: {error}")]
     Scene {
@@ -159,13 +170,21 @@ pub enum ReplayError<E> {
 /// by itself, from its first tick's snapshot on.
 ///
 /// # Errors
-/// [`ReplayError::Differs`] at the first tick that differs, [`ReplayError::Record`] for a tick that cannot be read, and
-/// [`ReplayError::Scene`] if `step` fails.
+/// [`ReplayError::Differs`] at the first tick that differs, [`ReplayError::Record`] for a tick that cannot be read,
+/// [`ReplayError::Gap`] at a tick that does not follow the one before, and [`ReplayError::Scene`] if `step` fails.
 pub fn replay<E>(
     ticks: impl IntoIterator<Item = Result<RecordedTick, RecordError>>,
     mut step: impl FnMut(&RecordedTick) -> Result<Replayed, E>,
 ) -> Result<u64, ReplayError<E>> {
+    let mut last: Option<u64> = None;
     let (agreed, difference) = compare(ticks, |recorded| {
+        let found = recorded.tick;
+        if let Some(last) = last
+            .replace(found)
+            .filter(|last| last.checked_add(1) != Some(found))
+        {
+            return Err(ReplayError::Gap { last, found });
+        }
         let replayed = step(recorded).map_err(|error| ReplayError::Scene {
             tick: recorded.tick,
             error,

@@ -143,9 +143,42 @@ impl Source {
     }
 }
 
+/// A record that is read; `None` if it cannot be. The parser takes as much memory as the lengths of texts say, so these
+/// are compared with what is there first.
+pub(crate) fn parse(opcode: u8, body: &[u8]) -> Option<Record<'_>> {
+    // Bytes before the first text, and how many texts or maps there are.
+    let (before, texts) = match opcode {
+        op::METADATA => (0, 2),
+        op::CHANNEL => (4, 3),
+        op::CHUNK => (28, 1),
+        _ => (0, 0),
+    };
+    let mut rest = body.get(before..)?;
+    for index in 0..texts {
+        let text = text_of(&mut rest)?;
+        // The last one of metadata and channels is a map of texts.
+        if opcode != op::CHUNK && index + 1 == texts {
+            let mut pairs = text;
+            while !pairs.is_empty() {
+                text_of(&mut pairs)?;
+            }
+        }
+    }
+    parse_record(opcode, body).ok()
+}
+
+/// Takes a text, with its length in front, from the front of some bytes.
+fn text_of<'a>(bytes: &mut &'a [u8]) -> Option<&'a [u8]> {
+    let (length, rest) = bytes.split_first_chunk::<4>()?;
+    let length = usize::try_from(u32::from_le_bytes(*length)).ok()?;
+    let (text, rest) = rest.split_at_checked(length)?;
+    *bytes = rest;
+    Some(text)
+}
+
 /// The data of a chunk record, decompressed and checked.
 pub(crate) fn data_of(body: &[u8]) -> Result<Vec<u8>, &'static str> {
-    let Ok(Record::Chunk { header, data }) = parse_record(op::CHUNK, body) else {
+    let Some(Record::Chunk { header, data }) = parse(op::CHUNK, body) else {
         return Err("a chunk without a header");
     };
     if header.uncompressed_size > LARGEST {

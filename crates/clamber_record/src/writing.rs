@@ -80,7 +80,21 @@ impl<W: Write> Writing<W> {
         })
     }
 
-    fn tick(&mut self, taken: &mut Taken) -> Result<(), RecordError> {
+    /// The snapshots of a tick: texts that the game makes.
+    fn snapshots(taken: &mut Taken) -> Result<Vec<Snapshot>, RecordError> {
+        let tick = taken.tick;
+        let texts = taken.snapshots.drain(..);
+        let snapshots = texts.map(|TakenSnapshot(scene)| match scene() {
+            Ok(scene) => Ok(Snapshot { tick, scene }),
+            Err(reason) => Err(RecordError::Encode {
+                topic: topics::SNAPSHOT,
+                reason,
+            }),
+        });
+        snapshots.collect()
+    }
+
+    fn tick(&mut self, taken: &mut Taken, snapshots: &[Snapshot]) -> Result<(), RecordError> {
         let message = Tick {
             tick: taken.tick,
             input: (&taken.input).into(),
@@ -127,14 +141,11 @@ impl<W: Write> Writing<W> {
         if let Some(shapes) = self.scenery.shapes(now, taken.scenery.drain(..)) {
             self.output.send(self.channels.scenery, now, &shapes)?;
         }
-        for TakenSnapshot(scene) in taken.snapshots.drain(..) {
-            let tick = taken.tick;
-            let scene = scene().map_err(|reason| RecordError::Encode {
-                topic: topics::SNAPSHOT,
-                reason,
-            })?;
-            let message = Snapshot { tick, scene };
-            self.output.send(self.channels.snapshot, now, &message)?;
+        if let Some(line) = self.scenery.take_line(now) {
+            self.output.send(self.channels.log, now, &line)?;
+        }
+        for snapshot in snapshots {
+            self.output.send(self.channels.snapshot, now, snapshot)?;
         }
         Ok(())
     }
@@ -162,7 +173,15 @@ impl<W: Write> Writing<W> {
 impl<W: Write + Send + 'static> WriteTicks<Taken, W> for Writing<W> {
     fn chunk(&mut self, ticks: &mut [Taken]) -> Result<(), RecordError> {
         for taken in ticks {
-            self.tick(taken)?;
+            let snapshots = match Self::snapshots(taken) {
+                Ok(snapshots) => snapshots,
+                Err(error) => {
+                    // What was recorded before this tick is kept.
+                    self.output.flush()?;
+                    return Err(error);
+                }
+            };
+            self.tick(taken, &snapshots)?;
             self.output.flush_if_large()?;
         }
         self.output.flush()
@@ -173,7 +192,7 @@ impl<W: Write + Send + 'static> WriteTicks<Taken, W> for Writing<W> {
         if let Some(line) = gap_line(now, ticks) {
             self.output.send(self.channels.log, now, &line)?;
         }
-        Ok(())
+        self.output.ends_in_gap(ticks)
     }
 
     fn finish(self) -> Result<W, RecordError> {

@@ -3,6 +3,7 @@ use std::collections::BTreeMap;
 use clamber_fight::Arena;
 
 use crate::info::{bad, parse, text};
+use crate::views::RESERVED;
 use crate::{RecordError, RecordingInfo};
 
 /// The metadata of a recording of an arena.
@@ -43,13 +44,22 @@ impl ArenaInfo {
     /// The name of a creature; `creature N` if it has none.
     pub fn creature(&self, number: usize) -> String {
         let name = self.creatures.get(number).cloned();
-        name.unwrap_or_else(|| format!("creature {number}"))
+        name.unwrap_or_else(|| self.free(format!("creature {number}")))
     }
 
     /// The name of a fighter; `fighter N` if it has none.
     pub fn fighter(&self, number: usize) -> String {
         let name = self.fighters.get(number).cloned();
-        name.unwrap_or_else(|| format!("fighter {number}"))
+        name.unwrap_or_else(|| self.free(format!("fighter {number}")))
+    }
+
+    /// A name of somebody who joined later, unless it is given to another one.
+    fn free(&self, name: String) -> String {
+        if self.creatures.contains(&name) || self.fighters.contains(&name) {
+            self.free(format!("{name} (joined)"))
+        } else {
+            name
+        }
     }
 
     /// Refuses names that are not one each for an arena's creatures and fighters, or that two of them share: frames and
@@ -76,8 +86,14 @@ impl ArenaInfo {
         let mut all: Vec<&str> = self.creatures.iter().map(String::as_str).collect();
         all.extend(self.fighters.iter().map(String::as_str));
         all.sort_unstable();
-        match all.windows(2).find(|pair| pair[0] == pair[1]) {
-            Some(pair) => Err(RecordError::Names(format!("two are called `{}`", pair[0]))),
+        if let Some(pair) = all.windows(2).find(|pair| pair[0] == pair[1]) {
+            return Err(RecordError::Names(format!("two are called `{}`", pair[0])));
+        }
+        match all.iter().find(|name| RESERVED.contains(name)) {
+            Some(name) => {
+                let problem = format!("`{name}` is the name of something else in the recording");
+                Err(RecordError::Names(problem))
+            }
             None => Ok(()),
         }
     }

@@ -92,7 +92,8 @@ impl<W: Write> ArenaRecorder<W> {
     /// # Errors
     /// [`RecordError::Order`] unless it was stepped once since the last call, [`RecordError::Inputs`] for a wrong number of
     /// inputs, [`RecordError::OtherArena`] if it is another arena. Such a tick is not recorded, but recording can go
-    /// on. [`RecordError::Write`] or another error if an earlier chunk could not be written, and [`RecordError::Ended`]
+    /// on. [`RecordError::Joined`] if creatures or fighters were added between two ticks other than by an order, as before the
+    /// first step; recording cannot go on then. [`RecordError::Write`] or another error if an earlier chunk could not be written, and [`RecordError::Ended`]
     /// at every call after that.
     ///
     /// # Panics
@@ -104,6 +105,17 @@ impl<W: Write> ArenaRecorder<W> {
         orders: &[Order],
         terrain: &[(ObstacleId, &dyn Obstacle)],
     ) -> Result<(), RecordError> {
+        let joins = |is: fn(&Order) -> bool| orders.iter().filter(|order| is(order)).count();
+        let joined = [
+            joins(|order| matches!(order, Order::AddCreature { .. })),
+            joins(|order| matches!(order, Order::AddFighter { .. })),
+        ];
+        let next = [arena.next_creature().0, arena.next_fighter().0];
+        let known = self.memory.named.iter().zip(joined);
+        let known = known.map(|(known, joined)| u64::from(*known) + joined as u64);
+        if !known.eq(next.map(u64::from)) {
+            return Err(RecordError::Joined);
+        }
         let (fighters, found) = (self.memory.fighters, inputs.len());
         if fighters != found {
             return Err(RecordError::Inputs { fighters, found });

@@ -4,6 +4,10 @@ use clamber_fight::{ArenaPart, CreatureId, FighterId, Order};
 use crate::messages::{ArenaSnapshot, ArenaTick};
 use crate::{OfArena, RecordError, RecordingOf, topics};
 
+/// The largest message of a tick that is written and read, bytes: an input may take two, and more than a hundred in
+/// memory. 20,000 fighters fit.
+pub(crate) const LARGEST_TICK: usize = 2 << 20;
+
 /// A tick of an arena as it was recorded.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
@@ -23,6 +27,9 @@ pub struct RecordedArenaTick {
 impl RecordedArenaTick {
     /// What a message says, or what is wrong with it.
     pub(crate) fn decode(message: &[u8]) -> Result<Self, String> {
+        if message.len() > LARGEST_TICK {
+            return Err("a tick of more than 2 MiB".to_owned());
+        }
         let tick = <ArenaTick as prost::Message>::decode(message);
         let tick = tick.map_err(|error| error.to_string())?;
         let orders = match &tick.orders[..] {

@@ -105,7 +105,10 @@ impl ArenaRecording {
         let (agreed, difference) = compare(self.ticks_from(from), |recorded| {
             if recorded.tick > last && recorded.tick - last > 1 {
                 // After a gap it goes on from what was saved there.
-                let (_, saved) = self.saved(recorded.tick)?;
+                let (at, saved) = self.saved(recorded.tick)?;
+                if at != recorded.tick {
+                    return Err(RecordError::NoSnapshot(recorded.tick));
+                }
                 arena.restore_bytes(&saved)?;
             } else if recorded.tick > from {
                 step(arena, &recorded.inputs, &recorded.orders)?;

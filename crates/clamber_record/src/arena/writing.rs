@@ -10,18 +10,22 @@ use foxglove::messages::{
 use glam::{DVec3, Vec3};
 
 use super::ArenaInfo;
+use super::recording::LARGEST_TICK;
 use super::taken::{TakenArena, TakenCreature, TakenFighter};
 use crate::chunks::WriteTicks;
 use crate::messages::{ArenaSnapshot, ArenaTick, Brain};
 use crate::output::{Channel, Output};
 use crate::views::{
-    Scene, Sceneries, Skin, color, entity, frame_of_climber, from_z_to, gap_line, rotation, vector,
-    z_up,
+    ATTACKS, PROJECTILES, Scene, Sceneries, Skin, color, deletion, entity, frame_of_climber,
+    from_z_to, gap_line, left_out, rotation, vector, z_up,
 };
 use crate::{RecordError, RecordingInfo, topics};
 
 /// Length of an arrow as it is drawn, metres.
 const ARROW: f64 = 0.8;
+
+/// Brain and skin of so many creatures are written for people to look at: each takes two of a file's 65,535 channels.
+const MOST_SEEN: usize = 10_000;
 
 /// Encodes ticks of an arena and writes them.
 pub(super) struct ArenaWriting<W: Write> {
@@ -41,6 +45,8 @@ pub(super) struct ArenaWriting<W: Write> {
     meshes: Sceneries,
     /// Kept for its memory.
     positions: Vec<Vec3>,
+    /// Whether the log says that creatures are left out of the views.
+    has_told: bool,
 }
 
 impl<W: Write> ArenaWriting<W> {
@@ -64,6 +70,7 @@ impl<W: Write> ArenaWriting<W> {
             skin: Skin::new(skin_points),
             meshes: Sceneries::default(),
             positions: Vec::new(),
+            has_told: false,
         })
     }
 
@@ -74,8 +81,13 @@ impl<W: Write> ArenaWriting<W> {
             self.output.send(self.log, now, &line)?;
         }
         let message = &taken.message;
-        self.output
-            .send_as(self.tick, now, |buffer| message.write(buffer))?;
+        self.output.send_as(self.tick, now, |buffer| {
+            message.write(buffer)?;
+            if buffer.len() > LARGEST_TICK {
+                return Err("a tick of more than 2 MiB, which no reader takes".to_owned());
+            }
+            Ok(())
+        })?;
         if let Some(state) = taken.saved.take() {
             let state = state.into();
             let message = ArenaSnapshot { tick, state };
@@ -93,6 +105,9 @@ impl<W: Write> ArenaWriting<W> {
         if let Some(shapes) = self.meshes.shapes(now, taken.scenery.drain(..)) {
             self.output.send(self.scenery, now, &shapes)?;
         }
+        if let Some(line) = self.meshes.take_line(now) {
+            self.output.send(self.log, now, &line)?;
+        }
         Ok(())
     }
 
@@ -103,6 +118,10 @@ impl<W: Write> ArenaWriting<W> {
             transforms.extend(creature.figure.message(now).transforms);
         }
         let mut entities: Vec<SceneEntity> = Vec::new();
+        // Who has left is drawn no longer.
+        let is_here = |id: &FighterId| taken.fighters.iter().any(|fighter| fighter.id == *id);
+        let gone = self.fighters.extract_if(.., |id, _| !is_here(id));
+        let deletions = gone.map(|(_, (name, _))| deletion(now, &name)).collect();
         for fighter in &taken.fighters {
             let (name, scene) = self.fighters.entry(fighter.id).or_insert_with(|| {
                 let name = self.info.fighter(fighter.id.0 as usize);
@@ -116,21 +135,33 @@ impl<W: Write> ArenaWriting<W> {
         entities.push(arrows(now, &taken.projectiles));
         entities.push(attacks(now, &taken.creatures));
         let scene = SceneUpdate {
-            deletions: Vec::new(),
+            deletions,
             entities,
         };
         self.output.send(self.scene, now, &scene)?;
         for creature in taken.creatures.drain(..) {
-            let channels = self.channels(creature.id)?;
-            self.creature(&creature, channels, now)?;
+            if let Some(channels) = self.channels(creature.id, now)? {
+                self.creature(&creature, channels, now)?;
+            }
         }
         Ok(())
     }
 
-    /// The channels of a creature, which are added when it is seen first.
-    fn channels(&mut self, creature: CreatureId) -> Result<(Channel, Channel), RecordError> {
+    /// The channels of a creature, which are added when it is seen first; `None` for those beyond [`MOST_SEEN`].
+    fn channels(
+        &mut self,
+        creature: CreatureId,
+        now: u64,
+    ) -> Result<Option<(Channel, Channel)>, RecordError> {
         if let Some(known) = self.creatures.get(&creature) {
-            return Ok(*known);
+            return Ok(Some(*known));
+        }
+        if self.creatures.len() >= MOST_SEEN {
+            if !std::mem::replace(&mut self.has_told, true) {
+                let line = left_out(now, "brain and skin of further creatures");
+                self.output.send(self.log, now, &line)?;
+            }
+            return Ok(None);
         }
         let [brain, skin] =
             [topics::BRAIN, topics::SKIN].map(|topic| format!("{topic}/{}", creature.0));
@@ -139,7 +170,7 @@ impl<W: Write> ArenaWriting<W> {
             .output
             .channel_named::<PointCloud>(topics::SKIN, &skin)?;
         self.creatures.insert(creature, (brain, skin));
-        Ok((brain, skin))
+        Ok(Some((brain, skin)))
     }
 
     fn creature(
@@ -177,7 +208,7 @@ impl<W: Write + Send + 'static> WriteTicks<TakenArena, W> for ArenaWriting<W> {
         if let Some(line) = gap_line(now, ticks) {
             self.output.send(self.log, now, &line)?;
         }
-        Ok(())
+        self.output.ends_in_gap(ticks)
     }
 
     fn finish(self) -> Result<W, RecordError> {
@@ -198,7 +229,7 @@ fn body(now: u64, name: &str, scene: &Scene, fighter: &TakenFighter) -> SceneEnt
 
 /// Arrows and stones.
 fn arrows(now: u64, projectiles: &[ProjectilePlace]) -> SceneEntity {
-    let mut entity = entity(now, "projectiles");
+    let mut entity = entity(now, PROJECTILES);
     let drawn = projectiles.iter().map(|place| {
         let tail = place.tip - place.direction * ARROW;
         arrow(tail, place.tip, [0.03, 0.08], [0.6, 0.4, 0.2])
@@ -209,7 +240,7 @@ fn arrows(now: u64, projectiles: &[ProjectilePlace]) -> SceneEntity {
 
 /// What creatures' attacks have let out: shots, waves as far as they have come, and beams.
 fn attacks(now: u64, creatures: &[TakenCreature]) -> SceneEntity {
-    let mut entity = entity(now, "attacks");
+    let mut entity = entity(now, ATTACKS);
     for creature in creatures {
         let ball = |place: DVec3, radius: f64, opacity: f64| SpherePrimitive {
             pose: Some(Pose {

@@ -11,19 +11,27 @@ mod skin;
 pub(crate) use brain::{TakenBrain, brain, line as creature_line};
 pub(crate) use figure::{FigureJoints, TakenFigure};
 pub(crate) use frames::{Frames, frame_of_climber, z_up};
-pub(crate) use log::{gap_line, line, log};
+pub(crate) use log::{gap_line, left_out, line, log};
 pub(crate) use scene::{Scene, from_z_to};
 pub use scenery::SceneryView;
 pub(crate) use scenery::{Sceneries, SceneryNames, TakenScenery};
 pub(crate) use skin::Skin;
 
 use foxglove::messages::{
-    Color, FrameTransform, Pose, Quaternion, SceneEntity, Timestamp, Vector3,
+    Color, FrameTransform, Pose, Quaternion, SceneEntity, SceneEntityDeletion, Timestamp, Vector3,
+    scene_entity_deletion,
 };
 use glam::{DMat3, DQuat, DVec3};
 
+/// Frames and entities of an arena's recording that are neither creatures nor fighters.
+pub(crate) const RESERVED: [&str; 4] = [WORLD, Z_UP, PROJECTILES, ATTACKS];
+
 /// The frame of world space.
 const WORLD: &str = "world";
+
+/// Entities of an arena.
+pub(crate) const PROJECTILES: &str = "projectiles";
+pub(crate) const ATTACKS: &str = "attacks";
 
 /// The creature's frame: model space times its scale, in metres, rotated and translated into the world.
 const CREATURE: &str = "creature";
@@ -80,6 +88,15 @@ fn upright(map: &DMat3) -> DQuat {
     let x = map.x_axis.normalize_or(DVec3::X);
     let z = x.cross(map.y_axis).normalize_or(x.any_orthonormal_vector());
     DQuat::from_mat3(&DMat3::from_cols(x, z.cross(x), z))
+}
+
+/// Takes an entity away.
+pub(crate) fn deletion(nanoseconds: u64, id: &str) -> SceneEntityDeletion {
+    SceneEntityDeletion {
+        timestamp: Some(timestamp(nanoseconds)),
+        r#type: scene_entity_deletion::Type::MatchingId as i32,
+        id: id.to_owned(),
+    }
 }
 
 /// An entity of a scene without anything in it, in the world.

@@ -5,11 +5,11 @@ use std::sync::Arc;
 
 use clamber_surface::geometry::Similarity;
 use foxglove::messages::{
-    FrameTransform, FrameTransforms, Point3, SceneEntity, SceneUpdate, TriangleListPrimitive,
+    FrameTransform, FrameTransforms, Log, Point3, SceneEntity, SceneUpdate, TriangleListPrimitive,
 };
 use glam::{DQuat, DVec3, Vec3};
 
-use super::{WORLD, color, place, pose, rotation, timestamp, vector};
+use super::{WORLD, color, left_out, place, pose, rotation, timestamp, vector};
 
 /// What a game passes to a recorder to be looked at: a mesh in the world, at rest or moving, such as the ground or a
 /// rock.
@@ -103,11 +103,22 @@ impl Shape {
     }
 }
 
+/// What a point and an index take in a message, bytes, at most.
+const BYTES: [usize; 2] = [29, 5];
+
 /// All meshes that were recorded. A viewer that is wound back shows the last message alone, so each has all of them.
 #[derive(Debug, Default)]
 pub(crate) struct Sceneries {
     entities: Vec<SceneEntity>,
+    /// Bytes that they take, about.
+    bytes: usize,
+    /// True if some were left out, and once the log has told that.
+    is_full: bool,
+    has_told: bool,
 }
+
+/// All meshes together take no more than this, bytes: more would be written again for each new one.
+const MOST: usize = 64 << 20;
 
 impl Sceneries {
     /// The places of these meshes; `None` without any.
@@ -137,6 +148,12 @@ impl Sceneries {
         })
     }
 
+    /// Tells once that meshes were left out.
+    pub(crate) fn take_line(&mut self, nanoseconds: u64) -> Option<Log> {
+        let tells = self.is_full && !std::mem::replace(&mut self.has_told, self.is_full);
+        tells.then(|| left_out(nanoseconds, "further meshes"))
+    }
+
     /// All meshes, if there are new ones among these.
     pub(crate) fn shapes(
         &mut self,
@@ -146,6 +163,12 @@ impl Sceneries {
         let before = self.entities.len();
         for one in taken {
             let Some(shape) = one.shape else { continue };
+            let bytes = shape.points.len() * BYTES[0] + shape.indices.len() * BYTES[1];
+            if self.bytes + bytes > MOST {
+                self.is_full = true;
+                continue;
+            }
+            self.bytes += bytes;
             let [r, g, b] = shape.color.map(f64::from);
             self.entities.push(SceneEntity {
                 timestamp: Some(timestamp(nanoseconds)),

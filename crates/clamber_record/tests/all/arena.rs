@@ -309,7 +309,12 @@ fn the_python_reader_reads_a_cut_file_to_its_last_chunk() {
 fn names_are_one_each() {
     let arena = arena();
     type Change = fn(&mut ArenaInfo);
-    let wrong: [(Change, &str); 4] = [
+    let wrong: [(Change, &str); 6] = [
+        (|info| info.fighters[0] = "world".into(), "`world`"),
+        (
+            |info| info.creatures[0] = "projectiles".into(),
+            "`projectiles`",
+        ),
         (|info| info.creatures.truncate(1), "1 names for 2 creatures"),
         (
             |info| info.fighters.push("ann".into()),
@@ -333,6 +338,11 @@ fn names_are_one_each() {
         assert!(matches!(error, RecordError::Names(_)), "{error}");
         assert!(error.to_string().contains(words), "{error}");
     }
+    // Who joins later has a name that nobody has.
+    let mut info = ArenaInfo::of(&arena);
+    info.fighters[0] = "fighter 3".into();
+    assert_eq!(info.fighter(3), "fighter 3 (joined)");
+    assert_eq!(info.fighter(4), "fighter 4");
 }
 
 /// What a game does to the arena in the step to a tick.

@@ -7,20 +7,24 @@
 )]
 
 use std::io::{Read, Seek, SeekFrom, Write};
-use std::sync::OnceLock;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, OnceLock};
 
 use clamber_climber::ClimberInput;
 use clamber_fight::{Arena, ArenaConfig, FighterConfig};
 use clamber_record::{
-    AnyRecording, ArenaInfo, ArenaRecorder, ArenaRecording, Ending, RecordOptions, SceneryView,
+    AnyRecording, ArenaInfo, ArenaRecorder, ArenaRecording, Ending, RecordOptions, Recorder,
+    Recording, RecordingInfo, ReplayError, Replayed, SceneryView, TickView,
 };
+use clamber_scenes::battle::{self, Battle, BattleOptions, BattleRecorder};
+use clamber_scenes::giant::giant;
 use clamber_surface::geometry::Similarity;
 use clamber_world::{HalfSpace, Obstacle, ObstacleId};
 use glam::{DVec3, Vec3};
 
 const TICKS: u64 = 200;
 
-fn arena() -> Arena {
+pub(crate) fn arena() -> Arena {
     let mut arena = Arena::new(ArenaConfig::default()).unwrap();
     for x in [0.0, 3.0] {
         arena
@@ -30,7 +34,7 @@ fn arena() -> Arena {
     arena
 }
 
-fn inputs(tick: u64) -> [ClimberInput; 2] {
+pub(crate) fn inputs(tick: u64) -> [ClimberInput; 2] {
     [0, 1].map(|player| ClimberInput {
         walk: if (tick / 20 + player).is_multiple_of(2) {
             DVec3::X
@@ -42,7 +46,7 @@ fn inputs(tick: u64) -> [ClimberInput; 2] {
     })
 }
 
-fn file() -> &'static [u8] {
+pub(crate) fn file() -> &'static [u8] {
     static FILE: OnceLock<Vec<u8>> = OnceLock::new();
     FILE.get_or_init(|| {
         let mut arena = arena();
@@ -60,12 +64,12 @@ fn file() -> &'static [u8] {
 }
 
 /// Kinds of records.
-const CHUNK: u8 = 0x06;
+pub(crate) const CHUNK: u8 = 0x06;
 const ATTACHMENT: u8 = 0x09;
-const DATA_END: u8 = 0x0f;
+pub(crate) const DATA_END: u8 = 0x0f;
 
 /// A file's records up to the end of its data: what each is, and its body.
-fn records(file: &[u8]) -> Vec<(u8, Vec<u8>)> {
+pub(crate) fn records(file: &[u8]) -> Vec<(u8, Vec<u8>)> {
     let (mut at, mut all) = (8, Vec::new());
     loop {
         let length = u64::from_le_bytes(file[at + 1..at + 9].try_into().unwrap()) as usize;
@@ -77,7 +81,7 @@ fn records(file: &[u8]) -> Vec<(u8, Vec<u8>)> {
     }
 }
 
-fn written(records: &[(u8, Vec<u8>)]) -> Vec<u8> {
+pub(crate) fn written(records: &[(u8, Vec<u8>)]) -> Vec<u8> {
     let mut file = b"\x89MCAP0\r\n".to_vec();
     for (kind, body) in records {
         file.push(*kind);
@@ -89,7 +93,7 @@ fn written(records: &[(u8, Vec<u8>)]) -> Vec<u8> {
 }
 
 /// A chunk's body with its data compressed, with its checksum or without.
-fn compressed(body: &[u8], how: &str, has_checksum: bool) -> Vec<u8> {
+pub(crate) fn compressed(body: &[u8], how: &str, has_checksum: bool) -> Vec<u8> {
     // Times of its first and last message, size, checksum; name of the compression; length of the data.
     let (head, data) = (&body[..28], &body[40..]);
     let data = match how {
@@ -388,4 +392,124 @@ fn what_is_recorded_is_never_too_large_to_be_read() {
         .map(drop)
         .unwrap_err();
     assert!(error.to_string().contains("16 MiB"), "{error}");
+}
+
+/// A climber's recording with gaps: each run is replayed from what was saved at its beginning, and who replays it as one
+/// is told.
+#[test]
+fn a_climbers_recording_with_gaps_is_replayed_run_by_run() {
+    let creature = giant().unwrap();
+    let options = BattleOptions::ride(0, 1);
+    let mut battle = Battle::new(&creature, &options).unwrap();
+    let disk = Slow(Vec::new(), std::time::Duration::from_millis(60));
+    let how = RecordOptions {
+        chunk_ticks: 20,
+        ..RecordOptions::default()
+    };
+    let mut recorder = BattleRecorder::new(disk, &battle, &options, how).unwrap();
+    recorder.tick(&battle).unwrap();
+    for tick in 0..1200 {
+        battle.step(options.input_at(tick)).unwrap();
+        recorder.tick(&battle).unwrap();
+    }
+    let file = recorder.finish().unwrap().0;
+    let recording = Recording::from_bytes(file).unwrap();
+    let runs: Vec<_> = recording.runs().collect();
+    assert!(runs.len() > 1, "{runs:?}");
+    let from = runs.iter().skip(1).map(|run| Some(*run.start()));
+    for from in [None].into_iter().chain(from) {
+        let replay = battle::replay(&recording, from).unwrap();
+        assert!(replay.difference.is_none(), "from {from:?}");
+        let ticks = recording.ticks_from(replay.from).count() as u64;
+        assert_eq!(replay.agreed, ticks, "from {from:?}");
+    }
+    let as_one = clamber_record::replay(recording.ticks(), |tick| {
+        Ok::<_, std::convert::Infallible>(Replayed {
+            state: tick.state,
+            palette_fingerprint: tick.palette_fingerprint,
+            scene_fingerprint: None,
+        })
+    });
+    let error = as_one.unwrap_err();
+    let last = *runs[0].end();
+    assert!(
+        matches!(error, ReplayError::Gap { last: found, .. } if found == last),
+        "{error}"
+    );
+}
+
+/// A disk that stands still for a while.
+#[derive(Clone, Default)]
+struct Stalled(Arc<(AtomicBool, Mutex<Vec<u8>>)>);
+
+impl Write for Stalled {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        while self.0.0.load(Ordering::Relaxed) {
+            std::thread::sleep(std::time::Duration::from_millis(1));
+        }
+        self.0.1.lock().unwrap().extend_from_slice(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        Ok(())
+    }
+}
+
+/// Who saves a snapshot at its start and at a checkpoint, and nothing after its disk has stood still, reads how much is
+/// missing at the end.
+#[test]
+fn what_is_lost_at_the_end_is_told() {
+    let creature = giant().unwrap();
+    let options = BattleOptions::ride(0, 1);
+    for stalls in [false, true] {
+        let mut battle = Battle::new(&creature, &options).unwrap();
+        let info = RecordingInfo {
+            creature: creature.name.clone(),
+            creature_fingerprint: 1,
+            tick_seconds: battle::TICK,
+            climber: *battle.climber().config(),
+            settings: Default::default(),
+            version: RecordingInfo::VERSION.to_owned(),
+        };
+        let how = RecordOptions {
+            chunk_ticks: 10,
+            ..RecordOptions::default()
+        };
+        let disk = Stalled::default();
+        let mut recorder = Recorder::new(disk.clone(), &info, &creature.skeleton, how).unwrap();
+        for tick in 0..=600 {
+            if tick > 0 {
+                battle.step(options.input_at(tick)).unwrap();
+            }
+            recorder
+                .tick(&TickView {
+                    tick,
+                    input: battle.input(),
+                    state: battle.climber().state(),
+                    report: battle.report(),
+                    surface: battle.surface(),
+                    palette: battle.palette(),
+                    scene_fingerprint: 0,
+                })
+                .unwrap();
+            if tick == 0 || tick == 30 {
+                recorder.snapshot("here").unwrap();
+            }
+            if tick == 60 || tick == 400 {
+                disk.0.0.store(stalls && tick == 60, Ordering::Relaxed);
+            }
+            if !stalls {
+                // A busy machine is slow, too.
+                std::thread::sleep(std::time::Duration::from_millis(2));
+            }
+        }
+        drop(recorder.finish().unwrap());
+        let bytes = disk.0.1.lock().unwrap().clone();
+        let recording = Recording::from_bytes(bytes).unwrap();
+        assert_eq!(*recording.ending(), Ending::Whole);
+        let last = recording.last().unwrap();
+        assert_eq!(last + recording.lost_at_end(), 600);
+        assert_eq!(last == 600, !stalls, "{last}");
+    }
 }

@@ -8,7 +8,7 @@
 use std::collections::HashMap;
 
 use clamber_record::{
-    FigureView, RecordError, RecordOptions, Recorder, RecordingInfo, TickView,
+    Ending, FigureView, RecordError, RecordOptions, Recorder, Recording, RecordingInfo, TickView,
     creature_fingerprint, topics,
 };
 use clamber_scenes::battle::{Battle, BattleOptions, TICK};
@@ -52,23 +52,22 @@ fn record(ticks: u64, scale: f64) -> (Vec<u8>, Vec<Vec<DVec3>>) {
     (recorder.finish().unwrap(), places)
 }
 
-fn recorder(battle: &Battle<'_>) -> Recorder<Vec<u8>> {
+fn info(battle: &Battle<'_>) -> RecordingInfo {
     let creature = battle.creature();
-    let info = RecordingInfo {
+    RecordingInfo {
         creature: creature.name.clone(),
         creature_fingerprint: creature_fingerprint(&creature.skeleton, &[], &creature.collider),
         tick_seconds: TICK,
         climber: *battle.climber().config(),
         settings: Default::default(),
         version: RecordingInfo::VERSION.to_owned(),
-    };
-    Recorder::new(
-        Vec::new(),
-        &info,
-        &creature.skeleton,
-        RecordOptions::waiting(),
-    )
-    .unwrap()
+    }
+}
+
+fn recorder(battle: &Battle<'_>) -> Recorder<Vec<u8>> {
+    let skeleton = &battle.creature().skeleton;
+    let options = RecordOptions::waiting();
+    Recorder::new(Vec::new(), &info(battle), skeleton, options).unwrap()
 }
 
 fn view<'a>(battle: &'a Battle<'_>) -> TickView<'a> {
@@ -193,4 +192,59 @@ fn a_snapshot_whose_text_cannot_be_made_fails_the_recording() {
         (topic, reason.as_str()),
         (topics::SNAPSHOT, "nothing to say")
     );
+}
+
+/// A snapshot that fails, or panics, ends the recording before its tick: what was recorded before is there, and nobody
+/// takes the file for a whole one.
+#[test]
+fn a_recording_that_fails_ends_before_the_tick_that_fails() {
+    let creature = giant().unwrap();
+    let options = BattleOptions::ride(0, 1);
+    for panics in [false, true] {
+        let mut battle = Battle::new(&creature, &options).unwrap();
+        let out = Shared::default();
+        let how = RecordOptions {
+            chunk_ticks: 1000,
+            ..RecordOptions::waiting()
+        };
+        let skeleton = &creature.skeleton;
+        let mut recorder = Recorder::new(out.clone(), &info(&battle), skeleton, how).unwrap();
+        for tick in 0..40 {
+            if tick > 0 {
+                battle.step(options.input_at(tick)).unwrap();
+            }
+            recorder.tick(&view(&battle)).unwrap();
+            if tick == 30 {
+                let fails = move || {
+                    assert!(!panics, "it panics");
+                    Err::<String, _>("it fails")
+                };
+                recorder.snapshot_with(fails).unwrap();
+            }
+        }
+        let finish = std::panic::AssertUnwindSafe(|| recorder.finish().map(drop));
+        let ended = std::panic::catch_unwind(finish);
+        assert!(matches!(ended, Err(_) | Ok(Err(_))));
+        let bytes = out.0.lock().unwrap().clone();
+        let recording = Recording::from_bytes(bytes).unwrap();
+        assert_eq!(*recording.ending(), Ending::Early, "panics: {panics}");
+        // A panic takes the chunk with it.
+        let last = if panics { None } else { Some(29) };
+        assert_eq!(recording.last(), last, "panics: {panics}");
+    }
+}
+
+/// Bytes that outlive the recorder.
+#[derive(Clone, Default)]
+struct Shared(std::sync::Arc<std::sync::Mutex<Vec<u8>>>);
+
+impl std::io::Write for Shared {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        self.0.lock().unwrap().extend_from_slice(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        Ok(())
+    }
 }

@@ -5,4 +5,5 @@ mod battle;
 mod damage;
 mod elsewhere;
 mod figure;
+mod hostile;
 mod python;

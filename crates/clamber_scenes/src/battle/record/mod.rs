@@ -3,6 +3,7 @@
 mod scenery;
 
 use std::io::Write;
+use std::ops::RangeInclusive;
 use std::path::Path;
 
 use clamber_record::{
@@ -197,6 +198,40 @@ pub struct Replay {
 /// [`BattleError`] if the battle cannot be made again, for example because the creature's file is missing or has
 /// changed, or the recording has no such tick.
 pub fn replay(recording: &Recording, from: Option<u64>) -> Result<Replay, BattleError> {
+    let mut whole: Option<Replay> = None;
+    let runs: Vec<RangeInclusive<u64>> = recording.runs().collect();
+    let all = runs.first().map_or(0..=0, |run| run.clone());
+    let begin = from.unwrap_or(*all.start());
+    let mut later = runs.iter().filter(|run| *run.end() >= begin).cloned();
+    let first = later.next().unwrap_or(all);
+    // After a gap it goes on from what was saved there.
+    let rest = later.map(|run| (Some(*run.start()), run));
+    for (from, run) in [(from, first)].into_iter().chain(rest) {
+        let played = replay_run(recording, from, *run.end())?;
+        let is_over = played.difference.is_some();
+        whole = Some(match whole {
+            None => played,
+            Some(whole) => Replay {
+                agreed: whole.agreed + played.agreed,
+                difference: played.difference,
+                ..whole
+            },
+        });
+        if is_over {
+            break;
+        }
+    }
+    whole.ok_or_else(|| {
+        RecordError::NoTick {
+            asked: begin,
+            ticks: None,
+        }
+        .into()
+    })
+}
+
+/// [`replay`] of ticks without a gap, up to `last`.
+fn replay_run(recording: &Recording, from: Option<u64>, last: u64) -> Result<Replay, BattleError> {
     let info = recording.info();
     let options = BattleOptions::from_settings(&info.settings)?;
     let creature = options.load_creature()?;
@@ -228,7 +263,9 @@ pub fn replay(recording: &Recording, from: Option<u64>) -> Result<Replay, Battle
         })
     };
     let mut agreed = 0;
-    let counted = recording.ticks_from(start).inspect(|_| agreed += 1);
+    let ticks = recording.ticks_from(start);
+    let within = ticks.take_while(|tick| tick.as_ref().map_or(true, |tick| tick.tick <= last));
+    let counted = within.inspect(|_| agreed += 1);
     let difference = match clamber_record::replay(counted, step) {
         Ok(_) => None,
         Err(ReplayError::Differs(difference)) => Some(difference),

@@ -1,0 +1,234 @@
+//! Files that somebody made to do harm, or that other programs have cut: without checksums, so that what they hold is
+//! looked at.
+
+#![expect(
+    clippy::unwrap_used,
+    reason = "a test's helpers may fail like the test"
+)]
+
+use clamber_climber::ClimberInput;
+use clamber_fight::{ArenaConfig, FighterConfig};
+use clamber_record::{
+    ArenaInfo, ArenaRecorder, ArenaRecording, Ending, RecordError, RecordOptions, SceneryView,
+    topics,
+};
+use clamber_surface::geometry::Similarity;
+use clamber_world::{HalfSpace, Obstacle, ObstacleId};
+use glam::{DVec3, Vec3};
+
+use crate::elsewhere::{CHUNK, DATA_END, arena, compressed, file, inputs, records, written};
+
+const CHANNEL: u8 = 0x04;
+const MESSAGE: u8 = 0x05;
+
+/// The records of a chunk that is not compressed: what each is, and its body.
+fn inner(chunk: &[u8]) -> Vec<(u8, Vec<u8>)> {
+    let (mut data, mut all) = (&chunk[40..], Vec::new());
+    while !data.is_empty() {
+        let length = u64::from_le_bytes(data[1..9].try_into().unwrap()) as usize;
+        all.push((data[0], data[9..9 + length].to_vec()));
+        data = &data[9 + length..];
+    }
+    all
+}
+
+/// A chunk of other records, compressed and without a checksum.
+fn chunk(records: &[(u8, Vec<u8>)]) -> Vec<u8> {
+    let mut data = Vec::new();
+    for (kind, body) in records {
+        data.push(*kind);
+        data.extend((body.len() as u64).to_le_bytes());
+        data.extend(body);
+    }
+    let mut plain = vec![0; 40];
+    plain[16..24].copy_from_slice(&(data.len() as u64).to_le_bytes());
+    plain.extend(data);
+    compressed(&plain, "zstd", false)
+}
+
+/// The recording, with its chunks changed, without checksums.
+fn with_chunks(change: impl Fn(&mut Vec<Vec<(u8, Vec<u8>)>>)) -> ArenaRecording {
+    let mut all = records(file());
+    let mut chunks = Vec::new();
+    all.retain(|(kind, body)| {
+        if *kind == CHUNK {
+            chunks.push(inner(body));
+        }
+        ![CHUNK, DATA_END].contains(kind)
+    });
+    change(&mut chunks);
+    all.extend(chunks.iter().map(|records| (CHUNK, chunk(records))));
+    all.push((DATA_END, vec![0; 4]));
+    ArenaRecording::from_bytes(written(&all)).unwrap()
+}
+
+/// The number of the channel of a topic.
+fn channel(records: &[(u8, Vec<u8>)], topic: &str) -> [u8; 2] {
+    let named = [&(topic.len() as u32).to_le_bytes()[..], topic.as_bytes()].concat();
+    let is_it = |(kind, body): &&(u8, Vec<u8>)| *kind == CHANNEL && body[4..].starts_with(&named);
+    let (_, body) = records.iter().find(is_it).unwrap();
+    [body[0], body[1]]
+}
+
+/// A message record.
+fn message(channel: [u8; 2], data: &[u8]) -> (u8, Vec<u8>) {
+    (MESSAGE, [&channel, &[0; 20][..], data].concat())
+}
+
+fn is_on(record: &(u8, Vec<u8>), channel: [u8; 2]) -> bool {
+    record.0 == MESSAGE && record.1[..2] == channel
+}
+
+#[test]
+fn chunks_that_are_written_again_are_read() {
+    let recording = with_chunks(|_| ());
+    assert_eq!(*recording.ending(), Ending::Whole);
+    assert_eq!(recording.len(), 201);
+}
+
+/// Two bytes in a tick make a hundred and more in memory, and two in a file that is compressed next to none: what is
+/// larger than a tick can be is refused.
+#[test]
+fn ticks_that_take_much_more_memory_than_the_file_are_refused() {
+    for pattern in [&[0x12, 0][..], &[0x22, 0], &[0x1a, 0], &[0x08, 1]] {
+        let recording = with_chunks(|chunks| {
+            let first = &mut chunks[0];
+            let ticks = channel(first, topics::ARENA);
+            first.push(message(ticks, &pattern.repeat(4 << 20)));
+        });
+        let Ending::Damaged { reason, .. } = recording.ending() else {
+            unreachable!("{pattern:?}: {:?}", recording.ending());
+        };
+        assert!(reason.contains("2 MiB"), "{reason}");
+    }
+}
+
+/// Any number of saved states of one tick are read, and the last one counts.
+#[test]
+fn saved_states_of_one_tick_are_kept_once() {
+    let recording = with_chunks(|chunks| {
+        let first = &mut chunks[0];
+        let saved = channel(first, topics::ARENA_SNAPSHOT);
+        let at = first.iter().position(|one| is_on(one, saved)).unwrap();
+        let empty = message(saved, &[]);
+        first.splice(at..at, vec![empty; 300_000]);
+    });
+    assert_eq!(*recording.ending(), Ending::Whole);
+    assert!(recording.saved(0).unwrap().1.len() > 100);
+}
+
+/// Bits that are flipped anywhere in what a chunk holds, without a checksum: an error or another tick, no panic.
+#[test]
+fn changed_messages_are_read_or_refused() {
+    let mut random = fastrand::Rng::with_seed(3);
+    let seeds: Vec<u64> = (0..400).map(|_| random.u64(..)).collect();
+    let (mut whole, mut damaged) = (0, 0);
+    for seed in seeds {
+        let recording = with_chunks(|chunks| {
+            let mut random = fastrand::Rng::with_seed(seed);
+            for _ in 0..random.usize(1..4) {
+                let chunk = random.usize(..chunks.len());
+                let chunk = &mut chunks[chunk];
+                let index = random.usize(..chunk.len());
+                let body = &mut chunk[index].1;
+                if !body.is_empty() {
+                    let at = random.usize(..body.len());
+                    body[at] ^= 1 << random.u8(..8);
+                }
+            }
+        });
+        match recording.ending() {
+            Ending::Whole => whole += 1,
+            _ => damaged += 1,
+        }
+        for tick in recording.ticks_from(0) {
+            let _ = tick.unwrap();
+        }
+        let ground = HalfSpace::below(0.0);
+        let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(0), &ground)];
+        // What can be restored can be stepped.
+        let _ = recording.replay(&mut arena(), None, |arena, inputs, orders| {
+            let rules = clamber_climber::StepRules::default();
+            arena.step_with(inputs, orders, &terrain, &rules).map(drop)
+        });
+    }
+    println!("{whole} whole, {damaged} damaged");
+    assert!(whole > 20 && damaged > 20, "{whole} {damaged}");
+}
+
+/// A file from which a chunk was taken has a gap, over which a replay goes on from what is saved there; and not from
+/// before it, if nothing is saved.
+#[test]
+fn a_gap_that_somebody_made_is_a_gap() {
+    let ground = HalfSpace::below(0.0);
+    let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(0), &ground)];
+    let play = |recording: &ArenaRecording| {
+        recording.replay(&mut arena(), None, |arena, inputs, _| {
+            arena.step(inputs, &terrain).map(drop)
+        })
+    };
+    let recording = with_chunks(|chunks| drop(chunks.remove(1)));
+    assert_eq!(recording.runs().count(), 2);
+    let replay = play(&recording).unwrap();
+    assert_eq!(replay.difference, None);
+    assert_eq!(replay.agreed, recording.len() as u64);
+    // The same, but after the gap there is one tick alone, of which nothing is saved.
+    let recording = with_chunks(|chunks| {
+        drop(chunks.remove(1));
+        chunks.truncate(2);
+        let [ticks, saved] =
+            [topics::ARENA, topics::ARENA_SNAPSHOT].map(|topic| channel(&chunks[0], topic));
+        let mut is_first = true;
+        chunks[1].retain(|one| {
+            let keeps = !is_on(one, ticks) || std::mem::take(&mut is_first);
+            keeps && !is_on(one, saved)
+        });
+    });
+    let error = play(&recording).unwrap_err();
+    assert!(matches!(error, RecordError::NoSnapshot(_)), "{error}");
+}
+
+/// Who is added to the arena behind the recorder's back is told, in the step in which it is seen.
+#[test]
+fn who_joins_without_an_order_is_told() {
+    let mut arena = clamber_fight::Arena::new(ArenaConfig::default()).unwrap();
+    let options = RecordOptions::waiting();
+    let info = ArenaInfo::of(&arena);
+    let mut recorder = ArenaRecorder::new(Vec::new(), &info, &arena, options).unwrap();
+    arena.add_fighter(FighterConfig::hero(), DVec3::Y).unwrap();
+    let ground = HalfSpace::below(0.0);
+    let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(0), &ground)];
+    let inputs = [ClimberInput::IDLE];
+    arena.step(&inputs, &terrain).unwrap();
+    let error = recorder.tick(&arena, &inputs, &[], &terrain).unwrap_err();
+    assert!(matches!(error, RecordError::Joined), "{error}");
+}
+
+/// Meshes that are more than anybody looks at are left out, and the log says so; the ticks go on.
+#[test]
+fn meshes_without_end_do_not_end_the_recording() {
+    let mut arena = arena();
+    let info = ArenaInfo::of(&arena);
+    let options = RecordOptions {
+        chunk_ticks: 1,
+        ..RecordOptions::waiting()
+    };
+    let mut recorder = ArenaRecorder::new(std::io::sink(), &info, &arena, options).unwrap();
+    let ground = HalfSpace::below(0.0);
+    let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(0), &ground)];
+    // Of 20 MB each: more than a chunk may have, in all.
+    let points = vec![Vec3::ONE; 800_000];
+    for tick in 0..30 {
+        arena.step(&inputs(tick), &terrain).unwrap();
+        recorder.tick(&arena, &inputs(tick), &[], &terrain).unwrap();
+        let rock = SceneryView {
+            name: &format!("rock {tick}"),
+            world_from_own: Similarity::IDENTITY,
+            points: &points,
+            triangles: &[[0, 1, 2]],
+            color: [0.5; 3],
+        };
+        recorder.scenery(&rock).unwrap();
+    }
+    drop(recorder.finish().unwrap());
+}
