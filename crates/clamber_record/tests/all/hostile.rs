@@ -230,5 +230,5 @@ fn meshes_without_end_do_not_end_the_recording() {
         };
         recorder.scenery(&rock).unwrap();
     }
-    drop(recorder.finish().unwrap());
+    recorder.finish().unwrap();
 }

@@ -1,10 +1,10 @@
 //! The giant at any size and rate, on ground that rests and aboard a ship.
 
 use clamber_colossus::{Creature, CreatureConfig, CreatureEvent, Person, Riding, Surroundings};
-use clamber_surface::geometry::{Similarity, WorldCapsule};
+use clamber_surface::geometry::{Similarity, WorldCapsule, rotation_from_axis_angle};
 use clamber_surface::surface::TargetMotion;
 use clamber_world::{Contact, MaterialPoint, Obstacle, PointMotion, SweepContact};
-use glam::{DQuat, DVec3};
+use glam::DVec3;
 use serde_json::Value;
 
 use super::{TICK, creature, kind_at, person};
@@ -235,7 +235,7 @@ impl<'a> Life<'a> {
         self.ground.before = self.ground.now;
         self.ground.now = Similarity {
             translation: DVec3::new(4.0, 0.0, 1.0) * sailed,
-            rotation: DQuat::from_rotation_y(self.angle()),
+            rotation: rotation_from_axis_angle(DVec3::Y, self.angle()),
             scale: 1.0,
         };
         let people: Vec<Person> = people
