@@ -126,6 +126,12 @@ fn climbers(
     while let Some((ours, theirs)) =
         both([&mut one, &mut other], options, |tick| tick.tick, &mut met)?
     {
+        if ours.input != theirs.input {
+            return Ok(Comparison::InputsDiffer {
+                tick: ours.tick,
+                fighter: "the climber".to_owned(),
+            });
+        }
         let replayed = Replayed {
             state: theirs.state,
             palette_fingerprint: theirs.palette_fingerprint,
@@ -133,12 +139,6 @@ fn climbers(
         };
         if let Some(difference) = Difference::between(&ours, &replayed) {
             return Ok(Comparison::Differ(Box::new(difference)));
-        }
-        if ours.input != theirs.input {
-            return Ok(Comparison::InputsDiffer {
-                tick: ours.tick,
-                fighter: "the climber".to_owned(),
-            });
         }
     }
     Ok(met.ended())
@@ -311,12 +311,14 @@ pub fn print(options: &CompareOptions) -> Result<bool, CompareError> {
             false
         }
         Comparison::OrdersDiffer { tick } => {
-            println!("the orders of the step to tick {tick} differ; all is equal before");
+            println!(
+                "the orders of the step to tick {tick} differ; what both have before is equal"
+            );
             false
         }
         Comparison::InputsDiffer { tick, fighter } => {
             println!(
-                "the input of {fighter} for the step to tick {tick} differs; all is equal before"
+                "the input of {fighter} for the step to tick {tick} differs; what both have before is equal"
             );
             false
         }

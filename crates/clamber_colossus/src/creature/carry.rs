@@ -87,16 +87,17 @@ impl Creature {
         let looks = self.state.ticks.is_multiple_of(often * LOOKS);
         let among = around.terrain.len() as u32;
         let known = self.state.stands_on.take();
-        let known = known.filter(|point| point.among == among);
+        // What was found had already moved in that tick.
+        let reach = 2.0 * NEAR * self.size.height + went;
+        let is_near = |point: &GroundPoint| point.at.distance(self.state.position) <= reach;
+        let known = known.filter(|point| point.among == among && is_near(point));
         let found = if looks || known.is_none() {
             self.ground_point(around)
         } else {
             None
         };
-        // A lift may have left the place where it was looked for. What was found had already moved in that tick.
-        let reach = 2.0 * NEAR * self.size.height + went;
-        let known = known
-            .filter(|point| found.is_none() && point.at.distance(self.state.position) <= reach);
+        // A lift may have left the place where it is looked for.
+        let known = known.filter(|_| found.is_none());
         let mut point = known.or(found)?;
         let rests = |point: &GroundPoint| {
             let obstacle = around.terrain.get(point.obstacle as usize);

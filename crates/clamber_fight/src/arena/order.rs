@@ -2,12 +2,13 @@
 
 use clamber_climber::{Blow, Climber};
 use clamber_colossus::{Creature, CreatureConfig, Noise};
+use clamber_world::{Obstacle, ObstacleId};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::{Arena, ArenaEvent, CreatureId, KindId, LAST, Member, Outcome};
+use super::{Arena, ArenaEvent, CreatureId, KindId, LAST, Member, Outcome, creature_obstacle};
 use crate::error::ArenaError;
-use crate::fighter::{Fighter, FighterConfig, FighterId, is_inside};
+use crate::fighter::{Fighter, FighterConfig, FighterId, Room};
 use crate::projectile::ProjectileId;
 
 /// Something that a game does to an arena, beside what players do: falling rocks, fruit, checkpoints, scenes, waves of
@@ -34,7 +35,7 @@ pub enum Order {
         /// The fighter.
         fighter: FighterId,
     },
-    /// A creature joins, with the number [`Arena::next_creature`].
+    /// A creature joins, with the number [`Arena::next_creature`]. Who is where it begins goes aside.
     AddCreature {
         /// Its kind, which the arena knows by [`Arena::add_kind`].
         kind: KindId,
@@ -127,7 +128,8 @@ pub enum Order {
         /// The state's name in the brain's file.
         state: String,
     },
-    /// A creature is put somewhere, as if it had begun there: [`Creature::put`]. Whoever is on it is left behind.
+    /// A creature is put somewhere, as if it had begun there: [`Creature::put`]. Whoever is on it is left behind,
+    /// and who is where it comes goes aside.
     PlaceCreature {
         /// The creature.
         creature: CreatureId,
@@ -471,16 +473,22 @@ impl Arena {
         Ok(is_done)
     }
 
-    /// Those who are inside a creature that has just come there go out of it in this step.
+    /// Those on whom a creature has just come go aside in this step, but for those who rode it.
     fn make_room(&mut self, creature: CreatureId) {
         let Some(index) = self.creature_index(creature) else {
             return;
         };
         let skin = self.creatures[index].creature.surface();
+        let skins: [(ObstacleId, &dyn Obstacle); 1] = [(creature_obstacle(creature), skin)];
+        let room = Room {
+            obstacles: &skins,
+            bodies: &[],
+        };
         let living = self.fighters.iter_mut().filter(|one| !one.is_dead());
         for fighter in living {
-            let [low, high] = fighter.climber().body().ends;
-            if is_inside(skin, 0.5 * (low + high)) {
+            let support = fighter.climber().state().support;
+            let rides = support.is_some_and(|on| on.attachment.obstacle == skins[0].0);
+            if !rides && !room.is_free(&fighter.climber().body()) {
                 fighter.rest_mut().has_begun = false;
             }
         }

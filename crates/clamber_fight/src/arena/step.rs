@@ -77,8 +77,17 @@ impl Arena {
             .zip(inputs.iter().copied());
         scratch.inputs.extend(given);
         scratch.waiting.clear();
+        // Those of whom an order tells look at once.
+        let is_told = |id: FighterId| {
+            orders.iter().any(|order| match order {
+                Order::PlaceFighter { fighter, .. } | Order::Rise { fighter } => *fighter == id,
+                Order::AddCreature { .. } | Order::PlaceCreature { .. } => true,
+                _ => false,
+            })
+        };
         let waits = self.fighters.iter().filter(|one| !one.rest().has_begun);
-        scratch.waiting.extend(waits.map(Fighter::id));
+        let waits = waits.map(Fighter::id).filter(|id| !is_told(*id));
+        scratch.waiting.extend(waits);
         let stepped = self
             .follow(orders, joining)
             .and_then(|()| self.begin_fighters(terrain, &scratch.waiting))
@@ -145,8 +154,8 @@ impl Arena {
         people: &mut Vec<Person>,
     ) -> Result<(), ArenaError> {
         let ground: Vec<&dyn Obstacle> = terrain.iter().map(|(_, obstacle)| *obstacle).collect();
-        // What they have thrown flies when all of them are where they are in this tick, so that their order does not
-        // matter, and nothing but the snapshot does.
+        // What they have thrown flies when all of them are where they are in this tick: it meets the same whatever their
+        // order, and after a restore.
         for from_afar in [false, true] {
             for index in 0..self.creatures.len() {
                 let (before, rest) = self.creatures.split_at_mut(index);
@@ -154,6 +163,18 @@ impl Arena {
                     break;
                 };
                 let (id, creature) = (member.id, &mut member.creature);
+                let strikes = creature.attack().is_some()
+                    || creature.shots().next().is_some()
+                    || creature.waves().next().is_some();
+                if from_afar && !strikes {
+                    let report = creature.step_from_afar(&Surroundings::default());
+                    let events = report.events.iter();
+                    self.events.extend(events.map(|event| ArenaEvent::Creature {
+                        creature: id,
+                        event: event.clone(),
+                    }));
+                    continue;
+                }
                 let others = before.iter().chain(after.iter());
                 let others = others.map(|other| other.creature.surface());
                 let others: Vec<&dyn Obstacle> = others.map(|skin| skin as &dyn Obstacle).collect();
@@ -190,7 +211,14 @@ impl Arena {
         terrain: &[(ObstacleId, &dyn Obstacle)],
         waiting: &[FighterId],
     ) -> Result<(), ArenaError> {
-        let looks = self.tick == 1 || self.tick.is_multiple_of(looks_every(self.config.tick));
+        if self.fighters.iter().all(|one| one.rest().has_begun) {
+            return Ok(());
+        }
+        let every = looks_every(self.config.tick);
+        let looks = |id: FighterId| {
+            let turn = self.tick.wrapping_add(u64::from(id.0));
+            self.tick == 1 || turn.is_multiple_of(every)
+        };
         let mut obstacles: Vec<(ObstacleId, &dyn Obstacle)> = terrain.to_vec();
         for member in &self.creatures {
             obstacles.push((creature_obstacle(member.id), member.creature.surface()));
@@ -198,7 +226,8 @@ impl Arena {
         // Those that have begun keep their places; of others the first in order do.
         for index in 0..self.fighters.len() {
             let one = &self.fighters[index];
-            if one.rest().has_begun || (!looks && waiting.contains(&one.id())) {
+            let is_over = one.rest().has_begun || one.is_dead();
+            if is_over || (!looks(one.id()) && waiting.contains(&one.id())) {
                 continue;
             }
             let all = self.fighters.iter().enumerate();
@@ -324,7 +353,14 @@ impl Arena {
             let was_alive = creature.health() > 0.0;
             let (weak_point, plate) = creature.struck_at(&hit.at, hit.place);
             let by = self.fighters.iter_mut().find(|one| one.id() == hit.by);
-            let is_new = by.is_none_or(|by| by.hurts_anew(hit.weapon, id, [weak_point, plate]));
+            let points = creature.kind().weak_points().iter().enumerate();
+            let below = points.filter_map(|(index, point)| {
+                let radius = f64::from(point.radius) * creature.scale();
+                let is_near = creature.weak_point(index)?.distance(hit.place) <= radius;
+                (plate.is_some() && is_near).then_some(index)
+            });
+            let struck = [weak_point, plate];
+            let is_new = by.is_none_or(|by| by.hurts_anew(hit.weapon, id, struck, below));
             let damage = creature.hurt(&Wound {
                 place: hit.place,
                 at: hit.at,

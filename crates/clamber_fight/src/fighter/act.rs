@@ -210,6 +210,8 @@ impl Fighter {
                 return Ok(());
             };
             self.put(place)?;
+            self.state.act = Act::Ready;
+            self.state.hit_stop = 0.0;
         }
         self.state.has_begun = true;
         Ok(())
@@ -367,12 +369,14 @@ impl Fighter {
     }
 
     /// False for a cut that has hurt that weak point or plate before, or the plate above that weak point: one cut does its
-    /// damage once, however many joints move the skin there, and what is too much for a plate is not passed on.
+    /// damage once, however many joints move the skin there, and what is too much for a plate is not passed on to the weak
+    /// points `below`, which may open when it breaks.
     pub(crate) fn hurts_anew(
         &mut self,
         weapon: Weapon,
         creature: CreatureId,
         [weak_point, plate]: [Option<usize>; 2],
+        below: impl Iterator<Item = usize>,
     ) -> bool {
         let Act::Cut { harmed, .. } = &mut self.state.act else {
             return true;
@@ -384,7 +388,8 @@ impl Fighter {
         };
         let creature = creature_obstacle(creature);
         let is_new = !harmed.contains(&(creature, what));
-        for what in [plate, weak_point].into_iter().flatten() {
+        let below = below.map(|point| point as u32);
+        for what in [plate, weak_point].into_iter().flatten().chain(below) {
             if !harmed.contains(&(creature, what)) {
                 harmed.push((creature, what));
             }
@@ -432,7 +437,12 @@ impl Fighter {
         };
         let target = match target {
             Target::Open => self.stab_target(&tick.around),
-            target => follow(target, tick),
+            Target::Skin(_) => match follow(target, tick) {
+                // It is gone, as a plate that broke.
+                Target::Air | Target::Open => self.stab_target(&tick.around),
+                followed => followed,
+            },
+            Target::Air => Target::Air,
         };
         let until = seconds + tick.dt;
         if until < sword.strike {

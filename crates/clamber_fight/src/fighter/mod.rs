@@ -22,7 +22,7 @@ pub(crate) use around::Around;
 pub use blade::Blade;
 pub use config::{BowConfig, CrushConfig, FighterConfig, StoneConfig, SwordConfig};
 pub use frame::BodyFrame;
-pub(crate) use room::{Room, is_inside};
+pub(crate) use room::Room;
 pub use state::{Act, FighterState, Target};
 
 use crate::arena::hash_of;

@@ -104,7 +104,7 @@ impl Room<'_> {
 
 /// True if a place may be inside a skin: at least two of six rays from there leave it through its back. Inside not all do,
 /// since skins have holes and pieces that overlap; outside one may, through a hole.
-pub(crate) fn is_inside(skin: &dyn Obstacle, place: DVec3) -> bool {
+fn is_inside(skin: &dyn Obstacle, place: DVec3) -> bool {
     let ways = [DVec3::X, DVec3::Y, DVec3::Z].map(|way| [way, -way]);
     let leaves = ways.as_flattened().iter().filter(|way| {
         let hit = skin.cast_ray(place, **way, f64::INFINITY);

@@ -34,16 +34,7 @@ impl Fighter {
         let Some(sword) = &self.config.sword else {
             return Target::Air;
         };
-        let frame = BodyFrame::of(&self.climber);
-        let holds = self.climber.state().mode.is_holding();
-        let (along, into) = if holds {
-            (DVec3::Y, DVec3::Z)
-        } else {
-            (DVec3::Z, DVec3::NEG_Y)
-        };
-        let radius = self.config.climber.body.radius;
-        let from = frame.at((along * ALONG - into * ABOVE) * radius);
-        let into = frame.direction(into);
+        let (origin, from, into) = self.stab_way();
         let hits = around.skins.iter().filter_map(|(creature, skin)| {
             let hit = Obstacle::cast_ray(skin, from, into, sword.reach)?;
             Some((hit, creature, skin))
@@ -55,7 +46,7 @@ impl Fighter {
         let Some((hit, creature, skin)) = first else {
             return Target::Air;
         };
-        if around.hides(&[frame.origin, from, hit.point], Some(creature)) {
+        if around.hides(&[origin, from, hit.point], Some(creature)) {
             return Target::Air;
         }
         let obstacle = creature_obstacle(creature);
@@ -64,22 +55,33 @@ impl Fighter {
         Target::Skin(at.moved_to(at.point + into))
     }
 
-    /// Where a stab goes when it lands: to the skin for which it was meant, or, if that is gone, as a plate that broke, too
-    /// far away or behind something by now, to what is before it instead.
+    /// Where a stab goes when it lands: to the skin for which it was meant, or, if that is too far away or behind
+    /// something by now, to what is before it instead.
     pub(super) fn still_reached(&self, target: Target, around: &Around<'_>) -> Target {
-        let Some(sword) = &self.config.sword else {
-            return Target::Air;
+        let (Some(sword), Target::Skin(at)) = (&self.config.sword, &target) else {
+            return target;
         };
-        if let Target::Skin(at) = &target {
-            let origin = BodyFrame::of(&self.climber).origin;
-            let far = sword.reach
-                + (ALONG * ALONG + ABOVE * ABOVE).sqrt() * self.config.climber.body.radius;
-            let is_near = at.point.distance(origin) <= far;
-            if is_near && !around.hides(&[origin, at.point], creature_of(at.obstacle)) {
-                return target;
-            }
+        let (origin, from, _) = self.stab_way();
+        let far = sword.reach + from.distance(origin);
+        let is_near = at.point.distance(origin) <= far;
+        if is_near && !around.hides(&[origin, from, at.point], creature_of(at.obstacle)) {
+            return target;
         }
         self.stab_target(around)
+    }
+
+    /// Where a stab begins: at the body's middle; where it begins to look for skin, and in which direction.
+    fn stab_way(&self) -> (DVec3, DVec3, DVec3) {
+        let frame = BodyFrame::of(&self.climber);
+        let holds = self.climber.state().mode.is_holding();
+        let (along, into) = if holds {
+            (DVec3::Y, DVec3::Z)
+        } else {
+            (DVec3::Z, DVec3::NEG_Y)
+        };
+        let radius = self.config.climber.body.radius;
+        let from = frame.at((along * ALONG - into * ABOVE) * radius);
+        (frame.origin, from, frame.direction(into))
     }
 
     /// The first skin that the blade below a falling body meets between two places of the body. `None` if terrain or

@@ -24,7 +24,8 @@ pub struct FighterState {
     pub arrows: u32,
     /// State of its random stream, of which its arrows stray.
     pub random: u64,
-    /// False until its next step, in which it finds room where it is: at its beginning, and after it was placed.
+    /// False until it has found room where it is: at its beginning, after it was placed, and after a creature was put
+    /// there. It looks in its next step, and then now and then.
     pub has_begun: bool,
     /// Where it stands up again after its death: the centre of its climber's ball.
     pub spawn: DVec3,

@@ -157,12 +157,23 @@ fn cuts_in_a_car_are_as_at_rest() {
 fn a_stab_does_not_follow_what_leaves() {
     let edge: TriangleTerrain = block(Vec3::new(-9.0, -9.0, 0.0), Vec3::new(9.0, 0.5, 9.0));
     let lid: TriangleTerrain = block(Vec3::new(-9.0, 0.1, -9.0), Vec3::new(9.0, 0.2, -0.05));
-    for (sinks, closes) in [(0.0, false), (6.0, false), (20.0, false), (0.0, true)] {
-        // It lies still for six seconds, and sinks then.
+    let ways = [
+        (0.0, 0.0, false),
+        (0.0, -6.0, false),
+        (0.0, -20.0, false),
+        (0.0, 0.0, true),
+        // What was not there when it was struck is not struck.
+        (-2.0, 8.0, false),
+    ];
+    for (from, rises, closes) in ways {
+        // It lies still for six seconds, and sinks then, or rises to where the others lie.
+        let up = |y: f32| Vec3::Y * y;
+        let until = if rises > 0.0 { -from / rises } else { 3.0 };
         let keys = vec![
-            (0.0, Vec3::ZERO, Vec3::ONE),
-            (6.0, Vec3::ZERO, Vec3::ONE),
-            (9.0, Vec3::NEG_Y * 3.0 * sinks, Vec3::ONE),
+            (0.0, up(from), Vec3::ONE),
+            (6.0, up(from), Vec3::ONE),
+            (6.0 + until, up(from + until * rises), Vec3::ONE),
+            (30.0, up(from + until * rises), Vec3::ONE),
         ];
         let slab = Slab {
             keys,
@@ -185,7 +196,7 @@ fn a_stab_does_not_follow_what_leaves() {
             };
             found.extend(hits(arena.step(&[input], &terrain).unwrap()));
         }
-        let stays = sinks == 0.0 && !closes;
-        assert_eq!(found.len(), usize::from(stays), "{sinks} m/s, {closes}");
+        let stays = rises == 0.0 && !closes;
+        assert_eq!(found.len(), usize::from(stays), "{rises} m/s, {closes}");
     }
 }

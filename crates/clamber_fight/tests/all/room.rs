@@ -271,6 +271,16 @@ fn who_is_put_where_no_room_is_looks_again() {
                 arena.step(&idle, &terrain).unwrap();
                 assert!(!has_begun(&arena));
             }
+            // Who is put elsewhere while it waits looks at once.
+            let mut other = Arena::new(ArenaConfig::default()).unwrap();
+            other.add_creature(kind.clone(), config).unwrap();
+            other.restore_bytes(&arena.to_bytes().unwrap()).unwrap();
+            let put = Order::PlaceFighter {
+                fighter: other.fighters()[0].id(),
+                position: DVec3::new(9000.0, 1.0, 0.0),
+            };
+            other.step_with(&idle, &[put], &terrain, &rules).unwrap();
+            assert!(has_begun(&other), "joins: {joins}, {waits} ticks");
             let away = Order::PlaceCreature {
                 creature: CreatureId(0),
                 position: DVec3::new(1e5, 0.0, 0.0),
@@ -293,7 +303,12 @@ fn creatures_that_are_put_on_people_make_room() {
     let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &ground)];
     let rules = StepRules::default();
     let kind = giant();
-    for scale in [0.5, 1.0, 7.0] {
+    let offsets = [-1.5, -0.8, 0.0, 0.8, 1.5];
+    let all = offsets
+        .iter()
+        .flat_map(|x| offsets.map(|z| DVec3::new(*x, 0.0, z)));
+    let cases = [0.5, 1.0, 7.0].map(|scale| all.clone().map(move |off| (scale, off * scale)));
+    for (scale, off) in cases.into_iter().flatten() {
         let foot = {
             let mut arena = arena();
             let config = CreatureConfig {
@@ -320,20 +335,23 @@ fn creatures_that_are_put_on_people_make_room() {
         }
         let put = Order::PlaceCreature {
             creature: CreatureId(0),
-            position: -foot.with_y(0.0),
+            position: off - foot.with_y(0.0),
             yaw: 0.0,
         };
         let events = arena.step_with(&idle, &[put], &terrain, &rules).unwrap();
         let is_struck = |event: &ArenaEvent| matches!(event, ArenaEvent::Struck { .. });
-        assert!(!events.iter().any(is_struck), "{scale}");
+        assert!(!events.iter().any(is_struck), "{scale} {off}");
         let skin = arena.creature(CreatureId(0)).unwrap().surface();
         let body = arena.fighters()[0].climber().body();
         let middle = 0.5 * (body.ends[0] + body.ends[1]);
-        assert!(!skin.in_world().is_inside(middle), "{scale}: {middle}");
+        assert!(
+            !skin.in_world().is_inside(middle),
+            "{scale} {off}: {middle}"
+        );
         let mut contacts = Vec::new();
         skin.overlap_capsule(&body, &mut contacts);
         let near = contacts.iter().map(|contact| contact.distance);
         let near = near.fold(f64::INFINITY, f64::min);
-        assert!(near > 0.7 * body.radius, "{scale}: {near} m");
+        assert!(near > 0.7 * body.radius, "{scale} {off}: {near} m");
     }
 }

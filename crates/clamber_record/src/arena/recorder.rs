@@ -105,6 +105,7 @@ impl<W: Write> ArenaRecorder<W> {
         orders: &[Order],
         terrain: &[(ObstacleId, &dyn Obstacle)],
     ) -> Result<(), RecordError> {
+        self.check(arena)?;
         let joins = |is: fn(&Order) -> bool| orders.iter().filter(|order| is(order)).count();
         let joined = [
             joins(|order| matches!(order, Order::AddCreature { .. })),
@@ -121,6 +122,15 @@ impl<W: Write> ArenaRecorder<W> {
             return Err(RecordError::Inputs { fighters, found });
         }
         self.take(arena, (inputs, orders), terrain)
+    }
+
+    /// Refuses another arena, a tick that does not follow the last one, and every tick once writing has failed.
+    fn check(&self, arena: &Arena) -> Result<(), RecordError> {
+        let (recorded, found) = (self.memory.info.config, arena.config_hash());
+        if recorded != found {
+            return Err(RecordError::OtherArena { recorded, found });
+        }
+        self.chunks.check(arena.tick())
     }
 
     /// Gives names to who has joined.
@@ -159,12 +169,8 @@ impl<W: Write> ArenaRecorder<W> {
         inputs: (&[ClimberInput], &[Order]),
         terrain: &[(ObstacleId, &dyn Obstacle)],
     ) -> Result<(), RecordError> {
-        let (recorded, found) = (self.memory.info.config, arena.config_hash());
-        if recorded != found {
-            return Err(RecordError::OtherArena { recorded, found });
-        }
+        self.check(arena)?;
         let tick = arena.tick();
-        self.chunks.check(tick)?;
         self.name_all(arena);
         self.memory.fighters = arena.fighters().len();
         let is_due = |every: u32| every > 0 && tick.is_multiple_of(u64::from(every));

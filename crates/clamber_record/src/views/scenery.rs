@@ -106,6 +106,9 @@ impl Shape {
 /// What a point and an index take in a message, bytes, at most.
 const BYTES: [usize; 2] = [29, 5];
 
+/// What a mesh takes beside those and its name.
+const FIXED: usize = 256;
+
 /// All meshes that were recorded. A viewer that is wound back shows the last message alone, so each has all of them.
 #[derive(Debug, Default)]
 pub(crate) struct Sceneries {
@@ -163,7 +166,10 @@ impl Sceneries {
         let before = self.entities.len();
         for one in taken {
             let Some(shape) = one.shape else { continue };
-            let bytes = shape.points.len() * BYTES[0] + shape.indices.len() * BYTES[1];
+            let bytes = shape.points.len() * BYTES[0]
+                + shape.indices.len() * BYTES[1]
+                + one.name.len()
+                + FIXED;
             if self.bytes + bytes > MOST {
                 self.is_full = true;
                 continue;

@@ -213,6 +213,7 @@ pub fn replay(recording: &Recording, from: Option<u64>) -> Result<Replay, Battle
             None => played,
             Some(whole) => Replay {
                 agreed: whole.agreed + played.agreed,
+                with_rocks: whole.with_rocks && played.with_rocks,
                 difference: played.difference,
                 ..whole
             },
