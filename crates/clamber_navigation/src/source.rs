@@ -35,13 +35,20 @@ const RATES: std::ops::RangeInclusive<f64> = 1e-4..=1e4;
 
 impl GraphSource<'_> {
     pub(crate) fn check(&self) -> Result<(), NavigationError> {
-        if RATES.contains(&self.rate) {
+        if !RATES.contains(&self.rate) {
+            return Err(NavigationError::OutOfRange {
+                name: "rate",
+                range: "from 0.0001 to 10,000",
+                found: self.rate,
+            });
+        }
+        if self.ground.is_finite() {
             return Ok(());
         }
         Err(NavigationError::OutOfRange {
-            name: "rate",
-            range: "from 0.0001 to 10,000",
-            found: self.rate,
+            name: "ground",
+            range: "finite",
+            found: self.ground,
         })
     }
 }

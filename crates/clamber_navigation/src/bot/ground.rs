@@ -343,11 +343,14 @@ impl Approach {
             view.spot(&graph.patches()[graph.entries()[entry].patch])
                 .point
         };
-        // When it comes to an entry; `None` to one that is too high, or did not work.
+        // When it comes to an entry; `None` to one that is too high, did not work, or is not there, as on a plate that broke.
         let comes = |entry: usize| {
             let is_avoided = self.avoided.iter().any(|(other, _)| *other == entry);
+            if is_avoided || !graph.is_there(graph.entries()[entry].patch, view.surface) {
+                return None;
+            }
             let place = place(entry);
-            if is_avoided || place.dot(climber.up()) - feet > highest {
+            if place.dot(climber.up()) - feet > highest {
                 return None;
             }
             let way = place - state.position;

@@ -150,7 +150,7 @@ impl Bot {
         let state = view.climber.state();
         let before = self.rests;
         let least = if before {
-            self.config.rested
+            self.config.rested.min(1.0)
         } else {
             self.config.tired
         };

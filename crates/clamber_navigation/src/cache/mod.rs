@@ -6,7 +6,7 @@ mod sound;
 pub(crate) use sound::divides;
 
 use std::fs::File;
-use std::io::{self, Write as _};
+use std::io::{self, Read as _, Write as _};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -101,7 +101,7 @@ impl ClimbGraph {
         config.check()?;
         let key = key::key(source, config);
         let file = folder.join(format!("{key:032x}.climbgraph"));
-        let known = std::fs::read(&file).ok();
+        let known = contents(&file);
         if let Some(graph) = known.and_then(|bytes| read(&bytes, key, source, config)) {
             return Ok(CachedGraph {
                 graph,
@@ -125,6 +125,24 @@ impl ClimbGraph {
 /// What a file begins with: a name, then the key, and a hash of the rest.
 const MAGIC: &[u8; 16] = b"clamber graph 1\n";
 
+/// Files of a graph are no larger than this, bytes: that of the giant has some megabytes.
+const LARGEST: u64 = 1 << 30;
+
+/// So many names are tried for a file that is being written.
+const MOST_PARTS: u32 = 1000;
+
+/// What is in a plain file of a graph's size; `None` of anything else, as a device or a pipe.
+fn contents(file: &Path) -> Option<Vec<u8>> {
+    let about = std::fs::metadata(file).ok()?;
+    if !about.is_file() || about.len() > LARGEST {
+        return None;
+    }
+    let mut bytes = Vec::new();
+    let opened = File::open(file).ok()?;
+    opened.take(LARGEST).read_to_end(&mut bytes).ok()?;
+    Some(bytes)
+}
+
 fn save(graph: &ClimbGraph, key: u128, folder: &Path, file: &Path) -> io::Result<()> {
     let rest = postcard::to_stdvec(graph).map_err(io::Error::other)?;
     let mut bytes = MAGIC.to_vec();
@@ -135,9 +153,19 @@ fn save(graph: &ClimbGraph, key: u128, folder: &Path, file: &Path) -> io::Result
     // Under a name of its own first: nobody reads half a file.
     static COUNT: AtomicU64 = AtomicU64::new(0);
     let count = COUNT.fetch_add(1, Ordering::Relaxed);
-    let half = file.with_extension(format!("{}-{count}.part", std::process::id()));
-    // A file of this name that is there already is somebody else's.
-    let mut part = File::create_new(&half)?;
+    // A file of this name that is there already is somebody else's, or of a process that was killed.
+    let mut attempt = 0;
+    let (half, mut part) = loop {
+        let name = format!("{}-{count}-{attempt}.part", std::process::id());
+        let half = file.with_extension(name);
+        match File::create_new(&half) {
+            Ok(part) => break (half, part),
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists && attempt < MOST_PARTS => {
+                attempt += 1;
+            }
+            Err(error) => return Err(error),
+        }
+    };
     let written = part.write_all(&bytes);
     drop(part);
     let written = written.and_then(|()| std::fs::rename(&half, file));

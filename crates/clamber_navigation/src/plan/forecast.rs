@@ -50,7 +50,7 @@ impl Forecast {
         {
             // Times of the clip pass at its rate.
             let from = from / graph.clips.rate() % graph.clips.seconds(clip);
-            let first = in_slices(from);
+            let first = (from / SLICE).round() as usize;
             let slices = first..first + in_slices(seconds).max(1);
             let slices = slices.filter_map(|slice| graph.clips.slice(clip, slice));
             let room = MOST.saturating_sub(self.slices.len());

@@ -234,7 +234,11 @@ impl View<'_> {
         if !lasts.is_finite() || self.plan(goals, enough).is_none() {
             return Missing::Way;
         }
-        while lasts / enough - lasts / short > 0.1 {
+        // Of a climber that lasts for ages, to the last bit.
+        for _ in 0..64 {
+            if lasts / enough - lasts / short <= 0.1 {
+                break;
+            }
             let strain = 2.0 / (1.0 / enough + 1.0 / short);
             if self.plan(goals, strain).is_some() {
                 enough = strain;

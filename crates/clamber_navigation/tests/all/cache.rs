@@ -167,3 +167,44 @@ fn many_may_use_a_folder_at_the_same_time() {
     let again = cached(&folder, &body(), &climber());
     assert!(matches!(again.origin, GraphOrigin::Read));
 }
+
+/// What processes left that were killed does not keep graphs from being saved, and what is no plain file is not read.
+#[test]
+#[cfg(unix)]
+fn leftovers_and_devices_do_no_harm() {
+    let folder = folder("leftovers");
+    let built = cached(&folder, &body(), &climber());
+    assert!(matches!(built.origin, GraphOrigin::Built));
+    std::fs::remove_file(&built.file).unwrap();
+    // Those of this process, whatever their numbers are by now.
+    for count in 0..200 {
+        let name = format!("{}-{count}-0.part", std::process::id());
+        std::fs::write(built.file.with_extension(name), "half").unwrap();
+    }
+    let again = cached(&folder, &body(), &climber());
+    assert!(matches!(again.origin, GraphOrigin::Built));
+    let read = cached(&folder, &body(), &climber());
+    assert!(matches!(read.origin, GraphOrigin::Read));
+    // A link to a device without an end.
+    std::fs::remove_file(&built.file).unwrap();
+    std::os::unix::fs::symlink("/dev/zero", &built.file).unwrap();
+    let again = cached(&folder, &body(), &climber());
+    assert!(matches!(again.origin, GraphOrigin::Built));
+    assert!(std::fs::metadata("/dev/zero").is_ok());
+}
+
+#[test]
+fn a_ground_that_is_nowhere_is_refused() {
+    let go_on = |_| ControlFlow::Continue(());
+    for ground in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        let refused = body().with_source(|source| {
+            let source = clamber_navigation::GraphSource { ground, ..*source };
+            ClimbGraph::build(&source, &climber(), go_on).map(drop)
+        });
+        let is_ground = matches!(
+            refused,
+            Err(NavigationError::OutOfRange { name: "ground", .. })
+        );
+        assert!(is_ground, "{ground}: {refused:?}");
+    }
+}
