@@ -493,9 +493,11 @@ impl Bot {
                 (false, plan)
             }
         };
-        // A way that is blocked for now is one.
+        // A way that is blocked for now is one; one over skin that is gone, or below a plate, is none.
+        let is_there = |_: usize, to: usize| self.graph.is_there(to, view.surface);
         let is_lost = plan.is_none() && {
             let any = Around {
+                is_open: &is_there,
                 lands: &lands,
                 ..Around::default()
             };

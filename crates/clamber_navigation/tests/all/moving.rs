@@ -12,6 +12,7 @@ use clamber_navigation::{
 };
 use clamber_surface::geometry::Similarity;
 use clamber_surface::mesh::SurfaceKind::Fur;
+use clamber_surface::mesh::TriangleId;
 use clamber_surface::rig::{Channel, Clip, Interpolation, JointId, Keyframes};
 use clamber_world::{HalfSpace, Obstacle, ObstacleId};
 use glam::{DVec3, Vec3};
@@ -181,4 +182,58 @@ fn who_finds_no_way_says_so_and_tries_another_one() {
     let lost = lost.expect("it never says so");
     assert!((3.0..4.5).contains(&lost), "{lost}");
     assert!(there.is_some(), "{:?}", who.state());
+}
+
+/// Skin that is gone, as a plate that was shot off, is no way: who has no other one says so.
+#[test]
+fn a_way_over_skin_that_is_gone_is_none() {
+    for gone in [false, true] {
+        let body = wall(8.0);
+        let (graph, _) = body.report(&climber());
+        let mut surface = body.surface();
+        let goal = graph.goal(&graph.patches_near(DVec3::new(0.0, 7.0, 0.0), 1.0));
+        if gone {
+            for (index, corners) in body.triangles.iter().enumerate() {
+                let mut heights = corners.iter().map(|c| body.positions[*c as usize].y);
+                if heights.all(|y| (4.0..6.5).contains(&y)) {
+                    surface.disable_triangle(TriangleId(index as u32)).unwrap();
+                }
+            }
+        }
+        let mut bot = Bot::new(Arc::new(graph), BotConfig::default());
+        let radius = climber().climber.body.radius;
+        let mut who = Climber::new(climber().climber, DVec3::new(0.0, 2.0, 1.02 * radius)).unwrap();
+        let floor = HalfSpace::below(0.0);
+        let rule = |query: &ContactQuery<'_>| query.usual().with_grip(query.id == ObstacleId(1));
+        let (mut lost, mut there) = (None, None);
+        for tick in 0..1200 {
+            let seconds = f64::from(tick) / 60.0;
+            let view = View {
+                seconds,
+                climber: &who,
+                creature: ObstacleId(1),
+                surface: &surface,
+                goal: &goal,
+                forecast: &Forecast::still(),
+                danger: Danger::None,
+                shake_ahead: 0.0,
+            };
+            if bot.is_there(&view) {
+                there.get_or_insert(seconds);
+            }
+            let input = bot.input(&view);
+            if bot.is_lost(seconds) {
+                lost.get_or_insert(seconds);
+            }
+            let obstacles: [(ObstacleId, &dyn Obstacle); 2] =
+                [(ObstacleId(0), &floor), (ObstacleId(1), &surface)];
+            who.step_with(&input, &obstacles, &StepRules::by(&rule), 1.0 / 60.0)
+                .unwrap();
+        }
+        assert_eq!(
+            [lost.is_some(), there.is_some()],
+            [gone, !gone],
+            "{lost:?} {there:?}"
+        );
+    }
 }
