@@ -1,11 +1,14 @@
 //! Every publishable crate as crates.io would get it: metadata, licences, nothing that does not belong there. Nightly,
-//! it builds from its package alone.
+//! it builds from its package alone. And the stored locks of the workspaces that stand beside the main one, which are built
+//! nightly, fit their manifests.
 
 use cargo_metadata::camino::Utf8Path;
 use cargo_metadata::{Metadata, Package};
 
 use crate::features::published;
+use crate::files::files;
 use crate::run::{IGNORE_RUST_VERSION, cargo, cargo_output, program};
+use crate::workspaces;
 
 const LICENCES: [&str; 2] = ["LICENSE-MIT", "LICENSE-APACHE"];
 
@@ -28,6 +31,25 @@ pub(crate) fn check(metadata: &Metadata) -> Result<(), String> {
         check_metadata(package)?;
         check_licences(metadata, package)?;
         check_files(package)?;
+    }
+    check_locks(metadata)
+}
+
+/// A dependency that a crate gets is in the locks of all workspaces that have the crate.
+fn check_locks(metadata: &Metadata) -> Result<(), String> {
+    let stored = files(&metadata.workspace_root)?;
+    for workspace in workspaces::all(metadata)? {
+        let lock = Utf8Path::new(&workspace.manifest).with_file_name("Cargo.lock");
+        if !stored.contains(&lock) {
+            continue;
+        }
+        let manifest = metadata.workspace_root.join(&workspace.manifest);
+        let update = ["update", "--quiet", "--workspace", "--locked"];
+        let locked = cargo(&[&update[..], &["--manifest-path", manifest.as_str()]].concat());
+        locked.map_err(|error| {
+            let manifest = &workspace.manifest;
+            format!("{error}: `cargo update --workspace --manifest-path {manifest}` mends its lock")
+        })?;
     }
     Ok(())
 }
