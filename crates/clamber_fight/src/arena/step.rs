@@ -163,16 +163,10 @@ impl Arena {
                     break;
                 };
                 let (id, creature) = (member.id, &mut member.creature);
-                let strikes = creature.attack().is_some()
-                    || creature.shots().next().is_some()
-                    || creature.waves().next().is_some();
-                if from_afar && !strikes {
-                    let report = creature.step_from_afar(&Surroundings::default());
-                    let events = report.events.iter();
-                    self.events.extend(events.map(|event| ArenaEvent::Creature {
-                        creature: id,
-                        event: event.clone(),
-                    }));
+                let is_idle = creature.attack().is_none()
+                    && creature.shots().next().is_none()
+                    && creature.waves().next().is_none();
+                if from_afar && is_idle {
                     continue;
                 }
                 let others = before.iter().chain(after.iter());
@@ -188,17 +182,19 @@ impl Arena {
                     people,
                     noises: &self.noises,
                 };
-                if !from_afar {
+                if from_afar {
+                    creature.step_from_afar(&around);
+                } else {
                     creature.step_itself(&around)?;
-                    continue;
                 }
-                let report = creature.step_from_afar(&around);
-                self.events
-                    .extend(report.events.iter().map(|event| ArenaEvent::Creature {
-                        creature: id,
-                        event: event.clone(),
-                    }));
             }
+        }
+        for Member { id, creature, .. } in &self.creatures {
+            let events = creature.report().events.iter();
+            self.events.extend(events.map(|event| ArenaEvent::Creature {
+                creature: *id,
+                event: event.clone(),
+            }));
         }
         self.noises.clear();
         Ok(())

@@ -268,9 +268,13 @@ impl Fighter {
         }
         if tick.is_held {
             // Time stands still for the blade, but not for the skin that it is in.
-            if let Act::Strike { target, .. } | Act::PullOut { target, .. } = &mut self.state.act {
-                *target = follow(std::mem::replace(target, Target::Air), tick);
+            let mut act = std::mem::take(&mut self.state.act);
+            match &mut act {
+                Act::Strike { target, .. } => *target = self.aimed(target.clone(), tick),
+                Act::PullOut { target, .. } => *target = follow(target.clone(), tick),
+                _ => {}
             }
+            self.state.act = act;
             return;
         }
         let dt = tick.dt;
@@ -425,6 +429,19 @@ impl Fighter {
         }
     }
 
+    /// Where a stab goes after this tick: with the skin, to other skin if that is gone, as a plate that broke, or into the
+    /// air.
+    fn aimed(&self, target: Target, tick: &Wielding<'_>) -> Target {
+        match target {
+            Target::Air => Target::Air,
+            Target::Open => self.stab_target(&tick.around),
+            Target::Skin(_) => match follow(target, tick) {
+                Target::Skin(at) => Target::Skin(at),
+                Target::Air | Target::Open => self.stab_target(&tick.around),
+            },
+        }
+    }
+
     fn go_on_striking(
         &mut self,
         [seconds, charge]: [f64; 2],
@@ -435,15 +452,7 @@ impl Fighter {
         let Some(sword) = self.config.sword else {
             return Act::Ready;
         };
-        let target = match target {
-            Target::Open => self.stab_target(&tick.around),
-            Target::Skin(_) => match follow(target, tick) {
-                // It is gone, as a plate that broke.
-                Target::Air | Target::Open => self.stab_target(&tick.around),
-                followed => followed,
-            },
-            Target::Air => Target::Air,
-        };
+        let target = self.aimed(target, tick);
         let until = seconds + tick.dt;
         if until < sword.strike {
             return Act::Strike {

@@ -234,7 +234,7 @@ impl View<'_> {
         if !lasts.is_finite() || self.plan(goals, enough).is_none() {
             return Missing::Way;
         }
-        // Of a climber that lasts for ages, to the last bit.
+        // Halving ends where numbers do, for a climber that lasts for ages.
         for _ in 0..64 {
             if lasts / enough - lasts / short <= 0.1 {
                 break;

@@ -92,8 +92,9 @@ impl<W: Write> ArenaRecorder<W> {
     /// # Errors
     /// [`RecordError::Order`] unless it was stepped once since the last call, [`RecordError::Inputs`] for a wrong number of
     /// inputs, [`RecordError::OtherArena`] if it is another arena. Such a tick is not recorded, but recording can go
-    /// on. [`RecordError::Joined`] if creatures or fighters were added between two ticks other than by an order, as before the
-    /// first step; recording cannot go on then. [`RecordError::Write`] or another error if an earlier chunk could not be written, and [`RecordError::Ended`]
+    /// on. [`RecordError::Joined`] if creatures or fighters were added between two ticks other than by an order, as
+    /// before the first step: recording cannot go on then. [`RecordError::Write`] or another error if an earlier chunk
+    /// could not be written, and [`RecordError::Ended`]
     /// at every call after that.
     ///
     /// # Panics

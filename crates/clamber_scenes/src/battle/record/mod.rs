@@ -3,7 +3,6 @@
 mod scenery;
 
 use std::io::Write;
-use std::ops::RangeInclusive;
 use std::path::Path;
 
 use clamber_record::{
@@ -198,37 +197,22 @@ pub struct Replay {
 /// [`BattleError`] if the battle cannot be made again, for example because the creature's file is missing or has
 /// changed, or the recording has no such tick.
 pub fn replay(recording: &Recording, from: Option<u64>) -> Result<Replay, BattleError> {
-    let mut whole: Option<Replay> = None;
-    let runs: Vec<RangeInclusive<u64>> = recording.runs().collect();
-    let all = runs.first().map_or(0..=0, |run| run.clone());
-    let begin = from.unwrap_or(*all.start());
-    let mut later = runs.iter().filter(|run| *run.end() >= begin).cloned();
-    let first = later.next().unwrap_or(all);
+    let mut runs = recording
+        .runs()
+        .filter(|run| from.is_none_or(|from| *run.end() >= from));
+    let last = runs.next().map_or(u64::MAX, |run| *run.end());
+    let mut whole = replay_run(recording, from, last)?;
     // After a gap it goes on from what was saved there.
-    let rest = later.map(|run| (Some(*run.start()), run));
-    for (from, run) in [(from, first)].into_iter().chain(rest) {
-        let played = replay_run(recording, from, *run.end())?;
-        let is_over = played.difference.is_some();
-        whole = Some(match whole {
-            None => played,
-            Some(whole) => Replay {
-                agreed: whole.agreed + played.agreed,
-                with_rocks: whole.with_rocks && played.with_rocks,
-                difference: played.difference,
-                ..whole
-            },
-        });
-        if is_over {
+    for run in runs {
+        if whole.difference.is_some() {
             break;
         }
+        let played = replay_run(recording, Some(*run.start()), *run.end())?;
+        whole.agreed += played.agreed;
+        whole.with_rocks &= played.with_rocks;
+        whole.difference = played.difference;
     }
-    whole.ok_or_else(|| {
-        RecordError::NoTick {
-            asked: begin,
-            ticks: None,
-        }
-        .into()
-    })
+    Ok(whole)
 }
 
 /// [`replay`] of ticks without a gap, up to `last`.
