@@ -270,8 +270,8 @@ impl Fighter {
             // Time stands still for the blade, but not for the skin that it is in.
             let mut act = std::mem::take(&mut self.state.act);
             match &mut act {
-                Act::Strike { target, .. } => *target = self.aimed(target.clone(), tick),
-                Act::PullOut { target, .. } => *target = follow(target.clone(), tick),
+                Act::Strike { target, .. } => *target = self.aimed(*target, tick),
+                Act::PullOut { target, .. } => *target = follow(*target, tick),
                 _ => {}
             }
             self.state.act = act;
