@@ -5,7 +5,7 @@ use std::sync::Arc;
 use clamber_surface::geometry::Similarity;
 use clamber_surface::mesh::ColliderMesh;
 use clamber_surface::rig::Palette;
-use clamber_surface::surface::SkinnedSurface;
+use clamber_surface::surface::{SkinnedSurface, SurfaceEdit};
 
 use crate::NavigationError;
 
@@ -38,6 +38,12 @@ impl FutureSkin {
             surface: SkinnedSurface::new(mesh),
             palette: Palette::default(),
         }
+    }
+
+    /// Removes parts of the skin, as they were from the creature's own, or puts them back:
+    /// [`SkinnedSurface::edit`]. Nobody lands on a plate that is gone.
+    pub fn edit<R>(&mut self, edits: impl FnOnce(&mut SurfaceEdit<'_>) -> R) -> R {
+        self.surface.edit(edits)
     }
 
     /// The skin as posed last.

@@ -23,7 +23,11 @@ pub(super) struct Limbs {
 impl Limbs {
     /// Remembers the limb that has thrown it off.
     pub(super) fn watch(&mut self, config: &BotConfig, view: &View<'_>) {
-        self.avoided.retain(|(_, until)| *until > view.seconds);
+        // Time may have begun anew.
+        self.avoided.retain(|(_, until)| {
+            let left = until - view.seconds;
+            left > 0.0 && left <= AVOIDS
+        });
         let before = self.shaken_on.take();
         let state = view.climber.state();
         if let Some((triangle, _)) = view.material() {

@@ -129,13 +129,13 @@ impl Bot {
         goal.binary_search(&patch).is_ok() || goal.iter().any(is_near)
     }
 
-    /// It forgets its way: its goal is another one, or it was put elsewhere.
+    /// It forgets its way: its goal is another one, or it was put elsewhere. It remembers for a minute which limbs threw
+    /// it off.
     pub fn forget(&mut self) {
         self.plan = None;
         self.planned = f64::NEG_INFINITY;
         self.approach = Approach::default();
         self.blocked.clear();
-        self.limbs = Limbs::default();
         (self.hangs, self.lost) = (None, None);
         (self.rests, self.finds_calm) = (false, true);
         self.shimmies = (DVec3::ZERO, f64::NEG_INFINITY);
@@ -191,10 +191,6 @@ impl Bot {
         if !matches!(state.mode, ClimberMode::Hanging | ClimberMode::LedgeHanging) {
             self.hangs = None;
         }
-        let holds = ClimberInput {
-            grip: true,
-            ..ClimberInput::IDLE
-        };
         if matches!(state.mode, ClimberMode::Falling | ClimberMode::Sliding)
             && let Some(input) = self.jumps.input(view)
         {
@@ -209,7 +205,7 @@ impl Bot {
             ClimberMode::Hanging => self.hang(view),
             _ => match self.patch_below(view) {
                 Some(patch) => self.climb(view, patch),
-                None if view.is_on_creature() => holds,
+                None if view.is_on_creature() => self.strays(view),
                 None => self.come(view),
             },
         }
@@ -333,6 +329,7 @@ impl Bot {
             return hold;
         };
         self.approach.drops = false;
+        self.lost = None;
         if let Some(wanted) = progress.rests_until() {
             let is_level = stands || view.is_level(AS_PLANNED);
             let needs = state.stamina < 1.0 && state.stamina < wanted + self.config.reserve;
@@ -521,6 +518,20 @@ impl Bot {
         match same {
             Some(before) => *before = blocked,
             None => self.blocked.push(blocked),
+        }
+    }
+
+    /// It is where the graph knows no place near it: if that lasts, it is lost.
+    fn strays(&mut self, view: &View<'_>) -> ClimberInput {
+        let first = self.lost.map_or(view.seconds, |[first, _]| first);
+        self.lost = Some([first, view.seconds]);
+        if self.is_lost(view.seconds) {
+            self.approach.drops = true;
+            return self.approach.leave(view);
+        }
+        ClimberInput {
+            grip: true,
+            ..ClimberInput::IDLE
         }
     }
 

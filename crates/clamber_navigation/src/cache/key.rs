@@ -7,7 +7,7 @@ use xxhash_rust::xxh3::Xxh3;
 use crate::{GraphConfig, GraphSource};
 
 /// To be raised when graphs of the same creature change.
-const FORMAT: u32 = 5;
+const FORMAT: u32 = 6;
 
 /// Takes text.
 struct Digest(Xxh3);

@@ -176,15 +176,13 @@ impl ClipFacts {
         after.saturating_sub(1)
     }
 
-    /// True if a slice follows on another one within a clip.
+    /// True if a slice follows on another one within a clip. The last slice of a loop is shorter than others, so that it
+    /// may be passed over.
     pub(crate) fn goes_on(&self, slice: usize, next: usize) -> bool {
         self.clips.get(self.clip_of(slice)).is_some_and(|clip| {
-            let is_last = slice + 1 >= clip.first + clip.count;
-            if is_last {
-                clip.loops && next == clip.first
-            } else {
-                next == slice + 1
-            }
+            let left = (clip.first + clip.count).saturating_sub(slice + 1);
+            let begins_anew = clip.loops && left <= 1 && next == clip.first;
+            begins_anew || left > 0 && next == slice + 1
         })
     }
 
@@ -287,9 +285,6 @@ impl<'a> Played<'a> {
     ) -> Result<bool, NavigationError> {
         let duration = self.clip.duration();
         let ticks = (lasts / TICK) as usize;
-        if ticks < STRIDE {
-            return Ok(false);
-        }
         let mut within = vec![0.0f64; seats.len()];
         for tick in (1..=ticks).step_by(STRIDE) {
             if tick % TELLS < STRIDE {
@@ -303,7 +298,7 @@ impl<'a> Played<'a> {
             }
         }
         // A tick with the seam in its middle.
-        let half = 0.5 * TICK * rate;
+        let half = (0.5 * TICK * rate).min(duration);
         let end = self.places(seats, duration - half)?;
         let start = self.places(seats, half)?;
         let tall = end.iter().map(|place| place.y);

@@ -62,7 +62,8 @@ pub struct PointReport {
     pub name: String,
     /// Where it is at rest, in the world.
     pub place: DVec3,
-    /// True if a climber gets there from the ground on the creature at rest, with the strength that it has.
+    /// True if a climber gets there from the ground on the creature at rest, with the strength that it has; to the skin
+    /// below the plates that cover it, as if they were gone by then.
     pub reachable: bool,
     /// The time that it takes, seconds, rests included; `None` if it is not reachable.
     pub seconds: Option<f64>,
@@ -191,12 +192,19 @@ impl View<'_> {
         let radius = f64::from(point.radius) * source.world_from_model.scale;
         let within = radius + NEAR * self.survey.config.radius();
         let pieces = &self.survey.pieces;
-        let goals: Vec<usize> = (0..pieces.len())
-            .filter(|index| {
-                let piece = &pieces[*index];
-                piece.seat.is_some() && piece.point.distance(place) <= within
-            })
-            .collect();
+        let is_near = |index: &usize| {
+            let piece = &pieces[*index];
+            piece.seat.is_some() && piece.point.distance(place) <= within
+        };
+        let is_plate = |index: &usize| {
+            let triangle = &pieces[*index].triangle;
+            source.plates.iter().any(|plate| plate.contains(triangle))
+        };
+        let near: Vec<usize> = (0..pieces.len()).filter(is_near).collect();
+        // Who is on a plate above it is not there yet, but if there is nothing else, the plate is what is meant.
+        let bare = near.iter().copied().filter(|index| !is_plate(index));
+        let bare: Vec<usize> = bare.collect();
+        let goals = if bare.is_empty() { near } else { bare };
         let is_reached = goals.iter().any(|piece| self.has(*piece));
         let plan = is_reached.then(|| self.plan(&goals, 1.0)).flatten();
         let missing = match (&plan, is_reached) {
@@ -359,8 +367,9 @@ impl View<'_> {
         let reach = survey.config.reach();
         let mut settled = vec![false; survey.pieces.len()];
         let mut open = BinaryHeap::new();
-        let first = |piece| Turn {
-            arm: reach,
+        // Where it stands there may be nothing to hold on to.
+        let first = |piece: usize| Turn {
+            arm: reach.max(survey.arms[piece]),
             is_measured: true,
             from: piece,
             to: piece,
@@ -372,6 +381,10 @@ impl View<'_> {
         );
         while let Some(turn) = open.pop() {
             let Turn { arm, from, to, .. } = turn;
+            // All that are left ask for as much.
+            if !arm.is_finite() {
+                break;
+            }
             if settled[to] || !survey.can_hold(to, arm) {
                 continue;
             }

@@ -1,7 +1,11 @@
 //! Bodies of known area: how much of them is reached.
 
+use std::ops::ControlFlow;
+
 use crate::support::{Body, ball, climber};
+use clamber_navigation::{ClimbReport, GraphSource};
 use clamber_surface::mesh::SurfaceKind::{Fur, Skin, Stone};
+use clamber_surface::mesh::TriangleId;
 use clamber_surface::rig::{JointId, WeakPoint};
 use glam::Vec3;
 
@@ -173,5 +177,69 @@ fn a_belt_of_stone_is_missed_by_as_much_as_longer_arms_need() {
             }
             other => panic!("{width}: {other:?}"),
         }
+    }
+}
+
+/// Who stands on stone holds on to nothing: how far its hands would have to reach is told from there as well.
+#[test]
+fn fur_above_a_step_of_stone_is_missed_by_as_much_as_longer_arms_need() {
+    let step = Body::grid(
+        [12, 6],
+        |u, v| Vec3::new(6.0 * (u - 0.5), 0.3, 2.0 - 2.0 * v),
+        |_, _| Stone,
+    );
+    let wall = |from: f32, to: f32, kind| {
+        let rows = ((to - from) / 0.3).ceil() as u32;
+        let place = move |u: f32, v: f32| Vec3::new(6.0 * (u - 0.5), from + (to - from) * v, 0.0);
+        Body::grid([20, rows], place, move |_, _| kind)
+    };
+    let mut body = step.and(&wall(0.3, 4.5, Stone)).and(&wall(4.5, 9.0, Fur));
+    let mut point = WeakPoint::new("top", JointId(0), Vec3::new(0.0, 8.0, 0.0));
+    point.radius = 0.5;
+    body.weak_points = vec![point];
+    let (_, report) = body.report(&climber());
+    let Some(clamber_navigation::Missing::Reach(by)) = report.weak_points[0].missing else {
+        panic!("{:?}", report.weak_points)
+    };
+    for (more, reaches) in [(by - 0.05, false), (by + 0.01, true)] {
+        let mut longer = climber();
+        longer.climber.grip.as_mut().unwrap().reach += more;
+        let (_, report) = body.report(&longer);
+        assert_eq!(report.weak_points[0].reachable, reaches, "{by}: {more}");
+    }
+}
+
+/// A plate that juts out over a weak point can be got onto; what is below it, once it is gone, is another thing.
+#[test]
+fn who_is_on_a_plate_is_not_at_what_it_covers() {
+    let wall = |depth: f32, kind| {
+        let place = move |u: f32, v: f32| Vec3::new(6.0 * (u - 0.5), 6.0 * v, depth);
+        Body::grid([20, 20], place, move |_, _| kind)
+    };
+    for (kind, reaches) in [(Fur, true), (Stone, false)] {
+        // Skin that is covered by fur wholly.
+        let skin = wall(0.0, kind);
+        let plate = skin.triangles.len() as u32;
+        let mut body = skin.and(&wall(0.15, Fur));
+        let mut point = WeakPoint::new("covered", JointId(0), Vec3::new(0.0, 5.0, 0.0));
+        point.radius = 0.5;
+        body.weak_points = vec![point];
+        let plate: Vec<TriangleId> = (plate..body.triangles.len() as u32)
+            .map(TriangleId)
+            .collect();
+        let go_on = |_| ControlFlow::Continue(());
+        let (report, _) = body
+            .with_source(|source| {
+                let source = GraphSource {
+                    plates: std::slice::from_ref(&plate),
+                    ..*source
+                };
+                ClimbReport::new(&source, &climber(), go_on)
+            })
+            .unwrap();
+        let [found] = &*report.weak_points else {
+            panic!("{report:?}")
+        };
+        assert_eq!(found.reachable, reaches, "{kind:?}: {found:?}");
     }
 }

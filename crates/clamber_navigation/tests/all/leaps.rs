@@ -325,3 +325,46 @@ fn jumps_are_planned_in_clips_in_which_they_always_land() {
         }
     }
 }
+
+/// Loops of any length: of a few ticks, of one pose, and of lengths that are no multiples of half a second.
+#[test]
+fn jumps_land_in_loops_of_any_length() {
+    let gap = 1.6;
+    let body = blocks(gap, 0.0, [Skin, Fur]);
+    for seconds in [0.0, 0.01, 0.05, 0.3, 0.7, 1.2, 1.7, 2.2] {
+        let clip = sways("sways", 1, Vec3::new(0.02, 0.01, 0.02) * seconds, seconds);
+        let lasts = clip.duration();
+        let graph = graph(&body, 1.0, std::slice::from_ref(&clip));
+        let goal = goal(&graph, 1.0, gap);
+        for expected in [lasts.max(0.1), 2.0 * lasts + 0.1, 60.0] {
+            let forecast = Forecast::still().then(&graph, "sways", 0.0, expected);
+            let plan = graph.plan(&[start(&graph, 1.0)], &goal, &forecast);
+            assert!(plan.is_some(), "{seconds} s, for {expected} s");
+        }
+        if lasts > 0.0 {
+            let moves = Moves {
+                clips: &[(&clip, lasts)],
+                begins: 0.0,
+                told: true,
+            };
+            let from = (DVec3::new(-1.0, 6.0, 0.0), 1.0);
+            let went = crosses((&body, 1.0), &graph, &goal, Some(moves), from);
+            assert_eq!(went, Went::Across, "{seconds} s");
+        }
+    }
+    // What ends elsewhere, however short, is no loop.
+    for seconds in [0.01, 0.04] {
+        let places = Keyframes::Translation(vec![Vec3::ZERO, Vec3::X]);
+        let channel = Channel::new(
+            JointId(1),
+            Interpolation::Linear,
+            vec![0.0, seconds],
+            places,
+        );
+        let clip = Clip::new("leaves", vec![channel.unwrap()]);
+        let graph = graph(&body, 1.0, &[clip]);
+        let forecast = Forecast::still().then(&graph, "leaves", 0.0, 10.0);
+        let plan = graph.plan(&[start(&graph, 1.0)], &goal(&graph, 1.0, gap), &forecast);
+        assert!(plan.is_none(), "{seconds} s");
+    }
+}

@@ -5,13 +5,13 @@
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use crate::support::{Body, climber, skeleton};
+use crate::support::{Body, ball, climber, skeleton};
 use clamber_climber::{Climber, ContactQuery, StepRules};
 use clamber_navigation::{
     Bot, BotConfig, ClimbGraph, ClimbReport, Danger, Forecast, GraphSource, NavigationError, View,
 };
 use clamber_surface::geometry::Similarity;
-use clamber_surface::mesh::SurfaceKind::Fur;
+use clamber_surface::mesh::SurfaceKind::{Fur, Stone};
 use clamber_surface::mesh::TriangleId;
 use clamber_surface::rig::{Channel, Clip, Interpolation, JointId, Keyframes};
 use clamber_world::{HalfSpace, Obstacle, ObstacleId};
@@ -236,4 +236,54 @@ fn a_way_over_skin_that_is_gone_is_none() {
             "{lost:?} {there:?}"
         );
     }
+}
+
+/// On a ball of stone, which the graph knows no place on: who is put there says so, and gets off.
+#[test]
+fn who_is_where_the_graph_knows_no_place_says_so_and_gets_off() {
+    let stone = ball(Vec3::new(0.0, 30.0, 0.0), 12.0, |_, _| Stone);
+    let body = wall(8.0).and(&stone);
+    let mut config = climber();
+    config.climber.ground.max_slope = 0.01;
+    let go_on = |_| ControlFlow::Continue(());
+    let graph = body.with_source(|source| ClimbGraph::build(source, &config, go_on));
+    let graph = graph.unwrap();
+    let surface = body.surface();
+    let goal = graph.goal(&graph.patches_near(DVec3::new(0.0, 7.0, 0.0), 1.0));
+    assert!(!goal.patches().is_empty());
+    let mut bot = Bot::new(Arc::new(graph), BotConfig::default());
+    let radius = climber().climber.body.radius;
+    let mut who = Climber::new(climber().climber, DVec3::new(8.0, 39.3 + radius, 0.0)).unwrap();
+    let floor = HalfSpace::below(0.0);
+    let obstacles: [(ObstacleId, &dyn Obstacle); 2] =
+        [(ObstacleId(0), &floor), (ObstacleId(1), &surface)];
+    let (mut strays, mut lost, mut off) = (None, None, None);
+    for tick in 0..1800 {
+        let seconds = f64::from(tick) / 60.0;
+        let view = View {
+            seconds,
+            climber: &who,
+            creature: ObstacleId(1),
+            surface: &surface,
+            goal: &goal,
+            forecast: &Forecast::still(),
+            danger: Danger::None,
+            shake_ahead: 0.0,
+        };
+        if view.is_on_creature() {
+            strays.get_or_insert(seconds);
+        } else if lost.is_some() {
+            off.get_or_insert(seconds);
+        }
+        let input = bot.input(&view);
+        if bot.is_lost(seconds) {
+            lost.get_or_insert(seconds);
+        }
+        who.step(&input, &obstacles, 1.0 / 60.0).unwrap();
+    }
+    let strays = strays.expect("it is never on the ball");
+    let lost: f64 = lost.expect("it never says so");
+    assert!((2.9..4.5).contains(&(lost - strays)), "{strays} {lost}");
+    assert!(off.is_some(), "{:?}", who.state());
+    assert!(!bot.is_lost(30.0));
 }

@@ -17,7 +17,7 @@ use crate::messages::{ArenaSnapshot, ArenaTick, Brain};
 use crate::output::{Channel, Output};
 use crate::views::{
     ATTACKS, PROJECTILES, Scene, Sceneries, Skin, color, deletion, entity, frame_of_climber,
-    from_z_to, gap_line, left_out, rotation, vector, z_up,
+    from_z_to, gap_line, left_out, no_skin, rotation, vector, z_up,
 };
 use crate::{RecordError, RecordingInfo, topics};
 
@@ -38,6 +38,8 @@ pub(super) struct ArenaWriting<W: Write> {
     log: Channel,
     /// Brain and skin of each creature that was seen.
     creatures: BTreeMap<CreatureId, (Channel, Channel)>,
+    /// The frame of each creature whose skin is drawn.
+    drawn: BTreeMap<CreatureId, String>,
     /// Name of each fighter that was seen, and how its body is drawn.
     fighters: BTreeMap<FighterId, (String, Scene)>,
     info: ArenaInfo,
@@ -65,6 +67,7 @@ impl<W: Write> ArenaWriting<W> {
             log: output.channel::<Log>(topics::LOG)?,
             output,
             creatures: BTreeMap::new(),
+            drawn: BTreeMap::new(),
             fighters: BTreeMap::new(),
             info: info.clone(),
             skin: Skin::new(skin_points),
@@ -139,6 +142,12 @@ impl<W: Write> ArenaWriting<W> {
             entities,
         };
         self.output.send(self.scene, now, &scene)?;
+        let is_here = |id: &CreatureId| taken.creatures.iter().any(|creature| creature.id == *id);
+        for (id, frame) in self.drawn.extract_if(.., |id, _| !is_here(id)) {
+            if let Some((_, skin)) = self.creatures.get(&id) {
+                self.output.send(*skin, now, &no_skin(now, &frame))?;
+            }
+        }
         for creature in taken.creatures.drain(..) {
             if let Some(channels) = self.channels(creature.id, now)? {
                 self.creature(&creature, channels, now)?;
@@ -189,7 +198,9 @@ impl<W: Write> ArenaWriting<W> {
         })?;
         let scale = creature.figure.world_from_model.scale;
         let mut points = self.skin.message(now, mesh, &self.positions, scale);
-        points.frame_id.clone_from(&creature.figure.joints.figure);
+        let frame = &creature.figure.joints.figure;
+        points.frame_id.clone_from(frame);
+        self.drawn.insert(creature.id, frame.clone());
         self.output.send(skin, now, &points)
     }
 }

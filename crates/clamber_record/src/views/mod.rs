@@ -15,7 +15,7 @@ pub(crate) use log::{gap_line, left_out, line, log};
 pub(crate) use scene::{Scene, from_z_to};
 pub use scenery::SceneryView;
 pub(crate) use scenery::{Sceneries, SceneryNames, TakenScenery};
-pub(crate) use skin::Skin;
+pub(crate) use skin::{Skin, no_skin};
 
 use foxglove::messages::{
     Color, FrameTransform, Pose, Quaternion, SceneEntity, SceneEntityDeletion, Timestamp, Vector3,

@@ -38,18 +38,27 @@ impl Skin {
                 }
             }
         }
-        let field = |name: &str, offset| PackedElementField {
-            name: name.to_owned(),
-            offset,
-            r#type: NumericType::Float32 as i32,
-        };
-        PointCloud {
-            timestamp: Some(timestamp(nanoseconds)),
-            frame_id: CREATURE.to_owned(),
-            pose: Some(pose(DVec3::ZERO)),
-            point_stride: STRIDE as u32,
-            fields: vec![field("x", 0), field("y", 4), field("z", 8)],
-            data: data.into(),
-        }
+        cloud(nanoseconds, CREATURE, data)
+    }
+}
+
+/// No points: what was drawn in a frame is drawn no longer.
+pub(crate) fn no_skin(nanoseconds: u64, frame: &str) -> PointCloud {
+    cloud(nanoseconds, frame, Vec::new())
+}
+
+fn cloud(nanoseconds: u64, frame: &str, data: Vec<u8>) -> PointCloud {
+    let field = |name: &str, offset| PackedElementField {
+        name: name.to_owned(),
+        offset,
+        r#type: NumericType::Float32 as i32,
+    };
+    PointCloud {
+        timestamp: Some(timestamp(nanoseconds)),
+        frame_id: frame.to_owned(),
+        pose: Some(pose(DVec3::ZERO)),
+        point_stride: STRIDE as u32,
+        fields: vec![field("x", 0), field("y", 4), field("z", 8)],
+        data: data.into(),
     }
 }

@@ -24,6 +24,8 @@ use clamber_scenes::duel::Duel;
 use clamber_scenes::giant;
 use clamber_surface::geometry::Similarity;
 use clamber_world::{HalfSpace, Obstacle, ObstacleId};
+use foxglove::Decode;
+use foxglove::messages::{PointCloud, SceneUpdate};
 use glam::{DVec3, Vec3};
 
 const TICKS: u64 = 300;
@@ -452,6 +454,26 @@ fn orders_are_recorded_and_played_again() {
     assert_eq!(difference.recorded.tick, 10);
     let part = (ArenaPart::Fighter(FighterId(3)), "fighter 3".to_owned());
     assert_eq!(difference.parts.first(), Some(&part));
+
+    // Who has left is drawn no longer.
+    let all = mcap::MessageStream::new(&file).unwrap();
+    let (mut points, mut deleted) = (BTreeMap::new(), Vec::new());
+    for message in all.map(Result::unwrap) {
+        let topic = &message.channel.topic;
+        if topic.starts_with("/skin/") {
+            let cloud = PointCloud::decode(&message.data[..]).unwrap();
+            points.insert(topic.clone(), (cloud.data.len(), cloud.frame_id));
+        } else if topic == "/scene" {
+            let scene = SceneUpdate::decode(&message.data[..]).unwrap();
+            deleted.extend(scene.deletions.into_iter().map(|deletion| deletion.id));
+        }
+    }
+    for (creature, is_here) in [(0, true), (1, false), (2, false)] {
+        let (bytes, frame) = &points[&format!("/skin/{creature}")];
+        assert_eq!(*bytes > 0, is_here, "creature {creature}");
+        assert!(frame.contains(&creature.to_string()), "{frame}");
+    }
+    assert_eq!(deleted, [info.fighter(0)]);
 
     let bytes = String::from_utf8_lossy(&file);
     for words in [
