@@ -432,6 +432,10 @@ fn chains_reach_what_they_can_and_say_what_they_cannot() {
         "{far:?}"
     );
     assert!(chain.solve(&skeleton, &mut pose, DVec3::NAN).is_err());
+    let mut wild = rest.clone();
+    wild.transforms[HEAD.index()].translation.x = f32::NAN;
+    let end = chain.end(&skeleton, &wild);
+    assert_eq!(end, Err(IkError::NotFinite("the pose")));
     assert!(Chain::new(&skeleton, HEAD, JointId(0)).is_err());
     assert!(Chain::new(&skeleton, HEAD, HEAD).is_err());
     assert!(Chain::new(&skeleton, JointId(0), JointId(9)).is_err());

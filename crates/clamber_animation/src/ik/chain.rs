@@ -129,7 +129,12 @@ impl Chain {
     pub fn end(&self, skeleton: &Skeleton, pose: &Pose) -> Result<DVec3, IkError> {
         check_pose(skeleton, pose, self.joints.iter().copied())?;
         let end = self.joints[self.joints.len() - 1];
-        Ok(model_from_joint(skeleton, pose, end).translation)
+        let end = model_from_joint(skeleton, pose, end).translation;
+        if end.is_finite() {
+            Ok(end)
+        } else {
+            Err(IkError::NotFinite("the pose"))
+        }
     }
 }
 

@@ -106,7 +106,8 @@ impl Arena {
         if fighters != found {
             return Err(ArenaError::Inputs { fighters, found });
         }
-        for (fighter, input) in inputs.iter().enumerate() {
+        for (fighter, input) in self.fighters.iter().zip(inputs) {
+            let fighter = fighter.id().0 as usize;
             if input.blow.is_some() {
                 return Err(ArenaError::Blow { fighter });
             }

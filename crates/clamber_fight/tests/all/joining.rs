@@ -212,6 +212,15 @@ fn who_is_held_and_hunted_may_leave() {
         matches!(event, ArenaEvent::Climber { fighter: OTHER, event } if !matches!(event, ClimberEvent::Landed { .. }))
     });
     assert!(lost, "{events:?}");
+    // An error names a fighter by its number, not by its place among those that are left.
+    let wild = ClimberInput {
+        aim: DVec3::NAN,
+        ..IDLE
+    };
+    let error = arena.step(&[wild], &terrain).unwrap_err();
+    let FighterId(other) = OTHER;
+    let named = matches!(error, ArenaError::InputNotFinite { fighter } if fighter == other as usize);
+    assert!(named, "{error}");
     for _ in 0..60 * 10 {
         arena.step(&[IDLE], &terrain).unwrap();
     }
