@@ -219,7 +219,8 @@ fn who_is_held_and_hunted_may_leave() {
     };
     let error = arena.step(&[wild], &terrain).unwrap_err();
     let FighterId(other) = OTHER;
-    let named = matches!(error, ArenaError::InputNotFinite { fighter } if fighter == other as usize);
+    let named =
+        matches!(error, ArenaError::InputNotFinite { fighter } if fighter == other as usize);
     assert!(named, "{error}");
     for _ in 0..60 * 10 {
         arena.step(&[IDLE], &terrain).unwrap();
