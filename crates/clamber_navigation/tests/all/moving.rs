@@ -244,7 +244,7 @@ fn who_is_where_the_graph_knows_no_place_says_so_and_gets_off() {
     let stone = ball(Vec3::new(0.0, 30.0, 0.0), 12.0, |_, _| Stone);
     let body = wall(8.0).and(&stone);
     let mut config = climber();
-    config.climber.ground.max_slope = 0.01;
+    config.climber.ground.max_slope = 0.02;
     let go_on = |_| ControlFlow::Continue(());
     let graph = body.with_source(|source| ClimbGraph::build(source, &config, go_on));
     let graph = graph.unwrap();
