@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use clamber_surface::geometry::Similarity;
-use clamber_surface::mesh::ColliderMesh;
+use clamber_surface::mesh::{ColliderMesh, TriangleId};
 use clamber_surface::rig::Palette;
-use clamber_surface::surface::{SkinnedSurface, SurfaceEdit};
+use clamber_surface::surface::SkinnedSurface;
 
 use crate::NavigationError;
 
@@ -40,10 +40,20 @@ impl FutureSkin {
         }
     }
 
-    /// Removes parts of the skin, as they were from the creature's own, or puts them back:
-    /// [`SkinnedSurface::edit`]. Nobody lands on a plate that is gone.
-    pub fn edit<R>(&mut self, edits: impl FnOnce(&mut SurfaceEdit<'_>) -> R) -> R {
-        self.surface.edit(edits)
+    /// Takes a triangle away, as it was from the creature's own skin: no landing is predicted on it.
+    ///
+    /// # Errors
+    /// [`NavigationError::Surface`] if the mesh does not have it.
+    pub fn disable_triangle(&mut self, triangle: TriangleId) -> Result<(), NavigationError> {
+        Ok(self.surface.disable_triangle(triangle)?)
+    }
+
+    /// Puts a triangle back.
+    ///
+    /// # Errors
+    /// [`NavigationError::Surface`] if the mesh does not have it.
+    pub fn enable_triangle(&mut self, triangle: TriangleId) -> Result<(), NavigationError> {
+        Ok(self.surface.enable_triangle(triangle)?)
     }
 
     /// The skin as posed last.

@@ -6,14 +6,15 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use crate::support::{Body, ball, climber, skeleton};
-use clamber_climber::{Climber, ContactQuery, StepRules};
+use clamber_climber::{Climber, ClimberInput, ContactQuery, StepRules};
 use clamber_navigation::{
-    Bot, BotConfig, ClimbGraph, ClimbReport, Danger, Forecast, GraphSource, NavigationError, View,
+    Bot, BotConfig, ClimbGraph, ClimbReport, Danger, Flight, Forecast, FutureSkin, GraphSource,
+    NavigationError, View,
 };
 use clamber_surface::geometry::Similarity;
 use clamber_surface::mesh::SurfaceKind::{Fur, Stone};
 use clamber_surface::mesh::TriangleId;
-use clamber_surface::rig::{Channel, Clip, Interpolation, JointId, Keyframes};
+use clamber_surface::rig::{Channel, Clip, Interpolation, JointId, Keyframes, Palette};
 use clamber_world::{HalfSpace, Obstacle, ObstacleId};
 use glam::{DVec3, Vec3};
 
@@ -286,4 +287,42 @@ fn who_is_where_the_graph_knows_no_place_says_so_and_gets_off() {
     assert!((2.9..4.5).contains(&(lost - strays)), "{strays} {lost}");
     assert!(off.is_some(), "{:?}", who.state());
     assert!(!bot.is_lost(30.0));
+}
+
+/// Nobody is foreseen to land on skin that is gone by then.
+#[test]
+fn a_landing_is_foreseen_on_the_skin_that_is_left() {
+    let body = wall(8.0);
+    let radius = climber().climber.body.radius;
+    let who = Climber::new(climber().climber, DVec3::new(0.0, 9.0 + radius, -2.0)).unwrap();
+    let floor = HalfSpace::below(0.0);
+    let others: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(0), &floor)];
+    let flight = Flight {
+        climber: &who,
+        input: &ClimberInput::IDLE,
+        rules: &StepRules::default(),
+        creature: ObstacleId(1),
+        others: &others,
+    };
+    let skeleton = skeleton();
+    let palette = skeleton.palette(&skeleton.rest_pose()).unwrap();
+    let mut rests = |_: f64, out: &mut Palette| {
+        out.clone_from(&palette);
+        Some(Similarity::IDENTITY)
+    };
+    let mut skin = FutureSkin::new(body.mesh());
+    let mut lands = |skin: &mut FutureSkin| {
+        let landing = skin.landing(&flight, &mut rests, 1.0 / 60.0, 3.0).unwrap();
+        landing.unwrap().state.position.y - radius
+    };
+    assert!((lands(&mut skin) - 8.0).abs() < 0.1);
+    let mut gone = skin.clone();
+    for triangle in 0..body.triangles.len() as u32 {
+        gone.disable_triangle(TriangleId(triangle)).unwrap();
+    }
+    assert!(lands(&mut gone).abs() < 0.1);
+    for triangle in 0..body.triangles.len() as u32 {
+        gone.enable_triangle(TriangleId(triangle)).unwrap();
+    }
+    assert!((lands(&mut gone) - 8.0).abs() < 0.1);
 }
