@@ -1,4 +1,4 @@
-//! Contact sheets of a climber's body: what it does in every mode, from two sides.
+//! Draws contact sheets of a climber's body in every mode, from two sides.
 //!
 //! ```text
 //! cargo run --release --example bodies --features render
@@ -31,7 +31,7 @@ struct Options {
     /// Folder for the sheets.
     #[arg(long, default_value = "target/sheets")]
     out: PathBuf,
-    /// Pictures a sheet.
+    /// Number of columns of pictures on a sheet.
     #[arg(long, default_value_t = 8)]
     columns: u32,
     /// Shows this part of a scene, seconds.
@@ -39,7 +39,9 @@ struct Options {
     between: Option<Vec<f64>>,
 }
 
+/// Length of a tick, seconds.
 const TICK: f64 = 1.0 / 60.0;
+/// Width and height of a picture on a sheet, pixels.
 const SIZE: [u32; 2] = [360, 440];
 
 fn hero() -> Result<Rig, Box<dyn Error>> {

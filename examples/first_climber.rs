@@ -29,7 +29,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             println!("tick {tick:3}  {event:?} at {at:.2}");
         }
         if tick == 199 {
-            // Still 4 m from the axis, where it landed: it is carried on a circle, not along tangents.
+            // The climber is still 4 m from the axis, as when it landed: it is carried on a circle, not along tangents.
             let level = climber.state().position * DVec3::new(1.0, 0.0, 1.0);
             assert!((level.length() - 4.0).abs() < 1e-4, "{level}");
             assert!(level.z.abs() > 1.0, "not carried");

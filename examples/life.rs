@@ -1,4 +1,5 @@
-//! An hour of the giant's life in fast forward: what its brain did, and whether its feet stood on the ground.
+//! An hour of the giant's life in fast forward: reports the states of its brain, and checks that its feet stood on the
+//! ground.
 //!
 //! `cargo run --release --example life -- --help` lists the options. The life itself is `clamber_scenes::life`.
 

@@ -1,23 +1,27 @@
 //! A custom character controller on the mover alone: it walks, jumps, falls, and rides the walking giant.
 //!
-//! Jolt and box3d have such a mover, too. Everything above it is in this file: one struct, with one function for a
-//! tick.
+//! Jolt and box3d have such a mover, too. All code above it is in this file: one struct, with one function for a tick.
 
 use clamber::glam::DVec3;
 use clamber::mover::{Ground, GroundProbe, Mover, MoverBody, MoverMemory, Path, StepUp, Walking};
 use clamber::prelude::*;
 use clamber_scenes::giant::giant;
 
+/// Length of a tick, seconds.
 const DT: f64 = 1.0 / 60.0;
+/// Downward acceleration, metres a second squared.
 const GRAVITY: f64 = 9.81;
+/// Upward speed of a jump, metres a second.
 const JUMP: f64 = 4.0;
+/// The body: a ball with a radius of 0.4 m and a margin of 0.01 m.
 const BODY: MoverBody = MoverBody::ball(0.4, 0.01);
-/// 50 degrees.
+/// Steepest slope that counts as ground, radians: 50 degrees.
 const MAX_SLOPE: f64 = 0.87;
+/// Highest step that the character climbs, metres.
 const STEP_HEIGHT: f64 = 0.3;
-/// How far below the feet a walking character still finds the ground, metres.
+/// Distance below the feet within which a walking character finds the ground, metres.
 const SNAP: f64 = 0.2;
-/// How far a material point may be from its last position, metres: more than rounding, too little to be seen.
+/// Largest distance of a material point from its stored position, metres: more than rounding, too little to be seen.
 const SLACK: f64 = 0.01;
 
 /// Tick of the run below in which the player jumps.
@@ -26,9 +30,9 @@ const JUMP_TICK: u32 = 360;
 struct Controller {
     position: DVec3,
     velocity: DVec3,
-    /// Velocity of the ground, in the air that of the last ground. The player's own motion is relative to it.
+    /// Velocity of the ground; in the air, the velocity of the last ground. The player's own motion is relative to it.
     base: DVec3,
-    /// `None` in the air.
+    /// The point of the ground under the player; `None` in the air.
     ground: Option<Attachment>,
     memory: MoverMemory,
     /// Deepest penetration of the core into any obstacle so far, metres.
@@ -84,7 +88,7 @@ impl Controller {
 
     fn walk(&mut self, mover: &mut Mover<'_>, place: DVec3, walk: DVec3) {
         let target = place + walk * DT;
-        // Slopes up to the limit are climbed, steeper ones are walls.
+        // The player walks on slopes up to the limit; steeper slopes are walls.
         let walking = Some(Walking {
             up: DVec3::Y,
             max_slope: MAX_SLOPE,
@@ -99,7 +103,7 @@ impl Controller {
         self.position = moved.position;
         self.velocity = mover.clip_velocity(self.base + walk, self.base, None);
         if walk == DVec3::ZERO {
-            // It stays on its material point, or on the point that it is pushed to.
+            // The player stays on its material point, or on the point that it is pushed to.
             self.ground = self.ground.map(|ground| ground.moved_to(moved.position));
             return;
         }
@@ -181,7 +185,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let (ground, start) = (player.ground, player.position);
         player.step(walk, jumps, &[(ObstacleId(1), &skin)])?;
 
-        // How far it moved over the skin: the distance from where the skin alone would have carried it.
+        // The player's way over the skin: the distance from the place to which the skin alone would have carried it.
         if let (Some(mut ground), Some(_)) = (ground, player.ground) {
             ground.follow(&skin, DT, SLACK).ok_or("the skin is gone")?;
             let went = player.position.distance(ground.position());
@@ -189,11 +193,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             if walk != DVec3::ZERO {
                 walked += went;
             } else if tick < JUMP_TICK {
-                // Only before the jump: it lands in a fold of the shoulder, which may push it by millimetres.
+                // Only before the jump: the player then lands in a fold of the shoulder, which may push it by
+                // millimetres.
                 drift = drift.max(went);
             }
         }
-        // How high it jumped, relative to the motion of the skin that it left.
+        // The height of the jump, relative to the motion of the skin that the player left.
         if jumps {
             jump_from = start;
         }

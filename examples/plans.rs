@@ -1,5 +1,5 @@
-//! A bot climbs a giant that breathes, to the highest place that can be reached, by its input alone; and foresees when
-//! a shake would throw it off.
+//! A bot climbs a breathing giant to the highest reachable place, by inputs alone, and predicts when a shake would
+//! throw it off.
 //!
 //! The graph is built on a thread of its own, and kept in `target/plans`: the second start takes a tenth of a second.
 
@@ -19,8 +19,11 @@ use clamber::world::HalfSpace;
 
 type Failure = Box<dyn Error + Send + Sync>;
 
+/// Length of a tick, seconds.
 const TICK: f64 = 1.0 / 60.0;
+/// Id of the ground.
 const GROUND: ObstacleId = ObstacleId(0);
+/// Id of the giant.
 const GIANT: ObstacleId = ObstacleId(1);
 
 fn main() -> Result<(), Failure> {
@@ -31,7 +34,7 @@ fn main() -> Result<(), Failure> {
     let graph = graph(&rig, &config)?;
     println!("{} patches", graph.patches().len());
 
-    // Where to go: to the highest patch that is reached from the ground.
+    // The goal is the highest patch that is reachable from the ground.
     let reachable = graph.reachable();
     let height = |patch: &usize| graph.patches()[*patch].seat.y;
     let all = (0..reachable.len()).filter(|patch| reachable[*patch]);
@@ -43,7 +46,7 @@ fn main() -> Result<(), Failure> {
     let mut climber = Climber::new(config.climber, DVec3::new(5.0, 0.4, 30.0))?;
     let mut bot = Bot::new(Arc::clone(&graph), BotConfig::default());
     let mut skin = FutureSkin::new(Arc::clone(&rig.collider));
-    // The climber grips what the graph takes for holds.
+    // The climber grips the surfaces that the graph counts as holds.
     let rule = |query: &ContactQuery<'_>| query.usual().with_grip(config.can_grip(&query.tag()));
     let rules = StepRules::by(&rule);
     let idle = rig.clip("idle").ok_or("no clip idle")?.duration();
@@ -54,7 +57,7 @@ fn main() -> Result<(), Failure> {
         let now = f64::from(tick) * TICK;
         pose(&rig, now, None, &mut palette)?;
         giant.advance(&palette, Similarity::IDENTITY)?;
-        // It looks half a second ahead.
+        // The bot looks half a second ahead.
         let mut ahead = |seconds: f64, palette: &mut Palette| {
             let known = pose(&rig, now + seconds, None, palette);
             known.ok().map(|()| Similarity::IDENTITY)
@@ -65,7 +68,7 @@ fn main() -> Result<(), Failure> {
             creature: GIANT,
             surface: &giant,
             goal: &goal,
-            // From now on.
+            // The giant's clip from now on.
             forecast: &Forecast::still().then(&graph, "idle", now % idle, idle),
             danger: Danger::None,
             shake_ahead: skin.shake_ahead(&climber, GIANT, &mut ahead, 0.1, 0.5)?,
@@ -81,7 +84,7 @@ fn main() -> Result<(), Failure> {
     let arrived = arrived.ok_or("it did not come there within two minutes")?;
     println!("on top after {arrived:.1} s, {} plans", bot.plans());
 
-    // What if the giant began to shake itself now?
+    // Predicts the ride if the giant began to shake now.
     let mut shaking = |seconds: f64, palette: &mut Palette| {
         let known = pose(&rig, arrived + seconds, Some(seconds), palette);
         known.ok().map(|()| Similarity::IDENTITY)
@@ -91,7 +94,7 @@ fn main() -> Result<(), Failure> {
     Ok(())
 }
 
-/// The giant's graph, from its file if it is there.
+/// The giant's graph, from its file if the file exists.
 fn graph(rig: &Arc<Rig>, config: &GraphConfig) -> Result<Arc<ClimbGraph>, Failure> {
     let (rig, config) = (Arc::clone(rig), config.clone());
     let (tell, told) = channel();
@@ -108,7 +111,7 @@ fn graph(rig: &Arc<Rig>, config: &GraphConfig) -> Result<Arc<ClimbGraph>, Failur
         };
         let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/target/plans");
         ClimbGraph::cached(folder.as_ref(), &source, &config, |progress| {
-            // Who does not listen any more has cancelled.
+            // A receiver that has been dropped cancels the build.
             match tell.send(progress) {
                 Ok(()) => ControlFlow::Continue(()),
                 Err(_) => ControlFlow::Break(()),
@@ -129,7 +132,8 @@ fn graph(rig: &Arc<Rig>, config: &GraphConfig) -> Result<Arc<ClimbGraph>, Failur
     Ok(Arc::new(cached.graph))
 }
 
-/// The giant breathes. If it shakes itself, for so many seconds by now, it has begun within half a second.
+/// The palette of the breathing giant. With `shakes_for`, it has also shaken for this time, seconds; the shake fades in
+/// over half a second.
 fn pose(
     rig: &Rig,
     seconds: f64,

@@ -75,7 +75,7 @@ fn run() -> Result<ExitCode, Box<dyn std::error::Error>> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Fights the recording of an arena again.
+/// Replays the recording of an arena.
 fn arena(
     path: &Path,
     recording: &ArenaRecording,

@@ -9,16 +9,17 @@ use std::process::ExitCode;
 use clamber_scenes::giant::giant;
 use clamber_scenes::rocks::{Outcome, Rocks, RocksOptions, TICK};
 
-/// Seconds in which rocks fall on the giant; seconds in which the remaining rocks come to rest; and seconds that are
-/// added while a rock is still in the air, with the maximum number of times.
+/// Time in which rocks fall on the giant, seconds.
 const FALL: f64 = 8.0;
+/// Time in which the remaining rocks come to rest, seconds.
 const SETTLE: f64 = 8.0;
+/// Time that is added while a rock is still in the air, seconds, and the largest number of times that it is added.
 const WAIT: (f64, u32) = (1.0, 8);
 
 /// Largest depth of a settled rock in the skin, metres.
 const DEEPEST: f64 = 0.02;
 
-/// Ticks between two checks whether a rock is inside the giant.
+/// Number of ticks between two checks for rocks inside the giant.
 const LOOK_EVERY: u32 = 10;
 
 fn main() -> ExitCode {

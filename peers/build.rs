@@ -19,7 +19,7 @@ mod native {
     pub(super) fn bullet() {
         let found = probe("bullet", "libbullet-dev");
         compile("bullet", &found.include_paths);
-        // Only these two of Bullet's libraries are called.
+        // The peer calls only these two of Bullet's libraries.
         println!("cargo::rustc-link-lib=BulletCollision");
         println!("cargo::rustc-link-lib=LinearMath");
     }
@@ -46,7 +46,7 @@ mod native {
         println!("cargo::rustc-link-lib=ccd");
     }
 
-    /// Finds a library. The callers tell what to link, since that must come after our own archive.
+    /// Finds a library. The callers print the libraries to link, since these must come after this crate's own archive.
     #[cfg(any(feature = "bullet", feature = "fcl"))]
     fn probe(library: &str, package: &str) -> pkg_config::Library {
         let found = pkg_config::Config::new()
@@ -69,14 +69,14 @@ mod native {
             .cpp(true)
             .std("c++17")
             .opt_level(2)
-            // The warning is about FCL's contacts, which the compiler inlines.
+            // This warning is about FCL's contacts, which the compiler inlines.
             .flag_if_supported("-Wno-maybe-uninitialized")
             .file(format!("cpp/{library}.cpp"));
-        // This folder is searched anyway, and must not come by `-isystem`: that would put it before the compiler's own
-        // headers, which expect it after them.
+        // The compiler searches this folder by default. With `-isystem`, the folder would come before the compiler's
+        // own headers, which expect it after them.
         let searched = Path::new("/usr/include");
         for folder in headers.iter().filter(|folder| *folder != searched) {
-            // As system headers, whose warnings are not shown.
+            // The compiler shows no warnings of system headers.
             build.flag("-isystem").flag(folder.display().to_string());
         }
         build.compile(&format!("clamber_peers_{library}"));

@@ -1,4 +1,4 @@
-//! The bot climbs the giant: in little more than the least time, at every size and tick rate.
+//! The bot climbs the giant in little more than the least time, at every size and tick rate.
 
 #![allow(clippy::unwrap_used, reason = "a test")]
 
@@ -6,10 +6,10 @@ use clamber::climber::ClimberConfig;
 use clamber_scenes::climbs::{Climbed, ClimbsOptions, climb_by};
 use clamber_scenes::giant;
 
-/// It may take so many times the least time.
+/// Largest ratio of the bot's time to the least time.
 const MOST: f64 = 1.3;
 
-/// A climb by a climber of a size, as fast as its size allows: in √size times the time.
+/// Climbs a giant with a climber, both scaled by `size`. Times scale with √size.
 fn climb(size: f64, height: f64, rate: f64) -> Climbed {
     let root = size.sqrt();
     let usual = ClimbsOptions::default();
@@ -24,7 +24,7 @@ fn climb(size: f64, height: f64, rate: f64) -> Climbed {
     let ratio = climbed.ratio().unwrap_or(f64::INFINITY);
     let told = format!("size {size}, {height} m, {rate} Hz");
     assert!(ratio <= MOST, "{told}: {ratio}, {climbed:?}");
-    // No plan promises less.
+    // The least time is a lower bound: no climb is more than a tenth faster.
     assert!(ratio > 0.9, "{told}: {ratio}");
     climbed
 }

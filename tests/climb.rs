@@ -28,7 +28,7 @@ fn the_giant_dies_of_three_weak_points_and_the_climber_goes_through_all_modes() 
     std::fs::remove_dir_all(&folder).unwrap();
 }
 
-/// Seeds of the other climbs.
+/// Seeds of the shorter fights.
 const SEEDS: [u64; 6] = [2, 3, 4, 5, 6, 7];
 
 /// Even if a climber does not win, it is never inside the giant, and never far from its hold.
@@ -49,7 +49,7 @@ fn fights_with_other_seeds_pass_all_checks() {
         }
         let summary = Summary::new(&battle, &options);
         println!("seed {seed}: {:?}", summary.tally);
-        // A climber may be shaken off and not come to a weak point in time: that is no fault.
+        // A climber may be shaken off and not reach a weak point in time; that is not a failure.
         assert!(summary.holds(), "seed {seed}: {summary}");
         assert_eq!(summary.tally.arrows, 2, "seed {seed}");
         wounded += usize::from(summary.tally.damage >= 1.0);

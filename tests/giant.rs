@@ -167,7 +167,7 @@ fn its_feet_do_not_slide_when_it_walks_at_its_speed() {
         if tick == 0 {
             continue;
         }
-        // The lowest point is on a foot that stands.
+        // The lowest point is on a standing foot.
         let positions = positions_of(&surface);
         let lowest =
             (0..positions.len()).min_by(|a, b| positions[*a].y.total_cmp(&positions[*b].y));

@@ -14,10 +14,10 @@ use clamber::prelude::*;
 use clamber_scenes::test_data;
 use glam::{DVec3, Vec3};
 
-/// Files of the test data that the importer refuses: start of the path, and its end with the error.
+/// Files of the test data that the importer refuses: the beginning of the path, and the end of the path with the error.
 #[rustfmt::skip]
 const REFUSED: [(&str, &str); 13] = [
-    // Points and lines.
+    // These have points and lines only.
     (PRIMITIVE_MODE, "00.gltf: no mesh with triangles for collision in a file without skins"),
     (PRIMITIVE_MODE, "01.gltf: no mesh with triangles for collision in a file without skins"),
     (PRIMITIVE_MODE, "02.gltf: no mesh with triangles for collision in a file without skins"),
@@ -26,7 +26,7 @@ const REFUSED: [(&str, &str); 13] = [
     (PRIMITIVE_MODE, "08.gltf: no mesh with triangles for collision in a file without skins"),
     (PRIMITIVE_MODE, "09.gltf: no mesh with triangles for collision in a file without skins"),
     (PRIMITIVE_MODE, "10.gltf: no mesh with triangles for collision in a file without skins"),
-    // Points, too.
+    // These have points only.
     ("fixtures/KhronosGroup+glTF-Validator/joints_no_weights", ".gltf: no mesh with triangles for collision in skin 0"),
     ("fixtures/KhronosGroup+glTF-Validator/joints_weights_complex", ".gltf: no mesh with triangles for collision in skins 0, 1"),
     // All corners of its triangles are at one point.
@@ -36,6 +36,7 @@ const REFUSED: [(&str, &str); 13] = [
     ("models/Wasp", ".glb: mesh 0, primitive 0: weights [NaN, NaN, NaN, NaN] of vertex 2240"),
 ];
 
+/// Beginning of the paths of fixtures with one mode of primitives each.
 const PRIMITIVE_MODE: &str =
     "fixtures/AssetGenerator-0.6/BabylonJS+MeshesLibrary/Mesh_PrimitiveMode/Mesh_PrimitiveMode_";
 
@@ -98,7 +99,7 @@ fn fixtures_show_the_features_that_they_are_made_for() {
         return;
     };
     let fixtures = first.ancestors().nth(2).unwrap().join("fixtures");
-    // Four triangle strips, fans and lists, with and without indices: one square each.
+    // Eight files with triangle strips, fans and lists, with and without indices: each is a square of area 1.
     for number in [4, 5, 6, 11, 12, 13, 14, 15] {
         let name = format!(
             "AssetGenerator-0.6/BabylonJS+MeshesLibrary/Mesh_PrimitiveMode/Mesh_PrimitiveMode_{number:02}.gltf"
@@ -176,7 +177,7 @@ fn materials_are_tagged_by_the_callers_function() {
         fur
     });
     let rig = load_with(&path, &options).unwrap();
-    // Called for each material, then for triangles without one.
+    // The function is called for each material, then for triangles without a material.
     let names = names.lock().unwrap();
     let mut expected: Vec<_> = rig.materials.iter().map(|m| m.name.clone()).collect();
     assert!(!expected.is_empty());
@@ -225,7 +226,8 @@ fn errors_of_bad_files_name_the_cause() {
     );
 }
 
-/// A document of two triangles, one above the other. The extras of the upper one's material have the user number 7.
+/// A document of two triangles, one above the other. The extras of the upper triangle's material have the user
+/// number 7.
 fn two_triangles() -> String {
     let corners = |y: f32| [[0.0, y, 0.0], [0.0, y, 1.0], [1.0, y, 0.0]];
     let floats = corners(1.0).into_iter().chain(corners(0.0)).flatten();
@@ -250,7 +252,8 @@ fn two_triangles() -> String {
     )
 }
 
-/// The user numbers of hits from above and from below, equal for the surface's ray and the obstacle's.
+/// The user numbers of hits from above and from below. Asserts that rays of the surface and of the obstacle find the
+/// same.
 fn users_found(options: &LoadOptions) -> [u32; 2] {
     let rig = load_slice(two_triangles().as_bytes(), options).unwrap();
     let palette = rig.skeleton.palette(&rig.skeleton.rest_pose()).unwrap();

@@ -25,14 +25,14 @@ fn trials() -> usize {
 /// Largest peak of memory, bytes per byte of the file.
 const MEMORY: u64 = 100;
 
-/// Longest time that a broken model may take to load.
+/// Longest time that a broken model may take to load. Models load in milliseconds; this limit only finds endless loops.
 const PATIENCE: Duration = Duration::from_secs(20);
 
 #[test]
 fn cut_models_are_refused() {
     let loaded = each_model("cut models", |bytes, rng| {
         let mut cut = bytes[..rng.usize(0..bytes.len())].to_vec();
-        // Half of them have the remaining length in their header.
+        // Half of the cut files have the remaining length in their header.
         if cut.len() >= 12 && rng.bool() {
             let length = cut.len() as u32;
             cut[8..12].copy_from_slice(&length.to_le_bytes());
@@ -46,7 +46,7 @@ fn cut_models_are_refused() {
 fn models_with_flipped_bits_load_or_are_refused() {
     each_model("models with flipped bits", |bytes, rng| {
         let mut flipped = bytes.to_vec();
-        // Half of them have flipped bits only in the headers and the JSON, which matter most.
+        // In half of the files, only bits of the headers and the JSON are flipped: these matter most.
         let length = u32::from_le_bytes([bytes[12], bytes[13], bytes[14], bytes[15]]) as usize;
         let reach = if rng.bool() { length + 20 } else { bytes.len() };
         for _ in 0..rng.usize(1..4) {
@@ -56,7 +56,7 @@ fn models_with_flipped_bits_load_or_are_refused() {
     });
 }
 
-/// Loads every model as `broken` changes it, and poses those that load; returns their number.
+/// Loads variants of every model, made by `broken`, and poses the variants that load; returns their number.
 fn each_model(test: &str, broken: impl Fn(&[u8], &mut fastrand::Rng) -> Vec<u8>) -> usize {
     let mut all_loaded = 0;
     for path in test_data::five_models(test) {
@@ -69,7 +69,6 @@ fn each_model(test: &str, broken: impl Fn(&[u8], &mut fastrand::Rng) -> Vec<u8>)
             let mut rig = None;
             let start = Instant::now();
             let memory = measure(|| rig = load_slice(&bytes, &LoadOptions::default()).ok());
-            // This does not test speed: some milliseconds are usual.
             assert!(
                 start.elapsed() < PATIENCE,
                 "{name}, trial {trial}: {:?}",

@@ -1,4 +1,4 @@
-//! Where somebody who flies comes down is where the prediction said, while the giant moves.
+//! A flying climber lands at the predicted place on the moving giant.
 
 #![allow(clippy::unwrap_used, reason = "a test")]
 
@@ -13,8 +13,11 @@ use clamber_scenes::giant;
 use fastrand::Rng;
 use glam::DVec3;
 
+/// Length of a tick, seconds.
 const TICK: f64 = 1.0 / 60.0;
+/// Id of the ground.
 const GROUND: ObstacleId = ObstacleId(0);
+/// Id of the giant.
 const GIANT: ObstacleId = ObstacleId(1);
 
 #[test]
@@ -62,7 +65,7 @@ fn landings_are_foreseen_on_moving_skin() {
             assert!(skin.ride(&climber, GIANT, &mut future, wrong, 6.0).is_err());
         }
         let said = skin.landing(&flight, &mut future, TICK, 6.0).unwrap();
-        // As if it kept still.
+        // The prediction for a giant that keeps still.
         let mut still = |_: f64, palette: &mut Palette| pose(0.0, palette);
         let still = skin.landing(&flight, &mut still, TICK, 6.0).unwrap();
 

@@ -1,4 +1,4 @@
-//! Riders of a giant whose poses are made less often than ticks: with a `PoseTrack` they stay on as long as on a giant
+//! Riders of a giant whose poses are made less often than ticks: with a `PoseTrack`, they stay on as long as on a giant
 //! that is posed in every tick.
 
 #![expect(
@@ -13,14 +13,14 @@ use clamber::rig::{Pose, PoseMotion, PoseTrack};
 use clamber_scenes::giant;
 use glam::DVec3;
 
-/// When poses are made.
+/// The times at which poses are made.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Rhythm {
     /// In each tick.
     EachTick,
     /// In every n-th tick. The surface keeps its pose in the others.
     Kept(u32),
-    /// In every n-th tick, blended by a track; so are the others.
+    /// In every n-th tick, blended by a track, as in all of the following rhythms.
     Every(u32),
     /// At this rate, Hz, each in the tick after its time.
     At(f64),
@@ -31,8 +31,8 @@ enum Rhythm {
 }
 
 impl Rhythm {
-    /// The time of the pose that comes in this tick, in ticks; `None` if none comes. `next` is the tick of the next
-    /// random pose.
+    /// The time of the pose that is made in this tick, in ticks; `None` without a new pose. `next` is the tick of the
+    /// next random pose.
     fn time(self, tick: u32, rate: f64, next: &mut (u32, fastrand::Rng)) -> Option<f64> {
         let time = match self {
             Self::EachTick => tick,
@@ -58,7 +58,7 @@ impl Rhythm {
     }
 }
 
-/// Where somebody begins to ride, at a giant of 40 m.
+/// A place at which a ride begins, on a giant of 40 m.
 struct Place {
     what: &'static str,
     grips: bool,
@@ -67,6 +67,7 @@ struct Place {
     along: DVec3,
 }
 
+/// The places at which rides begin.
 const PLACES: [Place; 5] = [
     place("stands on the back", false, [0.0, 50.0, 0.0], DVec3::NEG_Y),
     place("grips the back", true, [0.0, 50.0, 0.0], DVec3::NEG_Y),
@@ -84,29 +85,29 @@ const fn place(what: &'static str, grips: bool, from: [f64; 3], along: DVec3) ->
     }
 }
 
-/// The giant, its ticks, and what carries it.
+/// The tick rate, the giant's size, and the motion of the world.
 #[derive(Clone, Copy, Debug)]
 struct Scene {
     rate: f64,
-    /// As a share of 40 m; its clip is slowed by the root.
+    /// Size of the giant as a share of 40 m. Its clip is slowed by the square root.
     size: f64,
     /// Velocity of the world, metres a second.
     frame: f64,
 }
 
-/// How a ride went.
+/// The result of a ride.
 #[derive(Clone, Copy, Debug)]
 struct Ride {
-    /// When the rider came off, seconds; the length of the ride if it did not.
+    /// Time at which the rider came off, seconds; the length of the ride if it stayed on.
     off: f64,
     /// The hardest shake, metres a second squared.
     shake: f64,
 }
 
-/// Length of a ride, seconds.
+/// Longest ride, seconds.
 const LENGTH: f64 = 20.0;
 
-/// When the giant sets out before the rider comes, seconds: by then its poses are known.
+/// Time for which the giant walks before the rider comes, seconds: by then, the track has its poses.
 const BEFORE: f64 = 2.0;
 
 fn ride(rig: &Rig, place: &Place, rhythm: Rhythm, scene: Scene) -> Ride {
@@ -166,7 +167,7 @@ fn ride(rig: &Rig, place: &Place, rhythm: Rhythm, scene: Scene) -> Ride {
             }
             giant.advance(&palette, world).unwrap();
         }
-        // The rider comes where the giant is seen at the start of its clip.
+        // The rider comes when the giant's seen pose is at the start of its clip.
         if seen < -1e-9 && climber.is_none() {
             continue;
         }
@@ -199,8 +200,8 @@ fn ride(rig: &Rig, place: &Place, rhythm: Rhythm, scene: Scene) -> Ride {
     Ride { off: ridden, shake }
 }
 
-/// Rides at all places in these rhythms, and compares them with the giant that is posed in each tick. Returns what is
-/// wrong.
+/// Rides at all places in these rhythms, and compares the rides with those on a giant that is posed in each tick.
+/// Returns the rides that differ too much.
 fn compare(scene: Scene, rhythms: &[Rhythm]) -> Vec<String> {
     let rig = giant::rig().unwrap();
     let (mut wrong, mut held) = (Vec::new(), 0);
@@ -219,11 +220,12 @@ fn compare(scene: Scene, rhythms: &[Rhythm]) -> Vec<String> {
             }
         }
     }
-    // The others do not get hold of it at all.
+    // The other riders do not get hold of the giant at all.
     assert!(held >= 2, "{scene:?}: {held} riders");
     wrong
 }
 
+/// The usual scene: 60 Hz, 40 m, a world at rest.
 const SCENE: Scene = Scene {
     rate: 60.0,
     size: 1.0,
@@ -281,7 +283,7 @@ fn a_steady_tick_of_a_track_allocates_nothing() {
     let (mut track, mut palette) = (PoseTrack::default(), Palette::default());
     for tick in 0u32..600 {
         let now = f64::from(tick) / 60.0;
-        // After two, three and four ticks, in turns: the lag takes a while to suit that.
+        // Intervals of two, three and four ticks in turn: the lag takes a while to adapt to them.
         let is_new = [0, 2, 5].contains(&(tick % 9));
         let pose = walk.sample(&rest, now, Playback::Loop).unwrap();
         let found = measure(|| {

@@ -1,4 +1,4 @@
-//! The preludes of clamber and rapier can be glob-imported together: a name in both does not compile here.
+//! The preludes of clamber and rapier can be glob-imported together: a name in both is a compile error here.
 
 // An ambiguous name in `use` is only a lint.
 #![deny(ambiguous_glob_imports)]
@@ -14,6 +14,7 @@ macro_rules! use_each {
             #[expect(unused_imports, reason = "that it is no error is enough")]
             use crate::$name as _;
         )*
+        /// All names of the list.
         const NAMES: &[&str] = &[$(stringify!($name)),*];
     };
 }
@@ -30,7 +31,7 @@ use_each! {
 #[expect(unused_imports, reason = "the names in the list are those of types")]
 use crate::apply_push as _;
 
-/// Otherwise a name that is added to the prelude would not be checked above.
+/// Finds names that were added to the prelude, but not to the list above.
 #[test]
 fn every_name_of_the_prelude_is_used() {
     let source = include_str!("../crates/clamber/src/lib.rs");

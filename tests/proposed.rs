@@ -1,4 +1,4 @@
-//! Animals of files that were not made for this fight by brains that are proposed for them, and a bot kills them.
+//! A bot fights and kills animals from files that were not made for clamber, with brains that are proposed for them.
 
 #![allow(clippy::unwrap_used, reason = "a test")]
 
@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use clamber_colossus::{BrainFile, CreatureParts};
 use clamber_scenes::battle::{BattleOptions, fight_all};
 
-/// The fights of an animal that were won, of as many seeds; `None` without the test data.
+/// Number of fights that the bot won against an animal, with the seeds from 1 to `seeds`; `None` without the test data.
 fn won(animal: &str, seeds: u64) -> Option<u64> {
     let Some(root) = std::env::var_os("CLAMBER_TEST_DATA") else {
         eprintln!(
@@ -54,7 +54,7 @@ fn animals_from_elsewhere_are_killed() {
 #[test]
 #[ignore = "takes a minute: 30 fights"]
 fn animals_from_elsewhere_are_killed_in_three_of_five_fights() {
-    // Five of them have four legs.
+    // The first five have four legs.
     for animal in [
         "Apatosaurus.glb",
         "Bull.glb",

@@ -68,10 +68,10 @@ fn a_minute_of_standing_on_a_model_from_a_file() {
     assert_stood_fast(&stand(&creature, 20.0, 1, 60), "Trex");
 }
 
-/// The third-party model that does not pass all checks yet; `docs/measured.md` says why.
+/// The third-party model that does not pass all checks yet; `docs/measured.md` gives the reason.
 const FAILING: &str = "RecursiveSkeletons";
 
-/// Models with weights that are NaN, which are refused.
+/// Models that are refused, since they have weights that are NaN.
 const REFUSED: [&str; 2] = ["Crab", "Wasp"];
 
 #[test]

@@ -16,14 +16,17 @@ use clamber_scenes::giant;
 use clamber_scenes::tour::{self, Motion as Walks, RATE, Stage, Ways};
 use glam::{DVec3, Vec3};
 
+/// Length of a tick, seconds.
 const DT: f64 = 1.0 / RATE;
 
+/// The input of a climber that only grips.
 const GRIP: ClimberInput = ClimberInput {
     grip: true,
     ..ClimberInput::IDLE
 };
 
-/// A rule that asks all that it can, and allows all: a one-way platform of everything would let some through.
+/// A rule that uses all data of its query. It allows grip everywhere, and passes every second climber. It only
+/// evaluates `one_way`: with its result, the climber would fall through its ground.
 fn rule(query: &ContactQuery<'_>) -> ContactRule {
     let asked = (query.one_way(), query.body(), query.path(), query.tag());
     std::hint::black_box(asked);
@@ -31,13 +34,13 @@ fn rule(query: &ContactQuery<'_>) -> ContactRule {
     query.usual().with_grip(true).with_solid(!is_passed)
 }
 
-/// Counts of a mode's ticks with and without events, and the ticks without events that allocated.
+/// Counts of the ticks in a mode, with and without events, and the ticks without events that allocated.
 #[derive(Debug, Default)]
 struct Ticks {
     steady: u32,
     /// Ticks with an event, which may allocate.
     eventful: u32,
-    /// The steady ticks that allocated, and their number of allocations.
+    /// The steady ticks that allocated, each with its number of allocations.
     allocating: Vec<(u32, u64)>,
 }
 
@@ -101,7 +104,7 @@ fn climbing_up_and_across_the_walking_giant_allocates_nothing() {
         let mut ticks = Ticks::default();
         for tick in 1..=600 {
             stage.advance(f64::from(tick) * DT).unwrap();
-            // To one side and the other by turns.
+            // To one side and the other in turn.
             let side = if tick / 120 % 2 == 0 { 1.0 } else { -1.0 };
             let input = ClimberInput {
                 climb: way * side,
@@ -148,7 +151,7 @@ fn hanging_from_the_giant_allocates_nothing() {
     stage.place(0.0).unwrap();
     let (point, normal) = stage.vertex(route.waypoints[route.waypoints.len() / 2]);
     let mut config = tour::config();
-    // It hangs from all that it grips.
+    // The climber hangs from every hold.
     config.grip = config.grip.map(|grip| GripConfig {
         max_overhang: 0.0,
         ..grip
@@ -200,13 +203,13 @@ fn going_along_a_ledge_that_moves_allocates_nothing() {
     let mut block = block(Vec3::new(4.0, 3.0, 3.0));
     let rest = Palette::from_matrices([Affine::IDENTITY]);
     let place = |tick: u32| {
-        // To one side and up, and back, on parabolas in time.
+        // The block moves to one side and up, and back, on parabolas in time.
         let share = f64::from(tick % 150) / 75.0 - 1.0;
         Similarity::from_translation(DVec3::new(1.0, 0.4, 0.0) * (share * share))
     };
     block.place(&rest, place(0)).unwrap();
     let mut config = ClimberConfig::colossus_climber();
-    // Without grips it only hangs from ledges.
+    // Without grips, the climber only hangs from ledges.
     config.grip = None;
     let mut climber = Climber::new(config, DVec3::new(0.3, 2.75, 3.5)).unwrap();
     let mut ticks = Ticks::default();
@@ -256,7 +259,7 @@ fn walking_on_rapiers_ground_allocates_nothing() {
     assert!(climber.state().position.x > 2.5, "{:?}", climber.state());
 }
 
-/// A walk through friends that the rule lets pass, past friends that it does not.
+/// A walk among other climbers: the rule lets the climber pass through some of them, others block it.
 #[test]
 fn walking_among_friends_allocates_nothing() {
     let ground = block(Vec3::splat(30.0));

@@ -23,22 +23,23 @@ struct Scene {
     found: usize,
 }
 
-/// Whether the creature's root moves, for which the previous palette is computed anew.
+/// Whether the creature's root moves; if it does, the previous palette is computed again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Root {
     Still,
     Moving,
 }
 
-/// Whether a tick's queries reach so much that the next tick is skinned ahead.
+/// Whether a tick's queries touch so many clusters that the next tick is skinned ahead.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Touch {
     Little,
     Everything,
 }
 
-/// Number of ticks before counting, and of counted ticks.
+/// Number of ticks before the counted ones, in which buffers may grow.
 const WARM: usize = 4;
+/// Number of counted ticks.
 const COUNTED: usize = 12;
 
 impl Scene {
@@ -121,7 +122,7 @@ fn a_steady_tick_allocates_nothing() {
     for root in [Root::Still, Root::Moving] {
         for touch in [Touch::Little, Touch::Everything] {
             let mut scene = Scene::new();
-            // Room for all hits that a tick may have.
+            // Reserves memory for all hits that a tick may have.
             scene.hits.reserve(scene.surface.mesh().triangles().len());
             scene.swept.reserve(scene.surface.mesh().triangles().len());
             for tick in 0..WARM {

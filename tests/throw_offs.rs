@@ -1,4 +1,4 @@
-//! B59: 500 random rides on the giant, and what was said of them before.
+//! B59: 500 random rides on the giant, compared with their predictions.
 
 #![allow(clippy::unwrap_used, reason = "a test")]
 
@@ -15,12 +15,16 @@ use clamber_navigation::FutureSkin;
 use clamber_scenes::{Creature, giant};
 use fastrand::Rng;
 
+/// Length of a tick, seconds.
 const TICK: f64 = 1.0 / 60.0;
+/// Number of rides.
 const RIDES: u64 = 500;
+/// Longest ride, seconds.
 const SECONDS: f64 = 12.0;
+/// Id of the giant.
 const CREATURE: ObstacleId = ObstacleId(1);
 
-/// A clip, from a time on, at a speed.
+/// A clip that is played from a time on, at a speed.
 #[derive(Clone, Copy)]
 struct Play<'a> {
     creature: &'a Creature,
@@ -41,7 +45,7 @@ impl Play<'_> {
     }
 }
 
-/// When and whether a ride ended.
+/// Time at which the climber was thrown off, seconds; `None` if it was not.
 fn ride(climber: &mut Climber, surface: &mut SkinnedSurface, play: Play<'_>) -> Option<f64> {
     let holds = climber.state().mode != ClimberMode::Standing;
     let input = ClimberInput {
@@ -69,13 +73,13 @@ fn ride(climber: &mut Climber, surface: &mut SkinnedSurface, play: Play<'_>) -> 
         if report.events.iter().any(ends) {
             return Some(seconds);
         }
-        // Pushed off: not a throw-off.
+        // A climber that is pushed off is not thrown off.
         climber.state().support?;
     }
     None
 }
 
-/// A climber on a random place of the skin, at rest on it; `None` if there is no room.
+/// A climber that stands or holds on at a random place of the skin; `None` if it does not stay there.
 fn mount(rng: &mut Rng, surface: &SkinnedSurface) -> Option<Climber> {
     let mesh = surface.mesh();
     let triangle = mesh.triangles()[rng.usize(0..mesh.triangles().len())];

@@ -11,7 +11,8 @@ use clamber_scenes::{Creature, giant, test_data};
 /// Height of the creatures, metres.
 const HEIGHT: f64 = 20.0;
 
-/// `thrown` is how many of them may be thrown off a foot that swings, before they are on the leg.
+/// Makes tours with all motions, and checks them. `thrown` is the number of tours that may end early, thrown off a
+/// swinging foot before the climber is on the leg.
 fn tours(creature: &Creature, tempo: f64, seeds: u64, thrown: usize) {
     let ways = Ways::new(creature).unwrap();
     let mut failed = Vec::new();
@@ -44,7 +45,7 @@ fn tours(creature: &Creature, tempo: f64, seeds: u64, thrown: usize) {
 
 #[test]
 fn tours_reach_the_giants_head() {
-    // Since its soles do not slide any more, its feet swing as fast as it walks: with 3 g.
+    // The giant's soles do not slide, so its feet swing as fast as it walks: with 3 g.
     tours(&giant::giant().unwrap(), 1.0, 20, 1);
 }
 
@@ -54,7 +55,7 @@ fn tours_reach_the_heads_of_five_models() {
         let Some(path) = test_data::file("tours", &format!("models/{name}.glb")) else {
             return;
         };
-        // The clips are made for animals about two metres tall, or for robots: slower here.
+        // The clips were made for animals about two metres tall, or for robots, so they are slowed here.
         tours(&Creature::load(&path).unwrap(), 0.12, 20, 0);
     }
 }

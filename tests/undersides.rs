@@ -1,4 +1,4 @@
-//! A stick that is held leads one way under the giant, from wherever it is pressed.
+//! A held stick leads one way under the giant, wherever it was pressed.
 
 #![expect(
     clippy::unwrap_used,
@@ -11,20 +11,22 @@ use clamber::prelude::*;
 use clamber_scenes::giant;
 use glam::DVec3;
 
+/// Length of a tick, seconds.
 const DT: f64 = 1.0 / 60.0;
 
+/// Number of rides, half with each clip.
 const RIDES: u32 = 800;
 
-/// Seconds for which the stick is held.
+/// Time for which the stick is held, seconds.
 const HELD: f64 = 4.0;
 
-/// Seconds in which arms draw the climber to its hold, before the stick is pressed.
+/// Time in which the arms draw the climber to its hold, before the stick is pressed, seconds.
 const DRAWN: f64 = 0.4;
 
-/// A climber that skin has pushed aside in the last so many seconds, as between two limbs, goes where that leads.
+/// Time for which a step back is not counted after skin has pushed the climber aside, as between two limbs, seconds.
 const PUSHED: f64 = 0.1;
 
-/// Shorter steps back are rounding, metres.
+/// Largest step back that counts as rounding, metres.
 const BACK: f64 = 1e-3;
 
 /// Radius of the climber's ball, metres.
@@ -37,11 +39,11 @@ fn pose(rig: &Rig, clip: &str, time: f64) -> Palette {
     rig.skeleton.palette(&pose).unwrap()
 }
 
-/// What became of the rides.
+/// The results of the rides.
 #[derive(Debug, Default)]
 struct Seen {
     held: u32,
-    /// Ticks in which nothing has pushed it lately.
+    /// Ticks in which no skin has pushed the climber lately.
     free: u32,
     way: f64,
     back: u32,
@@ -56,7 +58,7 @@ fn ride(rig: &Rig, clip: &str, rng: &mut fastrand::Rng, seen: &mut Seen) {
     let mut giant = SkinnedSurface::new(rig.collider.clone());
     let start = rng.f64() * 5.0;
     giant.place(&pose(rig, clip, start), root).unwrap();
-    // From below, straight up, until it meets skin that faces down.
+    // Casts rays straight up, until one hits fur that faces down.
     let (low, high) = (DVec3::new(-7.0, -1.0, -7.0), DVec3::new(7.0, -1.0, 7.0));
     let contact = loop {
         let share = DVec3::new(rng.f64(), 0.0, rng.f64());
@@ -73,7 +75,7 @@ fn ride(rig: &Rig, clip: &str, rng: &mut fastrand::Rng, seen: &mut Seen) {
     config.stamina = None;
     config.tumble = None;
     let grip = config.grip.as_mut().unwrap();
-    // It always climbs, whatever the giant does.
+    // The climber always climbs and never only hangs, in any motion of the giant.
     grip.hang_acceleration = f64::INFINITY;
     grip.max_overhang = std::f64::consts::PI;
     let at = contact.point + contact.normal * (RADIUS * 1.02);
@@ -105,7 +107,7 @@ fn ride(rig: &Rig, clip: &str, rng: &mut fastrand::Rng, seen: &mut Seen) {
             last = None;
             continue;
         }
-        // Its way over the skin.
+        // The climber's way over the skin.
         let way = state.own_way;
         seen.held += 1;
         seen.free += u32::from(!is_pushed);

@@ -20,9 +20,10 @@ use crate::{CameraKind, FilmOptions};
 
 type Failure = Box<dyn Error + Send + Sync>;
 
+/// Rate of the battle's ticks, 1 / s.
 const TICKS_A_SECOND: f64 = 60.0;
 
-/// Radians a second that the orbiting camera goes round.
+/// Rate of the orbiting camera's turn, radians a second.
 const ORBIT: f64 = 0.08;
 
 /// Distance of a close camera from the climber, metres.
@@ -186,7 +187,7 @@ impl Film {
 }
 
 /// A camera a few steps from the climber: outward from the skin that it holds, and to a side, so that hands and face
-/// are seen; in front of skin that would hide it.
+/// are seen. It stays in front of skin that would hide the climber.
 fn close(battle: &Battle<'_>) -> Camera {
     let (config, state) = (battle.climber().config(), battle.climber().state());
     let up = config.up();
@@ -215,7 +216,7 @@ fn add_rock(
         TypedShape::Capsule(capsule) => capsule.to_trimesh(24, 12),
         other => return Err(format!("cannot draw a rock of the shape {other:?}").into()),
     };
-    // Round shapes have so many triangles that no edges show.
+    // Round shapes have enough triangles that no edges are visible.
     let (positions, triangles) = match shape.as_typed_shape() {
         TypedShape::Cuboid(_) => sharp(&positions, &triangles),
         _ => (positions, triangles),

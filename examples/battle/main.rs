@@ -1,7 +1,7 @@
 //! A climber fights a giant that hunts it and shakes it off, from the ground to its head, while rocks fall.
 //!
 //! `cargo run --release --example battle -- --help` lists the options. The scene, its script and its checks are in
-//! `clamber_scenes::battle`. With `--features render` it can be filmed.
+//! `clamber_scenes::battle`. With `--features render`, the example can film the battle.
 
 #[cfg(all(feature = "render", feature = "gltf", feature = "rapier"))]
 mod chase;
@@ -22,17 +22,17 @@ use std::process::ExitCode;
 use clamber_scenes::battle::{self, BattleError, BattleOptions, Summary, TICK};
 use clap::{ArgGroup, CommandFactory, Parser, error::ErrorKind};
 
-/// A climber against a giant of stone and fur, which notices, hunts and strikes it, and shakes itself once it is
-/// climbed. Or the climber rides on a creature that walks and shakes. Rocks fall on both. Prints and checks the
-/// results, and writes a summary and a timeline.
+/// A climber fights a giant of stone and fur, which notices, hunts and strikes it, and shakes once it is climbed. Or
+/// the climber rides on a creature that walks and shakes. Rocks fall on both. Prints and checks the results, and writes
+/// a summary and a timeline.
 #[derive(Debug, Parser)]
 #[command(name = "battle", version)]
 struct Options {
     #[command(flatten)]
     battle: BattleOptions,
 
-    /// Fight so many battles, with this seed and the next ones, each until the creature is dead; print a line for each,
-    /// and write no files.
+    /// Fights this number of battles, with this seed and the next ones, each until the creature is dead. Prints a line
+    /// for each, and writes no files.
     #[arg(long, value_name = "COUNT", conflicts_with = "pictures")]
     #[arg(value_parser = clap::value_parser!(u64).range(1..=10_000))]
     fights: Option<u64>,
@@ -137,7 +137,7 @@ impl FilmOptions {
 enum CameraKind {
     /// Circles around the creature.
     Orbit,
-    /// Follows the climber, outside of fur; in stabs near the giant's face it shows both.
+    /// Follows the climber, outside of fur; in stabs near the giant's face, it shows both.
     Chase,
     /// Beside the climber, near enough to see its hands.
     Close,
@@ -157,7 +157,7 @@ enum OverlayKind {
     Clusters,
     /// The triangle under the climber, and the climber's path.
     Contact,
-    /// A material point on each part, and the one that the climber is on, with their velocities.
+    /// A material point on each part, and the climber's own point, with their velocities.
     Anchors,
     /// The motion of climber and rocks in this tick, and their contacts.
     Sweeps,
@@ -167,7 +167,7 @@ enum OverlayKind {
     Feet,
     /// The way that the bot follows, with a yellow dot for each rest and magenta ones for its goal.
     Plan,
-    /// The skin by how long it takes from there to the bot's goal: from red to blue, which is half a minute and more.
+    /// The skin, coloured by the time from there to the bot's goal: from red to blue, which is half a minute or more.
     Ways,
     /// Text: the creature's state, moods and senses.
     Brain,
@@ -210,7 +210,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Fights many battles, and prints how each went.
+/// Fights many battles, and prints the result of each.
 fn siege(options: &BattleOptions, count: u64) -> ExitCode {
     let bar = indicatif::ProgressBar::new(count);
     let fights = battle::fight_all(options, count, |done| bar.set_position(done));

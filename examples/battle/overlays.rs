@@ -29,14 +29,14 @@ const ARROW: f64 = 0.5;
 /// Radius of a dot, as a share of its distance from the eye: about 4 pixels at 720 rows.
 const DOT: f64 = 0.005;
 
-/// Parts with less than this share of the skin's area have no anchor.
+/// Share of the skin's area below which a part has no anchor.
 const LEAST_AREA: f32 = 0.005;
 
-/// How much nearer to the eye overlays on the skin are drawn, as a share of the creature's height: visible fur and
-/// stone reach that far beyond the collider.
+/// Distance by which overlays on the skin are drawn nearer to the eye, as a share of the creature's height: visible fur
+/// and stone reach that far beyond the collider.
 const NEARER: f64 = 0.02;
 
-/// The same for joints, which must be seen through the skin.
+/// The same for joints, which must be visible through the skin.
 const THROUGH: f64 = 0.25;
 
 /// A body that moved farther than this in a tick was teleported, metres.
@@ -57,7 +57,7 @@ pub(crate) struct Overlays {
     anchors: Vec<MaterialPoint>,
     /// Height of the creature, metres.
     height: f64,
-    /// How much nearer to the eye overlays on the skin are drawn, metres.
+    /// Distance by which overlays on the skin are drawn nearer to the eye, metres.
     nearer: f64,
     /// The climber's path, at its feet.
     way: Vec<DVec3>,
@@ -212,7 +212,7 @@ fn follow(trail: &mut Vec<DVec3>, now: DVec3) {
     }
 }
 
-/// Moves a point nearer to the eye by some metres, at most half of its distance. It stays at the same pixel.
+/// Moves a point nearer to the eye by `by` metres, at most by half of its distance. The point stays at the same pixel.
 pub(crate) fn nearer(place: DVec3, eye: DVec3, by: f64) -> DVec3 {
     let distance = (place - eye).length();
     eye + (place - eye) * (1.0 - (by / distance).min(0.5))
@@ -302,6 +302,7 @@ fn joints(over: &mut Overlay, battle: &Battle<'_>, eye: DVec3, by: f64) {
 }
 
 fn bounds(over: &mut Overlay, battle: &Battle<'_>, kind: OverlayKind) {
+    /// Colour of the bounds: linear red, green, blue and opacity.
     const COLOR: Color = [0.2, 0.8, 1.0, 0.5];
     let mesh = battle.surface().mesh();
     let root = battle.surface().world_from_model();
@@ -488,7 +489,7 @@ fn state(battle: &Battle<'_>) -> String {
     )
 }
 
-/// The soles of the feet: those that stand and those in the air.
+/// Draws the soles of the feet; standing feet have another colour than feet in the air.
 fn feet(over: &mut Overlay, battle: &Battle<'_>) {
     let Some(life) = battle.life() else {
         return;
@@ -506,7 +507,7 @@ fn feet(over: &mut Overlay, battle: &Battle<'_>) {
     }
 }
 
-/// The brain of the creature as text: its state, moods, and those senses that say something.
+/// The brain of the creature as text: its state, its moods, and the senses whose value is finite and not 0.
 fn brain(battle: &Battle<'_>) -> String {
     let Some(life) = battle.life() else {
         return "no brain: a timetable".to_owned();
@@ -532,8 +533,9 @@ fn brain(battle: &Battle<'_>) -> String {
     text
 }
 
-/// A share as a bar.
+/// A share from 0 to 1 as a bar of text.
 fn bar(share: f64) -> String {
+    /// Number of characters of a full bar.
     const CELLS: f64 = 20.0;
     let full = (share * CELLS).ceil() as usize;
     format!("[{:<width$}]", "#".repeat(full), width = CELLS as usize)

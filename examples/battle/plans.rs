@@ -1,4 +1,4 @@
-//! Overlays of what the bot means to do.
+//! Overlays of the bot's plan.
 
 use clamber::glam::DVec3;
 use clamber::mesh::TriangleId;
@@ -11,10 +11,10 @@ use clamber_scenes::battle::{Battle, TICK};
 use crate::colors::{MAGENTA, SKY_BLUE, VERMILION, WHITE, YELLOW, opaque, seen_through};
 use crate::overlays::{dot, nearer, posed};
 
-/// Skin from which it takes longer than this to the goal is as blue as skin gets, seconds.
+/// Time to the goal at which skin is fully blue, seconds; longer times get the same colour.
 const LONG: f64 = 30.0;
 
-/// The way that the bot follows, as a line over the moving skin: dots for rests, and for its goal.
+/// Draws the way that the bot follows, as a line over the moving skin, with dots for rests and for the goal.
 pub(crate) fn plan(over: &mut Overlay, battle: &Battle<'_>, eye: DVec3, by: f64) {
     let Some((bot, goal)) = battle.bot() else {
         return;
@@ -38,7 +38,8 @@ pub(crate) fn plan(over: &mut Overlay, battle: &Battle<'_>, eye: DVec3, by: f64)
     }
 }
 
-/// The skin by how long it takes from there to the bot's goal: from red to blue; bare where no way leads there.
+/// Colours the skin by the time from there to the bot's goal, from red to blue. Skin without a way to the goal stays
+/// bare.
 pub(crate) fn ways(over: &mut Overlay, battle: &Battle<'_>, eye: DVec3, by: f64) {
     let Some((bot, goal)) = battle.bot() else {
         return;
@@ -63,7 +64,7 @@ pub(crate) fn ways(over: &mut Overlay, battle: &Battle<'_>, eye: DVec3, by: f64)
     }
 }
 
-/// Where a patch is now.
+/// The current position of a patch.
 fn place(battle: &Battle<'_>, patch: &Patch) -> DVec3 {
     let weights = patch.barycentric.map(|weight| weight as f32);
     let point = MaterialPoint::on_triangle(patch.triangle, weights);

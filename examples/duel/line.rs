@@ -1,19 +1,20 @@
-//! A line between peers of one process that delays messages and loses some.
+//! A simulated network line between peers in one process, which delays messages and loses some.
 
 use std::cell::RefCell;
 use std::rc::Rc;
 
 use clamber::fight::rollback::ggrs::{Message, NonBlockingSocket};
 
-/// A message under way: when it arrives, milliseconds, to whom, from whom.
+/// A message under way: its arrival time, milliseconds; its receiver; its sender.
 type UnderWay = (f64, usize, usize, Message);
 
 struct Shared {
     now: f64,
     under_way: Vec<UnderWay>,
     random: fastrand::Rng,
-    /// One way and by how much more or less, milliseconds; and the share that gets lost.
+    /// Mean time of a message one way, and its largest variation, milliseconds.
     takes: [f64; 2],
+    /// Share of the messages that are lost, from 0 to 1.
     lost: f64,
 }
 
@@ -25,7 +26,7 @@ pub(crate) struct Line {
 }
 
 impl Line {
-    /// Its ends.
+    /// The three ends of a line. `round_trip` and `jitter` are in milliseconds, `lost` is in percent.
     pub(crate) fn ends(round_trip: f64, jitter: f64, lost: f64) -> Result<[Self; 3], String> {
         let is_time = |x: f64| (0.0..=1000.0).contains(&x);
         if !(is_time(round_trip) && is_time(jitter) && (0.0..=50.0).contains(&lost)) {
@@ -51,7 +52,7 @@ impl Line {
 }
 
 impl Line {
-    /// What is under way gets lost: a new session begins.
+    /// Drops all messages under way, for the beginning of a new session.
     pub(crate) fn clear(&self) {
         self.shared.borrow_mut().under_way.clear();
     }

@@ -1,14 +1,15 @@
 //! Two climbers against one giant, by rollback: two peers in one process over a bad line, or two processes over a
 //! network.
 //!
-//! With `--joins 10` a third climber joins after ten seconds: ggrs lets nobody join a session that has begun, so all end
-//! theirs at the tick before, the newcomer gets the arena's state from there, and all begin a new one.
+//! With `--joins 10`, a third climber joins after ten seconds. A ggrs session that has begun takes no new players. So
+//! all peers end their session at the tick before, the new peer gets the arena's state of that tick, and all begin a
+//! new session.
 //!
-//! Peers send each other only their players' inputs, thirteen bytes a tick. Each guesses what has not arrived, goes
-//! back when a guess was wrong, and plays again. At the end both have the same fight, tick by tick, and have told of
-//! everything once.
+//! Peers send each other only their players' inputs, thirteen bytes a tick. Each peer predicts inputs that have not
+//! arrived, rolls back when a prediction was wrong, and repeats the ticks. At the end, both peers have the same fight,
+//! tick by tick, and each has reported every event once.
 //!
-//! `cargo run --release --features ggrs --example duel` plays both. For two processes, on one machine or two:
+//! `cargo run --release --features ggrs --example duel` runs both peers. For two processes, on one machine or two:
 //!
 //! ```sh
 //! cargo run --release --features ggrs --example duel -- --player 0 --port 7000 --peer 127.0.0.1:7001
@@ -35,12 +36,12 @@ use peer::Peer;
 #[derive(Debug, Parser)]
 #[command(name = "duel", version)]
 struct Options {
-    /// Plays this climber alone; the other process plays the other one. Both are played here without it.
+    /// Plays only this climber; the other process plays the other one. Without this option, this process plays both.
     #[arg(long, value_name = "0|1", requires = "peer")]
     #[arg(value_parser = clap::value_parser!(u8).range(0..2))]
     player: Option<u8>,
 
-    /// Address of the other process, in numbers; this one waits until the other is there.
+    /// Address of the other process, in numbers. This process waits for the other one.
     #[arg(long, value_name = "ADDRESS:PORT", requires = "player")]
     peer: Option<SocketAddr>,
 
@@ -53,8 +54,7 @@ struct Options {
     #[arg(value_parser = clap::value_parser!(u64).range(1..=3600))]
     seconds: u64,
 
-    /// Time of a message there and back, by how much it varies, and the share that gets lost, in a fight in one
-    /// process.
+    /// Round-trip time of a message, its variation, and the share of lost messages, in a fight in one process.
     #[arg(long, value_name = "MILLISECONDS", default_value_t = 100.0)]
     round_trip: f64,
     #[arg(long, value_name = "MILLISECONDS", default_value_t = 20.0)]
@@ -62,7 +62,7 @@ struct Options {
     #[arg(long, value_name = "PERCENT", default_value_t = 5.0)]
     lost: f64,
 
-    /// A third climber joins after so many seconds, in a fight in one process.
+    /// A third climber joins after this time, in a fight in one process.
     #[arg(long, value_name = "SECONDS", conflicts_with = "player")]
     #[arg(value_parser = clap::value_parser!(u64).range(1..=3600))]
     joins: Option<u64>,
@@ -87,7 +87,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// All peers, over a line that delays and loses messages, as fast as they can.
+/// Runs all peers in this process, over a line that delays and loses messages, as fast as possible.
 fn in_one_process(options: &Options) -> Result<(), Box<dyn Error>> {
     let lines = Line::ends(options.round_trip, options.jitter, options.lost)?;
     let kind = Duel::kind()?;
@@ -121,7 +121,7 @@ fn in_one_process(options: &Options) -> Result<(), Box<dyn Error>> {
     for (number, peer) in peers.iter().enumerate() {
         println!("peer {number}: {}", peer.report());
     }
-    // Who has joined knows what was after that.
+    // The peer that joined has only the ticks after that.
     let from = joins.map_or(0, |tick| tick - 1);
     let (mut same, mut told) = (true, true);
     for (number, peer) in peers.iter().enumerate() {
@@ -153,14 +153,14 @@ fn in_one_process(options: &Options) -> Result<(), Box<dyn Error>> {
     record(options, &kind, &peers[0], ticks)
 }
 
-/// Plays until so many ticks are certain to all.
+/// Plays until all peers have confirmed a number of ticks.
 fn play(peers: &mut [Peer<usize>], line: &Line, ticks: u64) -> Result<(), Box<dyn Error>> {
     while peers.iter().any(|peer| peer.confirmed() < ticks) {
         for peer in peers.iter_mut() {
             peer.tick(ticks)?;
         }
         line.wait(1000.0 / RATE as f64);
-        // Until all know each other, lost messages are sent again by the clock.
+        // Until all sessions run, ggrs sends lost messages again by real time.
         if !peers.iter().all(Peer::is_running) {
             std::thread::sleep(Duration::from_millis(2));
         }
@@ -168,7 +168,7 @@ fn play(peers: &mut [Peer<usize>], line: &Line, ticks: u64) -> Result<(), Box<dy
     Ok(())
 }
 
-/// Records a peer's fight if that was asked for, now that all inputs are certain.
+/// Records a peer's fight if the options ask for it. All inputs are confirmed by then.
 #[cfg(feature = "record")]
 fn record<A: peer::Address>(
     options: &Options,
@@ -200,7 +200,7 @@ fn record<A: peer::Address>(
     }
 }
 
-/// One peer in real time.
+/// Runs one peer in real time.
 fn over_network(
     options: &Options,
     player: usize,
@@ -225,7 +225,7 @@ fn over_network(
         due += Duration::from_secs_f64(1.0 / RATE as f64);
         std::thread::sleep(due.saturating_duration_since(Instant::now()));
     }
-    // The other one may still wait for our last inputs.
+    // The other peer may still wait for the last inputs of this one.
     for _ in 0..RATE {
         peer.tick(ticks)?;
         std::thread::sleep(Duration::from_millis(16));

@@ -1,4 +1,4 @@
-//! One peer: a session of ggrs, its arena, and what it has told.
+//! One peer: a session of ggrs, its arena, and the events that it has reported.
 
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -15,13 +15,13 @@ use clamber::fight::{ArenaEvent, Order};
 
 use clamber_scenes::duel::Duel;
 
-/// Ticks from a press of a button until it counts: the less, the more rollbacks.
+/// Delay of the local player's input, ticks. With less, there are more rollbacks; with more, the game reacts later.
 const DELAY: usize = 2;
 
-/// Ticks that may be guessed, and played again.
+/// Largest number of ticks that are predicted and repeated. With less, a peer waits more often on a slow line.
 const WINDOW: usize = 10;
 
-/// Who the other one is, to a line.
+/// The address of another peer.
 pub(crate) trait Address: Clone + PartialEq + Eq + Hash + Debug + 'static {}
 
 impl<A: Clone + PartialEq + Eq + Hash + Debug + 'static> Address for A {}
@@ -36,13 +36,13 @@ pub(crate) struct Peer<A: Address> {
     began: u64,
     /// The tick in whose step a third climber joins.
     joins: Option<u64>,
-    /// The arena after the tick before that, as it was last.
+    /// The arena at the end of the tick before that. A rollback replaces it.
     saved: Vec<u8>,
     fight: Duel,
     rollback: Rollback,
-    /// Of each tick, the checksum that it had last.
+    /// The checksum of each tick, from its last repetition.
     sums: BTreeMap<u64, u64>,
-    /// Of each tick, what led to it, as it was last.
+    /// The inputs and orders of each tick, from its last repetition.
     steps: BTreeMap<u64, Step>,
     told: Vec<(u64, ArenaEvent)>,
     rollbacks: u32,
@@ -51,7 +51,7 @@ pub(crate) struct Peer<A: Address> {
 }
 
 impl<A: Address> Peer<A> {
-    /// A peer that plays the players without an address. A third one joins in the step to the tick `joins`.
+    /// A peer that plays the players without an address. A third climber joins in the step to the tick `joins`.
     pub(crate) fn new(
         socket: impl NonBlockingSocket<A> + 'static,
         players: &[Option<A>],
@@ -76,7 +76,8 @@ impl<A: Address> Peer<A> {
         })
     }
 
-    /// Goes on from a saved arena in a new session, with other players: ggrs lets nobody join one that has begun.
+    /// Goes on from a saved arena in a new session, with other players: a ggrs session that has begun takes no new
+    /// players.
     pub(crate) fn begin_again(
         &mut self,
         socket: impl NonBlockingSocket<A> + 'static,
@@ -89,13 +90,13 @@ impl<A: Address> Peer<A> {
         self.rollback = Rollback::new(arena);
         let (socket, watch) = Watch::over(socket);
         (self.session, self.watch) = (session(socket, players)?, watch);
-        // What was played beyond that was a guess.
+        // Later ticks of the old session were not confirmed.
         self.sums.split_off(&(self.began + 1));
         self.steps.split_off(&(self.began + 1));
         Ok(())
     }
 
-    /// The arena before the third climber joins, once that tick is certain.
+    /// The arena before the third climber joins; final once that tick is confirmed.
     pub(crate) fn saved(&self) -> &[u8] {
         &self.saved
     }
@@ -104,13 +105,13 @@ impl<A: Address> Peer<A> {
         self.session.current_state() == SessionState::Running
     }
 
-    /// Ticks that are certain.
+    /// The last tick whose inputs are all confirmed.
     pub(crate) fn confirmed(&self) -> u64 {
         // Frame 0 leads to the first tick.
         self.began + u64::try_from(self.session.confirmed_frame() + 1).unwrap_or(0)
     }
 
-    /// One tick, if the session lets it pass; none after the last one.
+    /// Steps one tick, unless the session has to wait, or the last tick is confirmed.
     pub(crate) fn tick(&mut self, last: u64) -> Result<(), Box<dyn Error>> {
         for event in self.watch.poll(&mut self.session) {
             match event {
@@ -123,7 +124,7 @@ impl<A: Address> Peer<A> {
                 _ => {}
             }
         }
-        // Some ticks beyond the last one: their inputs confirm it.
+        // The session steps up to 30 ticks beyond the last one: their inputs confirm it.
         let tick = self.began + u64::from(self.session.current_frame().unsigned_abs());
         if !self.is_running() || tick >= last + 30 {
             return Ok(());
@@ -153,12 +154,12 @@ impl<A: Address> Peer<A> {
         self.rollback
             .handle(&mut self.fight.arena, requests, |arena, inputs, _| {
                 let next = arena.tick() + 1;
-                // What the session before that one plays beyond its end never happens.
+                // Only the new session adds the climber: the ticks of the old one beyond its end are discarded.
                 let orders: Vec<Order> = match joins {
                     Some(tick) if tick == next && tick == began + 1 => vec![Duel::joins()],
                     _ => Vec::new(),
                 };
-                // Who joins in this step has no input in it.
+                // A climber that joins in this step has no input in it.
                 let inputs = &inputs[..inputs.len().min(arena.fighters().len())];
                 Duel::step(arena, &ground, inputs, &orders)?;
                 if joins == Some(next + 1) {
@@ -169,9 +170,9 @@ impl<A: Address> Peer<A> {
                 Ok(())
             })?;
         let confirmed = self.session.confirmed_frame();
-        // A game plays sounds and shows hits here: each once.
+        // A game plays sounds and shows hits here, so that each comes once.
         let certain = self.rollback.confirmed(confirmed);
-        // What was played beyond the last tick never happened.
+        // Events beyond the last tick are dropped.
         self.told.extend(certain.filter(|(tick, _)| *tick <= last));
         Ok(())
     }
@@ -184,12 +185,12 @@ impl<A: Address> Peer<A> {
             .collect()
     }
 
-    /// What led to all ticks up to one.
+    /// The inputs and orders of all ticks up to one.
     pub(crate) fn steps_until(&self, tick: u64) -> impl Iterator<Item = Step> {
         self.steps.range(..=tick).map(|(_, step)| step.clone())
     }
 
-    /// What was told of ticks before one.
+    /// The reported events of ticks before one.
     pub(crate) fn told_before(&self, tick: u64) -> Vec<&(u64, ArenaEvent)> {
         self.told.iter().filter(|(at, _)| *at < tick).collect()
     }
@@ -206,7 +207,7 @@ impl<A: Address> Peer<A> {
     }
 }
 
-/// A session of as many players, of whom those without an address are played here.
+/// A session with these players. Players without an address are local.
 fn session<A: Address>(
     socket: impl NonBlockingSocket<A> + 'static,
     players: &[Option<A>],

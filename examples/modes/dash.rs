@@ -5,18 +5,19 @@
 
 use clamber::climber::{ClimberMode, CustomMode, ModeContext, NextMode};
 
-/// Indices into [`ModeContext::memory`]: seconds left of the dash, and seconds until the next may begin.
+/// Index into [`ModeContext::memory`] of the seconds that are left of the dash.
 const LEFT: usize = 0;
+/// Index into [`ModeContext::memory`] of the seconds until the next dash may begin.
 const REST: usize = 1;
 
 pub(crate) struct Dash {
     /// Bit of [`ClimberInput::actions`](clamber::climber::ClimberInput::actions) that begins the dash.
     pub(crate) action: u32,
-    /// Metres a second.
+    /// Speed of the dash, metres a second.
     pub(crate) speed: f64,
-    /// Seconds.
+    /// Length of the dash, seconds.
     pub(crate) duration: f64,
-    /// Seconds from the end of a dash to the next.
+    /// Time from the end of a dash until the next one may begin, seconds.
     pub(crate) cooldown: f64,
 }
 
@@ -59,13 +60,13 @@ impl CustomMode for Dash {
         }
         let left = context.memory()[LEFT] - context.dt();
         context.memory()[LEFT] = left.max(0.0);
-        // Half a tick, since a duration need not be a whole number of ticks, and sums of ticks are rounded.
+        // Half a tick of slack: the duration need not be a whole number of ticks, and sums of ticks are rounded.
         let is_last = left < 0.5 * context.dt();
         let ground = context.config().ground;
         // The heading turns with the ground that the climber stands on.
         let along = context.state().heading;
         let target = context.position() + along * (self.speed * context.dt());
-        // The last tick leaves the speed of a walk; otherwise the climber would slide on.
+        // The last tick ends at walking speed; otherwise the climber would slide on.
         let speed = if is_last {
             ground.walk_speed
         } else {

@@ -16,6 +16,7 @@ use swim::Swim;
 use vault::Vault;
 use wall_run::WallRun;
 
+/// Length of a tick, seconds.
 const DT: f64 = 1.0 / 60.0;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -49,7 +50,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             // Beside the wall the climber also presses against it.
             walk: DVec3::new(1.0, 0.0, if runs { 0.2 } else { 0.0 }),
             jump: (14.0..14.5).contains(&at.x) && climber.state().mode == ClimberMode::Standing,
-            // It presses the dash's button once, and holds the other buttons.
+            // The input presses the dash's button once, and holds the other buttons.
             actions: vault.action | wall_run.action | if tick == 60 { dash.action } else { 0 },
             ..ClimberInput::default()
         };

@@ -3,17 +3,18 @@
 use clamber::climber::{ClimberMode, CustomMode, ModeContext, NextMode};
 use clamber::glam::DVec3;
 
-/// Depths below the floating position, metres: swimming begins below the first, and the climber stands up on the shore
-/// above the second. The gap between them avoids flicker.
+/// Depth below the floating position at which swimming begins, metres.
 const BEGINS: f64 = 0.1;
+/// Depth above which the climber stands up on the shore, metres. It is less than [`BEGINS`], so that the mode does not
+/// flicker.
 const ENDS: f64 = 0.05;
 
 /// Largest gap between feet and ground at which the climber stands up on the shore, metres.
 const SHORE: f64 = 0.05;
 
-/// Handlers have no state: make this one anew for each tick if the water moves.
+/// The handler of swimming. Handlers have no state: make a new one for each tick if the water moves.
 pub(crate) struct Swim {
-    /// Least and greatest corner of the water at the tick's end, in world space; its surface is the top.
+    /// Lowest and highest corner of the water at the tick's end, in world space; the top is the water's surface.
     pub(crate) water: [DVec3; 2],
     /// Velocity of the water, metres a second.
     pub(crate) current: DVec3,
@@ -78,7 +79,7 @@ impl CustomMode for Swim {
         let wanted = DVec3::new(input.walk.x, 0.0, input.walk.z).clamp_length_max(1.0);
         let wanted = (wanted + DVec3::Y * rise) * self.speed;
         let mut own = (velocity - self.current).move_towards(wanted, self.acceleration * dt);
-        // It does not rise out of the water.
+        // The climber does not rise out of the water.
         own.y = own.y.min((depth / dt).max(-self.speed));
         context.move_by(self.current + own);
         let depth = self.depth(context.state().position);

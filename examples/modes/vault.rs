@@ -4,10 +4,10 @@ use clamber::climber::{ClimberMode, CustomMode, ModeContext, NextMode};
 use clamber::glam::DVec3;
 use clamber::mover::LedgeProbe;
 
-/// Index into [`ModeContext::memory`]: seconds since the vault began.
+/// Index into [`ModeContext::memory`] of the seconds since the vault began.
 const TAKEN: usize = 2;
 
-/// Seconds after which the vault is given up, if something is in the way.
+/// Time after which the vault is given up if an obstacle is in the way, seconds.
 const PATIENCE: f64 = 1.5;
 
 pub(crate) struct Vault {
@@ -15,7 +15,7 @@ pub(crate) struct Vault {
     pub(crate) action: u32,
     /// Height of the highest wall above the feet, metres. Walls lower than a step are walked over.
     pub(crate) height: f64,
-    /// How far from the body the wall may be, metres.
+    /// Largest distance of the wall from the body, metres.
     pub(crate) reach: f64,
     /// Speed of the vault, metres a second.
     pub(crate) speed: f64,

@@ -1,26 +1,27 @@
-//! A wall run from the air: up to 1.5 s along walls in all, until the climber has stood on its feet again.
+//! A wall run from the air: up to 1.5 s along walls in all, until the climber stands on its feet again.
 
 use clamber::climber::{ClimberMode, CustomMode, ModeContext, NextMode};
 use clamber::glam::DVec3;
 use clamber::mover::Touch;
 
-/// Index into [`ModeContext::memory`]: seconds of wall runs since the climber last stood.
+/// Index into [`ModeContext::memory`] of the seconds of wall runs since the climber last stood.
 const RAN: usize = 3;
 
-/// How far from the body the wall may be, metres.
+/// Largest distance of the wall from the body, metres.
 const REACH: f64 = 0.15;
 
-/// Sine of how far a wall may lean: 12 degrees.
+/// Sine of the largest angle by which a wall may lean: 12 degrees.
 const LEAN: f64 = 0.2;
 
-/// Speed of the run, and the least speed at which it begins, metres a second.
+/// Speed of the run, metres a second.
 const SPEED: f64 = 5.0;
+/// Least speed along the wall at which a run begins, metres a second.
 const LEAST_SPEED: f64 = 1.5;
 
 /// Longest run, seconds.
 const DURATION: f64 = 1.5;
 
-/// Runs as long as the bit `action` of the input's `actions` is held.
+/// The handler of wall runs. A run goes on while the bit `action` of the input's `actions` is held.
 pub(crate) struct WallRun {
     pub(crate) action: u32,
 }

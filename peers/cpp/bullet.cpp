@@ -1,7 +1,7 @@
 // Bullet 3: a btBvhTriangleMeshShape, refitted each frame.
 //
-// Its tree is quantised, because Bullet refits no other: on a tree that is not, btOptimizedBvh::refit does nothing, and
-// queries see the mesh as it was built.
+// The shape's tree is quantised, because Bullet refits no other: on a tree that is not quantised, btOptimizedBvh::refit
+// does nothing, and queries see the mesh as it was built.
 #include "peer.h"
 #include "triangle.h"
 
@@ -58,13 +58,13 @@ struct Bullet
         mesh.m_vertexType = PHY_FLOAT;
         array.addIndexedMesh(mesh, PHY_INTEGER);
         shape = std::make_unique<btBvhTriangleMeshShape>(&array, true, low, high);
-        // Otherwise every triangle is 4 cm thick for a convex cast.
+        // With the default margin, every triangle is 4 cm thick for a convex cast.
         shape->setMargin(0);
         object.setCollisionShape(shape.get());
     }
 };
 
-// A distance from a point that reaches all of the mesh.
+// A distance from a point within which the whole mesh lies.
 float reach(const Bullet &bullet, const btVector3 &from)
 {
     btVector3 farthest = (from - bullet.low).absolute();
@@ -139,8 +139,8 @@ void bullet_update(void *peer, const float *positions)
 {
     Bullet &bullet = *static_cast<Bullet *>(peer);
     bullet.take(positions);
-    // As the shape's refitTree, without its own bounds: these take six passes over all triangles, several times the
-    // refit, and no query here reads them.
+    // Like the shape's refitTree, but without the shape's own bounds: these take six passes over all triangles, several
+    // times the time of the refit, and no query of this peer reads them.
     bullet.shape->getOptimizedBvh()->refit(&bullet.array, bullet.low, bullet.high);
 }
 
@@ -177,8 +177,9 @@ int bullet_closest_point(void *peer, const float *at, float max_distance, float 
     const Bullet &bullet = *static_cast<Bullet *>(peer);
     const btVector3 center = vector(at);
     const float most = std::min(max_distance, reach(bullet, center));
-    // Bullet has no query for this, and none with a box that shrinks on the way. So boxes grow until the sphere inside
-    // one holds a point of the mesh. The last box costs most, so the size of the first matters little.
+    // Bullet has no query for closest points, and no query with a box that shrinks meanwhile. So boxes grow until the
+    // sphere inside a box contains a point of the mesh. The last box costs most, so the size of the first one matters
+    // little.
     float radius = std::min(most, (bullet.high - bullet.low).length() / 256);
     for (;;)
     {

@@ -24,8 +24,8 @@ struct Embree
     Point *vertices = nullptr;
     uint32_t (*triangles)[3] = nullptr;
     size_t vertex_count = 0;
-    // Bytes that Embree holds now, by its own count, and how many malloc counted after the tree was built. Embree maps
-    // the tree of a large mesh itself, without malloc.
+    // Bytes that Embree holds now, by its own count, and the bytes that malloc counted after the tree was built. Embree
+    // maps the tree of a large mesh itself, without malloc.
     std::atomic<int64_t> bytes{0};
     int64_t known_to_malloc = 0;
 
@@ -35,7 +35,7 @@ struct Embree
             rtcReleaseGeometry(mesh);
         if (scene)
             rtcReleaseScene(scene);
-        // The device reports what it frees at the end to the monitor, so it is released while `bytes` lives.
+        // The device reports the bytes that it frees at the end to the monitor, so it is released while `bytes` lives.
         if (device)
             rtcReleaseDevice(device);
     }
@@ -81,8 +81,8 @@ Embree *make(const float *positions, uint32_t vertices, const uint32_t *triangle
     peer->vertex_count = vertices;
     std::memcpy(peer->vertices, positions, vertices * sizeof(Point));
     std::memcpy(peer->triangles, triangles, triangle_count * sizeof *peer->triangles);
-    // Embree refits only in a scene that is both of LOW quality, which puts the mesh's tree under a tree of the scene,
-    // and DYNAMIC. Otherwise it builds anew, at about twenty times the cost.
+    // Embree refits only in a DYNAMIC scene of LOW quality, which puts the mesh's tree under a tree of the scene. In
+    // other scenes, it builds anew, at about twenty times the cost.
     rtcSetGeometryBuildQuality(peer->mesh, RTC_BUILD_QUALITY_REFIT);
     rtcSetSceneBuildQuality(peer->scene, RTC_BUILD_QUALITY_LOW);
     rtcSetSceneFlags(peer->scene, flags);
@@ -129,7 +129,7 @@ int cast_ray(const Embree &peer, const float *origin, const float *direction, fl
     return 1;
 }
 
-// Embree walks the tree within a radius, and leaves the triangles to a callback.
+// The data of a point query: Embree walks the tree within a radius, and a callback tests the triangles.
 struct PointQuery
 {
     const Embree *peer;
@@ -165,7 +165,7 @@ bool keep_nearest(RTCPointQueryFunctionArguments *args)
     query.radius_sq = distance_sq;
     query.nearest = nearest;
     query.count = 1;
-    // The radius shrinks; returning true tells Embree.
+    // The radius shrinks; the result true reports this to Embree.
     args->query->radius = std::sqrt(distance_sq);
     return true;
 }

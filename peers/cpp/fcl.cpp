@@ -1,12 +1,12 @@
 // FCL 0.7: a BVHModel of boxes, refitted from the leaves up.
 //
-// The boxes are axis-aligned. FCL's oriented volumes take tens of times as long to refit, and two of them come out
-// wrong: FCL unites rectangle swept spheres with the third axis of one of them instead of the union's own axis, so that
-// the union does not hold them. After a refit from the leaves up RSS misses triangles that it touches, and RSS and
-// OBBRSS miss the closest point.
+// The boxes are axis-aligned. FCL's oriented volumes take tens of times as long to refit, and two kinds of them are
+// wrong afterwards: FCL computes the union of two rectangle swept spheres with the third axis of one of them instead of
+// the union's own axis, so that the union does not contain them. After a refit from the leaves up, RSS misses triangles
+// that the sphere touches, and RSS and OBBRSS miss the closest point.
 //
-// For boxes `fcl::collide` copies the whole model at every call, and `fcl::distance` has no implementation. So the
-// traversals below these two functions are called directly, in the same way.
+// For boxes, `fcl::collide` copies the whole model at every call, and `fcl::distance` has no implementation. So this
+// file calls the traversals below these two functions directly, in the same way.
 #include "peer.h"
 
 #include <limits>
@@ -86,7 +86,7 @@ int closest(Fcl &peer, const float *point, float max_distance, float *nearest)
     const fcl::DistanceRequestf request(true);
     fcl::DistanceResultf result(max_distance);
     fcl::detail::MeshShapeDistanceTraversalNode<Box, fcl::Spheref, Solver> node;
-    // As FCL's `initialize`, which does not link: it is declared with one signature and defined with another.
+    // Like FCL's `initialize`, which does not link: it is declared with one signature and defined with another.
     node.request = request;
     node.result = &result;
     node.model1 = &peer.model;
@@ -100,7 +100,7 @@ int closest(Fcl &peer, const float *point, float max_distance, float *nearest)
     fcl::detail::distance(&node);
     if (!result.o1)
         return 0;
-    // A point on the triangle itself counts as inside the sphere, and then FCL gives no nearest point.
+    // A point on the triangle itself counts as inside the sphere, and then FCL returns no nearest point.
     const fcl::Vector3f on = result.min_distance > 0 ? result.nearest_points[0] : vector(point);
     for (int k = 0; k < 3; k++)
         nearest[k] = on[k];
@@ -161,10 +161,10 @@ int fcl_closest_point(void *peer, const float *point, float max_distance, float 
 }
 
 // FCL's continuous collision cannot cast a sphere against a mesh. CCDC_CONSERVATIVE_ADVANCEMENT, which is meant for it,
-// goes through a mesh that it does not touch at the start: for RSS and OBBRSS it measures from a wrong position of the
-// sphere, for boxes it takes their motion for zero, and with the sphere as the first argument it crashes. CCDC_NAIVE
-// samples times and tunnels, CCDC_POLYNOMIAL_SOLVER is for two meshes, which it changes, and CCDC_RAY_SHOOTING is
-// empty.
+// lets the sphere pass through a mesh that it does not touch at the start: for RSS and OBBRSS, it measures from a wrong
+// position of the sphere; for boxes, it treats their motion as zero; and with the sphere as the first argument, it
+// crashes. CCDC_NAIVE samples times and tunnels, CCDC_POLYNOMIAL_SOLVER is for two meshes, which it changes, and
+// CCDC_RAY_SHOOTING is empty.
 int fcl_cast_sphere(void *, const float *, float, const float *, float *) { return UNSUPPORTED; }
 
 uint64_t fcl_hidden_bytes(void *) { return 0; }

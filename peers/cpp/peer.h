@@ -1,8 +1,8 @@
 // The functions that a peer in C++ offers to Rust. Each peer has its own prefix P, such as embree.
 //
-// Positions are x, y, z of each vertex; triangles are three indices each. All is in one space. Where no other result is
-// described, a query returns 1 if it found something, 0 if not, and UNSUPPORTED if the library has no such query. No
-// function throws.
+// Positions are x, y, z of each vertex; triangles are three indices each. All coordinates are in one space. Unless
+// another result is described, a query returns 1 if it found a result, 0 if not, and UNSUPPORTED if the library has no
+// such query. No function throws.
 #pragma once
 
 #include <cstdint>

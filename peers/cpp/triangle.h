@@ -1,4 +1,4 @@
-// The closest point on a triangle in float, for libraries that leave it to their caller.
+// The closest point on a triangle in float, for libraries that have no such function.
 #pragma once
 
 #include <cmath>

@@ -1,5 +1,5 @@
-/// The result of `make`, and by how many bytes the heap has grown meanwhile. Rust and C++ share one heap. The number is
-/// 0 if the C library is not glibc, since only glibc reports it.
+/// The result of `make`, and the number of bytes by which the heap has grown meanwhile. Rust and C++ share one heap.
+/// The number is 0 if the C library is not glibc, since only glibc reports it.
 pub fn taken_from_heap<T>(make: impl FnOnce() -> T) -> (T, usize) {
     let before = held();
     let made = make();

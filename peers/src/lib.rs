@@ -1,6 +1,6 @@
 //! clamber and other ways of answering queries on an animated skin, behind one trait, for benches. Not published.
 //!
-//! All peers get the same creature, poses and queries. Those that skin the whole mesh get the same positions, from
+//! All peers get the same creature, poses and queries. Peers that skin the whole mesh get the same positions, from
 //! clamber's fastest kernel.
 //!
 //! [`all`] lists the peers that are compiled in; the features `bullet`, `embree`, `fcl` and `physx` add libraries in

@@ -119,7 +119,7 @@ functions!(FCL: fcl_new fcl_free fcl_update fcl_cast_ray fcl_overlap_sphere fcl_
 /// A peer in C++, and the skin whose positions it gets.
 struct Native {
     functions: &'static Functions,
-    /// Made by `functions.new`, and owned by this value alone.
+    /// Made by `functions.new`, and owned only by this value.
     peer: NonNull<c_void>,
     skin: Skin,
 }

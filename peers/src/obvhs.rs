@@ -1,6 +1,6 @@
 //! obvhs: a bounding volume hierarchy that is refitted each frame.
 //!
-//! obvhs has queries for rays and boxes. The search for the closest point over its nodes is ours.
+//! obvhs has queries for rays and boxes. This file adds a search over obvhs's nodes for the closest point.
 #![allow(
     clippy::disallowed_types,
     reason = "obvhs uses Vec3A; a peer need not give the same bits everywhere"
@@ -25,6 +25,7 @@ use crate::peer::{Answer, Entry, Nearest, Peer, RayHit, Unsupported};
 use crate::skin::Skin;
 use crate::triangle;
 
+/// The peer obvhs.
 pub(crate) const ENTRIES: &[Entry] = &[Entry {
     name: "obvhs, refitted",
     make: |mesh| Ok(Box::new(Obvhs::new(mesh))),
@@ -43,14 +44,14 @@ impl Obvhs {
         let triangles: Vec<Triangle> = (0..mesh.triangles().len())
             .map(|index| triangle_of(skin.corners(index)))
             .collect();
-        // A leaf for each triangle, as refitting by leaves requires.
+        // A leaf for each triangle, as the refit from the leaves requires.
         let params = BvhBuildParams {
             max_prims_per_leaf: 1,
             pre_split: false,
             ..BvhBuildParams::medium_build()
         };
         let mut bvh = build_bvh2_from_tris(&triangles, params, &mut Duration::default());
-        // In this order a refit is one pass over the nodes.
+        // In this order, a refit is one pass over the nodes.
         bvh.reorder_in_stack_traversal_order();
         bvh.update_primitives_to_nodes();
         Self {
@@ -80,7 +81,7 @@ impl Peer for Obvhs {
         self.bvh.ray_traverse(ray, &mut hit, |ray, slot| {
             triangle_of(self.skin.corners(of[slot] as usize)).intersect(ray)
         });
-        // Without a hit the triangle's slot stays out of range. The distance does not tell.
+        // Without a hit, the triangle's slot stays out of range. The distance does not show it.
         let met = of.get(hit.primitive_id as usize);
         Ok(met.map(|triangle| RayHit {
             distance: hit.t,

@@ -1,4 +1,4 @@
-//! clamber's own surface as a peer: lazily skinned, and all skinned at once.
+//! clamber's own surface as a peer: skinned lazily, or all at once.
 
 use std::error::Error;
 use std::sync::Arc;
@@ -11,6 +11,7 @@ use glam::{DVec3, Vec3};
 
 use crate::peer::{Answer, Entry, Nearest, Peer, RayHit};
 
+/// clamber's two peers.
 pub(crate) const ENTRIES: &[Entry] = &[
     Entry {
         name: "clamber",
@@ -25,7 +26,7 @@ pub(crate) const ENTRIES: &[Entry] = &[
 /// Options of sphere casts: a tolerance of 0.1 mm for spheres of any size.
 const CAST: CastOptions = CastOptions::STILL.with_tolerance(1e-4);
 
-/// The creature's place is kept in f64, and queries are brought into its frame, as users of clamber do.
+/// A surface whose placement is kept in f64. Queries are transformed to model space, as users of clamber do.
 struct Ours {
     surface: SkinnedSurface,
     ahead: bool,
@@ -58,7 +59,7 @@ impl Ours {
         placed.inverse_transform_point_f32(point.as_dvec3())
     }
 
-    /// A sphere in model space; `None` if it is not finite. Such a sphere holds nothing and hits nothing.
+    /// A sphere in model space; `None` if it is not finite. Such a sphere touches and hits no triangle.
     fn local_ball(&self, sphere: &Sphere) -> Option<Capsule> {
         Capsule::ball(self.local(sphere.center), sphere.radius)
     }

@@ -15,6 +15,7 @@ use parry3d::shape::{Ball, TriMesh};
 use crate::peer::{Answer, Entry, Nearest, Peer, RayHit};
 use crate::skin::Skin;
 
+/// The two peers with parry's mesh.
 pub(crate) const ENTRIES: &[Entry] = &[
     Entry {
         name: "parry, new each frame",
@@ -68,8 +69,8 @@ impl Peer for Parry {
         }))
     }
 
-    /// parry has a query for whether a ball touches the mesh, but not for which triangles. So each triangle whose box
-    /// is near is tested.
+    /// parry's query tells whether a ball touches the mesh, but not which triangles it touches. So each triangle whose
+    /// box is near is tested.
     fn overlap_sphere(&mut self, sphere: &Sphere) -> Answer<usize> {
         let reach = Vec3::splat(sphere.radius);
         let near = Aabb::new(sphere.center - reach, sphere.center + reach);

@@ -27,7 +27,7 @@ pub struct RayHit {
 pub struct Nearest {
     /// The closest point, in world space.
     pub point: Vec3,
-    /// Its distance, as the peer returns it or computed from `point`.
+    /// Distance of that point, as the peer returns it or computed from `point`.
     pub distance: f32,
 }
 
@@ -58,8 +58,8 @@ pub trait Peer {
     /// As [`Peer::cast_ray`].
     fn closest_point(&mut self, point: Vec3, max_distance: f32) -> Answer<Option<Nearest>>;
 
-    /// The share of its motion, 0 to 1, that a sphere makes before it touches the skin, which does not move. `None` if
-    /// it does not touch.
+    /// The share of a sphere's motion, 0 to 1, before it touches the skin, which does not move. `None` if it does not
+    /// touch the skin.
     ///
     /// # Errors
     /// As [`Peer::cast_ray`].
@@ -68,8 +68,8 @@ pub trait Peer {
     /// Position of a point of the skin, and its displacement since the last pose.
     fn motion(&mut self, triangle: TriangleId, barycentric: [f32; 3]) -> (Vec3, Vec3);
 
-    /// Memory of the peer in bytes, including the data that it skins from. `from_heap` is what making it took from
-    /// the heap.
+    /// Memory of the peer in bytes, including the data that it skins from. `from_heap` is the heap memory that making
+    /// the peer took, bytes.
     fn bytes(&self, from_heap: usize) -> usize;
 }
 

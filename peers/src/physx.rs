@@ -24,11 +24,13 @@ use self::mesh::Mesh;
 use crate::peer::{Answer, Entry, Nearest, Peer, RayHit};
 use crate::skin::Skin;
 
+/// The peer PhysX.
 pub(crate) const ENTRIES: &[Entry] = &[Entry {
     name: "PhysX 5.1",
     make: |mesh| Ok(Box::new(PhysX::new(mesh)?)),
 }];
 
+/// The identity rotation.
 const NO_ROTATION: PxQuat = PxQuat {
     x: 0.0,
     y: 0.0,
@@ -36,8 +38,8 @@ const NO_ROTATION: PxQuat = PxQuat {
     w: 1.0,
 };
 
-/// No guard: it would save, set and restore the processor's rounding and flushing modes at every query. Rust's modes
-/// are those that PhysX wants, except that subnormal numbers are not flushed.
+/// Flags of a query without a guard. A guard would save, set and restore the processor's rounding and flushing modes at
+/// every query. Rust's modes are the modes that PhysX wants, except that subnormal numbers are not flushed.
 const NO_GUARD: PxGeometryQueryFlags = PxGeometryQueryFlags::empty();
 
 struct PhysX {

@@ -1,11 +1,11 @@
 //! The thesis's collision resolution (5.5.2, "Collision detection and resolution"): every touching triangle gives a
-//! push that takes the sphere out of it, and the climber moves by the mean of the pushes, once a tick. The rest is left
-//! to the next tick.
+//! push that moves the sphere out of it, and the climber moves by the mean of the pushes, once a tick. The next tick
+//! resolves the rest.
 
 use glam::DVec3;
 
-/// Penetrations below this share of the radius are ignored. They come from the rounding of coordinates up to a few
-/// hundred metres, and a contact that just touches must not dilute the mean of the others.
+/// Share of the radius below which a penetration is ignored. The rounding of coordinates up to a few hundred metres
+/// causes penetrations of this size, and a contact that just touches must not dilute the mean of the others.
 const TOUCH: f64 = 1e-4;
 
 /// The mean of the push-outs of all contacts that penetrate a sphere by more than 1e-4 of its radius.

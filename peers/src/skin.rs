@@ -7,7 +7,7 @@ use clamber_surface::rig::Palette;
 use clamber_surface::skin::skin_into;
 use glam::{DVec3, Vec3};
 
-/// All positions of a pose and of the pose before it, skinned by clamber's kernel: the input of every peer that skins
+/// All positions of a pose and of the previous pose, skinned by clamber's kernel: the input of every peer that skins
 /// the whole mesh.
 pub(crate) struct Skin {
     mesh: Arc<ColliderMesh>,
@@ -48,6 +48,7 @@ impl Skin {
 
     /// Bytes that skinning reads: the rest position of each vertex, and four joints with weights.
     pub(crate) fn bytes_at_rest(&self) -> usize {
+        /// Bytes of a vertex: a position of three f32, and four joints of two bytes with weights of four.
         const VERTEX: usize = 12 + 4 * (2 + 4);
         self.positions.len() * VERTEX
     }

@@ -13,6 +13,7 @@ use crate::peer::{Answer, Entry, Nearest, Peer, RayHit, Unsupported};
 use crate::skin::Skin;
 use crate::triangle;
 
+/// The peer with the thesis's method.
 pub(crate) const ENTRIES: &[Entry] = &[Entry {
     name: "thesis",
     make: |mesh| Ok(Box::new(Thesis::new(mesh))),

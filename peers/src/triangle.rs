@@ -1,4 +1,4 @@
-//! Tests of one triangle in f32, for peers that have none of their own.
+//! Queries of one triangle in f32, for peers that have no such functions of their own.
 
 use glam::Vec3;
 

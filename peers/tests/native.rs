@@ -19,8 +19,11 @@ use clamber_surface::rig::{JointId, Palette};
 use clamber_surface::skin::skin_into;
 use glam::{DAffine3, DVec3, Vec3};
 
+/// Number of rings of the ball.
 const RINGS: u32 = 24;
+/// Number of segments of a ring.
 const SEGMENTS: u32 = 32;
+/// Number of queries of each kind and pose.
 const QUERIES: usize = 300;
 
 /// A closed, bumpy ball of about 10 m across on two joints, one for each half, blended between.
@@ -61,7 +64,7 @@ fn palette(angle: f64, by: DVec3) -> Palette {
 /// All triangles of a pose.
 struct Truth {
     triangles: Triangles,
-    /// The error that f32 may have: about ten units in the last place of the largest coordinate.
+    /// Largest allowed error of f32, metres: about ten units in the last place of the largest coordinate.
     slack: f64,
 }
 
@@ -112,7 +115,8 @@ impl Queries {
 }
 
 fn rays_agree(name: &str, peer: &mut dyn Peer, truth: &Truth, queries: &mut Queries) {
-    /// Bullet enlarges a triangle by a ten-thousandth.
+    /// Share of a triangle's size by which a hit may be outside: three times the ten-thousandth by which Bullet
+    /// enlarges a triangle.
     const GROWN: f64 = 3e-4;
     let mut hits = 0;
     for _ in 0..QUERIES {
@@ -216,7 +220,7 @@ fn closest_points_agree(name: &str, peer: &mut dyn Peer, truth: &Truth, queries:
 }
 
 fn sphere_casts_agree(name: &str, peer: &mut dyn Peer, truth: &Truth, queries: &mut Queries) {
-    /// Bullet's casts end at a gap of a millimetre, for spheres of any size.
+    /// Largest allowed gap at the end of a cast, metres: twice the millimetre at which Bullet's casts end.
     const GAP: f64 = 2e-3;
     let (mut hits, mut in_touch) = (0, 0);
     for _ in 0..QUERIES {
@@ -232,7 +236,7 @@ fn sphere_casts_agree(name: &str, peer: &mut dyn Peer, truth: &Truth, queries: &
         };
         let radius = f64::from(sphere.radius);
         let (earliest, latest) = (cast(radius + GAP), cast(radius - GAP));
-        // In Bullet a sphere that starts in contact and moves away has no hit.
+        // In Bullet, a sphere that starts in contact and moves away has no hit.
         if earliest == Some(0.0) && (latest != earliest || name.starts_with("Bullet")) {
             continue;
         }

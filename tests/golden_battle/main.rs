@@ -11,14 +11,14 @@ use clamber_oracle::golden::{GoldenRun, hold};
 use clamber_scenes::battle::{Battle, BattleOptions, CREATURE};
 use clamber_scenes::giant::giant;
 
-/// Hash of the ride. It changes with any bit of a result, and with rapier. Check that a change is intended, then store
-/// the new hash, and the file by `CLAMBER_BLESS=1`.
+/// Hash of the ride. It changes with any bit of a result, and with rapier's version. Check that a change is intended,
+/// then store the new hash, and the file by `CLAMBER_BLESS=1`.
 const RIDE: u64 = 0x1a24_53f9_17c8_3503;
 
-/// Hash of the climb.
+/// Hash of the climb, under the same rules as [`RIDE`].
 const CLIMB: u64 = 0xf762_4345_35ac_1ca4;
 
-/// A tick of a battle: the climber's fields, the creature's pose and the rocks.
+/// Adds a tick of a battle: the climber's fields, the creature's pose, the rocks and the fight.
 fn add(run: &mut GoldenRun, battle: &Battle<'_>) {
     run.field("climber", battle.climber().state().fingerprint());
     run.fields("its ", battle.climber().state());
@@ -32,13 +32,13 @@ fn add(run: &mut GoldenRun, battle: &Battle<'_>) {
 fn palette_bits(palette: &Palette) -> u64 {
     let rows = palette.matrices().iter().flat_map(|map| map.rows);
     let numbers = rows.flatten().map(f32::to_bits);
-    // 2^64 divided by the golden ratio: an odd number with well spread bits.
+    // The factor is 2^64 divided by the golden ratio: an odd number with well spread bits.
     numbers.fold(0, |hash: u64, bits| {
         (hash.rotate_left(5) ^ u64::from(bits)).wrapping_mul(0x9e37_79b9_7f4a_7c15)
     })
 }
 
-/// A file beside this one.
+/// The path of a stored file beside this one.
 fn stored(name: &str) -> String {
     format!(
         "{}/tests/golden_battle/{name}.golden",

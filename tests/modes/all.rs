@@ -1,4 +1,4 @@
-//! Checks of every mode. [`Scene::step`] checks that a mode's state can be restored in any tick.
+//! Tests of all modes. [`Scene::step`] also checks that a mode's state can be restored in any tick.
 
 use clamber::climber::{
     Blow, ClimberError, ClimberInput, ClimberMode, CustomMode, ModeContext, NextMode, StepRules,
@@ -10,9 +10,10 @@ use crate::modes::dash::Dash;
 use crate::scene::{DASH, SWIM, Scene, VAULT, WALL_RUN};
 use crate::{dash, swim, vault, wall_run};
 
-/// A mode, a function that makes a scene in that mode, and one that continues the scene until the mode ends.
+/// A mode, a function that makes a scene in that mode, and a function that continues the scene until the mode ends.
 type Play = (ClimberMode, fn(DVec3) -> Scene, fn(&mut Scene));
 
+/// The modes of the example.
 const PLAYS: [Play; 4] = [
     (DASH, dash::play, dash::end),
     (VAULT, vault::play, vault::end),
@@ -20,6 +21,7 @@ const PLAYS: [Play; 4] = [
     (SWIM, swim::play, swim::end),
 ];
 
+/// Velocity of a moving frame, metres a second.
 const FRAME: DVec3 = DVec3::new(25.0, -10.0, 13.0);
 
 #[test]
@@ -122,7 +124,7 @@ impl CustomMode for Feel {
     }
 }
 
-/// The post is 0.2 m wide. At 30 m/s, a probe from the position a tick ago would miss it.
+/// The post is 0.2 m wide. At 30 m/s, a probe from the climber's position a tick ago would miss the post.
 #[test]
 fn before_its_movement_a_mode_finds_the_ground_where_it_is_at_that_time() {
     for frame in [DVec3::ZERO, FRAME] {

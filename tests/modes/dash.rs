@@ -3,7 +3,7 @@ use glam::{DQuat, DVec3};
 
 use crate::scene::{DASH, Motion, Scene, act, walk};
 
-/// A dash on the floor, after an action that is held for one tick.
+/// A dash on the floor; its button is held for one tick.
 pub(crate) fn play(frame: DVec3) -> Scene {
     let mut scene = Scene::new(frame, DVec3::Y * 0.4).settled();
     scene.step(&act(DVec3::X, 1));

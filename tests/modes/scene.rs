@@ -10,16 +10,22 @@ use crate::modes::vault::Vault;
 use crate::modes::wall_run::WallRun;
 use crate::own::Own;
 
+/// Length of a tick, seconds.
 pub(crate) const DT: f64 = 1.0 / 60.0;
 
+/// Mode of the dash.
 pub(crate) const DASH: ClimberMode = ClimberMode::Custom(1);
+/// Mode of the vault.
 pub(crate) const VAULT: ClimberMode = ClimberMode::Custom(2);
+/// Mode of the wall run.
 pub(crate) const WALL_RUN: ClimberMode = ClimberMode::Custom(3);
+/// Mode of swimming.
 pub(crate) const SWIM: ClimberMode = ClimberMode::Custom(4);
 
-/// Rotation and translation of a box at a time, relative to where it was built.
+/// Rotation and translation of a box at a time, seconds, relative to its first place.
 pub(crate) type Motion = fn(f64) -> (DQuat, DVec3);
 
+/// Triangles of a box. The bits of a corner's index select the low or the high side along X, Y and Z.
 const TRIANGLES: [[u32; 3]; 12] = [
     [0, 2, 1],
     [1, 2, 3],
@@ -39,7 +45,7 @@ const TRIANGLES: [[u32; 3]; 12] = [
 pub(crate) struct Scene {
     boxes: Vec<Own>,
     water: Option<[DVec3; 2]>,
-    /// Velocity of everything, metres a second.
+    /// Velocity of the whole scene, metres a second.
     frame: DVec3,
     tick: u32,
     pub(crate) climber: Climber,
@@ -104,8 +110,8 @@ impl Scene {
         self
     }
 
-    /// Makes one tick with all modes. A second climber that is restored to the state before the tick must do the same,
-    /// bit for bit.
+    /// Makes one tick with all modes. Asserts that a second climber, restored to the state before the tick, gets the
+    /// same state and report, bit for bit.
     pub(crate) fn step(&mut self, input: &ClimberInput) -> StepReport {
         self.step_without(input, None)
     }

@@ -53,7 +53,7 @@ fn a_swimmer_sinks_and_rises_by_input_and_else_hovers() {
         scene.velocity()
     );
     scene.steps(120, &rise(DVec3::ZERO));
-    // At the surface it floats.
+    // At the surface, the swimmer floats.
     assert_eq!(scene.mode(), SWIM);
     assert!(
         (scene.position().y - 3.8).abs() < 1e-9,
@@ -98,7 +98,7 @@ fn a_swimmer_comes_ashore_and_goes_in_again() {
     scene.steps(300, &walk(-DVec3::X));
     assert_eq!(scene.mode(), SWIM, "{:?}", scene.climber.state());
     assert!(scene.position().x < 5.0, "{}", scene.position());
-    // It enters the water at most twice: no flicker at the shore.
+    // The climber enters the water at most twice, so the mode does not flicker at the shore.
     let modes = scene
         .trace
         .windows(2)

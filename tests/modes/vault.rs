@@ -58,7 +58,7 @@ fn a_wall_is_not_vaulted_without_the_button() {
     assert_eq!(scene.ticks_in(VAULT), 0);
 }
 
-/// There is no room above the climber, or above the wall.
+/// One ceiling leaves no room above the climber, the other one leaves none above the wall.
 #[test]
 fn no_one_vaults_into_a_ceiling() {
     for from in [-9.0, 1.0] {

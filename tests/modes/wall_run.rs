@@ -46,7 +46,7 @@ fn a_wall_run_ends_where_the_wall_does() {
     scene.steps(60, &act(DVec3::X, 4));
     let ticks = scene.ticks_in(WALL_RUN);
     assert_eq!(scene.mode(), ClimberMode::Falling);
-    // 2 m, and the distance on which the ball still touches the edge.
+    // The run is 2 m long, plus the distance on which the ball still touches the edge.
     assert!((22..30).contains(&ticks), "{ticks}");
     assert!(scene.position().x > 3.0, "{}", scene.position());
 }

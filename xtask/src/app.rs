@@ -1,4 +1,4 @@
-//! `examples/bevy_app`, which is no part of the workspace.
+//! Checks `examples/bevy_app`, which has a workspace of its own.
 
 use cargo_metadata::Metadata;
 
@@ -6,29 +6,42 @@ use crate::build::owned;
 use crate::run::{IGNORE_RUST_VERSION, cargo, cargo_output, cargo_refuses};
 use crate::test_run::{self, Targets, TestRun};
 
+/// Manifest of the app's workspace, from the root of the repository.
 const WORKSPACE: &str = "examples/bevy_app/Cargo.toml";
 
-/// The options that the game is given.
+/// Options that the checks pass to the game.
 const GIVEN: [&str; 3] = [SCRIPT, SCREENSHOT, FILMED];
+
+/// Option with the file of a script that plays the game.
 const SCRIPT: &str = "--script";
+
+/// Option with the file of a picture that the game draws at the end.
 const SCREENSHOT: &str = "--screenshot";
+
+/// Option with the file of a film of the game.
 const FILMED: &str = "--film";
 
+/// File of the picture that [`play`] has the game draw.
 const PICTURE: &str = "target/bevy_app.png";
+
+/// File of the film that [`film`] has the game record.
 const FILM: &str = "target/bevy_app.gif";
 
-/// What the hero of `climb.script` achieves at least: seconds on the giant, and metres above the ground. It does not
-/// depend on the machine: a frame is a tick.
+/// Least time that the hero of `climb.script` spends on the giant, seconds. It does not depend on the machine: a frame
+/// is a tick.
 const RIDE: f64 = 8.0;
+
+/// Least height that the hero of `climb.script` reaches above the ground, metres. It does not depend on the machine.
 const HIGH: f64 = 12.0;
 
-/// Bytes that a picture has at least: the giant's has about a million, one of a single colour a few thousand.
+/// Least size of a picture or film, bytes. A picture of the giant has about a million, a picture of a single colour a
+/// few thousand.
 const LEAST: u64 = 200_000;
 
-/// A scene in which nothing is.
+/// An empty scene, which the game must refuse.
 const STILL: &str = r#"{"asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "nodes": [{}]}"#;
 
-/// A skinned mesh of lines; its buffer, here `BUFFER`, is all zero.
+/// A skinned mesh of lines, which the game must refuse. Its buffer is all zero and replaces the word `BUFFER`.
 const LINES: &str = r#"{
     "asset": {"version": "2.0"},
     "scenes": [{"nodes": [0, 1]}],
@@ -44,7 +57,7 @@ const LINES: &str = r#"{
     "buffers": [{"byteLength": 33, "uri": "data:application/octet-stream;base64,BUFFER"}]
 }"#;
 
-/// Its tests, and the game, played by scripts.
+/// Runs the app's tests, then the game itself with scripts.
 pub(crate) fn runs() -> Vec<TestRun> {
     vec![run(Targets::All), run(Targets::Program)]
 }
@@ -64,7 +77,7 @@ fn run(targets: Targets) -> TestRun {
     }
 }
 
-/// The format, and all of its [`runs`].
+/// Checks the format and performs all [`runs`].
 pub(crate) fn check(metadata: &Metadata) -> Result<(), String> {
     format()?;
     runs()
@@ -76,7 +89,7 @@ pub(crate) fn format() -> Result<(), String> {
     cargo(&["fmt", "--check", "--manifest-path", WORKSPACE])
 }
 
-/// Lets scripts play the game, and gives it files that it must refuse.
+/// Plays the game by scripts, and gives it files that it must refuse.
 fn play_all() -> Result<(), String> {
     std::fs::create_dir_all("target").map_err(|error| format!("target: {error}"))?;
     play()?;
@@ -92,7 +105,7 @@ fn play_all() -> Result<(), String> {
     )
 }
 
-/// Climbs the giant, and draws a picture at the end. The game checks the arrows by itself.
+/// Climbs the giant, and draws a picture at the end. The game itself checks the arrows' places.
 fn play() -> Result<(), String> {
     remove(PICTURE)?;
     let script = "examples/bevy_app/climb.script";
@@ -115,7 +128,7 @@ fn play() -> Result<(), String> {
     check_size(PICTURE)
 }
 
-/// A short film.
+/// Records a short film.
 fn film() -> Result<(), String> {
     remove(FILM)?;
     let script = "target/short.script";
@@ -125,7 +138,7 @@ fn film() -> Result<(), String> {
     check_size(FILM)
 }
 
-/// Removes what a run before has left.
+/// Removes the file of an earlier run.
 fn remove(file: &str) -> Result<(), String> {
     if std::fs::exists(file).is_ok_and(|there| there) {
         std::fs::remove_file(file).map_err(|error| format!("{file}: {error}"))?;
@@ -143,7 +156,7 @@ fn check_size(file: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// Gives the app a file that it can do nothing with: it must say so, and end.
+/// Gives the app a file that it cannot use. It must print the reason and end with an error.
 fn refuse(file: &str, content: Option<&str>, says: &str) -> Result<(), String> {
     if let Some(content) = content {
         std::fs::write(file, content).map_err(|error| format!("{file}: {error}"))?;
@@ -162,7 +175,7 @@ fn refuse(file: &str, content: Option<&str>, says: &str) -> Result<(), String> {
     }
 }
 
-/// How cargo is called to play the game with these options.
+/// The arguments of cargo that play the game with these options.
 fn played(options: &[&str]) -> Vec<String> {
     run(Targets::Program).arguments("run", options)
 }

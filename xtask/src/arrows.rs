@@ -1,8 +1,8 @@
-//! Which crate may depend on which, and which crate alone may know an engine.
+//! Checks which crates may depend on which, and keeps each engine to a single crate.
 
 use cargo_metadata::{DependencyKind, Metadata};
 
-/// The workspace crates that each one may depend on. A crate that is not listed may not exist.
+/// The workspace crates that each crate may depend on. A crate that is missing here fails the check.
 const ALLOWED: [(&str, &[&str]); 21] = [
     ("clamber_oracle", &[]),
     // Only for its feature `oracle`.
@@ -126,7 +126,7 @@ const ALLOWED: [(&str, &[&str]); 21] = [
     ("xtask", &[]),
 ];
 
-/// What tests and examples of a crate may use beyond that, and `clamber_oracle`.
+/// The workspace crates that tests and examples of a crate may use as well, besides `clamber_oracle`.
 const ALLOWED_FOR_TESTS: [(&str, &str); 23] = [
     ("bevy_clamber", "clamber_scenes"),
     ("clamber", "clamber_scenes"),
@@ -153,11 +153,11 @@ const ALLOWED_FOR_TESTS: [(&str, &str); 23] = [
     ("clamber_render", "clamber_scenes"),
 ];
 
-/// The one crate of Bevy that others may know, for a feature of the same name: components hold their types, and without
-/// it nothing of them could be shown in an inspector or stored in a scene.
+/// The only crate of Bevy that crates other than `bevy_clamber` may depend on, for a feature of the same name:
+/// components contain their types, and without it no inspector or scene could show or store these.
 const REFLECTION: &str = "bevy_reflect";
 
-/// Crates outside the workspace that only one crate of it may know.
+/// Crates outside the workspace, each with the only crate of the workspace that may depend on it.
 const KEPT_TO: [(&str, &str); 10] = [
     ("avian3d", "bevy_clamber"),
     ("rapier3d", "clamber_world"),
@@ -171,7 +171,7 @@ const KEPT_TO: [(&str, &str); 10] = [
     ("prost", "clamber_record"),
 ];
 
-/// All that the core may depend on outside the workspace.
+/// The core and all crates outside the workspace that it may depend on.
 const CORE: (&str, &[&str]) = (
     "clamber_surface",
     &[

@@ -1,5 +1,5 @@
-//! The main example: recorded, fought again and filmed as built for tests, with equal results, and with options that it
-//! has to refuse. As released, with equal results, it is a golden run.
+//! Checks the main example as built for tests: it records a battle, fights it again and films it with equal results,
+//! and refuses wrong options. As released, with equal results, the battle is a golden run.
 
 use std::collections::BTreeMap;
 
@@ -10,24 +10,28 @@ use crate::build::{self, owned};
 use crate::run::{note_skipped, program, refuses};
 use crate::test_run::{Packages, Profile, Targets, TestRun};
 
-/// The binaries of examples by name.
+/// Paths of the examples' binaries, by name.
 type Examples = BTreeMap<String, Utf8PathBuf>;
 
-/// The battle whose hash is compared.
+/// Options of the battle whose hash is compared.
 const FIGHT: [&str; 4] = ["--seconds", "12", "--out", "target/xtask-battle"];
 
-/// Where it is recorded.
+/// File of the recording.
 const RECORDING: &str = "target/xtask-battle.mcap";
+
+/// Options that record the battle.
 const RECORD: [&str; 2] = ["--record", RECORDING];
 
-/// The tick at which it is fought again.
+/// Options that fight the recorded battle again from tick 200.
 const FROM: [&str; 2] = ["--from", "200"];
 
-/// All that can be drawn over a battle.
+/// Value of the option `--overlay` with all overlays of a battle.
 const OVERLAYS: &str = "joints,capsules,spheres,clusters,contact,anchors,sweeps,rocks,state";
 
+/// Folder of the film's pictures.
 const FRAMES: &str = "target/xtask-frames";
 
+/// Options that film a second of the battle, 4 pictures a second, with all overlays.
 const FILM: [&str; 16] = [
     "--width",
     "320",
@@ -47,8 +51,8 @@ const FILM: [&str; 16] = [
     "target/xtask-frames/battle.gif",
 ];
 
-/// Options that a battle refuses, and a part of the reason that it gives. Without it a machine that cannot draw would
-/// seem to refuse them.
+/// Options that a battle refuses, each with a part of the reason that it prints. Without the reason, a machine that
+/// cannot draw would seem to refuse them.
 const REFUSED: [(&[&str], &str); 6] = [
     (
         &["--rate", "0", "--frames", "target/none"],
@@ -64,7 +68,7 @@ const REFUSED: [(&[&str], &str); 6] = [
     (&["--record", "Cargo.toml/none"], "cannot write Cargo.toml"),
 ];
 
-/// What it and the example `replay` are given here.
+/// Options that these checks pass to the examples `battle` and `replay`.
 pub(crate) fn given(name: &str) -> Vec<&'static str> {
     match name {
         "battle" => [&FIGHT[..], &RECORD, &FILM].concat(),
@@ -73,7 +77,7 @@ pub(crate) fn given(name: &str) -> Vec<&'static str> {
     }
 }
 
-/// Everything, as built for tests.
+/// Checks all of this with the examples as built for tests.
 pub(crate) fn check(examples: &Examples) -> Result<(), String> {
     let battle = find(examples, "battle")?;
     for (arguments, reason) in REFUSED {
@@ -85,7 +89,7 @@ pub(crate) fn check(examples: &Examples) -> Result<(), String> {
     film(battle, &hash)
 }
 
-/// The battle as released has the hash that it has as built for tests.
+/// Checks that the battle has the same hash as released and as built for tests.
 pub(crate) fn compare_builds() -> Result<(), String> {
     let battle = || vec![Targets::Example("battle".into())];
     let tested = build::examples(&build::selection().of(battle()))?;
@@ -101,7 +105,8 @@ pub(crate) fn compare_builds() -> Result<(), String> {
     program(find(&released, "battle")?, &["--out", "target/xtask-climb"])
 }
 
-/// Without `deterministic`, as most users have it: what one build records, the other fights again.
+/// Checks that a release build fights the recording of a development build again, and the other way round. Both are
+/// without `deterministic`, as most users build it.
 pub(crate) fn exchange_recordings(_: &Metadata) -> Result<(), String> {
     let build = |profile| {
         let example = |name: &str| Targets::Example(name.into());
@@ -122,7 +127,7 @@ pub(crate) fn exchange_recordings(_: &Metadata) -> Result<(), String> {
     Ok(())
 }
 
-/// Records a battle, which must have this hash.
+/// Records a battle and checks its hash.
 fn record(build: &Examples, hash: &str) -> Result<(), String> {
     let recorded = fight(find(build, "battle")?, &RECORD)?;
     if recorded == hash {
@@ -134,7 +139,7 @@ fn record(build: &Examples, hash: &str) -> Result<(), String> {
     }
 }
 
-/// Fights the recorded battle again, all of it and from a snapshot.
+/// Fights the recorded battle again, from its start and from a snapshot.
 fn replay(build: &Examples) -> Result<(), String> {
     let replay = find(build, "replay")?;
     program(replay, &[RECORDING])?;
@@ -149,8 +154,8 @@ fn find<'a>(
     Ok(binary.ok_or_else(|| format!("cargo built no example {name}"))?)
 }
 
-/// Films a battle with all that can be drawn over it: pictures are there, and the battle is the same. Without a
-/// graphics device, says that it does not.
+/// Films a battle with all overlays, and checks that the files exist and the hash is the same. It is skipped, with a
+/// line in the summary, unless `CLAMBER_REQUIRE_GPU` is set.
 fn film(battle: &Utf8Path, hash: &str) -> Result<(), String> {
     if std::env::var_os("CLAMBER_REQUIRE_GPU").is_none() {
         let line = "SKIPPED film of a battle: no Vulkan, install mesa-vulkan-drivers";
@@ -178,7 +183,7 @@ fn film(battle: &Utf8Path, hash: &str) -> Result<(), String> {
         }
     }
     match (stills, moving) {
-        // Both ends of the second are seen.
+        // The film has a picture at both ends of the second.
         (5, 1) => Ok(()),
         _ => Err(format!(
             "a second of film is {stills} pictures and {moving} GIFs in {FRAMES}, not 5 and 1"
@@ -186,7 +191,7 @@ fn film(battle: &Utf8Path, hash: &str) -> Result<(), String> {
     }
 }
 
-/// A battle of some seconds, with these options beside; gives its hash.
+/// Runs a battle of some seconds with further options; returns its hash.
 fn fight(battle: &Utf8Path, more: &[&str]) -> Result<String, String> {
     program(battle, &[&FIGHT, more].concat())?;
     let path = "target/xtask-battle/summary.json";

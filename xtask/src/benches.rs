@@ -1,13 +1,13 @@
-//! Every bench. In CI once, briefly: it runs, and what it checks beside measuring holds. In the profile of tests, whose
-//! builds are there; the release profile would build all of Bevy again. What is released runs among the examples. At night
-//! whole, in the release profile: a bench fails if a bound is missed by far.
+//! Runs all benches. CI runs each of them once, briefly, so that each runs and its checks hold. CI uses the profile of
+//! tests, whose builds exist already: the release profile would build all of Bevy again. The nightly task runs the
+//! benches in full in the release profile, where a bench fails if it misses a bound by far.
 
 use cargo_metadata::Metadata;
 
 use crate::build::{owned, selection};
 use crate::test_run::{Profile, Targets, TestRun};
 
-/// Each once, briefly.
+/// Runs each bench once, briefly.
 pub(crate) fn runs(metadata: &Metadata) -> Vec<TestRun> {
     let mut run = TestRun {
         harness: &["--test"],
@@ -17,7 +17,7 @@ pub(crate) fn runs(metadata: &Metadata) -> Vec<TestRun> {
     vec![run]
 }
 
-/// Each as it is measured.
+/// Runs each bench in full, as for measurements.
 pub(crate) fn whole(metadata: &Metadata) -> Vec<TestRun> {
     let mut run = TestRun {
         profile: Profile::Release,
@@ -32,7 +32,7 @@ fn all(metadata: &Metadata) -> TestRun {
     let packages = metadata.workspace_packages();
     let targets = packages.iter().flat_map(|package| &package.targets);
     let benches = targets.filter(|target| target.is_bench());
-    // By name: all of them would be the libraries' tests as well.
+    // Selects benches by name, because `--benches` would also run the libraries' tests.
     let named = benches.map(|bench| Targets::Bench(bench.name.clone()));
     selection().of(named.collect())
 }

@@ -1,5 +1,5 @@
-//! One build for tests, examples and benches: with another selection of packages or features, cargo would
-//! build the dependencies anew.
+//! Builds tests, examples and benches with one selection of packages and features. With another selection, cargo would
+//! build the dependencies again.
 
 use std::collections::BTreeMap;
 
@@ -9,9 +9,9 @@ use cargo_metadata::{Message, Metadata, TargetKind};
 use crate::run::{IGNORE_RUST_VERSION, cargo_output};
 use crate::test_run::{Packages, Profile, TestRun};
 
-/// What is not on by default but needed by an example, a test or a bench, or only adds to what there is. With
-/// `deterministic`, battles have the same hashes as [`released`]. It costs no further build of rapier: Bevy has glam
-/// built anew for all of this anyway.
+/// Features that are off by default and that an example, a test or a bench needs, or that only add items. With
+/// `deterministic`, battles have the same hashes as with [`released`]. It costs no further build of rapier: with Bevy
+/// in the selection, glam is built again anyway.
 const FEATURES: [&str; 16] = [
     "bevy_clamber/clamber_gltf",
     "bevy_clamber/diagnostics",
@@ -31,13 +31,13 @@ const FEATURES: [&str; 16] = [
     "clamber_oracle/exact",
 ];
 
-/// The default member that has more tests with its feature. Those of the others, `cargo test` runs in full.
+/// The default member that has more tests with its feature. `cargo test` runs all tests of the other default members.
 const ORACLE: &str = "clamber_oracle";
 
-/// The packages whose golden runs are run as released.
+/// Packages whose golden runs are run in the release profile.
 const RELEASED: [&str; 3] = ["clamber", "clamber_climber", "clamber_surface"];
 
-/// The whole workspace, with [`FEATURES`].
+/// Selects the whole workspace, with [`FEATURES`].
 pub(crate) fn selection() -> TestRun {
     TestRun {
         packages: Packages::AllBut(Vec::new()),
@@ -47,7 +47,8 @@ pub(crate) fn selection() -> TestRun {
     }
 }
 
-/// [`selection`] for tests of packages whose tests `cargo test` does not run in full. The libraries are built alike.
+/// [`selection`] for tests of the packages that `cargo test` does not test in full. The libraries are built as in
+/// [`selection`].
 pub(crate) fn beyond_default(metadata: &Metadata) -> TestRun {
     let default = metadata.workspace_default_packages().into_iter();
     let names = default.map(|package| package.name.to_string());
@@ -57,9 +58,10 @@ pub(crate) fn beyond_default(metadata: &Metadata) -> TestRun {
     }
 }
 
-/// Golden runs as released, with SIMD levels down to scalar code. Here, since scalar code with overflow checks takes as
-/// long to compile as all other levels together, and there are none in sums of floats. One selection for all of them:
-/// with another one, cargo would build rapier again. The hashes of battles are stored for `deterministic`.
+/// Selects golden runs in the release profile, with all SIMD levels down to scalar code. Scalar code is tested here
+/// because it takes as long to compile with overflow checks as all other levels together, and sums of floats have no
+/// such checks. All golden runs share one selection: with another one, cargo would build rapier again. The stored
+/// hashes of battles are for `deterministic`.
 pub(crate) fn released() -> TestRun {
     TestRun {
         profile: Profile::Release,
@@ -69,12 +71,12 @@ pub(crate) fn released() -> TestRun {
     }
 }
 
-/// As the lists of a [`TestRun`] are.
+/// Copies words into the form of a [`TestRun`]'s lists.
 pub(crate) fn owned(words: &[&str]) -> Vec<String> {
     words.iter().map(|&word| word.to_owned()).collect()
 }
 
-/// Builds the examples that a selection has for targets; gives their binaries by name.
+/// Builds the examples of a selection; returns the paths of their binaries by name.
 pub(crate) fn examples(which: &TestRun) -> Result<BTreeMap<String, Utf8PathBuf>, String> {
     let mut build = which.arguments("build", &[]);
     build.extend(owned(&["--quiet", "--message-format"]));

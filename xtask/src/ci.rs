@@ -1,4 +1,4 @@
-//! What CI runs.
+//! The steps of `cargo xtask ci`.
 
 use cargo_metadata::Metadata;
 
@@ -11,6 +11,7 @@ use crate::{
     packages,
 };
 
+/// The steps in the order in which they run.
 pub(crate) const STEPS: [Step; 14] = [
     Step::runs("tests", tests),
     Step {
@@ -35,7 +36,7 @@ pub(crate) const STEPS: [Step; 14] = [
     Step::other("features", features::check),
 ];
 
-/// The command of the front page, `cargo test`; then all that it leaves out.
+/// Runs `cargo test`, the command of the front page; then all tests that it leaves out.
 pub(crate) fn tests(metadata: &Metadata) -> Vec<TestRun> {
     vec![TestRun::default(), beyond_default(metadata)]
 }

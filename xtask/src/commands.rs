@@ -1,20 +1,20 @@
-//! Every command in the documentation is run by a step of `cargo xtask ci` or `cargo xtask nightly`, or is listed in
-//! `docs/commands.md` with the reason why not.
+//! Checks that a step of `cargo xtask ci` or `cargo xtask nightly` runs each command in the documentation, or that
+//! `docs/commands.md` gives the reason why not.
 //!
 //! Pages are all Markdown files except the list itself and the changelog. A command is a line of a block that is marked
 //! `sh`, `bash` or `console`, or words in backticks that begin with a known program. A step runs a command if it runs
-//! the same targets, with all features that the command names, and ignored tests if the command includes them. Programs
-//! must be given the same options. What is left out of account:
+//! the same targets, with all features that the command names, and includes ignored tests if the command does. Programs
+//! must get the same options. The comparison ignores:
 //!
-//! - the profile: a step decides it, and mostly has that of tests;
-//! - the values of a program's options, such as of `--seconds`, and the files that it gets: a step is to be brief;
-//! - which of a target's tests or benches are named, and `--nocapture`; a name of a test must stand in the sources;
-//! - `CLAMBER_TEST_DATA`, which says where files are. With any other variable it is another command.
+//! - the profile: each step chooses its own, mostly the profile of tests;
+//! - the values of a program's options, such as of `--seconds`, and the program's files: a step has to be brief;
+//! - the names of single tests or benches in a target, and `--nocapture`; a test's name must stand in the sources;
+//! - `CLAMBER_TEST_DATA`, which is the folder of test files. Any other variable makes a different command.
 //!
-//! `clamber` runs if a test that starts the program has the same words and options in its text. A command with a pipe,
-//! or of any other program, is run by no step.
+//! A step runs `clamber` if a test that starts the program has the same words and options in its text. No step runs a
+//! command with a pipe, or a command of any other program.
 //!
-//! Whoever runs it, the packages, targets, features and steps that a command names must exist.
+//! For each command, the packages, targets, features and steps that it names must exist.
 
 mod asked;
 mod cli;
@@ -27,10 +27,10 @@ use cargo_metadata::Metadata;
 use list::Row;
 use who::Who;
 
-/// The list.
+/// The list of commands, from the root of the repository.
 const LIST: &str = "docs/commands.md";
 
-/// The list says of every command in the pages who runs it.
+/// Checks that the stored list is up to date and has a step or a reason for each command.
 pub(crate) fn check(main: &Metadata) -> Result<(), String> {
     let stored = std::fs::read_to_string(main.workspace_root.join(LIST)).unwrap_or_default();
     let stored = stored.replace("\r\n", "\n");
@@ -52,7 +52,7 @@ pub(crate) fn check(main: &Metadata) -> Result<(), String> {
     }
 }
 
-/// Stores the list. The reasons in it stay, and those that are missing are left empty.
+/// Stores the list. It keeps the stored reasons and leaves missing reasons empty.
 pub(crate) fn store(main: &Metadata) -> Result<(), String> {
     let path = main.workspace_root.join(LIST);
     let (page, _) = write(main, &std::fs::read_to_string(&path).unwrap_or_default())?;
@@ -65,7 +65,7 @@ pub(crate) fn store(main: &Metadata) -> Result<(), String> {
     }
 }
 
-/// The list as it should be, with the reasons of the stored one; and what is wrong.
+/// The list as it should be, with the stored reasons; and the faults.
 fn write(main: &Metadata, stored: &str) -> Result<(String, Vec<String>), String> {
     let who = Who::new(main)?;
     let mut reasons = list::reasons(stored);

@@ -1,12 +1,12 @@
-//! Nothing rots unseen: each test, bench, example and program in the documentation is run by a step of `cargo xtask ci`
-//! or of `cargo xtask nightly`, with the features that it requires, and so is each test that is marked as ignored.
+//! Checks that a step of `cargo xtask ci` or of `cargo xtask nightly` runs each test, bench, example and program in the
+//! documentation, with the features that it requires, and each test that is marked as ignored.
 //!
-//! What the steps run, their [`TestRun`](crate::test_run::TestRun)s say, from which cargo's arguments follow too. What
-//! there is to run, cargo's metadata says, and for ignored tests the sources. This holds for the main workspace and for
-//! those beside it.
+//! The steps' [`TestRun`](crate::test_run::TestRun)s list what they run, and cargo's arguments follow from the same
+//! values. Cargo's metadata lists the targets, and the sources mark ignored tests. The check covers the main workspace
+//! and all others in the repository.
 //!
-//! A program in the documentation that is marked `no_run` is compiled with the others. One that is marked `ignore`, or
-//! `rs` and not `rust`, is not even compiled, so a test must have the same program.
+//! A program in the documentation that is marked `no_run` is compiled with the others. A program that is marked
+//! `ignore`, or `rs` instead of `rust`, is not even compiled, so a test must have the same program.
 
 mod marks;
 mod owners;
@@ -22,17 +22,17 @@ use places::{Place, places};
 use crate::plan::{Planned, plan};
 use crate::workspaces::{self, Workspace};
 
-/// What there is to run, and what runs it.
+/// All targets and marks of the repository, and the runs of all steps.
 #[derive(Clone)]
 struct Tree {
     root: Utf8PathBuf,
-    /// The main workspace first.
+    /// The main workspace comes first.
     workspaces: Vec<Workspace>,
     places: Vec<Place>,
     plan: Vec<Planned>,
 }
 
-/// There are no gaps.
+/// Fails if there are gaps.
 pub(crate) fn check(main: &Metadata) -> Result<(), String> {
     let found = Tree::read(main)?.gaps();
     if found.is_empty() {
@@ -54,7 +54,7 @@ impl Tree {
         })
     }
 
-    /// What no step runs, in sentences.
+    /// The targets and marks that no step runs, in sentences.
     fn gaps(&self) -> BTreeSet<String> {
         let workspaces = self.workspaces.iter();
         let targets = workspaces.flat_map(|workspace| targets::gaps(workspace, &self.plan));

@@ -1,8 +1,8 @@
-//! A picture of the workspace's crates and of the arrows between them, `docs/crates.svg`.
+//! Draws `docs/crates.svg`, a picture of the workspace's crates and their dependencies.
 //!
 //! Each crate is a box, one layer above the highest crate that it depends on. An arrow leads from a crate to a crate
 //! that it depends on, and is dashed if only a feature turns the dependency on. Dependencies of tests and of build
-//! scripts are left out. So are arrows that follow from others: if A needs B and B needs C, none leads from A to C.
+//! scripts are left out, as are arrows that follow from others: if A needs B and B needs C, no arrow leads from A to C.
 //! Crates without any arrow are not drawn.
 
 mod layers;
@@ -12,25 +12,25 @@ use std::collections::BTreeMap;
 use cargo_metadata::{DependencyKind, Metadata};
 use layers::{Arranged, Layers};
 
-/// The stored picture.
+/// File of the picture, from the root of the repository.
 const PATH: &str = "docs/crates.svg";
 
-/// Width and height of a box.
+/// Width and height of a box, pixels.
 const BOX: (i32, i32) = (148, 36);
 
-/// Distance from a layer to the next one.
+/// Distance from the top of a layer to the top of the next one, pixels.
 const LAYER: i32 = 84;
 
-/// Distance from the boxes to the picture's edges.
+/// Distance from the boxes to the picture's edges, pixels.
 const MARGIN: i32 = 24;
 
-/// Height of the legend, below the boxes.
+/// Height of the legend below the boxes, pixels.
 const LEGEND: i32 = 44;
 
-/// Length of an arrow's head, and half its width.
+/// Length of an arrow's head, and half of its width, pixels.
 const HEAD: (i32, i32) = (8, 4);
 
-/// Colour of lines.
+/// Colour of lines and arrow heads.
 const INK: &str = "#3a4450";
 
 /// Fill and edge colours of published crates.
@@ -39,27 +39,27 @@ const PUBLISHED: (&str, &str) = ("#dbe7f6", "#2f5f9e");
 /// Fill and edge colours of crates that are not published.
 const UNPUBLISHED: (&str, &str) = ("#e4e7ea", "#7d8893");
 
-/// The attribute of a line for a dependency that only a feature turns on.
+/// Attribute of a line for a dependency that only a feature turns on.
 const DASHED: &str = " stroke-dasharray=\"5 4\"";
 
 /// A member of the workspace.
 struct Member {
     name: String,
     colors: (&'static str, &'static str),
-    /// Indices of the members that it depends on, and whether only a feature turns the dependency on.
+    /// Indices of the members that this one depends on. The value is true if only a feature turns the dependency on.
     needs: BTreeMap<usize, bool>,
 }
 
-/// A dependency that is drawn, by indices of members.
+/// A drawn dependency, by indices of members.
 struct Arrow {
     from: usize,
     to: usize,
     is_optional: bool,
 }
 
-/// The stored picture is the one that would be drawn now.
+/// Checks that the stored picture is up to date.
 pub(crate) fn check(metadata: &Metadata) -> Result<(), String> {
-    // A checkout may have other line ends.
+    // A checkout may have other line endings.
     let stored = std::fs::read_to_string(PATH)
         .unwrap_or_default()
         .replace("\r\n", "\n");
@@ -125,7 +125,7 @@ fn svg(metadata: &Metadata) -> String {
     svg + &legend(height) + "</svg>\n"
 }
 
-/// The workspace's members, by name.
+/// The workspace's members, sorted by name.
 fn members(metadata: &Metadata) -> Vec<Member> {
     let mut packages = metadata.workspace_packages();
     packages.sort_by(|a, b| a.name.as_str().cmp(b.name.as_str()));
@@ -150,7 +150,7 @@ fn members(metadata: &Metadata) -> Vec<Member> {
     members.collect()
 }
 
-/// The dependencies that follow from no others.
+/// The dependencies that do not follow from others.
 fn arrows(members: &[Member]) -> Vec<Arrow> {
     let mut arrows = Vec::new();
     for (from, member) in members.iter().enumerate() {
@@ -167,7 +167,7 @@ fn arrows(members: &[Member]) -> Vec<Arrow> {
     arrows
 }
 
-/// True if a member depends on another through further ones, whatever features are on.
+/// True if a member depends on another one through further members, independently of features.
 fn follows(members: &[Member], from: usize, to: usize) -> bool {
     let mut needs = members[from].needs.iter();
     needs.any(|(through, is_optional)| {
@@ -176,20 +176,20 @@ fn follows(members: &[Member], from: usize, to: usize) -> bool {
     })
 }
 
-/// How many layers are below a member: the longest chain of dependencies.
+/// Number of layers below a member: the length of its longest chain of dependencies.
 fn depth(members: &[Member], member: usize) -> usize {
     let needs = members[member].needs.keys();
     let below = needs.map(|needed| depth(members, *needed) + 1);
     below.max().unwrap_or(0)
 }
 
-/// Middle of the top edge of a slot's box, or of where the box would be.
+/// Middle of the top edge of a slot's box. For a bend, the middle of the box that would be there.
 fn top_of(arranged: &Arranged, slot: usize) -> (i32, i32) {
     let (x, layer) = arranged.places[slot];
     (x + MARGIN, MARGIN + LAYER * (arranged.layers - 1 - layer))
 }
 
-/// An arrow from the bottom of its first slot's box, through the slots between, to the top of its last one's.
+/// An arrow from the bottom of its first slot's box, through the bends between, to the top of its last slot's box.
 fn line(way: &[usize], arranged: &Arranged, dash: &str) -> String {
     let (mut x, mut y) = top_of(arranged, way[0]);
     y += BOX.1;
@@ -202,7 +202,7 @@ fn line(way: &[usize], arranged: &Arranged, dash: &str) -> String {
         path += &format!("C{x} {middle} {to_x} {middle} {to_x} {to_y}");
         (x, y) = (to_x, to_y);
         if !is_last {
-            // Straight past the boxes of this layer.
+            // The line passes straight between the boxes of this layer.
             y += BOX.1;
             path += &format!("V{y}");
         }
@@ -227,7 +227,7 @@ fn boxed((x, y): (i32, i32), name: &str, (fill, edge): (&str, &str)) -> String {
     )
 }
 
-/// The meaning of colours and lines, at the picture's bottom.
+/// The legend of colours and lines, at the picture's bottom.
 fn legend(height: i32) -> String {
     let y = height - MARGIN - 6;
     let mut svg = String::new();

@@ -1,4 +1,4 @@
-//! Every example once, briefly, as built for tests.
+//! Runs each example once, briefly, as built for tests.
 
 use std::path::PathBuf;
 
@@ -6,7 +6,8 @@ use crate::run::program;
 use crate::test_run::{Targets, TestRun};
 use crate::{battle, build};
 
-/// What examples are given, in order of their names. Those that are not listed run once, without options.
+/// Options and files that examples get. Examples run in the order of their names. An example that is listed twice runs
+/// twice. An example that is missing here runs once, without options.
 const ARGUMENTS: [(&str, &[&str]); 9] = [
     (
         "battle",
@@ -39,7 +40,7 @@ const ARGUMENTS: [(&str, &[&str]); 9] = [
     ("climbs", &["--height", "40", "assets/colossus.glb"]),
     ("duel", &["--joins", "10", "--record", DUEL]),
     ("life", &["--minutes", "10"]),
-    // What the one above has recorded.
+    // `duel` records this file.
     ("replay", &[DUEL, "--from", "60"]),
     (
         "rides",
@@ -55,21 +56,21 @@ const ARGUMENTS: [(&str, &[&str]); 9] = [
     ("soak", &["--minutes", "0.2", "--out", "target/soak-brief"]),
 ];
 
-/// The recorded duel.
+/// Recording of `duel`, which `replay` reads.
 const DUEL: &str = "target/xtask-duel.mcap";
 
-/// The example that runs on all models of the test data as well, if there are any.
+/// The example that also runs on all models of the test data, if there are any.
 const ON_MODELS: &str = "climbs";
 
-/// The variable that says where the test data are.
+/// The environment variable with the folder of the test data.
 const DATA: &str = "CLAMBER_TEST_DATA";
 
-/// A vertex that falls through a face, in the form of the query files.
+/// Query in which a vertex falls through a face, in the format of the query files. It is used without test data.
 const QUERY: &str = "\
     1,4,1,1,1,4,1\n0,1,0,1,0,1,1\n1,1,0,1,0,1,1\n0,1,0,1,1,1,1\n\
     1,4,-1,1,1,4,1\n0,1,0,1,0,1,1\n1,1,0,1,0,1,1\n0,1,0,1,1,1,1\n";
 
-/// All of them.
+/// All examples of the workspace, as one run.
 pub(crate) fn runs() -> Vec<TestRun> {
     vec![TestRun {
         given,
@@ -78,7 +79,7 @@ pub(crate) fn runs() -> Vec<TestRun> {
     }]
 }
 
-/// The options that an example is given.
+/// The options among an example's arguments, from here and from [`battle::given`].
 fn given(name: &str) -> Vec<&'static str> {
     let listed = ARGUMENTS.iter().filter(|(needing, _)| *needing == name);
     let mut words: Vec<&str> = listed
@@ -113,7 +114,7 @@ fn all(run: &TestRun) -> Result<(), String> {
     battle::check(&examples)
 }
 
-/// The query files of the test data, or where there is none a file of one query.
+/// The query files of the test data. Without test data, a file with [`QUERY`].
 fn query_files() -> Result<Vec<String>, String> {
     let Some(data) = std::env::var_os(DATA) else {
         let file = "target/xtask-vertex-face.csv";

@@ -1,6 +1,7 @@
-//! The public items of each published crate, held against a stored list, so that no change of them goes unseen.
+//! Compares the public items of each published crate with a stored list, so that each change is noticed.
 //!
-//! The lists come from rustdoc's JSON, which stable Rust gives to none but those who ask as a nightly would.
+//! The lists come from rustdoc's JSON. A stable rustdoc writes it only if `RUSTC_BOOTSTRAP` makes it act as a nightly
+//! one.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -13,13 +14,13 @@ use public_api::Builder;
 use crate::features::published;
 use crate::run::{IGNORE_RUST_VERSION, cargo_with};
 
-/// Where the lists stand.
+/// Folder of the lists.
 const FOLDER: &str = "xtask/face";
 
-/// Set where this program stands in for rustdoc.
+/// Environment variable that makes this program act as rustdoc.
 const AS_RUSTDOC: &str = "CLAMBER_XTASK_AS_RUSTDOC";
 
-/// Each crate has the items of its list, and no others.
+/// Checks that each crate has exactly the items of its list.
 pub(crate) fn check(metadata: &Metadata) -> Result<(), String> {
     let mut differences = Vec::new();
     for (name, found) in faces(metadata)? {
@@ -49,7 +50,7 @@ pub(crate) fn store(metadata: &Metadata) -> Result<(), String> {
     Ok(())
 }
 
-/// The lines that only one of two lists has.
+/// The lines that only one of two lists has: `-` for the stored list, `+` for the found one.
 fn compare(name: &str, stored: &str, found: &str) -> Vec<String> {
     let [stored, found] = [stored, found].map(|text| text.lines().collect::<BTreeSet<_>>());
     let gone = stored
@@ -61,7 +62,7 @@ fn compare(name: &str, stored: &str, found: &str) -> Vec<String> {
     gone.chain(new).collect()
 }
 
-/// The name of each published crate with a list of its public items, one a line.
+/// The name of each published crate, with the list of its public items, one per line.
 fn faces(metadata: &Metadata) -> Result<Vec<(String, String)>, String> {
     document()?;
     let faces = published(metadata).map(|package| {
@@ -77,7 +78,7 @@ fn faces(metadata: &Metadata) -> Result<Vec<(String, String)>, String> {
     faces.collect()
 }
 
-/// Has rustdoc write what it knows of every crate, with all features.
+/// Makes rustdoc write the JSON of each crate, with all features.
 fn document() -> Result<(), String> {
     let this =
         std::env::current_exe().map_err(|error| format!("where is this program? {error}"))?;
@@ -98,9 +99,9 @@ fn document() -> Result<(), String> {
     cargo_with(&doc, &variables)
 }
 
-/// Runs rustdoc with unstable options where cargo has called this program in its place; `None` for any other call.
+/// Runs rustdoc with unstable options if cargo called this program in its place; `None` for any other call.
 ///
-/// The variable that allows them is set for rustdoc alone: seen by cargo, it would have half of all crates built anew.
+/// Only rustdoc gets the variable that allows these options: if cargo saw it, half of all crates would be built again.
 pub(crate) fn as_rustdoc() -> Option<ExitCode> {
     std::env::var_os(AS_RUSTDOC)?;
     let mut rustdoc = Command::new(rustdoc_beside_cargo());
@@ -117,7 +118,7 @@ pub(crate) fn as_rustdoc() -> Option<ExitCode> {
     })
 }
 
-/// That of the toolchain whose cargo runs, if it is there.
+/// The rustdoc of the toolchain whose cargo runs, if it is there; otherwise the rustdoc in the path.
 fn rustdoc_beside_cargo() -> std::ffi::OsString {
     let cargo = std::env::var_os("CARGO").unwrap_or_default();
     let beside = Path::new(&cargo).with_file_name("rustdoc");

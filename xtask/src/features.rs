@@ -1,10 +1,9 @@
-//! The library of every published crate alone, as its users build it: with no features, and with each of its features
-//! alone, without warnings. What only its tests depend on is left out, so that it turns no feature on; tests, benches
-//! and examples, and all features together, are linted in another step. Here dependencies that declare a newer Rust
-//! than ours are refused.
+//! Lints the library of each published crate alone, as its users build it: without features, and with each of its
+//! features alone. Dependencies of its tests are left out, so that they turn no feature on. Another step lints tests,
+//! benches and examples, and all features together. Dependencies that declare a newer Rust than ours are refused here.
 //!
-//! Nightly: each feature alone of the crates whose features bring in much that is not ours, and the libraries' tests
-//! with each feature that is not on in the tests of the workspace.
+//! The nightly task lints each feature alone of the crates whose features bring in large dependencies. It also runs the
+//! libraries' tests with each feature that is not on in the tests of the workspace.
 
 use cargo_metadata::{Metadata, Package};
 
@@ -13,15 +12,15 @@ use crate::parts::Kind;
 use crate::run::{IGNORE_RUST_VERSION, cargo};
 use crate::test_run::{Packages, Targets, TestRun};
 
-/// Features that bring in crates which declare a newer Rust than ours, and build on ours.
+/// Features that bring in crates which declare a newer Rust than ours, but build with ours.
 const NEWER_RUST: [&str; 3] = [
     "bevy_clamber/avian",
     "bevy_clamber/gltf",
     "bevy_clamber/rapier",
 ];
 
-/// Crates whose features each build other parts of Bevy, rapier or wgpu. Here they are checked without features, and
-/// nightly with each feature alone. The lints have all features on.
+/// Crates whose features each build other parts of Bevy, rapier or wgpu. They are linted here without features, and in
+/// the nightly task with each feature alone. The step `lints` has all features on.
 const HEAVY: [&str; 2] = ["bevy_clamber", "clamber"];
 
 pub(crate) fn check(metadata: &Metadata) -> Result<(), String> {
@@ -34,7 +33,7 @@ pub(crate) fn check(metadata: &Metadata) -> Result<(), String> {
     Ok(())
 }
 
-/// Each feature alone of the crates that [`check`] leaves out.
+/// Lints the crates that [`check`] leaves out with each of their features alone.
 pub(crate) fn check_heavy(metadata: &Metadata) -> Result<(), String> {
     let heavy = |package: &&Package| HEAVY.contains(&package.name.as_str());
     published(metadata).filter(heavy).try_for_each(each)
@@ -46,7 +45,7 @@ pub(crate) fn published(metadata: &Metadata) -> impl Iterator<Item = &Package> {
     packages.filter(|package| package.publish.as_ref().is_none_or(|to| !to.is_empty()))
 }
 
-/// A package with each of its features alone.
+/// Lints a package's library with each of its features alone.
 fn each(package: &Package) -> Result<(), String> {
     let features = package.features.keys().filter(|name| *name != "default");
     features
@@ -54,7 +53,7 @@ fn each(package: &Package) -> Result<(), String> {
         .try_for_each(|feature| lint(package, Some(feature)))
 }
 
-/// A package's library with one feature, or with none.
+/// Lints a package's library with one feature, or with none.
 fn lint(package: &Package, feature: Option<&str>) -> Result<(), String> {
     let lint = ["clippy", "--quiet", "-p", &package.name, "--lib"];
     let mut with = vec!["--no-default-features"];
@@ -67,7 +66,7 @@ fn lint(package: &Package, feature: Option<&str>) -> Result<(), String> {
     cargo(&[&lint[..], &with, &["--", "-D", "warnings"]].concat())
 }
 
-/// The tests of each library with each of its features that is not on in the tests that are already run.
+/// Runs of each library's tests with each of its features that is not on in `tests`.
 pub(crate) fn runs(metadata: &Metadata, tests: &[TestRun]) -> Vec<TestRun> {
     let mut runs = Vec::new();
     for package in metadata.workspace_packages() {
@@ -80,7 +79,7 @@ pub(crate) fn runs(metadata: &Metadata, tests: &[TestRun]) -> Vec<TestRun> {
         let tested: Vec<_> = tests.iter().map(|run| run.turned_on(metadata)).collect();
         for feature in package.features.keys().filter(|name| *name != "default") {
             let feature = format!("{name}/{feature}");
-            // The facade has no tests in its library: its features are those of other crates.
+            // The facade has no tests in its library: its features belong to other crates.
             if name != "clamber" && !tested.iter().any(|on| on.contains(&feature)) {
                 runs.push(TestRun {
                     packages: Packages::Named(owned(&[name])),

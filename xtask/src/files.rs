@@ -1,8 +1,9 @@
-//! The files of the repository.
+//! Lists and reads the files of the repository.
 
 use cargo_metadata::camino::{Utf8Path, Utf8PathBuf};
 
-/// All files, from the root of the repository and in order, but for built and hidden ones.
+/// All files, sorted, as paths from the root of the repository. Folders called `target` and hidden folders are left
+/// out.
 pub(crate) fn files(root: &Utf8Path) -> Result<Vec<Utf8PathBuf>, String> {
     let mut files = Vec::new();
     let mut folders = vec![root.to_owned()];
@@ -25,7 +26,7 @@ pub(crate) fn files(root: &Utf8Path) -> Result<Vec<Utf8PathBuf>, String> {
     Ok(files)
 }
 
-/// The text of a file, with the line ends of Unix.
+/// The text of a file, with Unix line endings.
 pub(crate) fn read(root: &Utf8Path, file: &Utf8Path) -> Result<String, String> {
     let text = std::fs::read_to_string(root.join(file));
     let text = text.map_err(|error| format!("{file}: {error}"))?;

@@ -1,4 +1,4 @@
-//! The fixed runs whose hashes are known, in other builds than that of the tests: compilers then pick other
+//! Runs the golden tests, whose hashes are stored, in other builds than the tests' own: compilers then choose other
 //! instructions.
 
 use cargo_metadata::Metadata;
@@ -8,30 +8,31 @@ use crate::build::{owned, released};
 use crate::run::cargo;
 use crate::test_run::{self, Packages, Profile, Targets, TestRun};
 
-/// Bytes of a test's stack, an eighth of what Bevy's threads have: without optimisation functions need much.
+/// Stack of a test's thread, bytes: an eighth of the stack of Bevy's threads. Functions need more stack without
+/// optimisation, so overflows show here.
 const SMALL_STACK: &str = "262144";
 
 fn test(name: &str) -> Targets {
     Targets::Test(name.into())
 }
 
-/// As released: the run of the core at all SIMD levels down to scalar code, and the battles with rapier.
+/// Runs in the release profile: the core's run at all SIMD levels down to scalar code, and the battles with rapier.
 pub(crate) fn runs() -> Vec<TestRun> {
     let mut run = released().of(vec![test("golden"), test("golden_battle")]);
-    // Which of them fail tells where to look.
+    // Goes on after a failure: which of the tests fail tells where to look.
     run.options.push("--no-fail-fast".into());
     vec![run]
 }
 
-/// A battle as released, and as built for tests.
+/// Compares a battle in the release profile and as built for tests.
 pub(crate) fn rest(_: &Metadata) -> Result<(), String> {
     battle::compare_builds()
 }
 
-/// Not optimised; and for the very processor at hand, with rapier, whose instructions depend on the processor unless it
-/// is told otherwise.
+/// Runs without optimisation; and runs for the processor of this machine, with rapier, whose instructions then depend
+/// on the processor.
 pub(crate) fn other_builds(metadata: &Metadata) -> Vec<TestRun> {
-    // Apart, or each of these builds would have the other's dependencies built anew.
+    // A target folder for each build: in a shared one, each build would build the other's dependencies again.
     let apart = |folder: &str, config: &str| {
         let folder = metadata.target_directory.join(folder);
         owned(&["--config", config, "--target-dir", folder.as_str()])
@@ -42,7 +43,7 @@ pub(crate) fn other_builds(metadata: &Metadata) -> Vec<TestRun> {
         options: apart("plain", "profile.dev.opt-level=0"),
         variables: &[("RUST_MIN_STACK", SMALL_STACK)],
         perform: |metadata, run| {
-            // rustc would take the small stack for itself, and overflow it.
+            // Builds first without the variable: rustc would use the small stack as well, and overflow it.
             cargo(&[run.arguments("test", &[]), owned(&["--no-run"])].concat())?;
             test_run::test(metadata, run)
         },

@@ -1,6 +1,7 @@
-//! `cargo xtask ci` runs what CI runs, for a person as well: tests, golden runs, format, lints, each feature,
-//! documentation, public items, examples, benches, dependency arrows and their picture, packages; and checks that
-//! nothing is left out of this, and no command of the documentation. `cargo xtask nightly` runs what takes hours.
+//! `cargo xtask ci` runs all checks of CI, for developers as well: tests, golden runs, format, lints, each feature,
+//! documentation, public items, examples, benches, dependency arrows and their picture, packages. It also checks that
+//! its steps leave out no test and no command of the documentation. `cargo xtask nightly` runs the checks that take
+//! hours.
 
 mod app;
 mod arrows;
@@ -45,44 +46,44 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Task {
-    /// Everything that CI checks; goes on after a failure and lists them all at the end. Takes half an hour on a cold
+    /// Runs all checks of CI. Goes on after a failure and lists all failures at the end. Takes half an hour on a cold
     /// target.
     Ci {
         /// Run only the steps whose name contains this.
         #[arg(long, value_name = "NAME")]
         only: Option<String>,
     },
-    /// What takes too long for CI: every case of tests that have short forms, golden runs in other builds, other
-    /// libraries, the app on all of Bevy, a soak of half an hour. Takes some two hours on a cold target. Adds a line
-    /// for each step to nightly.md in the target folder.
+    /// Runs the checks that take too long for CI: every case of tests that have short forms, golden runs in other
+    /// builds, other libraries, the app on all of Bevy, a soak of half an hour. Takes some two hours on a cold target.
+    /// Adds a line for each step to nightly.md in the target folder.
     Nightly {
         /// Run only the steps whose name contains this.
         #[arg(long, value_name = "NAME")]
         only: Option<String>,
     },
-    /// Stores the public items of each crate, with which `ci` compares those that it finds.
+    /// Stores the list of each crate's public items. `ci` compares the items that it finds with it.
     Face,
-    /// Writes docs/commands.md, which says of every command in the documentation who runs it. `ci` compares it with the
-    /// one that it would write.
+    /// Writes docs/commands.md, the list of all commands in the documentation with the step that runs each. `ci`
+    /// compares it with the list that it would write.
     Commands,
-    /// Draws the picture of the crates, docs/crates.svg, with which `ci` compares the one that it draws.
+    /// Draws docs/crates.svg, the picture of the crates. `ci` compares it with the picture that it would draw.
     Crates,
-    /// The app on all of Bevy, which stands outside the workspace: its format, and a picture that it draws and
-    /// checks by itself, off-screen. A job of its own: a cold build of Bevy takes many minutes.
+    /// Checks the app on all of Bevy, which has a workspace of its own: its format, its tests, and a picture that it
+    /// draws off-screen. CI has a job of its own for it: a cold build of Bevy takes many minutes.
     App,
-    /// Stress cases of every family, every fuzz target on random bytes and whole battles, in release, with fresh seeds
-    /// until the time is up. Checks that nothing panics, all numbers are finite, answers are those of brute force,
-    /// bounds hold, closed skin lets no ray through, no contact is missed or late, and that of queries with like work
-    /// the slowest thousandth takes at most 20 medians. Ends with a report, also in target/soak/report.md, which says
-    /// how to repeat each finding, and fails if there is one.
+    /// Runs stress cases of every family, every fuzz target on random bytes and whole battles, in release, with fresh
+    /// seeds until the time is up. Checks that nothing panics, all numbers are finite, answers equal brute force,
+    /// bounds hold, closed skin lets no ray through, no contact is missed or late, and that among queries with similar
+    /// work the slowest thousandth takes at most 20 medians. Ends with a report, also in target/soak/report.md, which
+    /// says how to repeat each finding. Fails if there is a finding.
     Soak {
-        /// How long.
+        /// Duration in minutes.
         #[arg(long, value_name = "MINUTES", default_value_t = 10.0)]
         minutes: f64,
-        /// Of everything random: the same one gives the same tasks in the same order.
+        /// Seed of all random numbers. The same seed gives the same tasks in the same order.
         #[arg(long, default_value_t = 1)]
         seed: u64,
-        /// Runs this alone, as a report names it.
+        /// Runs this task alone, by its name in a report.
         #[arg(long, value_name = "TASK")]
         case: Option<String>,
     },

@@ -1,10 +1,11 @@
-//! Inside the core as well the arrows point one way: no module imports one that stands to its right.
+//! Checks the imports between the core's modules: no module imports a module to its right in [`ORDER`].
 
 use std::path::{Path, PathBuf};
 
+/// Sources of the core, from the root of the repository.
 const SOURCES: &str = "crates/clamber_surface/src";
 
-/// The way of the data, from the left to the right.
+/// The modules in the direction of the data flow, from left to right.
 const ORDER: [&str; 9] = [
     "geometry", "rig", "mesh", "skin", "bounds", "pose", "query", "surface", "measure",
 ];
@@ -33,7 +34,7 @@ pub(crate) fn check() -> Result<(), String> {
     }
 }
 
-/// The source files under a folder, but for those of tests.
+/// Collects the source files under a folder, except test files.
 fn collect(folder: &Path, files: &mut Vec<PathBuf>) -> std::io::Result<()> {
     for entry in std::fs::read_dir(folder)? {
         let path = entry?.path();
@@ -50,25 +51,25 @@ fn collect(folder: &Path, files: &mut Vec<PathBuf>) -> std::io::Result<()> {
     Ok(())
 }
 
-/// The module that a file belongs to; `None` for those at the crate's root, which any may import.
+/// The module that a file belongs to; `None` for files outside of [`ORDER`], such as those at the crate's root.
 fn importer(path: &Path) -> Option<&'static str> {
     let first = path.iter().next()?.to_str()?.trim_end_matches(".rs");
     ORDER.into_iter().find(|module| *module == first)
 }
 
-/// How many modules a file's own lies below the crate's root.
+/// Number of modules from the crate's root down to the file's module.
 fn depth(path: &Path) -> usize {
     let module_file = path.file_stem().is_some_and(|name| name == "mod");
     path.iter().count() - usize::from(module_file)
 }
 
-/// Which place in the order a module has; modules that have none may be imported by all.
+/// Position of a module in [`ORDER`]. Modules that are not in it have 0: all modules may import them.
 fn place(module: &str) -> usize {
     let place = ORDER.iter().position(|known| *known == module);
     place.unwrap_or(0)
 }
 
-/// The first names after `crate::`, or after enough `super::`, in what is no comment and no test.
+/// The first names after `crate::`, or after enough `super::`, in code without comments and tests.
 fn imported(text: &str, depth: usize) -> Vec<String> {
     let code = text
         .split("#[cfg(test)]\nmod tests {")
@@ -87,7 +88,7 @@ fn imported(text: &str, depth: usize) -> Vec<String> {
     after.flat_map(first_names).collect()
 }
 
-/// The name that a path begins with, or all of them where it begins with braces.
+/// The name at the beginning of a path, or all names of a group in braces.
 fn first_names(path: &str) -> Vec<String> {
     let name = |text: &str| -> String {
         let is_part = |c: &char| c.is_alphanumeric() || *c == '_';

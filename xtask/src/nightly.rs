@@ -1,6 +1,6 @@
-//! What takes too long for CI: every case of tests that have short forms, each heavy feature alone, other engines,
-//! golden runs in other builds, packages that build by themselves, other libraries held against ours, the app on all of
-//! Bevy, every bench as it is measured, and the soak.
+//! The steps of `cargo xtask nightly`, which take too long for CI: every case of tests that have short forms, each
+//! heavy feature alone, other engines, golden runs in other builds, packages that build alone, comparisons with other
+//! libraries, the app on all of Bevy, every bench in full, and the soak.
 
 use crate::build::owned;
 use crate::run::IGNORE_RUST_VERSION;
@@ -8,6 +8,7 @@ use crate::steps::Step;
 use crate::test_run::{Ignored, Packages, Profile, Targets, TestRun};
 use crate::{app, battle, benches, ci, features, golden, packages, peers, soak};
 
+/// The steps in the order in which they run.
 pub(crate) const STEPS: [Step; 9] = [
     Step::runs("all cases", |_| vec![all_cases()]),
     Step {
@@ -36,8 +37,8 @@ pub(crate) const STEPS: [Step; 9] = [
     Step::runs("soak", |_| vec![soak::nightly()]),
 ];
 
-/// The plugins in apps with avian and `bevy_rapier3d`: climbers on their terrain, bodies on skin, and all the rest.
-/// These two take minutes to build.
+/// Runs the plugins in apps with avian and `bevy_rapier3d`: climbers on their terrain, bodies on skin, and all other
+/// tests of the plugin. These two engines take minutes to build.
 fn engines() -> TestRun {
     TestRun {
         packages: Packages::Named(owned(&["bevy_clamber"])),
@@ -51,7 +52,7 @@ fn engines() -> TestRun {
     }
 }
 
-/// The packages that have tests which are ignored elsewhere, or which run a fifth of their cases there.
+/// Packages with tests that other steps ignore, or run with a fifth of their cases.
 const LONG: [&str; 6] = [
     "clamber",
     "clamber_climber",
@@ -61,8 +62,8 @@ const LONG: [&str; 6] = [
     "clamber_surface",
 ];
 
-/// The tests that are ignored elsewhere, and all cases of those that run a fifth of them. One at a time: some take
-/// gigabytes, some measure.
+/// Runs the tests that other steps ignore, and all cases of tests that otherwise run a fifth of them. One test runs at
+/// a time: some take gigabytes, and some measure time.
 fn all_cases() -> TestRun {
     TestRun {
         profile: Profile::Release,

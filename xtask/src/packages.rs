@@ -1,6 +1,6 @@
-//! Every publishable crate as crates.io would get it: metadata, licences, nothing that does not belong there. Nightly,
-//! it builds from its package alone. And the stored locks of the workspaces that stand beside the main one, which are built
-//! nightly, fit their manifests.
+//! Checks each published crate as crates.io would get it: its metadata, its licences, and its list of files. The
+//! nightly task also builds each crate from its package alone. The stored lock files of the other workspaces, which are
+//! built nightly, must fit their manifests.
 
 use cargo_metadata::camino::Utf8Path;
 use cargo_metadata::{Metadata, Package};
@@ -10,9 +10,10 @@ use crate::files::files;
 use crate::run::{IGNORE_RUST_VERSION, cargo, cargo_output, program};
 use crate::workspaces;
 
+/// Licence texts that each package must carry, identical to the workspace's.
 const LICENCES: [&str; 2] = ["LICENSE-MIT", "LICENSE-APACHE"];
 
-/// What a package's files may be called, apart from its sources.
+/// Files that a package may contain at its top level, apart from its sources.
 const TOP_LEVEL: [&str; 9] = [
     ".cargo_vcs_info.json",
     "CHANGELOG.md",
@@ -35,7 +36,7 @@ pub(crate) fn check(metadata: &Metadata) -> Result<(), String> {
     check_locks(metadata)
 }
 
-/// A dependency that a crate gets is in the locks of all workspaces that have the crate.
+/// Checks that each stored lock file contains all dependencies of its workspace.
 fn check_locks(metadata: &Metadata) -> Result<(), String> {
     let stored = files(&metadata.workspace_root)?;
     for workspace in workspaces::all(metadata)? {
@@ -54,11 +55,11 @@ fn check_locks(metadata: &Metadata) -> Result<(), String> {
     Ok(())
 }
 
-/// Each builds from its package alone.
+/// Builds each package from its archive alone.
 pub(crate) fn build(metadata: &Metadata) -> Result<(), String> {
     let packages: Vec<&Package> = published(metadata).collect();
     let folder = metadata.target_directory.join("xtask-packages");
-    // What an interrupted run has left, today's packages may lack.
+    // An interrupted run may have left packages that no longer exist.
     if folder.exists() {
         std::fs::remove_dir_all(&folder).map_err(|error| format!("{folder}: {error}"))?;
     }
@@ -67,7 +68,7 @@ pub(crate) fn build(metadata: &Metadata) -> Result<(), String> {
     built.and(removed)
 }
 
-/// Makes the packages and unpacks them beside each other.
+/// Creates the packages and unpacks them into one folder.
 fn unpack(packages: &[&Package], folder: &Utf8Path) -> Result<(), String> {
     let mut arguments = vec!["package", "--quiet", "--allow-dirty", "--no-verify"];
     arguments.extend(["--target-dir", folder.as_str()]);
@@ -91,8 +92,8 @@ fn unpack(packages: &[&Package], folder: &Utf8Path) -> Result<(), String> {
     Ok(())
 }
 
-/// Checks that the packages build from each other, as a workspace outside of this one, with the versions that are
-/// locked here, so that the dependencies need no other build. Every feature alone is another step.
+/// Checks that the packages build from each other, as a workspace outside of this one. It uses the versions that are
+/// locked here, so that the dependencies need no other build. Another step builds each feature alone.
 fn check_build(packages: &[&Package], folder: &Utf8Path) -> Result<(), String> {
     let mut manifest =
         "[workspace]\nresolver = \"3\"\nmembers = [\"*-*\"]\n[patch.crates-io]\n".to_owned();
@@ -131,7 +132,7 @@ fn check_metadata(package: &Package) -> Result<(), String> {
     }
 }
 
-/// Each package carries the workspace's licence texts.
+/// Checks that each package carries the workspace's licence texts.
 fn check_licences(metadata: &Metadata, package: &Package) -> Result<(), String> {
     let folder = package
         .manifest_path
@@ -161,7 +162,7 @@ fn check_files(package: &Package) -> Result<(), String> {
     let source = |file: &str| {
         let code = file.ends_with(".rs") && (file.contains("src/") || file.starts_with("tests/"));
         let other = [".wgsl", ".md", ".svg"];
-        // Lists that a test reads lie beside it.
+        // Lists that a test reads are beside the test.
         let list = file.starts_with("tests/") && file.ends_with(".txt");
         code || list || file.starts_with("src/") && other.iter().any(|end| file.ends_with(end))
     };

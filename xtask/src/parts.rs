@@ -1,24 +1,24 @@
-//! What of a package can be run by itself.
+//! The parts of a package that can be run separately.
 
 use std::fmt;
 
 use cargo_metadata::{Package, Target};
 
-/// Ways in which a target runs.
+/// The way in which a target runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Kind {
     /// Unit tests of a library.
     Library,
     /// Unit tests of a program.
     Program,
-    /// A library's programs in its documentation.
+    /// Programs in the documentation of a library.
     Documentation,
     Test,
-    /// A bench, if only briefly.
+    /// A bench, in full or briefly.
     Bench,
     /// An example, run as a program.
     Example,
-    /// A program, started by `cargo run`. No step has to.
+    /// A program, started by `cargo run`. No step is required to run it.
     Start,
 }
 
@@ -61,7 +61,7 @@ pub(crate) fn parts(package: &Package) -> Vec<(Part, &Target)> {
     parts
 }
 
-/// The ways in which a target can run. Build scripts have none: whatever is built runs them.
+/// The ways in which a target can run. Build scripts have none: each build runs them.
 fn kinds(target: &Target) -> Vec<Kind> {
     let possible = [
         (Kind::Documentation, target.doctest),

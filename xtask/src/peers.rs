@@ -1,5 +1,5 @@
-//! `peers`, a workspace of its own: other libraries, whose answers and times are held against ours. Of those that
-//! Debian packages, what is installed is built.
+//! Checks `peers`, a workspace of its own, which compares the answers and times of other libraries with ours. Libraries
+//! that Debian packages are built if they are installed.
 
 use std::path::Path;
 
@@ -9,10 +9,11 @@ use crate::build::owned;
 use crate::run::cargo;
 use crate::test_run::{self, Targets, TestRun};
 
+/// Manifest of the workspace, from the root of the repository.
 const WORKSPACE: &str = "peers/Cargo.toml";
 
-/// Features, where their headers are, and in which package. Jolt and PhysX, which cargo compiles, take minutes in each
-/// profile: they are run by hand, as `peers/README.md` says.
+/// Features for libraries, each with the folder of its headers and its Debian package. Cargo compiles Jolt and PhysX,
+/// which takes minutes in each profile, so they are run by hand, as `peers/README.md` says.
 const LIBRARIES: [(&str, &str, &str); 3] = [
     ("bullet", "/usr/include/bullet", "libbullet-dev"),
     ("embree", "/usr/include/embree3", "libembree-dev"),
@@ -24,7 +25,7 @@ fn is_here((_, headers, _): &&(&str, &str, &str)) -> bool {
     Path::new(headers).exists()
 }
 
-/// Tests, and each bench briefly, with the libraries that are installed; [`rest`] fails if one is missing.
+/// Runs the tests, and each bench briefly, with the installed libraries. [`rest`] fails if a library is missing.
 pub(crate) fn runs() -> Vec<TestRun> {
     let tests = TestRun {
         workspace: WORKSPACE,
@@ -43,7 +44,7 @@ pub(crate) fn runs() -> Vec<TestRun> {
     vec![tests, benches]
 }
 
-/// A run without the libraries that are not installed.
+/// The run without the libraries that are not installed.
 fn installed(run: &TestRun) -> TestRun {
     let mut run = run.clone();
     let missing = LIBRARIES.iter().filter(|library| !is_here(library));
@@ -54,7 +55,7 @@ fn installed(run: &TestRun) -> TestRun {
     run
 }
 
-/// Format and lints; then fails if a library is missing.
+/// Checks format and lints; then fails if a library is missing.
 pub(crate) fn rest(_: &Metadata) -> Result<(), String> {
     cargo(&["fmt", "--manifest-path", WORKSPACE, "--check"])?;
     let all = runs().into_iter().next().unwrap_or_default();

@@ -1,4 +1,4 @@
-//! All that `cargo xtask ci` and `cargo xtask nightly` run.
+//! Lists the runs of all steps of `cargo xtask ci` and `cargo xtask nightly`.
 
 use cargo_metadata::Metadata;
 
@@ -6,7 +6,7 @@ use crate::test_run::TestRun;
 use crate::workspaces::Workspace;
 use crate::{ci, nightly};
 
-/// A run, and where it belongs.
+/// A run with its task and its step.
 #[derive(Clone)]
 pub(crate) struct Planned {
     pub(crate) task: &'static str,
@@ -15,13 +15,13 @@ pub(crate) struct Planned {
 }
 
 impl Planned {
-    /// True if it runs in a workspace.
+    /// True if the run is in this workspace.
     pub(crate) fn is_in(&self, workspace: &Workspace) -> bool {
         self.run.workspace == workspace.manifest
     }
 }
 
-/// The runs of all steps, CI's first.
+/// The runs of all steps, first those in CI.
 pub(crate) fn plan(main: &Metadata) -> Vec<Planned> {
     let tasks = [("ci", &ci::STEPS[..]), ("nightly", &nightly::STEPS)];
     let mut plan = Vec::new();

@@ -1,4 +1,4 @@
-//! The results of nightly steps, added to a table, so that runs of single steps on one commit add up to a whole one.
+//! Adds the results of nightly steps to a table. Runs of single steps on one commit add up to a whole run.
 
 use std::io::Write;
 use std::process::Command;
@@ -7,13 +7,13 @@ use cargo_metadata::Metadata;
 
 use crate::steps::Ended;
 
-/// In cargo's target folder.
+/// File of the table, in cargo's target folder.
 const FILE: &str = "nightly.md";
 
-/// As in `docs/measured.md`.
+/// Beginning of the table; its columns are those in `docs/measured.md`.
 const HEAD: &str = "| step | commit | seconds | result |\n|---|---|---|---|\n";
 
-/// Adds a line for a step.
+/// Adds a line for a step that ended.
 pub(crate) fn add(metadata: &Metadata, ended: &Ended) -> Result<(), String> {
     let path = metadata.target_directory.join(FILE);
     let head = if path.exists() { "" } else { HEAD };
@@ -34,7 +34,7 @@ fn row(ended: &Ended, commit: &str) -> String {
     )
 }
 
-/// The commit that is checked out, and whether files differ from it.
+/// The current commit, and whether files differ from it.
 fn commit() -> String {
     let git = |arguments: &[&str]| {
         let output = Command::new("git").args(arguments).output().ok();

@@ -1,4 +1,4 @@
-//! Commands.
+//! Runs cargo and other programs.
 
 use std::io::{BufRead, BufReader, IsTerminal};
 use std::process::{Command, Stdio};
@@ -7,17 +7,17 @@ use std::time::Instant;
 
 use cargo_metadata::camino::Utf8Path;
 
-/// Where all features are built: those of `bevy_clamber` that speak to other engines bring in Bevy's umbrella crate,
-/// which declares a newer Rust than ours and builds on ours.
+/// Option of builds with all features. Features of `bevy_clamber` for other engines bring in Bevy's umbrella crate,
+/// which declares a newer Rust than ours but builds with ours.
 pub(crate) const IGNORE_RUST_VERSION: &str = "--ignore-rust-version";
 
-/// How a line on standard error begins by which a test says that it did nothing, and why.
+/// Beginning of a line on standard error with which a test reports that it was skipped, and why.
 const SKIPPED: &str = "SKIPPED";
 
 /// The lines with [`SKIPPED`] of all commands so far.
 static SKIPPED_LINES: Mutex<Vec<String>> = Mutex::new(Vec::new());
 
-/// Keeps a line for the summary if it says that something was skipped.
+/// Keeps a line for the summary if it reports a skipped test.
 pub(crate) fn note_skipped(line: &str) {
     if line.starts_with(SKIPPED) {
         let mut lines = SKIPPED_LINES.lock().unwrap_or_else(PoisonError::into_inner);
@@ -25,7 +25,7 @@ pub(crate) fn note_skipped(line: &str) {
     }
 }
 
-/// What was skipped so far, each line once.
+/// The lines of all skipped tests so far, each once.
 pub(crate) fn skipped() -> Vec<String> {
     let mut lines = SKIPPED_LINES
         .lock()
@@ -75,7 +75,7 @@ pub(crate) fn cargo_with<S: AsRef<str>>(
     }
 }
 
-/// Runs cargo and gives what it prints on standard output.
+/// Runs cargo and returns its standard output; an error if it fails.
 pub(crate) fn cargo_output<S: AsRef<str>>(arguments: &[S]) -> Result<String, String> {
     let line = line(arguments);
     println!("   {line}");
@@ -90,8 +90,7 @@ pub(crate) fn cargo_output<S: AsRef<str>>(arguments: &[S]) -> Result<String, Str
     }
 }
 
-/// Runs cargo for a program that must end with an error of its own, not a panic; gives what it prints on standard
-/// error.
+/// Runs cargo for a program that must end with exit code 1, not with a panic; returns its standard error.
 pub(crate) fn cargo_refuses<S: AsRef<str>>(arguments: &[S]) -> Result<String, String> {
     let line = line(arguments);
     println!("   {line}");
@@ -129,7 +128,7 @@ pub(crate) fn program(binary: &Utf8Path, arguments: &[&str]) -> Result<(), Strin
     }
 }
 
-/// Runs a program that must end with an error of its own, exit code 1 or 2, and print this reason.
+/// Runs a program that must end with exit code 1 or 2 and print this reason on standard error.
 pub(crate) fn refuses(binary: &Utf8Path, arguments: &[&str], reason: &str) -> Result<(), String> {
     let name = binary.file_name().unwrap_or(binary.as_str());
     println!("   {name} {} (refused)", arguments.join(" "));
@@ -147,7 +146,7 @@ pub(crate) fn refuses(binary: &Utf8Path, arguments: &[&str], reason: &str) -> Re
     ))
 }
 
-/// A call of cargo as one types it.
+/// A call of cargo as typed in a shell.
 fn line<S: AsRef<str>>(arguments: &[S]) -> String {
     let words = arguments.iter().map(AsRef::as_ref);
     ["cargo"]

@@ -1,16 +1,16 @@
-//! `clamber_fuzz`'s example `soak`, as released.
+//! Runs the example `soak` of `clamber_fuzz` in the release profile.
 
 use crate::build::owned;
 use crate::run::cargo;
 use crate::test_run::{Packages, Profile, Targets, TestRun};
 
-/// Minutes of the nightly one.
+/// Duration of the nightly soak, minutes.
 const MINUTES: f64 = 30.0;
 
-/// Its options.
+/// Options that the soak gets.
 const GIVEN: [&str; 2] = ["--minutes", "--seed"];
 
-/// The nightly one.
+/// The soak of the nightly task.
 pub(crate) fn nightly() -> TestRun {
     TestRun {
         profile: Profile::Release,
@@ -23,7 +23,7 @@ pub(crate) fn nightly() -> TestRun {
     }
 }
 
-/// Builds and runs it; an error if it found something.
+/// Builds and runs the soak; an error if it finds a fault.
 pub(crate) fn run(minutes: f64, seed: u64, case: Option<&str>) -> Result<(), String> {
     soak(&nightly(), minutes, seed, case)
 }

@@ -1,5 +1,5 @@
-//! Steps, one after the other: each is timed, a failure does not keep the next from running, and the end lists failures
-//! and skipped tests.
+//! Runs steps one after the other. Each step is timed. After a failure the next step runs all the same, and the summary
+//! lists failures and skipped tests.
 
 use std::process::ExitCode;
 use std::time::Instant;
@@ -9,16 +9,16 @@ use cargo_metadata::Metadata;
 use crate::run;
 use crate::test_run::TestRun;
 
-/// What a step does beside its runs.
+/// The work of a step besides its runs.
 type Rest = fn(&Metadata) -> Result<(), String>;
 
-/// A part of a task that can be asked for by its name.
+/// A part of a task, which `--only` selects by its name.
 pub(crate) struct Step {
     pub(crate) name: &'static str,
-    /// The tests, benches and examples that it runs, for the main workspace. No step runs any in another way, or the
-    /// check of coverage would not see them.
+    /// The tests, benches and examples that the step runs, for the main workspace. No step may run them in another way,
+    /// or the check of coverage would not see them.
     pub(crate) runs: fn(&Metadata) -> Vec<TestRun>,
-    /// What it does after them.
+    /// The work after the runs.
     pub(crate) rest: Rest,
 }
 
@@ -32,7 +32,7 @@ impl Step {
         }
     }
 
-    /// A step that runs none of them.
+    /// A step without tests, benches and examples.
     pub(crate) const fn other(name: &'static str, rest: Rest) -> Self {
         Self {
             name,
@@ -41,7 +41,7 @@ impl Step {
         }
     }
 
-    /// A failure does not keep what comes next from running.
+    /// Performs all runs and the rest; a failure does not stop it.
     fn perform(&self, metadata: &Metadata) -> Result<(), String> {
         let runs = (self.runs)(metadata);
         let ran = runs.iter().map(|run| (run.perform)(metadata, run));
@@ -55,14 +55,14 @@ impl Step {
     }
 }
 
-/// How a step ended.
+/// The result of a step.
 pub(crate) struct Ended {
     pub(crate) name: &'static str,
     pub(crate) seconds: f64,
     pub(crate) passed: bool,
 }
 
-/// Runs the steps whose names contain `only`, or all of them; tells of each as it ends.
+/// Runs the steps whose names contain `only`, or all steps. Calls `tell` for each step that ends.
 pub(crate) fn run(
     steps: &[Step],
     metadata: &Metadata,

@@ -1,21 +1,21 @@
-//! Which targets of a package a call of cargo selects.
+//! Selects targets of packages as cargo does.
 
 use cargo_metadata::Target;
 
 use crate::parts::{Kind, Part};
 
-/// Targets, as cargo selects them.
+/// A selection of targets.
 #[derive(Clone, Debug)]
 pub(crate) enum Targets {
-    /// What `cargo test` takes if it is told none: libraries, programs, tests and documentation.
+    /// The selection of `cargo test` without options: libraries, programs, tests and documentation.
     Usual,
     /// `--lib`.
     Library,
     /// `--doc`.
     Documentation,
-    /// `--tests`: whatever has a harness.
+    /// `--tests`: all targets with a harness.
     Tests,
-    /// `--all-targets`: as `Tests`; examples are built, and not run.
+    /// `--all-targets`: tests as with `Tests`; examples are built but not run.
     All,
     Test(String),
     Bench(String),
@@ -29,7 +29,7 @@ pub(crate) enum Targets {
 }
 
 impl Targets {
-    /// The options by which cargo selects them.
+    /// The options with which cargo selects these targets.
     pub(crate) fn options(&self) -> Vec<&str> {
         match self {
             Self::Usual | Self::Program => vec![],
@@ -45,7 +45,7 @@ impl Targets {
         }
     }
 
-    /// True if they have this part of a target.
+    /// True if the selection contains this part of a target.
     pub(crate) fn have(&self, part: &Part, target: &Target) -> bool {
         let is_named = |name: &str| part.name == name;
         match (self, part.kind) {

@@ -1,5 +1,5 @@
-//! One call of cargo that runs tests, benches or examples, as a value. Both the arguments that cargo gets and the list
-//! of what it runs follow from it, so they cannot disagree.
+//! One call of cargo that runs tests, benches or examples, as a value. Both cargo's arguments and the list of parts
+//! that it runs follow from this value, so they cannot disagree.
 
 use std::collections::BTreeSet;
 
@@ -10,10 +10,10 @@ use crate::run::cargo_with;
 pub(crate) use crate::targets::Targets;
 use crate::turned_on::turned_on;
 
-/// Which packages of a workspace.
+/// A selection of packages in a workspace.
 #[derive(Clone, Debug)]
 pub(crate) enum Packages {
-    /// The default members: those that cargo takes if it is told none.
+    /// The default members, which cargo selects without options.
     Default,
     /// All members except these.
     AllBut(Vec<String>),
@@ -27,7 +27,7 @@ pub(crate) enum Ignored {
     Included,
 }
 
-/// What everything is built for.
+/// The profile of a build.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Profile {
     Dev,
@@ -37,22 +37,22 @@ pub(crate) enum Profile {
 /// A call of cargo. The default is `cargo test`.
 #[derive(Clone, Debug)]
 pub(crate) struct TestRun {
-    /// The manifest of its workspace, from the root of the repository.
+    /// The manifest of the run's workspace, from the root of the repository.
     pub(crate) workspace: &'static str,
     pub(crate) profile: Profile,
     pub(crate) packages: Packages,
-    /// As `package/feature`, beside those that are on by default.
+    /// Features as `package/feature`, besides those that are on by default.
     pub(crate) features: Vec<String>,
     pub(crate) targets: Vec<Targets>,
     pub(crate) ignored: Ignored,
-    /// Options of cargo that select nothing.
+    /// Options of cargo that select no targets.
     pub(crate) options: Vec<String>,
-    /// Options of the tests' or benches' harness that select nothing.
+    /// Options of the tests' or benches' harness that select no tests.
     pub(crate) harness: &'static [&'static str],
     pub(crate) variables: &'static [(&'static str, &'static str)],
-    /// The options that a program is given which it runs.
+    /// The options that a program of this run gets, by its name.
     pub(crate) given: fn(&str) -> Vec<&'static str>,
-    /// Does it.
+    /// Performs the run.
     pub(crate) perform: fn(&Metadata, &TestRun) -> Result<(), String>,
 }
 
@@ -88,12 +88,12 @@ pub(crate) fn test(_: &Metadata, run: &TestRun) -> Result<(), String> {
 }
 
 impl TestRun {
-    /// The same with other targets.
+    /// The same run with other targets.
     pub(crate) fn of(self, targets: Vec<Targets>) -> Self {
         Self { targets, ..self }
     }
 
-    /// What cargo is called with: a command, the selection, and what comes after `--`.
+    /// The arguments of cargo: a command, the selection, and the words after `--`.
     pub(crate) fn arguments(&self, command: &str, after: &[&str]) -> Vec<String> {
         let mut arguments = vec![command.to_owned()];
         let mut add = |words: &[&str]| arguments.extend(words.iter().map(|&word| word.to_owned()));
@@ -125,7 +125,7 @@ impl TestRun {
         arguments
     }
 
-    /// The packages that it selects, of its workspace.
+    /// The packages of its workspace that the run selects.
     pub(crate) fn packages<'a>(&self, workspace: &'a Metadata) -> Vec<&'a Package> {
         let mut packages = match self.packages {
             Packages::Default => workspace.workspace_default_packages(),
@@ -139,12 +139,13 @@ impl TestRun {
         packages
     }
 
-    /// The features that are on while it runs, as `package/feature`.
+    /// The features that are on during the run, as `package/feature`.
     pub(crate) fn turned_on(&self, workspace: &Metadata) -> BTreeSet<String> {
         turned_on(workspace, &self.packages(workspace), &self.features)
     }
 
-    /// What it runs, of its workspace. As cargo does, it leaves out targets whose required features are off.
+    /// The parts of its workspace that the run covers. As cargo does, it leaves out targets whose required features are
+    /// off.
     pub(crate) fn covers(&self, workspace: &Metadata) -> BTreeSet<Part> {
         let on = self.turned_on(workspace);
         self.parts_with(workspace, |package, feature| {
@@ -152,7 +153,7 @@ impl TestRun {
         })
     }
 
-    /// What it would run if the features were on that targets require.
+    /// The parts that the run would cover with all required features on.
     pub(crate) fn covers_with_all_features(&self, workspace: &Metadata) -> BTreeSet<Part> {
         self.parts_with(workspace, |_, _| true)
     }

@@ -1,13 +1,13 @@
-//! The features that are on in one call of cargo. Cargo builds each package once for all that it was told to build,
-//! with the features that anything of it asks for.
+//! Finds the features that are on in one call of cargo. Cargo builds each package once per call, with all features that
+//! any of the built packages asks for.
 
 use std::collections::BTreeSet;
 
 use cargo_metadata::{DependencyKind, Metadata, Package};
 
-/// The features of the workspace's packages, as `package/feature`, that are on if the tests or examples of some of them
-/// are built: those that are named, those that are on by default, those that other packages of the workspace ask for,
-/// and what these turn on in turn.
+/// The features of the workspace's packages, as `package/feature`, that are on when the tests or examples of the
+/// selected packages are built. They are the named features, the default ones, those that other packages of the
+/// workspace ask for, and all features that these imply.
 pub(crate) fn turned_on(
     workspace: &Metadata,
     selected: &[&Package],
@@ -23,7 +23,7 @@ pub(crate) fn turned_on(
     for name in names {
         search.build(&name, true);
     }
-    // Until nothing is added.
+    // Repeats until no feature or package is added.
     loop {
         let before = (search.built.len(), search.on.len());
         for package in &packages {
@@ -36,7 +36,7 @@ pub(crate) fn turned_on(
 }
 
 struct Search {
-    /// The packages whose tests are built, and with them what only tests depend on.
+    /// The packages whose tests are built, together with the dependencies of these tests.
     selected: BTreeSet<String>,
     built: BTreeSet<String>,
     /// Features, and optional dependencies as `package/dep:dependency`.
@@ -51,7 +51,7 @@ impl Search {
         }
     }
 
-    /// Adds what a package turns on, if it is built.
+    /// Adds the features and dependencies that a package turns on, if it is built.
     fn visit(&mut self, package: &Package) {
         let name = package.name.as_str();
         if !self.built.contains(name) {
@@ -85,7 +85,7 @@ impl Search {
                 self.on.insert(format!("{package}/{implied}"));
             }
             Some((to, feature)) => match to.strip_suffix('?') {
-                // Only if something else turns the dependency on.
+                // Applies only if the dependency is on for another reason.
                 Some(to) if !self.on.contains(&format!("{package}/dep:{to}")) => {}
                 weak => {
                     let to = weak.unwrap_or(to);
@@ -102,7 +102,7 @@ mod tests {
     use super::turned_on;
     use crate::workspaces;
 
-    /// The features that are on in this workspace's tests of some packages, with these named.
+    /// The features that are on in this workspace's tests of some packages, with these features named.
     fn on(packages: &[&str], named: &[&str]) -> impl Fn(&str) -> bool {
         let workspace = workspaces::main().unwrap();
         let members = workspace.workspace_packages();
@@ -127,7 +127,8 @@ mod tests {
 
     #[test]
     fn a_dependency_turns_on_what_it_asks_for() {
-        // For clamber's tests, its manifest asks for the climber's `serde`; for those of the mover, nothing does.
+        // The manifest of `clamber` asks for `clamber_climber/serde` in its tests. No dependency of the mover's tests
+        // asks for it.
         assert!(on(&["clamber"], &[])("clamber_climber/serde"));
         assert!(!on(&["clamber_mover"], &[])("clamber_climber/serde"));
     }

@@ -1,4 +1,4 @@
-//! The workspaces of the repository: the main one, and those that stand beside it.
+//! Finds the workspaces of the repository: the main one, and those beside it.
 
 use cargo_metadata::camino::{Utf8Path, Utf8PathBuf};
 use cargo_metadata::{Metadata, MetadataCommand, Package};
@@ -8,13 +8,12 @@ use crate::test_run::MAIN;
 
 #[derive(Clone)]
 pub(crate) struct Workspace {
-    /// Its manifest, from the root of the repository.
+    /// The workspace's manifest, from the root of the repository.
     pub(crate) manifest: String,
     pub(crate) metadata: Metadata,
 }
 
-/// The main workspace, wherever in it this was called from: within a package, cargo would take that one for the default
-/// member.
+/// The main workspace, from any folder in it: inside a package, cargo would take that package for the default member.
 pub(crate) fn main() -> Result<Metadata, String> {
     let failed = |error| format!("cargo metadata failed: {error}");
     let here = MetadataCommand::new().no_deps().exec().map_err(failed)?;
@@ -23,7 +22,7 @@ pub(crate) fn main() -> Result<Metadata, String> {
     main.map_err(failed)
 }
 
-/// The main workspace first; then each that a manifest outside of it belongs to.
+/// The main workspace first; then each workspace of a manifest outside of it.
 pub(crate) fn all(main: &Metadata) -> Result<Vec<Workspace>, String> {
     let root = &main.workspace_root;
     let mut all = vec![Workspace {
@@ -54,7 +53,7 @@ pub(crate) fn all(main: &Metadata) -> Result<Vec<Workspace>, String> {
     Ok(all)
 }
 
-/// The package that a file of the repository belongs to: that with the nearest manifest above it.
+/// The package that a file of the repository belongs to, which has the nearest manifest above the file.
 pub(crate) fn owner<'a>(
     all: &'a [Workspace],
     root: &Utf8Path,

@@ -3,7 +3,7 @@ use thiserror::Error;
 
 use crate::ClipId;
 
-/// Why an animation was refused. Nothing was changed.
+/// Why a call was refused. The animator or the set is then unchanged.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum AnimationError {
@@ -50,14 +50,14 @@ pub enum AnimationError {
     /// A number is infinite, NaN or out of its range.
     #[error("{what} is {found}, which is not {range}")]
     OutOfRange {
-        /// Which number.
+        /// Name of the number.
         what: &'static str,
         /// The range that it must be in.
         range: &'static str,
-        /// The number.
+        /// The value that was found.
         found: f64,
     },
-    /// A pose or clip does not fit.
+    /// A pose or clip does not fit the skeleton.
     #[error(transparent)]
     Rig(#[from] RigError),
 }
@@ -67,7 +67,7 @@ pub(crate) fn finite(what: &'static str, found: f64) -> Result<(), AnimationErro
     within(what, "finite", found, f64::MIN, f64::MAX)
 }
 
-/// Refuses numbers that are not from `least` to `most`; `range` says so.
+/// Refuses numbers below `least` or above `most`, and NaN. `range` names the range in the message.
 pub(crate) fn within(
     what: &'static str,
     range: &'static str,

@@ -1,22 +1,25 @@
-//! Inertialisation: a change of animation is drawn at once, and what the pose loses by it decays.
+//! Inertialisation: a change of animation shows at once, and the difference to the last pose decays.
 //!
-//! The offset from the new pose to the old one starts with the old pose's velocity, and ends in a given time with
-//! velocity and acceleration 0 (Bollo 2018, "Inertialization: High-Performance Animation Transitions in Gears of War",
-//! GDC). Only the new pose is evaluated, at the cost of one polynomial a joint.
+//! The offset from the new pose to the old pose starts with the velocity of the difference between them, so the shown
+//! pose keeps its velocity. The offset ends in a given time with velocity and acceleration 0 (Bollo 2018,
+//! "Inertialization: High-Performance Animation Transitions in Gears of War", GDC). Only the new pose is sampled; an
+//! offset costs one polynomial per joint.
 //!
-//! Bollo decays the length of an offset and drops the velocity across it. Here the polynomial has vectors as
-//! coefficients, so that position and velocity have no jump in any direction. He also shortens the time so that an
-//! offset whose velocity leads to 0 does not shoot past it; here to no less than [`SHORTEST`] of the time, since a
-//! small offset with a large velocity would stop within a frame.
+//! Bollo decays the length of an offset and drops the velocity perpendicular to it. Here the polynomial has vectors as
+//! coefficients, so position and velocity have no jump in any direction. Bollo also shortens the time of an offset
+//! whose velocity leads to 0, so that it does not overshoot 0. Here the time is shortened to no less than [`SHORTEST`]
+//! of the fade, because a small offset with a large velocity would otherwise stop within a frame.
 //!
-//! Each of his offsets starts with no acceleration, unless it would shoot past 0. Started anew in each frame, an offset
-//! would hardly be slowed down, and the pose would fly away. Here it takes over the acceleration of the one before it.
-//! Then the jerk at the start of a time T is -60 x / T^3 - 36 v / T^2 - 9 a / T, whose solutions decay.
+//! Bollo's offsets start with acceleration 0 unless they would overshoot 0. If a game restarts such an offset in each
+//! frame, it hardly slows down, and the pose flies away. So here a new offset takes over the acceleration of the offset
+//! that it interrupts. The jerk at the start of a fade of time T is then -60 x / T^3 - 36 v / T^2 - 9 a / T. The
+//! solutions of this differential equation decay.
 //!
-//! A long fade may follow a short one, whose speed and acceleration are large for its time. Two bounds keep it near. The
-//! acceleration is at most (12 x + 6 v T) / T^2, with which the decay of least jerk starts. And it takes less time if it
-//! would go far away at that speed ([`FURTHER`]). So offsets that start anew at random, with fades between 0.05 s and
-//! 3 s, stay within 1.6 times the reach of a single one. Without the bounds they grow.
+//! A long fade may interrupt a short one, whose speed and acceleration are large for the longer time. Two bounds keep
+//! the new offset small. Its acceleration is at most (12 x + 6 v T) / T^2, the value with which the decay of least jerk
+//! starts. And its time is shortened if the offset would go far at the speed that it takes over ([`FURTHER`]). With
+//! these bounds, offsets that are restarted at random, with fades between 0.05 s and 3 s, stay within 1.6 times the
+//! reach of a single offset. Without the bounds they grow.
 
 use clamber_surface::geometry::rotation_vector;
 use clamber_surface::rig::{Pose, Transform};
@@ -25,35 +28,40 @@ use glam::{DQuat, DVec3, Vec3};
 use crate::pose::{rotation_of, store_rotation};
 use crate::spring::rotation_from_vector;
 
-/// The share of the time to which an offset's decay is shortened at most.
+/// Lower bound of an offset's time after Bollo's shortening, as a share of its fade. Smaller values let a small offset
+/// with a large velocity stop within a frame.
 const SHORTEST: f64 = 0.5;
 
-/// An offset takes no longer than that the speed which it takes over would carry it so many times as far as it is, or as
-/// the one before it was or would have gone at a third of its speed.
+/// The time of an offset that interrupts another one is at most this many times `size / speed`. `speed` is the speed
+/// that it takes over. `size` is the largest of three lengths: the offset's own, the interrupted offset's at its start,
+/// and the way of the interrupted offset at its start speed divided by this constant. No unit. Without this bound, a
+/// long fade that interrupts a short one carries the pose far away.
 const FURTHER: f64 = 3.0;
 
-/// It takes no less time for that, seconds.
+/// [`FURTHER`] shortens the time of an offset to no less than this, seconds.
 const SHORT: f64 = 0.05;
 
-/// Offsets shorter than this, in metres or radians, and slower than this a second, are left out: f32 has rounded them.
+/// Offsets shorter than this (metres, radians or scale) that are also slower than this per second are dropped: they are
+/// within the rounding of f32.
 const NONE: f64 = 1e-7;
 
 /// An offset that decays to 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Decay {
-    /// The offset and its velocity at the start.
+    /// The offset at the start.
     offset: Vec3,
+    /// The velocity of the offset at the start, per second.
     velocity: Vec3,
-    /// The acceleration of the offset before it.
+    /// The acceleration that the offset takes over from the interrupted one, per second squared.
     taken_over: Vec3,
-    /// Seconds until it is 0.
+    /// Seconds until the offset is 0.
     time: f32,
 }
 
 impl Decay {
-    /// The decay of an offset within `time` seconds, or sooner if it would shoot past 0; `None` if there is no offset.
-    /// `before` is the decay that it takes over, if any, and since when that has decayed, seconds.
+    /// The decay of an offset within `time` seconds, or sooner if it would overshoot 0; `None` if offset and velocity
+    /// are negligible. `before` is the decay that it interrupts, if any, with the seconds since that decay started.
     pub(crate) fn new(
         offset: DVec3,
         velocity: DVec3,
@@ -75,7 +83,7 @@ impl Decay {
         }
         let length_sq = offset.length_squared();
         let closing = -velocity.dot(offset);
-        // Bollo's -5 x / v: with that time, the jerk at the end is 0 and the offset falls all the way.
+        // Bollo's time -5 x / v: with it, the jerk at the end is 0 and the offset falls monotonically.
         let time = if closing > 0.0 && length_sq > 0.0 {
             time.min((5.0 * length_sq / closing).max(SHORTEST * time))
         } else {
@@ -89,13 +97,13 @@ impl Decay {
         })
     }
 
-    /// How far it is at most at its start, or goes at a third of its speed.
+    /// The offset's length at the start, or its start speed times its time over [`FURTHER`] if that is larger.
     fn size(&self) -> f64 {
         let way = f64::from(self.velocity.length()) * f64::from(self.time);
         f64::from(self.offset.length()).max(way / FURTHER)
     }
 
-    /// The offset at a time since the start, seconds.
+    /// The offset `elapsed` seconds after the start.
     pub(crate) fn at(&self, elapsed: f64) -> DVec3 {
         let end = f64::from(self.time);
         if elapsed >= end {
@@ -107,7 +115,7 @@ impl Decay {
         x + (vs + (accelerations * 0.5 + series * t) * t) * t
     }
 
-    /// Its velocity and its acceleration at a time since the start, before its end.
+    /// Velocity and acceleration `elapsed` seconds after the start. `elapsed` must be before the end.
     fn motion_at(&self, elapsed: f64) -> [DVec3; 2] {
         let end = f64::from(self.time);
         let [_, vs, accelerations, c3, c4, c5] = self.coefficients();
@@ -117,11 +125,12 @@ impl Decay {
         [velocity / end, acceleration / (end * end)]
     }
 
-    /// Of its polynomial in the share of its time that has passed; the third one twice.
+    /// The polynomial's coefficients, in powers of the share of the time that has passed. The coefficient of the second
+    /// power is stored doubled, as the acceleration.
     fn coefficients(&self) -> [DVec3; 6] {
         let end = f64::from(self.time);
         let (x, v) = (self.offset.as_dvec3(), self.velocity.as_dvec3());
-        // The acceleration at the start, along the offset: what Bollo chooses so that it does not shoot past 0.
+        // Bollo's start acceleration along the offset, with which it does not overshoot 0.
         let direction = x.normalize_or_zero();
         let along = v.dot(direction).min(0.0);
         let wanted = (-8.0 * along * end - 20.0 * x.length()) / (end * end);
@@ -136,12 +145,12 @@ impl Decay {
         [xs, vs, accelerations, c3, c4, c5]
     }
 
-    /// No part of the offset is longer than this, from its start to its end; infinite if its numbers are none.
+    /// Upper bound of the offset's length from its start to its end; infinite if the numbers are not finite.
     fn bound(&self) -> f64 {
         let end = f64::from(self.time);
         let parts =
             [self.offset, self.velocity, self.taken_over].map(|part| part.as_dvec3().length());
-        // The coefficients of its polynomial, one after the other, and what Bollo's rule adds to the acceleration.
+        // The sum of the bounds of the polynomial's coefficients, and the acceleration that Bollo's rule adds.
         let bound = 112.0 * parts[0] + 50.0 * parts[1] * end + 4.0 * parts[2] * end * end;
         if bound.is_finite() && end >= 0.0 {
             bound
@@ -155,12 +164,12 @@ impl Decay {
     }
 }
 
-/// What is left of the last pose, for each joint.
+/// The remaining offsets to the last pose, for each joint that has one.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Offsets {
     joints: Vec<JointOffset>,
-    /// Seconds since the change.
+    /// Seconds since the change of animation.
     elapsed: f64,
 }
 
@@ -168,21 +177,22 @@ pub(crate) struct Offsets {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct JointOffset {
     joint: u32,
-    /// As a rotation vector, in the space of the parent.
+    /// Rotation vector in the space of the joint's parent.
     rotation: Option<Decay>,
     translation: Option<Decay>,
     scale: Option<Decay>,
 }
 
-/// Two poses, `dt` seconds apart.
+/// A pose now, and the same animation's pose one step later.
 pub(crate) struct Course<'a> {
     pub(crate) now: &'a Pose,
     pub(crate) then: &'a Pose,
 }
 
 impl Offsets {
-    /// Starts anew: from poses as they would have gone on, to poses as they go on now, `step` seconds after each other.
-    /// `before` are the offsets that decayed until then.
+    /// Replaces all offsets by new ones: from the poses `to`, which play from now on, to the poses `from`, which would
+    /// have followed without the change. `step` is the time between the two poses of each course, `time` the length of
+    /// the fade, both in seconds. `before` are the offsets that decayed until now.
     pub(crate) fn restart(
         &mut self,
         before: &Self,
@@ -226,7 +236,7 @@ impl Offsets {
         self.elapsed = 0.0;
     }
 
-    /// Lets time pass, and forgets offsets that are 0.
+    /// Advances the time, and drops offsets that have ended.
     pub(crate) fn advance(&mut self, dt: f64) {
         self.elapsed += dt;
         let elapsed = self.elapsed;
@@ -236,13 +246,13 @@ impl Offsets {
         });
     }
 
-    /// True if nothing is left of the last pose.
+    /// True if no offset is left.
     pub(crate) fn is_empty(&self) -> bool {
         self.joints.is_empty()
     }
 
-    /// No offset is longer than this until it is over, in metres, radians or as a scale; infinite if one of the numbers is
-    /// none.
+    /// Upper bound of the length of all offsets until they end, in metres, radians or as a change of scale; infinite if
+    /// one of the numbers is not finite.
     pub(crate) fn bound(&self) -> f64 {
         if !(0.0..=f64::MAX).contains(&self.elapsed) {
             return f64::INFINITY;
@@ -253,7 +263,7 @@ impl Offsets {
         bounds.fold(0.0, f64::max)
     }
 
-    /// Adds the offsets of `shift` seconds from now to a pose.
+    /// Adds to a pose the offsets as they are `shift` seconds from now.
     pub(crate) fn add_to(&self, pose: &mut Pose, shift: f64) {
         let elapsed = self.elapsed + shift;
         for offset in &self.joints {
@@ -278,15 +288,15 @@ fn difference(from: Vec3, to: Vec3) -> DVec3 {
     from.as_dvec3() - to.as_dvec3()
 }
 
-/// The rotation vectors from poses to others, now and a moment later.
+/// The rotation vectors from the poses `to` to the poses `from`, now and one step later.
 fn turns(from: [&Transform; 2], to: [&Transform; 2]) -> [DVec3; 2] {
     let turn = |k: usize| rotation_of(from[k]) * rotation_of(to[k]).conjugate();
     let start = rotation_vector(turn(0));
     [start, nearest_vector(turn(1), start)]
 }
 
-/// The rotation vector nearest to another one. Near half a turn, vectors of nearly opposite direction are nearly the
-/// same rotation.
+/// The rotation vector of a rotation that is nearest to another vector. Near half a turn, vectors of nearly opposite
+/// direction are nearly the same rotation.
 fn nearest_vector(rotation: DQuat, to: DVec3) -> DVec3 {
     let vector = rotation_vector(rotation);
     if vector.dot(to) >= 0.0 {
@@ -301,7 +311,8 @@ fn nearest_vector(rotation: DQuat, to: DVec3) -> DVec3 {
     }
 }
 
-/// The same of scales. A joint of scale 0 is hidden; it appears and disappears at once.
+/// The differences of scale, now and one step later. `None` if a joint is hidden by scale 0: it appears and disappears
+/// at once.
 fn grows(from: [&Transform; 2], to: [&Transform; 2]) -> Option<[DVec3; 2]> {
     let is_hidden = |joint: &Transform| joint.scale.abs().min_element() == 0.0;
     if from.into_iter().chain(to).any(is_hidden) {
@@ -317,7 +328,7 @@ fn grows(from: [&Transform; 2], to: [&Transform; 2]) -> Option<[DVec3; 2]> {
 mod tests {
     use super::*;
 
-    /// Position, velocity and acceleration by differences.
+    /// Position, velocity and acceleration by finite differences.
     fn derivatives(decay: &Decay, at: f64) -> [DVec3; 3] {
         let h = 1e-4;
         let [a, b, c] = [-h, 0.0, h].map(|by| decay.at(at + by));
@@ -349,7 +360,7 @@ mod tests {
 
     #[test]
     fn an_offset_that_closes_quickly_does_not_shoot_past_zero() {
-        // Within Bollo's shortened time, for velocities up to twice that of the unshortened one.
+        // Bollo's shortened time prevents overshoot up to twice the speed at which it begins to shorten.
         for speed in [0.0, 1.0, 5.0, 10.0] {
             let decay = Decay::new(DVec3::X, DVec3::NEG_X * speed, 1.0, None).unwrap();
             for k in 0..=100 {
@@ -359,8 +370,8 @@ mod tests {
         }
     }
 
-    /// Starts anew at random, to goals that stand and that move, with fades of many lengths: what is left of the last pose
-    /// stays about as near as a single fade lets it go. Before there was a bound, it grew without end.
+    /// Restarts offsets at random, to goals that are fixed and that move, with fades of many lengths. The offset must
+    /// stay about as small as in a single fade. Without the bounds in [`Decay::new`] it grows without limit.
     #[test]
     fn offsets_that_start_anew_stay_near() {
         let goals = [0.0, 1.0, 0.5, 0.5, 1.0, 0.0].map(|x| DVec3::X * x);
@@ -373,7 +384,8 @@ mod tests {
             &[0.3, 2.9],
             &[0.05, 0.2, 0.6, 1.67, 3.0],
         ] {
-            // What the largest difference of speeds does in the longest fade, and the goals' own reach.
+            // How far the largest difference of speeds carries an offset in the longest fade, plus the distance between
+            // the goals.
             let longest = fades.iter().copied().fold(0.0, f64::max);
             let reach = 6.0 * longest * 0.16 + 1.0;
             let mut worst = 0f64;
@@ -412,7 +424,7 @@ mod tests {
         }
     }
 
-    /// Decays that took others over, at any time, and such as a forged file may hold.
+    /// Random decays, also with accelerations that they took over or that a forged file may contain.
     #[test]
     fn no_offset_is_longer_than_its_bound() {
         let mut rng = fastrand::Rng::with_seed(7);

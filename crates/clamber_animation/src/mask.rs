@@ -3,21 +3,21 @@ use clamber_surface::rig::{JointId, Skeleton};
 use crate::AnimationError;
 use crate::error::within;
 
-/// How much of a layer each joint gets, 0 to 1.
+/// The share of a layer that each joint gets, 0 to 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointMask {
     shares: Vec<f32>,
 }
 
 impl JointMask {
-    /// Nothing for any joint.
+    /// A mask with share 0 for every joint.
     pub fn none(skeleton: &Skeleton) -> Self {
         Self {
             shares: vec![0.0; skeleton.joints().len()],
         }
     }
 
-    /// All for a joint and its descendants, nothing for the others.
+    /// A mask with share 1 for a joint and its descendants, and 0 for all others.
     ///
     /// # Errors
     /// As [`JointMask::with_branch`].
@@ -25,8 +25,8 @@ impl JointMask {
         Self::none(skeleton).with_branch(skeleton, joint, 1.0)
     }
 
-    /// The same mask with another share for a joint and all of its descendants. Called for one joint of the spine after
-    /// the other, with rising shares, it lets a layer begin softly.
+    /// The same mask with another share for a joint and all of its descendants. To blend a layer in along the spine,
+    /// call it for one spine joint after the other, from the lowest up, with rising shares.
     ///
     /// # Errors
     /// [`AnimationError::NoJoint`] and [`AnimationError::JointCount`] if the joint or the mask do not fit the skeleton,

@@ -1,10 +1,12 @@
-//! Rotations of poses in f64.
+//! Joint rotations of poses, read and stored in f64.
 
 use clamber_surface::rig::Transform;
 use glam::DQuat;
 
-/// The rotation of a transform, normalised to 4e-13: one step of Newton's method for the inverse root, without division
-/// or root, where it is nearly unit, which is where f32 rounds rotations to.
+/// The rotation of a transform as a unit quaternion, to 4e-13.
+///
+/// A quaternion that f32 has rounded is nearly unit: one Newton step of the inverse square root, without division or
+/// square root, normalises it.
 pub(crate) fn rotation_of(transform: &Transform) -> DQuat {
     let q = transform.rotation.as_dquat();
     let beyond = q.length_squared() - 1.0;
@@ -15,7 +17,7 @@ pub(crate) fn rotation_of(transform: &Transform) -> DQuat {
     }
 }
 
-/// Stores a rotation, rounded once.
+/// Stores a rotation in a transform, rounded to f32.
 pub(crate) fn store_rotation(transform: &mut Transform, rotation: DQuat) {
     transform.rotation = rotation.as_quat();
 }

@@ -5,19 +5,19 @@ use glam::{DAffine3, DQuat, DVec3};
 use crate::pose::{rotation_of, store_rotation};
 use crate::space::model_from_joint;
 
-/// How far a creature moves along the ground, and turns, in model space. It is the motion of the whole model: the next
-/// place is `world_from_model * translation * rotation about Y by yaw`.
+/// How far a creature moves along the ground and turns, in model space. It is the motion of the whole model: its next
+/// transform is `world_from_model * translation * rotation about Y by yaw`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RootDelta {
-    /// In model units, level: its Y is 0.
+    /// In model units, horizontal: its Y is 0.
     pub translation: DVec3,
     /// Radians about Y, counter-clockwise as seen from above.
     pub yaw: f64,
 }
 
 impl RootDelta {
-    /// First `self`, then `next`.
+    /// The motion of `self` followed by the motion of `next`.
     #[must_use]
     pub fn then(&self, next: &Self) -> Self {
         Self {
@@ -26,7 +26,7 @@ impl RootDelta {
         }
     }
 
-    /// The motion back.
+    /// The inverse motion.
     #[must_use]
     pub fn inverse(&self) -> Self {
         Self {
@@ -35,7 +35,7 @@ impl RootDelta {
         }
     }
 
-    /// A motion between `self` (at 0) and another one (at 1).
+    /// Interpolates linearly from `self` (`share` 0) to `other` (`share` 1).
     pub(crate) fn mix(&self, other: &Self, share: f64) -> Self {
         Self {
             translation: self.translation.lerp(other.translation, share),
@@ -50,11 +50,11 @@ pub(crate) struct RootMotion {
     pub(crate) joint: JointId,
     rest: Transform,
     model_from_parent: DAffine3,
-    /// The rotation of that.
+    /// The rotation of `model_from_parent`.
     turn: DQuat,
 }
 
-/// Place and heading of the joint on the ground, relative to its place at the clip's start.
+/// Position and heading of the joint on the ground, relative to the clip's start.
 #[derive(Clone, Copy)]
 struct Placed {
     translation: DVec3,
@@ -76,7 +76,8 @@ impl RootMotion {
         }
     }
 
-    /// The motion from one time to another, which is `loops` whole clips later than it seems.
+    /// The joint's motion from one time of the clip to another, with `loops` whole loops of the clip between them;
+    /// negative loops run backwards.
     pub(crate) fn between(
         &self,
         clip: &Clip,
@@ -93,7 +94,7 @@ impl RootMotion {
             motion = motion.then(&whole);
         }
         let motion = motion.then(&to);
-        // So far it turns about the joint; the model's origin is elsewhere.
+        // The motion so far turns about the joint. It has to turn about the model's origin.
         let mut pivot = self.model_from_parent.transform_point3(translation(&start));
         pivot.y = 0.0;
         Ok(RootDelta {
@@ -102,7 +103,7 @@ impl RootMotion {
         })
     }
 
-    /// Takes the motion since the clip's start out of a pose.
+    /// Removes the joint's motion since the clip's start from a pose.
     pub(crate) fn remove(&self, clip: &Clip, pose: &mut Pose) -> Result<(), RigError> {
         let start = self.joint_at(clip, 0.0)?;
         let Some(joint) = pose.transforms.get_mut(self.joint.index()) else {
@@ -130,7 +131,7 @@ impl RootMotion {
         let way = model(joint) - model(start);
         let turned = self.turn * rotation_of(joint) * rotation_of(start).conjugate();
         let turned = turned * self.turn.conjugate();
-        // The part of the rotation about Y; q and -q are the same.
+        // The twist of the rotation about Y. `q` and `-q` are the same rotation.
         let yaw = 2.0 * libm::atan2(turned.y, turned.w);
         Placed {
             translation: DVec3::new(way.x, 0.0, way.z),
@@ -150,7 +151,7 @@ fn translation(joint: &Transform) -> DVec3 {
     joint.translation.as_dvec3()
 }
 
-/// The same angle within half a turn.
+/// The same angle in the range from -pi to pi.
 fn nearest_turn(angle: f64) -> f64 {
     use core::f64::consts::TAU;
     angle - TAU * (angle / TAU).round()

@@ -1,5 +1,5 @@
-//! Whether a clip is a loop. A file does not tell: a death or an attack ends in another pose than it begins with, and
-//! throws the skin from one to the other within a tick where it is played as a loop.
+//! Tells whether a clip can be played as a loop. A file does not say so: a death or an attack ends in another pose than
+//! it begins with. Played as a loop, it moves the skin from one pose to the other within a tick.
 
 use std::collections::BTreeMap;
 
@@ -9,42 +9,44 @@ use glam::DVec3;
 
 use crate::rig::{Clip, JointId, Playback, RigError, Skeleton};
 
-/// Skin that is more than so many times as fast at the seam as anywhere within the clip jumps there. A loop that lacks
-/// its closing key frame, a 24th or a 30th of a second, is two to three times as fast, and counts as a jump as well.
+/// The skin jumps at the seam if it is faster there than this many times its largest speed within the clip. A loop
+/// without its closing key frame, a 24th or a 30th of a second, is two to three times as fast at the seam, and counts
+/// as a jump as well.
 const JUMP: f64 = 1.5;
 
 /// Skin that is slower than this at the seam does not jump, however slow the clip is. In heights of the creature per
 /// second: 0.2 m/s on a creature of 20 m.
 const SLOW: f64 = 0.01;
 
-/// Length of a tick in which speeds are measured, seconds, and how many of them are looked at.
+/// Length of a tick over which speeds are measured, seconds.
 const TICK: f64 = 1.0 / 60.0;
+/// The most ticks of a clip that are measured: ten minutes. It limits the work for very long clips.
 const MOST: f64 = 36_000.0;
 
-/// Speeds of the vertex that jumps most between a clip's end and its beginning.
+/// The speeds of the vertex that jumps most between a clip's end and its beginning.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Seam {
-    /// The vertex's mean speed in a 60th of a second that has the seam in its middle, heights of the creature a second.
+    /// The vertex's mean speed over the 60th of a second around the seam, heights of the creature per second.
     pub speed: f64,
-    /// The vertex's largest speed within the clip, heights of the creature a second.
+    /// The vertex's largest speed within the clip, heights of the creature per second.
     pub within: f64,
 }
 
 impl Seam {
-    /// How much faster the vertex is than skin that does not jump, heights of the creature a second; negative if it
-    /// does not jump.
+    /// How much faster the vertex is than the largest speed without a jump, heights of the creature per second;
+    /// negative if it does not jump.
     fn excess(self) -> f64 {
         self.speed - (JUMP * self.within).max(SLOW)
     }
 
-    /// True if the clip can be played again and again, as no skin jumps: more than 1.5 times as fast as anywhere within
-    /// the clip, and faster than a hundredth of the creature's height a second.
+    /// True if the clip can be played as a loop: no skin jumps at the seam. Skin jumps if it is there more than 1.5
+    /// times as fast as anywhere within the clip, and faster than a hundredth of the creature's height per second.
     pub fn is_loop(self) -> bool {
         self.excess() <= 0.0
     }
 }
 
-/// Measures the seams of a creature's clips, at the outermost vertices of every joint: six of each.
+/// Measures the seams of a creature's clips at up to six vertices of each joint: the outermost ones along the axes.
 #[derive(Clone, Debug)]
 pub struct SeamProbe<'a> {
     skeleton: &'a Skeleton,
@@ -54,7 +56,7 @@ pub struct SeamProbe<'a> {
 }
 
 impl<'a> SeamProbe<'a> {
-    /// A probe for a creature that is `height` units of its model tall; a flat one counts as a billionth of a unit tall.
+    /// A probe for a creature that is `height` model units tall; a height below 1e-9 counts as 1e-9.
     pub fn new(skeleton: &'a Skeleton, mesh: &'a ColliderMesh, height: f64) -> Self {
         Self {
             skeleton,
@@ -64,7 +66,8 @@ impl<'a> SeamProbe<'a> {
         }
     }
 
-    /// Measures the seam of a clip: poses the skeleton for each 60th of a second of its first ten minutes, and at its end.
+    /// Measures the seam of a clip. It poses the skeleton for each 60th of a second of the clip's first ten minutes,
+    /// and around the seam.
     ///
     /// # Errors
     /// [`RigError`] if the clip does not fit the skeleton.
@@ -101,7 +104,8 @@ impl<'a> SeamProbe<'a> {
     }
 }
 
-/// For every joint, the outermost vertices along each axis of those that it moves more than any other joint does.
+/// For each joint, the outermost vertices in both directions of each axis, among the vertices on which this joint has
+/// the largest weight. Sorted, without duplicates.
 fn outermost(mesh: &ColliderMesh) -> Vec<VertexId> {
     let mut by_joint: BTreeMap<u32, [VertexId; 6]> = BTreeMap::new();
     let along = |v: VertexId, axis: usize| {

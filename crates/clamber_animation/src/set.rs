@@ -21,13 +21,13 @@ impl fmt::Display for ClipId {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MaskId(pub u32);
 
-/// What animators of one kind of creature share: the clips, masks, and the pose at rest. It never changes while they
-/// play, so an animator is small, and a copy of it is a whole snapshot.
+/// The data that all animators of one kind of creature share: clips, masks, and the rest pose. It does not change while
+/// they play, so an animator is small, and a clone of an animator is a complete snapshot.
 #[derive(Clone, Debug)]
 pub struct AnimationSet {
     rest: Pose,
     clips: Vec<Clip>,
-    /// Of each clip, the joints that it moves, in ascending order, as they are at its start.
+    /// For each clip, the joints that it moves, in ascending order, with their transforms at the clip's start.
     starts: Vec<Vec<(JointId, Transform)>>,
     masks: Vec<JointMask>,
     root: Option<RootMotion>,
@@ -56,13 +56,13 @@ impl AnimationSet {
         })
     }
 
-    /// The same set, whose clips move the creature by the motion of a joint: that motion is taken out of poses, and
-    /// reported by [`Animator::advance`](crate::Animator::advance). It is the joint's motion along the ground and its
-    /// turn about up, which is Y in model space. The joint is the root of what moves, such as the hips.
+    /// The same set with root motion from a joint: the joint's motion along the ground and its rotation about Y, the up
+    /// axis of model space, are removed from poses and reported by [`Animator::advance`](crate::Animator::advance).
+    /// Pass the topmost joint that the clips move, such as the hips.
     ///
     /// # Errors
-    /// [`AnimationError::NoJoint`] if the skeleton does not have the joint, [`AnimationError::JointCount`] if it is
-    /// not the set's skeleton.
+    /// [`AnimationError::NoJoint`] if the skeleton does not have the joint, [`AnimationError::JointCount`] if the
+    /// skeleton has another number of joints than the set's skeleton.
     pub fn with_root_motion(
         mut self,
         skeleton: &Skeleton,
@@ -85,25 +85,25 @@ impl AnimationSet {
     /// Adds a mask for layers.
     ///
     /// # Errors
-    /// [`AnimationError::JointCount`] if the mask is of another skeleton.
+    /// [`AnimationError::JointCount`] if the mask is for another number of joints.
     pub fn add_mask(&mut self, mask: JointMask) -> Result<MaskId, AnimationError> {
         mask.check(self.rest.transforms.len())?;
         self.masks.push(mask);
         Ok(MaskId(self.masks.len() as u32 - 1))
     }
 
-    /// The first clip of this name; `None` if there is none.
+    /// The first clip of this name; `None` if the set has no such clip.
     pub fn find(&self, name: &str) -> Option<ClipId> {
         let index = self.clips.iter().position(|clip| clip.name == name)?;
         Some(ClipId(index as u32))
     }
 
-    /// The clips, by their ids.
+    /// The clips, indexed by [`ClipId`].
     pub fn clips(&self) -> &[Clip] {
         &self.clips
     }
 
-    /// The pose in which every joint is at rest.
+    /// The pose in which every joint has its rest transform.
     pub fn rest(&self) -> &Pose {
         &self.rest
     }
@@ -111,7 +111,7 @@ impl AnimationSet {
     /// A clip.
     ///
     /// # Errors
-    /// [`AnimationError::NoClip`].
+    /// [`AnimationError::NoClip`] if the set does not have it.
     pub fn clip(&self, id: ClipId) -> Result<&Clip, AnimationError> {
         self.clips.get(id.0 as usize).ok_or(AnimationError::NoClip {
             found: id,
@@ -119,7 +119,8 @@ impl AnimationSet {
         })
     }
 
-    /// The joints that a clip moves, in ascending order, as they are at its start: the motion of the root begins there.
+    /// The joints that a clip moves, in ascending order, with their transforms at the clip's start. Root motion is
+    /// measured from these.
     pub(crate) fn start(&self, id: ClipId) -> &[(JointId, Transform)] {
         self.starts.get(id.0 as usize).map_or(&[], Vec::as_slice)
     }

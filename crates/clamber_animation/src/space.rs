@@ -1,4 +1,4 @@
-//! Model space of poses, and rotations of joints in it.
+//! Transforms of joints in model space, and rotations of joints given in model space.
 
 use clamber_surface::rig::{JointId, Pose, Skeleton};
 use glam::{DAffine3, DMat3, DQuat, DVec3, Vec3};
@@ -6,7 +6,7 @@ use glam::{DAffine3, DMat3, DQuat, DVec3, Vec3};
 use crate::ik::IkError;
 use crate::pose::{rotation_of, store_rotation};
 
-/// The transform of a joint in model space. Composes the joints from it to its root.
+/// The transform of a joint in model space. Composes the transforms of the joint and its ancestors.
 ///
 /// # Panics
 /// If the pose or the skeleton lacks the joint.
@@ -14,7 +14,8 @@ pub(crate) fn model_from_joint(skeleton: &Skeleton, pose: &Pose, joint: JointId)
     from_above(skeleton, pose, joint, None)
 }
 
-/// The same, from the joint to one above it whose transform in model space is known, or to its root if none is.
+/// As [`model_from_joint`], but starts from an ancestor whose transform in model space is known: `above`. Composes up
+/// to the root if `above` is `None` or no ancestor of the joint.
 fn from_above(
     skeleton: &Skeleton,
     pose: &Pose,
@@ -23,7 +24,7 @@ fn from_above(
 ) -> DAffine3 {
     let known = |joint: JointId| above.filter(|(above, _)| *above == joint);
     let parent = |joint: JointId| skeleton.joints()[joint.index()].parent;
-    // Rotations and translations compose with less work than matrices; most joints have no scale.
+    // Composing rotations and translations costs less than composing matrices, and most joints have no scale.
     let (mut turn, mut place) = (DQuat::IDENTITY, DVec3::ZERO);
     let mut next = Some(joint);
     while let Some(joint) = next {
@@ -50,17 +51,17 @@ fn from_above(
     model
 }
 
-/// The transform of a joint in model space in a pose: from the joint's own space. `None` if the pose or the skeleton
-/// lacks the joint. Composes the joints from it to its root, and nothing else.
+/// The transform from a joint's own space to model space in a pose. `None` if the pose or the skeleton lacks the joint.
+/// Composes only the joint and its ancestors.
 pub fn joint_in_model(skeleton: &Skeleton, pose: &Pose, joint: JointId) -> Option<DAffine3> {
     let joints = skeleton.joints().len();
     let is_there = joint.index() < joints && pose.transforms.len() == joints;
     is_there.then(|| model_from_joint(skeleton, pose, joint))
 }
 
-/// The transforms of several joints in model space in a pose, as [`joint_in_model`] gives them; `None` if the pose or
-/// the skeleton lacks one. Less work for joints of one limb, if they are given from its root to its tip: each is
-/// composed from the one before it, if that is above it.
+/// The transforms of several joints in model space, as [`joint_in_model`] gives them; `None` if the pose or the
+/// skeleton lacks one of them. Each joint is composed from the joint before it in the list if that is an ancestor, so
+/// the joints of a limb cost least in order from root to tip.
 pub fn joints_in_model<const N: usize>(
     skeleton: &Skeleton,
     pose: &Pose,
@@ -80,7 +81,7 @@ pub fn joints_in_model<const N: usize>(
     Some(frames)
 }
 
-/// [`model_from_joint`] of a joint's parent; the identity for a root.
+/// [`model_from_joint`] of a joint's parent; the identity for a root joint.
 pub(crate) fn model_from_parent(skeleton: &Skeleton, pose: &Pose, joint: JointId) -> DAffine3 {
     let parent = skeleton.joints()[joint.index()].parent;
     parent.map_or(DAffine3::IDENTITY, |parent| {
@@ -88,14 +89,14 @@ pub(crate) fn model_from_parent(skeleton: &Skeleton, pose: &Pose, joint: JointId
     })
 }
 
-/// How far the axes of a matrix may be from perpendicular, and their lengths from equal, as a share, for it to count as
-/// a rotation with a uniform scale, perhaps mirrored.
+/// Tolerance, as a share, within which a matrix counts as a rotation with uniform scale, perhaps mirrored: for the
+/// cosine of the angles between its axes, and for the difference of their lengths.
 const SIMILAR: f64 = 1e-4;
 
 /// The scale of a matrix that only rotates, mirrors and scales uniformly.
 ///
 /// # Errors
-/// [`IkError::NotInvertible`] if it has no inverse, [`IkError::Sheared`] if it scales unevenly.
+/// [`IkError::NotInvertible`] if it has no inverse, [`IkError::Sheared`] if it shears or scales unevenly.
 pub(crate) fn uniform_scale(matrix: &DMat3, joint: JointId) -> Result<f64, IkError> {
     if is_orthonormal(matrix) {
         return Ok(1.0);
@@ -115,8 +116,8 @@ pub(crate) fn uniform_scale(matrix: &DMat3, joint: JointId) -> Result<f64, IkErr
     }
 }
 
-/// True if a matrix only rotates, or mirrors, so that its transpose is its inverse: to 1e-11, more than what composing
-/// rotations rounds away.
+/// True if a matrix only rotates or mirrors, so that its transpose is its inverse. The tolerance of 1e-11 is above the
+/// rounding errors of composed rotations.
 fn is_orthonormal(matrix: &DMat3) -> bool {
     let [x, y, z] = [matrix.x_axis, matrix.y_axis, matrix.z_axis];
     let lengths = [x, y, z].map(|axis| (axis.length_squared() - 1.0).abs());
@@ -127,14 +128,14 @@ fn is_orthonormal(matrix: &DMat3) -> bool {
 /// The inverse of a matrix.
 ///
 /// # Errors
-/// [`IkError::NotInvertible`] if it has none that is finite.
+/// [`IkError::NotInvertible`] if it has no finite inverse, or its determinant is only rounding errors.
 pub(crate) fn invertible(matrix: &DMat3, joint: JointId) -> Result<DMat3, IkError> {
     if is_orthonormal(matrix) {
         return Ok(matrix.transpose());
     }
     let inverse = matrix.inverse();
     let size = matrix.x_axis.length() + matrix.y_axis.length() + matrix.z_axis.length();
-    // Smaller than any scale that is meant: a determinant of rounding errors.
+    // No intended scale is this small: such a determinant consists of rounding errors.
     let least = size * size * size * 1e-12;
     if inverse.is_finite() && matrix.determinant().abs() > least {
         Ok(inverse)
@@ -155,11 +156,11 @@ pub(crate) fn uniform_inverse(matrix: &DMat3, joint: JointId) -> Result<DMat3, I
     invertible(matrix, joint)
 }
 
-/// Turns a joint, and all below it, by a rotation in model space about the joint's own origin.
+/// Turns a joint and all of its descendants by a rotation in model space about the joint's own origin.
 ///
 /// # Errors
-/// [`IkError::Sheared`] and [`IkError::NotInvertible`] if its parents scale unevenly, so that the turn is no rotation
-/// in the joint's own space.
+/// [`IkError::Sheared`] and [`IkError::NotInvertible`] if the joint's parents shear, scale unevenly or scale by 0: the
+/// turn is then no rotation in the joint's own space.
 pub(crate) fn turn_in_model(
     pose: &mut Pose,
     joint: JointId,
@@ -168,7 +169,7 @@ pub(crate) fn turn_in_model(
 ) -> Result<(), IkError> {
     let parent = model_from_parent.matrix3;
     let vector = DVec3::new(turn.x, turn.y, turn.z);
-    // In a mirrored space a turn goes the other way about its mirrored axis.
+    // A mirrored space reverses the sense of a rotation about the mirrored axis.
     let axis = if is_orthonormal(&parent) {
         parent.transpose() * vector * parent.determinant().signum()
     } else {

@@ -1,19 +1,19 @@
 //! Critically damped springs in closed form: the same motion at any frame rate.
 //!
 //! The differential equation `x'' = -2 w x' - w^2 (x - goal)` has the solution `x - goal = (a + b t) e^(-w t)`. A step
-//! evaluates it, so one long step equals many short ones, and no step is too long (Holden 2021, "Spring-It-On: The Game
-//! Developer's Spring-Roll-Call").
+//! evaluates this solution, so one long step equals many short ones, and no step is too long (Holden 2021,
+//! "Spring-It-On: The Game Developer's Spring-Roll-Call").
 
 use core::ops::{Add, Mul, Sub};
 
 use clamber_surface::geometry::{rotation_from_axis_angle, rotation_vector};
 use glam::{DQuat, DVec3};
 
-/// The solution of `(1 + x) e^(-x) = 1/2`: after `x / w` seconds, a spring that started at rest has half of its way
-/// behind it.
+/// The solution of `(1 + x) e^(-x) = 1/2`, no unit: a spring that starts at rest has covered half of its way after `x /
+/// w` seconds.
 const HALF: f64 = 1.678_346_990_016_661;
 
-/// What a spring can move: a number or a vector. Its default is zero.
+/// A value that a spring can move: a number or a vector. Its default must be zero.
 pub trait Springy:
     Copy + Default + Add<Output = Self> + Sub<Output = Self> + Mul<f64, Output = Self>
 {
@@ -24,7 +24,7 @@ impl<T> Springy for T where
 {
 }
 
-/// A value that follows a goal as fast as it can without overshooting from rest.
+/// A value that follows a goal as fast as it can without overshooting when it starts at rest.
 ///
 /// ```
 /// use clamber_animation::Spring;
@@ -38,12 +38,12 @@ impl<T> Springy for T where
 pub struct Spring<T> {
     /// Current value.
     pub value: T,
-    /// Its rate of change, per second.
+    /// Rate of change of the value, per second.
     pub velocity: T,
 }
 
 impl<T: Springy> Spring<T> {
-    /// At rest at a value.
+    /// A spring at rest at a value.
     pub fn at(value: T) -> Self {
         Self {
             value,
@@ -51,8 +51,8 @@ impl<T: Springy> Spring<T> {
         }
     }
 
-    /// Moves on by `dt` seconds towards `goal`. From rest, half of the way is done after `half_time` seconds. With a
-    /// half time of 0 or less it is at the goal at once; with a `dt` of 0 or less nothing changes.
+    /// Advances the spring by `dt` seconds towards `goal`. From rest, it covers half of the way in `half_time` seconds.
+    /// With a half time of 0 or less it arrives at the goal at once; with a `dt` of 0 or less nothing changes.
     pub fn step(&mut self, goal: T, half_time: f64, dt: f64) {
         if dt <= 0.0 {
             return;
@@ -70,18 +70,19 @@ impl<T: Springy> Spring<T> {
     }
 }
 
-/// A rotation that follows a goal along the shorter arc: a [`Spring`] on its rotation vector from the goal.
+/// A rotation that follows a goal along the shorter arc: a [`Spring`] on the rotation vector from the goal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RotationSpring {
     /// Current rotation, a unit quaternion.
     pub rotation: DQuat,
-    /// Rate of change of the rotation vector from the goal, radians a second. Near the goal it is the angular velocity.
+    /// Rate of change of the rotation vector from the goal, radians per second. Near the goal it is the angular
+    /// velocity.
     pub velocity: DVec3,
 }
 
 impl RotationSpring {
-    /// At rest.
+    /// A spring at rest at a rotation.
     pub fn at(rotation: DQuat) -> Self {
         Self {
             rotation,
@@ -89,7 +90,7 @@ impl RotationSpring {
         }
     }
 
-    /// Moves on by `dt` seconds towards the unit quaternion `goal`; see [`Spring::step`].
+    /// Advances the spring by `dt` seconds towards the unit quaternion `goal`; see [`Spring::step`].
     pub fn step(&mut self, goal: DQuat, half_time: f64, dt: f64) {
         let mut spring = Spring {
             value: rotation_vector(self.rotation * goal.conjugate()),
@@ -101,8 +102,8 @@ impl RotationSpring {
     }
 }
 
-/// Moves a value towards a goal by a share that depends on the time alone: half of the way in each `half_time` seconds.
-/// A damper has no velocity, so its motion begins with a jerk; where that shows, take a [`Spring`].
+/// Moves a value towards a goal: by half of the remaining way in each `half_time` seconds, at any frame rate.
+/// Exponential decay keeps no velocity, so the motion starts abruptly; where that is visible, use a [`Spring`].
 pub fn damp<T: Springy>(value: T, goal: T, half_time: f64, dt: f64) -> T {
     if dt <= 0.0 {
         return value;
@@ -113,17 +114,18 @@ pub fn damp<T: Springy>(value: T, goal: T, half_time: f64, dt: f64) -> T {
     goal + (value - goal) * libm::exp2(-dt / half_time)
 }
 
-/// The square of the largest angle, in radians, for which a rotation is taken from series: half a radian.
+/// The square of the largest angle, radians squared, up to which a rotation is computed from Taylor series: half a
+/// radian. At larger angles the series would lose digits.
 const SMALL: f64 = 0.25;
 
-/// The rotation by the length of a vector, in radians, about its direction.
+/// The rotation of a rotation vector: its length is the angle in radians, its direction the axis.
 pub(crate) fn rotation_from_vector(vector: DVec3) -> DQuat {
     let square = vector.length_squared();
     if square > SMALL {
         let angle = square.sqrt();
         return rotation_from_axis_angle(vector / angle, angle);
     }
-    // Sine and cosine of half the angle by their series, off by less than 1e-16.
+    // Sine and cosine of half the angle by Taylor series, with an error below 1e-16.
     let half = 0.25 * square;
     let series = |terms: [f64; 6]| terms.iter().fold(0.0, |sum, term| 1.0 - half * term * sum);
     let sin = series([
@@ -150,7 +152,7 @@ pub(crate) fn rotation_from_vector(vector: DVec3) -> DQuat {
 mod tests {
     use super::*;
 
-    /// Scene B22: one second of a goal that stays, at any frame rate.
+    /// Scene B22: springs follow a fixed goal for one second, at several frame rates.
     #[test]
     fn springs_do_not_depend_on_the_frame_rate() {
         let follow = |rate: usize| {

@@ -1,4 +1,4 @@
-//! Layers, markers, root motion, and what is refused.
+//! Layers, markers, root motion, and bad input.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
@@ -30,7 +30,7 @@ fn turn(axis: DVec3, angle: f64) -> Quat {
     rotation_from_axis_angle(axis, angle).as_quat()
 }
 
-/// A clip of a second that turns each joint about an axis, from one angle to another.
+/// A clip of 1 s that turns each joint about an axis, from one angle to another.
 fn turning(name: &str, axis: DVec3, from: f64, to: f64) -> Clip {
     let channels = (0..3).map(|joint| {
         let values = Keyframes::Rotation(vec![turn(axis, from), turn(axis, to)]);
@@ -91,11 +91,11 @@ fn layers_override_by_weight_and_mask_and_add_differences() {
     };
     let found = pose(set, &Animator::new(vec![halfway, over]));
     assert_turn(found.transforms[0].rotation, about(DVec3::X, 0.2));
-    // Half of the way from 0.2 about X to 0.2 about Z.
+    // Half way from 0.2 about X to 0.2 about Z.
     let middle = (about(DVec3::X, 0.2) + about(DVec3::Z, 0.2)).normalize();
     assert_turn(found.transforms[1].rotation, middle);
 
-    // What is added is the difference from the clip's first frame, in the joint's own space.
+    // An additive layer adds the difference from the clip's first frame, in the joint's own space.
     let added = Layer {
         kind: LayerKind::Additive,
         time: 0.5,
@@ -127,7 +127,7 @@ fn a_larger_creature_is_slower_by_the_root_of_its_size() {
     assert_eq!(animator.rate(), 0.5);
 }
 
-/// Markers by number, as events tell them.
+/// Indices of the markers in events, in their order.
 fn told(events: &[AnimationEvent]) -> Vec<usize> {
     let marker = |event: &AnimationEvent| match event {
         AnimationEvent::Marker { marker, .. } => Some(*marker),
@@ -163,7 +163,7 @@ fn markers_are_told_once_and_in_order_however_time_is_cut() {
             .collect();
         assert_eq!(told(&events), expected);
     }
-    // Backwards they come the other way round.
+    // Played backwards, the markers come in reverse order.
     let mut animator = Animator::new(vec![Layer {
         time: 0.7,
         speed: -1.0,
@@ -174,7 +174,7 @@ fn markers_are_told_once_and_in_order_however_time_is_cut() {
         animator.advance(&set, 0.1, &mut events).unwrap();
     }
     assert_eq!(told(&events), [3, 2, 1, 0, 4, 3, 2, 1]);
-    // More than a loop at once: each once.
+    // A step of more than one loop reports each marker once.
     let mut animator = Animator::new(vec![Layer {
         time: 0.5,
         ..Layer::new(ClipId(0))
@@ -207,7 +207,7 @@ fn markers_are_told_once_and_in_order_however_time_is_cut() {
     assert_eq!(animator.layers()[0].time, 1.0);
 }
 
-/// A clip of a second in which the hips walk a quarter of a circle with a radius of 2 m, and bob.
+/// A clip of 1 s in which the hips walk a quarter of a circle with a radius of 2 m, and move up and down.
 fn walk_in_a_circle() -> Clip {
     let keys = 33;
     let times: Vec<f32> = (0..keys).map(|k| k as f32 / (keys - 1) as f32).collect();
@@ -261,7 +261,7 @@ fn root_motion_moves_the_creature_as_the_clip_did() {
         assert_eq!(motion.translation.y, 0.0);
         world_from_model *= matrix(&motion);
         time += dt;
-        // Where the clip itself would have the hips: the whole clips, and the rest of the last.
+        // The hips' position in the plain clip: after all whole loops and the rest of the last one.
         let mut at = DAffine3::IDENTITY;
         for _ in 0..time as usize {
             at *= whole;
@@ -278,7 +278,7 @@ fn root_motion_moves_the_creature_as_the_clip_did() {
         let turned = (found.matrix3.x_axis - expected.matrix3.x_axis).length();
         assert!(turned < 1e-4, "{turned} at {time} s");
     }
-    // The hips stay over their place.
+    // Without root motion, the hips stay over their place.
     let hips = pose(&set, &animator).transforms[0].translation;
     assert!(
         (hips.x - 0.3).abs() < 1e-5 && (hips.z - 0.1).abs() < 1e-5,
@@ -287,8 +287,8 @@ fn root_motion_moves_the_creature_as_the_clip_did() {
     assert!(world_from_model.translation.length() > 1.0);
 }
 
-/// What an additive layer adds is the difference of two whole poses of its clip, also under root motion, and in joints
-/// that the clip does not move: nothing.
+/// An additive layer adds the difference of two whole poses of its clip, also under root motion. Joints that the clip
+/// does not move get no change.
 #[test]
 fn an_additive_layer_adds_the_difference_of_whole_poses() {
     let skeleton = skeleton();

@@ -1,4 +1,4 @@
-//! Heads that look at something: scenes B10 and B11.
+//! Heads that look at a target: scenes B10 and B11.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
@@ -11,9 +11,10 @@ use clamber_animation::{joint_in_model, joints_in_model};
 use clamber_surface::geometry::{rotation_from_axis_angle, rotation_vector};
 use common::{joint, place};
 
+/// The head of [`torso`].
 const HEAD: JointId = JointId(4);
 
-/// Hips, two joints of the spine, neck and head, upright; it looks along +Z.
+/// Upright hips, two spine joints, neck and head; the head looks along +Z.
 fn torso() -> Skeleton {
     let up = Vec3::Y * 0.15;
     let hips = joint(None, Vec3::Y);
@@ -27,7 +28,7 @@ fn look(skeleton: &Skeleton) -> LookAt {
     LookAt::new(skeleton, &chain, eye, DVec3::Z, DVec3::Y).unwrap()
 }
 
-/// Eye and gaze in model space.
+/// The eye's position and its viewing direction, in model space.
 fn gaze(skeleton: &Skeleton, pose: &Pose) -> [DVec3; 2] {
     let palette = skeleton.palette(pose).unwrap();
     let head = palette.model_from_joint(HEAD).unwrap();
@@ -72,7 +73,7 @@ fn b10_the_gaze_arrives_and_half_a_weight_is_half_the_turn() {
                 let [eye, seen] = gaze(&skeleton, &a);
                 let other = gaze(&skeleton, &b)[1];
                 assert!((seen - other).length() < 1e-6, "{yaw} {pitch} {weight}");
-                // Monotone: the angle to the target falls with the weight.
+                // The angle to the target falls monotonically with the weight.
                 let left = angle(seen, target - eye);
                 assert!(
                     left <= last + 1e-6,
@@ -115,7 +116,7 @@ fn mirrored_and_scaled_bodies_look_where_they_should() {
         );
         let [eye, seen] = gaze(&skeleton, &pose);
         assert!(angle(seen, target - eye) < 1e-4, "{scale} {turn}");
-        // And a head that is aimed points where it should, with both axes.
+        // `aim` points both axes of a head in the right directions as well.
         let directions = [DVec3::new(0.3, 0.2, 1.0), DVec3::new(-0.1, 1.0, 0.0)];
         aim(&skeleton, &mut pose, HEAD, [DVec3::Z, DVec3::Y], directions).unwrap();
         let palette = skeleton.palette(&pose).unwrap();
@@ -140,7 +141,7 @@ fn mirrored_and_scaled_bodies_look_where_they_should() {
             look_up(scale, common::rotation(&mut rng));
         }
     }
-    // A head that is itself mirrored.
+    // A head that is mirrored itself.
     let mut pose = torso().rest_pose();
     pose.transforms[4].scale = Vec3::new(-1.0, 1.0, 1.0);
     let directions = [DVec3::new(0.3, 0.2, 1.0), DVec3::NEG_Y];
@@ -172,7 +173,7 @@ fn mirrored_and_scaled_bodies_look_where_they_should() {
     );
 }
 
-/// A pose of the torso with random rotations, and a scale of one of its joints.
+/// A pose of the torso with random rotations, and with a scale on one of its joints.
 fn scaled_pose(rng: &mut fastrand::Rng, scaled: usize, scale: Vec3) -> Pose {
     let mut pose = torso().rest_pose();
     for transform in &mut pose.transforms {
@@ -223,7 +224,7 @@ fn frames_of_several_joints_are_those_of_each() {
         for _ in 0..300 {
             let scaled = rng.usize(..5);
             let pose = scaled_pose(&mut rng, scaled, scale);
-            // In any order, also twice.
+            // Joints in any order, also repeated.
             let joints = [(); 4].map(|()| JointId(rng.u32(..5)));
             let together = joints_in_model(&torso(), &pose, joints).unwrap();
             for (joint, frame) in joints.into_iter().zip(together) {
@@ -261,7 +262,7 @@ fn b10_limits_hold_and_a_target_behind_changes_the_side_once_a_second() {
         let (rate, mut memory) = (60.0, LookMemory::default());
         let (mut side, mut since, mut changes) = (0.0, 10.0, 0);
         for tick in 0..1200 {
-            // It circles, and then swings to and fro behind.
+            // The target circles, and then swings to and fro behind the body.
             let time = f64::from(tick) / rate;
             let yaw = if tick < 600 {
                 time * speed
@@ -286,10 +287,10 @@ fn b10_limits_hold_and_a_target_behind_changes_the_side_once_a_second() {
                 yaw_seen.to_degrees()
             );
             since += 1.0 / rate;
-            // While it looks over a shoulder.
+            // The head looks over a shoulder here.
             if yaw_seen.abs() > 79f64.to_radians() {
                 if side != 0.0 && side != yaw_seen.signum() {
-                    // Through the front it may pass at any time.
+                    // Through the front the gaze may change the side at any time.
                     let front = libm::cos(yaw) > 0.17;
                     if !front && speed < 30.0 {
                         assert!(
@@ -319,7 +320,7 @@ fn b10_limits_hold_and_a_target_behind_changes_the_side_once_a_second() {
         .unwrap();
         gaze(&skeleton, &pose)[1]
     };
-    // The eye moves as the head turns: by a degree and a half here.
+    // The eye moves as the head turns, which changes the pitch by a degree and a half here.
     let pitch = angle(up, DVec3::Z).to_degrees();
     assert!((57.0..=60.1).contains(&pitch), "{pitch}");
 }
@@ -364,7 +365,7 @@ fn b11_a_head_stays_where_it_looks_while_the_body_sways() {
     for tick in 0..120 {
         let mut pose = sway(tick);
         control = control.max(place(&skeleton, &pose, 6).distance(home));
-        // The head first, then the neck follows it, and then the head looks.
+        // The neck chain brings the head to its place first, then the head aims at the target.
         let reach = neck.solve(&skeleton, &mut pose, home).unwrap();
         assert_eq!(reach, Reach::Reached);
         let to_target = target - place(&skeleton, &pose, 6);
@@ -400,7 +401,7 @@ fn chains_reach_what_they_can_and_say_what_they_cannot() {
     let rest = skeleton.rest_pose();
     let mut rng = fastrand::Rng::with_seed(6);
     for _ in 0..2_000 {
-        // Straight at rest, also with the target on its line.
+        // The chain is straight at rest; some targets lie on its line.
         let from = DVec3::Y;
         let target = match rng.u32(0..4) {
             0 => from + DVec3::Y * (0.6 * rng.f64()),

@@ -1,4 +1,4 @@
-//! A saved animator goes on with the same bits.
+//! A restored animator continues with the same bits.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 

@@ -1,4 +1,4 @@
-//! Changes of animation: scene B21.
+//! Transitions between clips: scene B21.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
@@ -9,7 +9,7 @@ use clamber_animation::rig::{
 use clamber_animation::{AnimationSet, Animator, Layer, PoseBuffers};
 use clamber_gltf::LoadOptions;
 
-/// The giant as high as a person, whose steps and shakes are quicker than a person's.
+/// The giant scaled to a person's height. Its steps and shakes are then quicker than a person's.
 fn giant() -> (Skeleton, AnimationSet) {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/colossus.glb");
     let options = LoadOptions::default().with_height(1.75);
@@ -26,7 +26,7 @@ fn pose(set: &AnimationSet, animator: &Animator) -> Pose {
     pose
 }
 
-/// Where all joints are.
+/// Positions of all joints, in model space.
 fn places(skeleton: &Skeleton, set: &AnimationSet, animator: &Animator) -> Vec<DVec3> {
     let palette = skeleton.palette(&pose(set, animator)).unwrap();
     let joints = 0..skeleton.joints().len() as u32;
@@ -45,7 +45,7 @@ fn farthest(a: &[DVec3], b: &[DVec3]) -> f64 {
     pairs.map(|(a, b)| a.distance(*b)).fold(0.0, f64::max)
 }
 
-/// Velocities of all joints from now on.
+/// Velocities of all joints over the next 1/4096 s.
 fn velocities(skeleton: &Skeleton, set: &AnimationSet, animator: &Animator) -> Vec<DVec3> {
     let step = 1.0 / 4096.0;
     let mut next = animator.clone();
@@ -63,7 +63,7 @@ fn b21_a_change_of_clip_has_no_jump_of_place_or_velocity() {
     for from in clips {
         for to in clips {
             let mut animator = Animator::new(vec![Layer::new(from)]);
-            // Within keys: clips are linear between them, so that at a key they have a jump of their own.
+            // The time is between keys: clips are linear between keys, so their own velocity jumps at a key.
             animator.layers_mut()[0].time = 0.7123;
             let before = places(&skeleton, &set, &animator);
             let was = velocities(&skeleton, &set, &animator);
@@ -73,7 +73,7 @@ fn b21_a_change_of_clip_has_no_jump_of_place_or_velocity() {
             worst[0] = worst[0].max(farthest(&before, &after));
             worst[1] = worst[1].max(farthest(&was, &is));
             fastest = was.iter().map(|v| v.length()).fold(fastest, f64::max);
-            // After the time of the fade nothing is left, to the bit.
+            // After the fade's time no offset is left, to the bit.
             for _ in 0..73 {
                 animator
                     .advance(&set, 1.0 / 240.0, &mut Vec::new())
@@ -82,7 +82,7 @@ fn b21_a_change_of_clip_has_no_jump_of_place_or_velocity() {
             assert!(!animator.is_fading());
             let plain = Animator::new(animator.layers().to_vec());
             assert_eq!(pose(&set, &animator), pose(&set, &plain));
-            // The control: a cut.
+            // The control: a cut, without a fade.
             let mut cut = Animator::new(vec![Layer::new(from)]);
             cut.layers_mut()[0].time = 0.7123;
             cut.play(&set, 0, to, 0.0).unwrap();
@@ -156,8 +156,8 @@ fn b21_interruptions_do_not_build_up() {
     assert!(!animator.is_fading());
 }
 
-/// A game that cannot decide changes the animation in each frame, for as long as it likes. The pose comes to where the
-/// clips are all the same, however fast it moved before.
+/// A game that cannot decide changes the animation in each frame. The pose must stay near the two clips, however fast
+/// it moved before.
 #[test]
 fn changes_in_each_frame_do_not_let_the_pose_fly_away() {
     let (skeleton, set) = giant();
@@ -194,7 +194,7 @@ fn changes_in_each_frame_do_not_let_the_pose_fly_away() {
                         let to = clips[random.usize(0..2)];
                         animator.play(&set, 0, to, fades[changed % 2]).unwrap();
                         changed += 1;
-                        // The same pose of each, so that only the changes move anything.
+                        // The clips stand still, so that only the changes move the pose.
                         animator.layers_mut()[0].speed = 0.0;
                     }
                     let now = places(&skeleton, &set, &animator);

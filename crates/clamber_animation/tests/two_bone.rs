@@ -12,6 +12,7 @@ use clamber_animation::rig::{JointId, Pose, Skeleton, Transform};
 use clamber_surface::geometry::{rotation_from_axis_angle, rotation_vector};
 use common::{joint, place, random, unit};
 
+/// The upper joint, the lower joint and the end of the limb of [`arm`].
 const JOINTS: [JointId; 3] = [JointId(1), JointId(2), JointId(3)];
 
 /// A body with one arm along X, slightly bent, whose elbow points to -Z.
@@ -60,7 +61,7 @@ fn b01_reachable_targets_are_reached_and_bones_keep_their_lengths() {
     }
     assert!(worst[0] <= 1e-6 && worst[1] <= 1e-6, "{worst:?}");
 
-    // With rotations that are rounded to f32, through a body that lies somewhere.
+    // Here rotations are rounded to f32, and the body has an arbitrary transform.
     for _ in 0..20_000 {
         let lengths = [0.2 + rng.f32(), 0.2 + rng.f32()];
         let root = Transform {
@@ -110,7 +111,7 @@ fn b02_far_targets_are_aimed_at_with_the_soft_length() {
         assert!(matches!(reach, Reach::Short(gap) if gap > 0.0), "{reach:?}");
         let aim = way.cross(direction).length().atan2_of(way.dot(direction));
         assert!(aim <= 1e-4, "{aim}");
-        // As the reference has it: d' = r L + (1 - r) L (1 - e^(-(d - r L) / ((1 - r) L))).
+        // The formula of the reference: d' = r L + (1 - r) L (1 - e^(-(d - r L) / ((1 - r) L))).
         let room = 0.03 * full;
         let soft = 0.97 * full + room * (1.0 - libm::exp(-(distance - 0.97 * full) / room));
         assert!(
@@ -144,7 +145,7 @@ fn b03_impossible_input_gives_typed_errors_or_a_finite_pose() {
             assert!((length - 1.0).abs() < 1e-6, "{pose:?}");
         }
     };
-    // On the shoulder, and with poles that say nothing.
+    // A target on the shoulder, and poles that give no side.
     let on_shoulder = shoulder(&skeleton, &rest);
     for target in [
         on_shoulder,
@@ -168,7 +169,7 @@ fn b03_impossible_input_gives_typed_errors_or_a_finite_pose() {
             assert!(end.distance(target) < 1e-5, "{target} {pole:?}: {end}");
         }
     }
-    // Numbers that are none, and softness out of range.
+    // Numbers that are not finite, and softness out of range.
     let fine = TwoBoneGoal::reach(DVec3::ONE);
     let nan = TwoBoneGoal::reach(DVec3::NAN);
     let no_pole = TwoBoneGoal {
@@ -232,7 +233,7 @@ fn b03_impossible_input_gives_typed_errors_or_a_finite_pose() {
     assert!(matches!(foreign, Err(IkError::NoJoint { joints: 1, .. })));
     assert!(limb.end(&small, &small.rest_pose()).is_err());
     assert!(limb.lengths(&small, &small.rest_pose()).is_err());
-    // Joints that make no limb.
+    // Joints that do not form a limb.
     let new = |joints| TwoBone::new(&skeleton, joints, DVec3::NEG_Z);
     let [a, b, c] = JOINTS;
     for bad in [
@@ -248,8 +249,8 @@ fn b03_impossible_input_gives_typed_errors_or_a_finite_pose() {
     assert!(TwoBone::new(&skeleton, JOINTS, DVec3::NAN).is_err());
 }
 
-/// How fast the elbow opens at most while a hand recedes at 1 m/s from 0.8 to 1.1 of the arm's length, as frames see it
-/// that fall anywhere.
+/// The largest angular speed of the elbow, radians per second, while a hand recedes at 1 m/s from 0.8 to 1.1 of the
+/// arm's length. Frames are sampled at several phases.
 fn fastest_elbow(soft: f64) -> f64 {
     let phases = (0..16).map(|phase| elbow_speed(soft, f64::from(phase) / 16.0));
     phases.fold(0.0, f64::max)
@@ -277,12 +278,13 @@ fn elbow_speed(soft: f64, phase: f64) -> f64 {
 fn b04_a_receding_hand_does_not_snap_the_elbow_straight() {
     let soft = fastest_elbow(0.97);
     assert!(soft <= 9.3, "{soft}");
-    // The control: an arm that reaches as far as it can.
+    // The control: an arm without softness.
     let hard = fastest_elbow(1.0);
     assert!(hard > 30.0, "{hard}");
 }
 
-/// What a map of distances does wrong: not monotone, beyond the target, steeper than 1, or with a jump of its slope.
+/// Checks a map of distances for four faults: it is not monotone, reaches beyond the target, is steeper than 1, or its
+/// slope jumps.
 fn faults(map: impl Fn(f64) -> f64) -> [bool; 4] {
     let (step, mut found) = (1e-4, [false; 4]);
     let slope = |d: f64| (map(d + step) - map(d)) / step;
@@ -293,7 +295,7 @@ fn faults(map: impl Fn(f64) -> f64) -> [bool; 4] {
         found[0] |= now < -1e-9;
         found[1] |= map(d) > d + 1e-9;
         found[2] |= now > 1.0 + 1e-6;
-        // The slope itself changes by at most 1 / (1 - r) a length.
+        // The slope itself changes by at most 1 / (1 - r) per length.
         found[3] |= (now - last).abs() > 1e-3 + step / 0.03;
         last = now;
     }
@@ -315,7 +317,7 @@ fn b05_the_soft_map_is_smooth_and_never_beyond_its_target() {
     };
     let [_, beyond, steep, _] = faults(quartic);
     assert!(beyond && steep);
-    // And one whose slope jumps.
+    // A second control: a map whose slope jumps.
     let hard = |d: f64| d.min(1.0);
     assert!(faults(hard)[3]);
 }
@@ -329,7 +331,7 @@ fn b06_an_elbow_does_not_flip_where_the_hand_passes_its_pole() {
             let from = shoulder(&skeleton, &pose);
             let (mut memory, mut last) = (PoleMemory::default(), None);
             let mut worst = 0f64;
-            // A circle of a radius of 0.4 m through the axis of the pole, which is up, at 1 m/s, three times.
+            // Three circles with a radius of 0.4 m at 1 m/s, which pass near the pole's axis, which is up.
             let ticks = (3.0 * core::f64::consts::TAU * 0.4 * rate) as i32;
             for tick in 0..ticks {
                 let angle = f64::from(tick) / (0.4 * rate);
@@ -345,7 +347,7 @@ fn b06_an_elbow_does_not_flip_where_the_hand_passes_its_pole() {
                 let elbow = place(&skeleton, &pose, 2) - from;
                 let side = (elbow - direction * elbow.dot(direction)).normalize();
                 if let Some((was, side_was)) = last {
-                    // The plane's turn about the limb, without the limb's own turn.
+                    // The rotation of the limb's plane about the limb, without the limb's own rotation.
                     let carried: DVec3 = DQuat::from_rotation_arc(was, direction) * side_was;
                     let turned = libm::atan2(carried.cross(side).length(), carried.dot(side));
                     worst = worst.max(turned);
@@ -360,7 +362,7 @@ fn b06_an_elbow_does_not_flip_where_the_hand_passes_its_pole() {
             );
         }
     }
-    // The control: without a memory it flips.
+    // The control: without a memory the elbow flips.
     let [a, b] = [1e-4, -1e-4].map(|x| {
         let direction = DVec3::new(x, 1.0, 0.0).normalize() * 0.4;
         bend([0.3; 2], direction, DVec3::Y, 1.0, 0.0).elbow
@@ -373,7 +375,7 @@ fn b07_mirrored_limbs_are_mirrored_and_mirrored_rigs_reach() {
     let mut rng = fastrand::Rng::with_seed(7);
     let mirror = DVec3::new(-1.0, 1.0, 1.0);
     let right = arm([0.3, 0.25], Transform::IDENTITY);
-    // The same arm on the other side: positions mirrored, rotations about X kept, others turned around.
+    // The same arm on the other side: positions are mirrored, rotations about X are kept, all others are reversed.
     let mut joints = right.joints().to_vec();
     for joint in &mut joints {
         joint.rest.translation.x *= -1.0;
@@ -411,13 +413,13 @@ fn b07_mirrored_limbs_are_mirrored_and_mirrored_rigs_reach() {
         for (a, b) in pose.transforms.iter().zip(&pose_left.transforms) {
             let q = a.rotation;
             let q = Quat::from_xyzw(q.x, -q.y, -q.z, q.w);
-            // Rotations themselves are equal to the rounding of f32.
+            // The rotations themselves are equal up to the rounding of f32.
             assert!(apart(q, b.rotation) <= 4e-7, "{q} {}", b.rotation);
         }
         let (elbow_scaled, ..) = solve(&scaled, target * mirror, pole * mirror);
         assert!((elbow * mirror).distance(elbow_scaled) < 1e-5);
     }
-    // Before rounding: 1e-7.
+    // Before rounding the difference is at most 1e-7.
     for _ in 0..20_000 {
         let (target, pole) = (random(&mut rng, 0.4), random(&mut rng, 1.0));
         let [a, b] =
@@ -485,7 +487,7 @@ fn b09_a_solved_pose_is_kept() {
         for (a, b) in pairs {
             assert!(apart(a.rotation, b.rotation) <= 2e-6, "{goal:?}");
         }
-        // And where it already is, it stays, by whatever it was bent.
+        // A limb whose end is already at the target keeps its pose, however it was bent.
         let end = place(&skeleton, &pose, 3);
         let stay = TwoBoneGoal::reach(end);
         limb(&skeleton)
@@ -539,7 +541,7 @@ fn a_limb_may_end_at_a_point_of_its_lower_bone() {
     assert!(TwoBone::to_point(&skeleton, joints, DVec3::ZERO, DVec3::NEG_Z).is_err());
 }
 
-/// A clip may overstretch an elbow a little. It bends the right way all the same, without a twist of the arm.
+/// A clip may overstretch an elbow a little. The elbow still bends the right way, and the arm does not twist.
 #[test]
 fn an_overstretched_elbow_bends_the_right_way() {
     let skeleton = arm([0.3, 0.25], Transform::IDENTITY);

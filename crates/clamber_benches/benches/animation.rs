@@ -1,10 +1,10 @@
-//! What do animation and inverse kinematics cost, beside sampling one clip and composing its palette?
+//! Measures animation and inverse kinematics, compared with sampling one clip and composing its palette.
 //!
-//! On the hero, whose skeleton has 43 joints. All take turns, frame by frame, on one thread. Times are medians of the
-//! mean over a hundred frames.
+//! The model is the hero, whose skeleton has 43 joints. All contenders take turns, a hundred frames each, on one
+//! thread. A time is the median of the means over a hundred frames.
 //!
-//! - An animator with one layer, with three, while it fades, and the change of a clip itself.
-//! - The body: four limbs that reach for points which move, and a look-at over head, neck and chest.
+//! - An animator with one layer, with three layers, and with one layer that fades; and the change of a clip itself.
+//! - The body: four limbs that reach for moving points, and a look-at over head, neck and chest.
 //!
 //! Prints a table and writes it to `target/measure/animation.csv`: name, value, bound, holds.
 //!
@@ -22,9 +22,10 @@ use clamber_body::Humanoid;
 use clamber_scenes::measure::{Bound, Cells, is_brief, quantile};
 use glam::DVec3;
 
-/// Frames of one time.
+/// Frames over which a time is averaged.
 const FRAMES: u32 = 100;
 
+/// Length of a frame, seconds.
 const DT: f64 = 1.0 / 60.0;
 
 fn main() -> ExitCode {
@@ -100,7 +101,7 @@ fn run(brief: bool) -> Result<(), Box<dyn Error>> {
     cells.finish("animation", brief)
 }
 
-/// The mean time of a frame, microseconds.
+/// Runs [`FRAMES`] frames; returns the mean time of a frame, microseconds.
 fn timed(mut frame: impl FnMut(u32) -> Result<(), Box<dyn Error>>) -> Result<f64, Box<dyn Error>> {
     let start = Instant::now();
     for index in 0..FRAMES {
@@ -131,13 +132,13 @@ impl Player {
         Ok(())
     }
 
-    /// Fades for longer than is measured.
+    /// Starts a fade to another clip. It takes 10 s, longer than the frames that are measured after it.
     fn change(&mut self, set: &AnimationSet, to: ClipId) -> Result<(), Box<dyn Error>> {
         Ok(self.animator.play(set, 0, to, 10.0)?)
     }
 }
 
-/// A body whose hands, feet and gaze follow points.
+/// A body whose hands, feet and gaze follow moving points.
 struct Body {
     body: Humanoid,
     look: LookAt,

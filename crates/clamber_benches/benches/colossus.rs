@@ -1,10 +1,10 @@
-//! What does a creature's life cost, beside sampling one clip and composing its palette?
+//! Measures a creature's step, compared with sampling one clip and composing its palette.
 //!
-//! The giant in the valley, with somebody before it and somebody on its back. All take turns, hundred ticks at a time,
-//! on one thread; times are medians of the mean over them. A step's time is without that of posing the skin, which is
-//! measured beside it with the same palettes.
+//! The giant is in the valley, with one person in front of it and another one on its back. All giants take turns, a
+//! hundred ticks each, on one thread; a time is the median of the means over a hundred ticks. A step's time does not
+//! include posing the skin: that is measured separately with the same palettes, and subtracted.
 //!
-//! - A giant that walks about, one that stands, one that attacks over and over, and one that is asleep.
+//! - One giant walks about, one stands, one attacks again and again, and one is asleep.
 //!
 //! Prints a table and writes it to `target/measure/colossus.csv`: name, value, bound, holds.
 //!
@@ -24,12 +24,13 @@ use clamber_scenes::measure::{Bound, Cells, is_brief, quantile};
 use clamber_scenes::{giant, valley};
 use glam::DVec3;
 
-/// Ticks of one time.
+/// Ticks over which a time is averaged.
 const TICKS: u32 = 100;
 
+/// Length of a tick, seconds.
 const DT: f64 = 1.0 / 60.0;
 
-/// Of each giant that is measured, its states.
+/// The measured giants: the name in the table, and the states of the giant's brain as JSON.
 const LIVES: [(&str, &str); 4] = [
     (
         "walks",
@@ -96,7 +97,7 @@ fn run(brief: bool) -> Result<(), Box<dyn Error>> {
         };
         let step = quantile(&mut steps, 0.5) - skin;
         cells.value(&format!("a giant that {name}, us"), step);
-        // 3 was asked: it looks where it walks.
+        // The walking giant's bound is 4 instead of 3, since it also looks where it walks.
         let most = match name {
             "sleeps" => 0.1,
             "walks" => 4.0,
@@ -108,7 +109,7 @@ fn run(brief: bool) -> Result<(), Box<dyn Error>> {
     cells.finish("colossus", brief)
 }
 
-/// The mean time of a tick, microseconds.
+/// Runs [`TICKS`] ticks; returns the mean time of a tick, microseconds.
 fn timed(mut tick: impl FnMut() -> Result<(), Box<dyn Error>>) -> Result<f64, Box<dyn Error>> {
     let start = Instant::now();
     for _ in 0..TICKS {
@@ -117,7 +118,7 @@ fn timed(mut tick: impl FnMut() -> Result<(), Box<dyn Error>>) -> Result<f64, Bo
     Ok(start.elapsed().as_secs_f64() * 1e6 / f64::from(TICKS))
 }
 
-/// A giant, who is around it, and a skin that is posed as its.
+/// A giant, the people around it, and a second skin that is posed with its palettes.
 struct Life {
     giant: Creature,
     skin: SkinnedSurface,

@@ -1,9 +1,10 @@
-//! What do the graph of the giant, a plan on it, and a bot cost?
+//! Measures building the giant's climb graph, a plan on it, a bot, and predictions.
 //!
-//! - The graph, on one core: once, and once more from its file.
-//! - Plans from random reachable patches with random stamina to each weak point, in the weather of a giant that shakes itself
-//!   every other time: the median, and the slowest one.
-//! - A bot that climbs the giant at rest: its tick beside its climber's, median and mean, plans included in the mean.
+//! - The graph on one core: built once, and once more read from its file.
+//! - Plans to each weak point, from random reachable patches with random stamina. The forecast alternates between 4.5 s
+//!   of idling and 4.5 s of shaking. Median and slowest plan.
+//! - A bot that climbs the giant at rest: its tick compared with its climber's tick, median and mean. The mean includes
+//!   its plans.
 //! - Predictions: a ride of ten seconds, and a landing from five metres above the giant.
 //!
 //! Prints a table and writes it to `target/measure/planning.csv`: name, value, bound, holds.
@@ -30,9 +31,16 @@ use clamber_scenes::{Creature, giant};
 use fastrand::Rng;
 use glam::DVec3;
 
+/// Height of the giant, metres.
 const HEIGHT: f64 = 40.0;
+
+/// Length of a tick, seconds.
 const TICK: f64 = 1.0 / 60.0;
+
+/// Obstacle id of the ground.
 const GROUND: ObstacleId = ObstacleId(0);
+
+/// Obstacle id of the giant.
 const GIANT: ObstacleId = ObstacleId(1);
 
 type Failure = Box<dyn Error>;
@@ -68,7 +76,7 @@ fn run(brief: bool) -> Result<(), Failure> {
     cells.finish("planning", brief)
 }
 
-/// Seconds until the graph of the giant is there, if it is in a file.
+/// The time to read the giant's graph from its cache file, seconds.
 fn read(creature: &Creature) -> Result<f64, Failure> {
     let (world_from_model, ground) = creature.standing(HEIGHT)?;
     let source = GraphSource {
@@ -192,7 +200,7 @@ fn climb(
             shake_ahead: 0.0,
         };
         if bot.is_there(&view) {
-            // Once more from the ground.
+            // The bot has arrived: the climb starts again from the ground.
             climber = Climber::new(config, before)?;
             bot.forget();
             continue;

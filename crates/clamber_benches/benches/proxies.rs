@@ -1,9 +1,9 @@
-//! What do eight climbers cost in a rapier world of 200 falling crates, as proxies that crates collide with?
+//! Measures eight climbers as proxies that crates collide with, in a rapier world of 200 falling crates.
 //!
-//! Two worlds have the same crates, and take turns. One has the proxies of eight climbers, which stand where the crates
-//! come down: a tick is recording the bodies, rapier's step, weighing what struck each climber and stopping what
-//! entered it, and following the climbers. The other has eight kinematic bodies of the same shape, and rapier's step
-//! alone.
+//! Two worlds have the same crates, and take turns. One has the proxies of eight climbers that stand where the crates
+//! come down. Its tick records the bodies' poses, steps rapier, evaluates the impact on each climber, stops bodies that
+//! entered a climber, and moves the proxies after their climbers. The other has eight kinematic bodies of the same
+//! shape; its tick is rapier's step alone.
 //!
 //! Prints a table and writes it to `target/measure/proxies.csv`: name, value, bound, holds.
 //!
@@ -18,10 +18,13 @@ use clamber::world::{BodyPoses, ClimberProxy, ProxyBody, WorldCapsule};
 use clamber_scenes::measure::{Bound, Cells, is_brief, quantile};
 use glam::DVec3;
 
+/// Number of falling crates, in eight layers of 25.
 const CRATES: usize = 200;
+
+/// Number of climbers. The row names say eight.
 const CLIMBERS: usize = 8;
 
-/// A tick, seconds.
+/// Length of a tick, seconds.
 const TICK: f64 = 1.0 / 60.0;
 
 fn main() -> ExitCode {
@@ -75,7 +78,7 @@ fn run(brief: bool) -> Result<(), Box<dyn Error>> {
     cells.finish("proxies", brief)
 }
 
-/// Crates that fall from several heights, turning, onto the ground.
+/// A world with crates that fall from several heights, spinning, onto the ground.
 fn crates() -> PhysicsWorld {
     let mut world = PhysicsWorld::default();
     let ground = ColliderBuilder::cuboid(50.0, 1.0, 50.0).translation(Vector::NEG_Y);
@@ -101,7 +104,7 @@ fn places() -> impl Iterator<Item = DVec3> {
     (0..CLIMBERS).map(|k| DVec3::new(1.3 * (k % 4) as f64, 0.4, 1.3 * (2 * (k / 4)) as f64))
 }
 
-/// The world with proxies.
+/// The world with the proxies.
 struct Scene {
     world: PhysicsWorld,
     before: BodyPoses,
@@ -138,7 +141,7 @@ impl Scene {
         }
     }
 
-    /// How many climbers were struck.
+    /// Runs the proxies' work after rapier's step; returns the number of climbers that were struck.
     fn after_step(&mut self) -> usize {
         let world = &mut self.world;
         let (bodies, colliders) = (&mut world.bodies, &mut world.colliders);

@@ -1,8 +1,8 @@
-//! What does recording a battle cost, and how large does the file get?
+//! Measures the cost of recording a battle, and the size of the file.
 //!
-//! Two battles with the same options take turns, tick by tick: one is recorded to a file, the other is not. A tick is
-//! pose, climber and rocks, without the scene's checks. Prints a table and writes it to `target/measure/record.csv`:
-//! name, value, bound, holds. Fails if the two battles differ.
+//! Two battles with the same options take turns, tick by tick: one is recorded to a file, the other is not. A tick
+//! consists of pose, climber and rocks, without the scene's checks. Prints a table and writes it to
+//! `target/measure/record.csv`: name, value, bound, holds. Fails if the two battles differ.
 //!
 //! Run it with `cargo bench -p clamber_benches --features record --bench record`; briefly with `-- --test`.
 
@@ -29,7 +29,7 @@ fn main() -> ExitCode {
 
 fn run(brief: bool) -> Result<(), Box<dyn Error>> {
     let mut cells = Cells::default();
-    // A machine's first megabytes of file cache may cost ten times as much as later ones.
+    // The first megabytes that a machine writes to its file cache may cost ten times as much as later ones.
     let warm = std::env::temp_dir().join(format!("clamber-warm-{}", std::process::id()));
     std::fs::write(&warm, vec![1; 40_000_000])?;
     std::fs::remove_file(&warm)?;
@@ -66,7 +66,7 @@ fn measure(
     recorder.tick(&recorded)?;
     for tick in 0..ticks {
         let intent = options.input_at(tick);
-        // In alternating order, since the second battle finds warm caches.
+        // The order alternates, since the second battle finds warm caches.
         if tick.is_multiple_of(2) {
             plain.step(intent)?;
             recorded.step(intent)?;
@@ -92,7 +92,8 @@ fn measure(
         beside + recording,
     );
     cells.value(&format!("{name}: of that, recording"), recording);
-    // Grouped by the rarest record that is due in a tick. Its time includes those of the more frequent ones.
+    // Ticks are grouped by the rarest record that is due in them. A tick's time includes the more frequent records that
+    // are due in it as well.
     let kinds = [
         ("state and input only", 1, 4),
         ("with joints, skin and rocks", 4, 60),
@@ -121,8 +122,8 @@ fn measure(
     Ok(())
 }
 
-/// Microseconds that the writing thread takes for a tick: the battle's last tick, recorded repeatedly, so that the game
-/// only copies it and waits.
+/// The writing thread's time for a tick, microseconds: records the battle's last tick repeatedly, so that the game only
+/// copies it and waits.
 fn writer_us(
     battle: &Battle<'_>,
     options: &BattleOptions,
@@ -163,7 +164,7 @@ fn writer_us(
     Ok(all * 1e6 / ticks as f64)
 }
 
-/// Mean microseconds of a tick: pose, climber and rocks, without the scene's checks.
+/// Mean time of a tick, microseconds: pose, climber and rocks, without the scene's checks.
 fn tick_us(battle: &Battle<'_>) -> f64 {
     let own: Vec<f64> = battle
         .recording()

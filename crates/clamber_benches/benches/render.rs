@@ -1,10 +1,10 @@
-//! What do pictures cost? Frames a second of the battle, bytes uploaded for each frame, and skinning on the device
-//! beside skinning on the processor.
+//! Measures rendering: frames a second of the battle, bytes uploaded for each frame, and skinning on the device
+//! compared with skinning on the processor.
 //!
-//! On the processor `skin_all` skins positions, on one thread. The device poses normals as well, and its time includes
+//! On the processor `skin_all` skins positions, on one thread. The device skins normals as well, and its time includes
 //! the palette's upload. Prints a table and writes it to `target/measure/render.csv`: name, value, bound, holds. With
 //! Mesa's software Vulkan the processor does the work of a GPU, so the times say little about a real one. Without a
-//! graphics adapter the bench prints so and measures nothing. Fails if a frame's upload grows with the number of
+//! graphics adapter the bench prints a message and measures nothing. Fails if a frame's upload grows with the number of
 //! vertices.
 //!
 //! Run it with `cargo bench -p clamber_benches --features render --bench render`; briefly with `-- --test`.
@@ -24,10 +24,10 @@ use clamber_scenes::picture::{Stage, add_collider, add_visual, light, orbit};
 /// Width and height of a frame, pixels.
 const SIZE: [u32; 2] = [1280, 720];
 
-/// Colour of the colliders. No number depends on it.
+/// Colour of the colliders. It does not change any result.
 const COLOR: [f32; 3] = [0.3; 3];
 
-/// Sizes and times of a run.
+/// Sizes and times of a run of the bench.
 struct Effort {
     brief: bool,
     frames: u32,
@@ -88,7 +88,7 @@ fn run(effort: &Effort) -> Result<(), Box<dyn Error>> {
     cells.finish("render", effort.brief)
 }
 
-/// Measures frames of giant, ground and climber, from tick to tick. The tick itself is not counted.
+/// Measures frames with giant, ground and climber, one per tick. The tick itself is not timed.
 fn measure_frames(gpu: Gpu, effort: &Effort, cells: &mut Cells) -> Result<(), Box<dyn Error>> {
     let creature = giant()?;
     let options = BattleOptions::ride(0, 1);
@@ -129,8 +129,8 @@ fn measure_frames(gpu: Gpu, effort: &Effort, cells: &mut Cells) -> Result<(), Bo
     Ok(())
 }
 
-/// Measures the bytes uploaded for one frame of a creature. They must be at most `most`, those of the creature with the
-/// fewest vertices.
+/// Measures the bytes uploaded for one frame of a creature. Fails if they are more than `most`, the bytes of the
+/// creature with the fewest vertices.
 fn measure_bytes(
     creature: &Creature,
     most: Option<f64>,
@@ -206,7 +206,7 @@ fn measure_skinning(
     Ok(())
 }
 
-/// The palettes of a walk, tick by tick.
+/// The palettes of one second of the walk, tick by tick.
 fn poses(creature: &Creature) -> Result<Vec<Palette>, Box<dyn Error>> {
     let walk = creature.clip_like(&["walk"]);
     let walk = walk.ok_or("the giant cannot walk")?;

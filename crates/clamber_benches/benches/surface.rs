@@ -1,5 +1,5 @@
-//! What do single operations on the lazy surface cost? First in a tick, when nothing is skinned, and again, when the
-//! surface's cache has all they need.
+//! Measures single operations on the lazy surface: as the first one in a tick, when no vertex is skinned yet, and
+//! again, when the surface's caches hold all that they need.
 //!
 //! Run it with `cargo bench -p clamber_benches --bench surface`; briefly with `-- --test`.
 
@@ -17,7 +17,7 @@ use clamber_scenes::measure::is_brief;
 use criterion::Criterion;
 use glam::Vec3;
 
-/// About the number of vertices of the larger giant.
+/// Approximate number of vertices of the larger giant.
 const LARGE: usize = 100_000;
 
 fn main() -> ExitCode {
@@ -88,7 +88,7 @@ fn measure(criterion: &mut Criterion, creature: &Creature) -> Result<(), Box<dyn
     Ok(())
 }
 
-/// The palettes of a walk, tick by tick.
+/// The palettes of one second of the walk, tick by tick.
 fn poses(creature: &Creature) -> Result<Vec<Palette>, Box<dyn Error>> {
     let walk = creature.clips.iter().find(|clip| clip.name == "walk");
     let walk = walk.ok_or("the giant cannot walk")?;
@@ -100,7 +100,7 @@ fn poses(creature: &Creature) -> Result<Vec<Palette>, Box<dyn Error>> {
     (0..60).map(pose).collect()
 }
 
-/// All operations, with the queries at the head.
+/// All operations, with queries around the head.
 fn operations(surface: &SkinnedSurface) -> Result<Vec<Operation<'static>>, Box<dyn Error>> {
     let mesh = surface.mesh();
     let place = |v: VertexId| mesh.positions()[v.index()];

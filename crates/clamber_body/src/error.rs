@@ -11,23 +11,23 @@ pub enum HumanoidError {
     /// Joints that a body needs were not found.
     #[error("no joint was found for {}; name them with Humanoid::from_joints", listed(.0))]
     Missing(Vec<HumanJoint>),
-    /// A joint does not exist.
+    /// A named joint does not exist in the skeleton.
     #[error("{what} is joint {joint}, but there are only {joints} joints")]
     NoJoint {
-        /// What it was named for.
+        /// The body's joint that was named.
         what: HumanJoint,
-        /// The joint.
+        /// The id that the skeleton lacks.
         joint: JointId,
-        /// Number of joints.
+        /// Number of joints in the skeleton.
         joints: usize,
     },
-    /// Two joints were named for one thing, or one joint for two.
+    /// One body joint was named twice, or one id was given to two body joints.
     #[error("{what} is named twice, or its joint is also another's")]
     Twice {
-        /// What is named twice.
+        /// The body joint that repeats a name or an id.
         what: HumanJoint,
     },
-    /// A joint is not below the one that it should hang from.
+    /// A joint is not a descendant of the joint that should carry it.
     #[error("{what} is not below {above}")]
     NotBelow {
         /// The joint.
@@ -35,15 +35,15 @@ pub enum HumanoidError {
         /// The joint that should be above it.
         above: HumanJoint,
     },
-    /// Both legs begin at the same place, so that nobody knows where the body faces.
+    /// Seen from above, both legs begin at the same point, so that the facing is unknown.
     #[error("the legs are not beside each other at rest")]
     NoFacing,
-    /// A limb cannot be bent.
+    /// The inverse kinematics refuse a limb.
     #[error("the limb from {limb}: {error}")]
     Limb {
         /// The limb's first joint.
         limb: HumanJoint,
-        /// Why not.
+        /// The reason.
         error: IkError,
     },
 }

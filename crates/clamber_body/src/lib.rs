@@ -7,7 +7,7 @@ mod humanoid;
 mod retarget;
 
 pub use body::{Act, Body, BodyError, BodyFrame, Plant};
-/// Poses over time, and the inverse kinematics that [`Limb::ik`] is for.
+/// The crate that plays clips and solves inverse kinematics, as for [`Limb::ik`].
 pub use clamber_animation;
 pub use error::HumanoidError;
 pub use figure::{BodyClip, Extremity, Figure, FigureError};

@@ -1,11 +1,12 @@
-//! Clips of one body on another.
+//! Carries clips from one body to another.
 //!
-//! What is carried over is how far each bone has turned, in model space, from a reference in which both bodies have the
-//! same posture: the source in its bind pose, and the target with each of its bones turned to where the source's bone
-//! points there. So a body in a T-pose and one in an A-pose move alike. Turns of whole bones in model space need no
-//! knowledge of how either skeleton lays the axes of its joints (as in Hecker et al. 2008, "Real-time Motion
-//! Retargeting to Highly Varied User-Created Morphologies", whose bodies are far more varied). Hips move as far as the
-//! legs are long. The target stands at a height of 0 in model space, wherever its file has that.
+//! For each bone, the target copies how far the source's bone has turned, in model space, from a reference posture that
+//! both bodies share. The source's reference is its bind pose. The target's reference is its bind pose with each bone
+//! turned to point where the source's bone points. So a body with a T-pose and one with an A-pose move alike. Turns of
+//! whole bones in model space do not depend on how either skeleton orients the axes of its joints (as in Hecker et al.
+//! 2008, "Real-time Motion Retargeting to Highly Varied User-Created Morphologies", whose bodies are far more varied).
+//! The hips' displacement is scaled by the ratio of the leg lengths. A target whose feet are far from a height of 0 in
+//! model space is moved to stand there.
 
 use clamber_surface::rig::{
     Channel, Clip, Interpolation, JointId, Keyframes, Playback, Pose, RigError, Skeleton,
@@ -17,20 +18,21 @@ use crate::figure::sole_height;
 use crate::humanoid::reference;
 use crate::{Humanoid, Limb, LimbEnd};
 
-/// Keys of a carried clip, a second.
+/// Keys of a carried clip, per second.
 const RATE: f64 = 30.0;
 
-/// The most keys of a carried clip, an hour of them: a file may claim that a clip lasts for ages.
+/// Most key intervals of a carried clip, one hour at [`RATE`]. It bounds memory: a file may claim any length for a
+/// clip.
 const MOST_KEYS: f64 = 108_000.0;
 
-/// Why clips cannot be carried over.
+/// Why [`Retarget`] cannot carry clips over.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum RetargetError {
-    /// A skeleton is not that of its body, or a clip does not fit it.
+    /// A skeleton does not have its body's joints, or a clip or a pose does not fit the source's skeleton.
     #[error(transparent)]
     Rig(#[from] RigError),
-    /// A body's legs have no length.
+    /// The legs of a body have no length.
     #[error("the legs have no length")]
     NoLegs,
 }
@@ -41,33 +43,37 @@ pub struct Retarget<'a> {
     from: &'a Skeleton,
     to: &'a Skeleton,
     bones: Vec<Bone>,
-    /// The target's joints in its bind pose, and those among them that are turned otherwise at rest.
+    /// The target's rest pose with the rotations of its bind pose.
     start: Pose,
+    /// The target's joints whose rotation in `start` differs from the rest pose.
     turned: Vec<JointId>,
+    /// The hips of the source and of the target.
     hips: [JointId; 2],
     /// Rotation from the source's facing to the target's.
     turn: DQuat,
-    /// How much longer the target's legs are.
+    /// Length of the target's legs, divided by the source's.
     scale: f64,
-    /// How far the target has to be raised to stand at a height of 0.
+    /// How far the target is raised to stand at a height of 0, model units.
     lift: f64,
-    /// The source's joints in model space in its bind pose, and the target's.
+    /// The joints of the source, and of the target, in model space in their bind poses.
     bound: [Vec<DAffine3>; 2],
-    /// Feet that stand beside their legs.
+    /// The target's feet that do not hang from their shins ([`LimbEnd::Beside`]).
     beside: Vec<Beside>,
 }
 
-/// A joint of the target that turns like one of the source, or like two of them.
+/// A joint of the target that copies the turn of one joint of the source, or a mix of two.
 #[derive(Clone, Copy, Debug)]
 struct Bone {
-    /// In the source; the second one's share, 0 to 1.
+    /// The source's joints.
     from: [JointId; 2],
+    /// Weight of the second joint of `from`, 0 to 1.
     share: f64,
     to: JointId,
-    /// The joint's rotation in model space in the reference.
+    /// The joint's rotation in model space in the reference posture.
     reference: DQuat,
 }
 
+/// A foot of the target that has to be moved to where its shin ends.
 #[derive(Clone, Copy, Debug)]
 struct Beside {
     lower: JointId,
@@ -76,7 +82,7 @@ struct Beside {
 }
 
 impl<'a> Retarget<'a> {
-    /// From one body to another, each with its skeleton.
+    /// A retarget from one body to another, each with its skeleton.
     ///
     /// # Errors
     /// [`RetargetError::NoLegs`], and [`RetargetError::Rig`] if a body has joints that its skeleton lacks.
@@ -126,11 +132,11 @@ impl<'a> Retarget<'a> {
         Ok(retarget)
     }
 
-    /// A clip of the source as one of the target, of the same length, with the same name and markers. It has 30 keys a
-    /// second; after an hour fewer, so that they are no more than 108,001.
+    /// Converts a clip of the source into one for the target, with the same length, name and markers. The result has 30
+    /// keys a second. A clip longer than an hour has 108,001 keys, farther apart.
     ///
     /// # Errors
-    /// [`RetargetError::Rig`] if the clip is not the source's.
+    /// [`RetargetError::Rig`] if the clip does not fit the source's skeleton.
     pub fn clip(&self, clip: &Clip) -> Result<Clip, RetargetError> {
         let duration = clip.duration();
         let keys = (duration * RATE).ceil().clamp(1.0, MOST_KEYS) as usize + 1;
@@ -167,7 +173,7 @@ impl<'a> Retarget<'a> {
         }
         let speed = clip.ground_speed().map(|speed| speed * self.scale);
         let carried = Clip::new(clip.name.clone(), channels);
-        // Keys are rounded to f32, and so is the last one.
+        // Keys are rounded to `f32`, so the last key may come before a marker at the clip's end.
         let length = carried.duration();
         let markers = clip.markers().iter().cloned().map(|mut marker| {
             marker.time = marker.time.min(length);
@@ -178,10 +184,11 @@ impl<'a> Retarget<'a> {
             .with_ground_speed(speed)?)
     }
 
-    /// A pose of the source as one of the target. Joints that are not part of the body are turned as in its bind pose.
+    /// Converts a pose of the source into one of the target. Joints that are not part of the body keep the rotations of
+    /// the bind pose.
     ///
     /// # Errors
-    /// [`RetargetError::Rig`] if the pose is not the source's.
+    /// [`RetargetError::Rig`] if the pose does not fit the source's skeleton.
     pub fn pose(&self, source: &Pose) -> Result<Pose, RetargetError> {
         let moved = models(self.from, source)?;
         let turned = |joint: JointId| {
@@ -218,7 +225,7 @@ impl<'a> Retarget<'a> {
         Ok(pose)
     }
 
-    /// The joints that a clip has to move.
+    /// The target's joints that a carried clip has channels for.
     fn moved_joints(&self) -> Vec<JointId> {
         let mut moved: Vec<JointId> = self.bones.iter().map(|bone| bone.to).collect();
         moved.extend(self.beside.iter().map(|beside| beside.foot));
@@ -238,10 +245,10 @@ impl<'a> Retarget<'a> {
         model
     }
 
-    /// Hips, spine, neck and head.
+    /// Adds hips, spine, neck and head.
     fn add_trunk(&mut self, source: &Humanoid, target: &Humanoid) {
         let facing = [source.facing, target.facing];
-        // The hips point to the middle of the shoulders.
+        // The hips' direction is towards the middle between the shoulders.
         let shoulders = |rest: &[DAffine3], body: &Humanoid| {
             let places = body
                 .arms
@@ -264,11 +271,12 @@ impl<'a> Retarget<'a> {
             above(&self.bound[1], target, chest[1]),
         ];
         self.add_column(&source.neck, &target.neck, chest[0], neck, facing);
-        // Heads have no direction that both skeletons share, but that of the neck.
+        // The neck's direction stands for the head's: skeletons do not share a direction of the head itself.
         self.add([source.head; 2], 0.0, target.head, neck, facing);
     }
 
-    /// A column of joints: each joint of the target turns like the source's column at the same share of its length.
+    /// Adds a column of joints, such as the spine. Each joint of the target copies the source's turn at the same share
+    /// of the column's length.
     fn add_column(
         &mut self,
         from: &[JointId],
@@ -278,7 +286,7 @@ impl<'a> Retarget<'a> {
         facing: [DVec3; 2],
     ) {
         for (index, joint) in to.iter().enumerate() {
-            // 0 is the joint below the column, `from.len()` its last joint.
+            // `at` counts joints of the source: 0 is the joint below the column, `from.len()` its last joint.
             let at = (index + 1) as f64 / to.len() as f64 * from.len() as f64;
             let joint_at = |index: usize| match index.checked_sub(1) {
                 None => below,
@@ -334,14 +342,14 @@ impl<'a> Retarget<'a> {
             return;
         };
         let toes = |rest: &[DAffine3], limb: &Limb, end: JointId| {
-            // Level: how far the toes are below the ankle differs, but soles are flat.
+            // Only the level part: soles are flat, although the toes' height below the ankle differs between skeletons.
             let toes = limb.toes.map(|toes| place(rest, toes) - place(rest, end));
             let level = toes.map(|way| DVec3::new(way.x, 0.0, way.z));
             level.filter(|way| way.length() > 1e-6)
         };
         let ends = [toes(&self.bound[0], from, a), toes(&self.bound[1], to, b)];
         match ends {
-            // Feet point along their soles, hands along their forearms.
+            // Feet are aligned along their soles, hands along their forearms.
             [Some(first), Some(second)] => {
                 self.add([a; 2], 0.0, b, [first, second], [DVec3::Y; 2]);
             }
@@ -355,7 +363,8 @@ impl<'a> Retarget<'a> {
         }
     }
 
-    /// Adds a bone that points along `directions` in the bind poses, and whose other axis is nearest to `others`.
+    /// Adds a bone that points along `directions` in the bind poses, of the source and the target. `others` are the
+    /// directions that its second axis is nearest to.
     fn add(
         &mut self,
         from: [JointId; 2],
@@ -377,10 +386,12 @@ impl<'a> Retarget<'a> {
     }
 }
 
-/// An ankle that is so far from a height of 0 does not stand there, as a share of the leg.
+/// An ankle within this share of the leg from a height of 0 counts as standing there. A model with farther ankles is
+/// moved.
 const STANDS: f64 = 0.5;
 
-/// How far the lower sole is below a height of 0 in the bind pose; 0 for a model that stands about there.
+/// How far the lower sole is below a height of 0 in the bind pose, model units. 0 if the lower ankle is near that
+/// height.
 fn lift(body: &Humanoid, bound: &[DAffine3]) -> f64 {
     let ankles = body.legs.iter().map(|leg| match leg.end {
         LimbEnd::Joint(foot) => bound[foot.index()].translation.y,
@@ -397,7 +408,7 @@ fn lift(body: &Humanoid, bound: &[DAffine3]) -> f64 {
     }
 }
 
-/// Refuses a body that has joints which a skeleton lacks.
+/// Fails if the body has joints that the skeleton lacks.
 pub(crate) fn check(body: &Humanoid, skeleton: &Skeleton) -> Result<(), RigError> {
     let joints = skeleton.joints().len();
     let named = body.joints().into_iter().map(|(_, joint)| joint);
@@ -413,7 +424,7 @@ fn feet(body: &Humanoid) -> [JointId; 2] {
     legs.map(|leg| leg.end.joint().unwrap_or(leg.lower))
 }
 
-/// A skeleton's pose at rest, but with the rotations of its bind pose; and the joints that these turn.
+/// The rest pose with the rotations of the bind pose, and the joints whose rotation differs between the two.
 fn start(skeleton: &Skeleton, bound: &[DAffine3]) -> (Pose, Vec<JointId>) {
     let mut pose = skeleton.rest_pose();
     let mut turned = Vec::new();
@@ -431,11 +442,10 @@ fn start(skeleton: &Skeleton, bound: &[DAffine3]) -> (Pose, Vec<JointId>) {
     (pose, turned)
 }
 
-/// The cosine of half the angle below which two rotations count as the same: 0.01°, which inverse bind matrices round
-/// to.
+/// Cosine of half the angle below which two rotations count as equal: 0.01°, the rounding of inverse bind matrices.
 const SAME: f64 = 1.0 - 4e-9;
 
-/// A rotation whose X axis is along a vector, and whose Y axis is nearest to another one.
+/// The rotation that takes X to `direction`, and Y as near to `other` as possible.
 fn frame(direction: DVec3, other: DVec3) -> DQuat {
     let x = direction.normalize_or(DVec3::Y);
     let y = (other - x * x.dot(other)).normalize_or(x.any_orthonormal_vector());

@@ -1,4 +1,4 @@
-//! Bodies in files: this project's hero, and third-party characters.
+//! Bodies in files: the project's hero and third-party characters.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
@@ -27,7 +27,7 @@ fn name(rig: &Rig, joint: JointId) -> &str {
     &rig.skeleton.joints()[joint.index()].name
 }
 
-/// Every limb reaches a point that is 0.8 of its length away, and keeps its lengths.
+/// Each limb reaches a point at 0.8 of its length and keeps the lengths of its bones.
 fn check_limbs(rig: &Rig, body: &Humanoid) {
     let rest = rig.skeleton.rest_pose();
     let palette = rig.skeleton.palette(&rest).unwrap();
@@ -67,7 +67,7 @@ fn the_hero_has_a_whole_body_and_clips_with_markers() {
         assert!((0.45..0.65).contains(&arm.length()) && (0.75..0.95).contains(&leg.length()));
     }
     check_limbs(&rig, &body);
-    // In locomotion both feet step once, at the speed that the clip tells.
+    // In each locomotion clip both feet step once, at the clip's ground speed.
     for (clip, speed) in [
         ("walk", 1.4),
         ("run", 4.0),
@@ -97,7 +97,7 @@ fn the_hero_has_a_whole_body_and_clips_with_markers() {
 
 #[test]
 fn bodies_are_found_in_files_of_many_tools() {
-    // The hips, the chest, the left hand, the left foot, and how many fingers.
+    // The file, the names of hips, chest, left hand and left foot, and the number of fingers.
     let expected = [
         ("Character", "Body", "Chest", Some("Hand.L"), "Foot.L", 0),
         ("robot", "Body", "Torso", None, "Foot.L", 4),
@@ -139,21 +139,21 @@ fn bodies_are_found_in_files_of_many_tools() {
             "{file}"
         );
         assert_eq!(arm.fingers.len(), fingers, "{file}: {:?}", arm.fingers);
-        // In the bind pose all of them face +Z; at rest, Character stands as if to fight.
+        // In their bind poses all bodies face +Z. At rest, Character is in a fighting pose.
         assert!(
             body.facing.distance(DVec3::Z) < 0.05,
             "{file}: {}",
             body.facing
         );
         check_limbs(&rig, &body);
-        // Left and right are alike; the robot's upper arms differ by an eighth.
+        // Left and right limbs have nearly the same length; the robot's upper arms differ by an eighth.
         for [left, right] in [&body.arms, &body.legs] {
             assert!(
                 (left.length() - right.length()).abs() < 0.04 * left.length(),
                 "{file}"
             );
         }
-        // By hand it is the same, but for hands that are no joints.
+        // `from_joints` finds the same body, except for hands that are not joints.
         if hand.is_some() {
             let by_hand = Humanoid::from_joints(&rig.skeleton, &body.joints()).unwrap();
             assert_eq!(by_hand, body, "{file}");
@@ -210,7 +210,7 @@ fn files_without_a_whole_body_are_refused_with_what_they_lack() {
     }
 }
 
-/// A file whose joints are `Bone.001` and so on is a body when somebody says which is which.
+/// A file whose joints are called `Bone.001` and so on has a body once a list names them.
 #[test]
 fn joints_without_names_are_named_by_hand() {
     let Some(rig) = load("tnua_player") else {
@@ -251,7 +251,8 @@ fn joints_without_names_are_named_by_hand() {
     }
     let body = Humanoid::from_joints(&rig.skeleton, &joints).unwrap();
     check_limbs(&rig, &body);
-    // It faces as games of its engine do, and its origin is at its waist: with the clips of another body it stands.
+    // The body faces -Z, as is usual in its engine, and its origin is at its waist. With the clips of another body it
+    // stands at a height of 0.
     assert!(body.facing.z < -0.999, "{}", body.facing);
     let hero = hero();
     let own = Humanoid::find(&hero.skeleton).unwrap();
@@ -266,7 +267,7 @@ fn joints_without_names_are_named_by_hand() {
         assert!((ankle - wanted).abs() < 0.05, "{ankle}, {wanted}");
     }
 
-    // What does not fit is refused.
+    // Wrong lists are refused.
     type Joints = Vec<(HumanJoint, JointId)>;
     let refused = |change: &dyn Fn(&mut Joints)| {
         let mut joints = joints.clone();

@@ -24,7 +24,7 @@ fn models(skeleton: &Skeleton, pose: &Pose) -> Vec<DAffine3> {
         .collect()
 }
 
-/// Where the bones of a limb point: upper, lower.
+/// Directions of a limb's upper and lower bone, in model space.
 fn bones(models: &[DAffine3], limb: &Limb) -> [DVec3; 2] {
     let place = |joint: JointId| models[joint.index()].translation;
     let tip = match limb.end {
@@ -63,7 +63,7 @@ fn a_clip_on_its_own_body_is_itself() {
             clip.name
         );
         assert_eq!(carried.ground_speed(), clip.ground_speed(), "{}", clip.name);
-        // At its keys it is the clip; between them it is linear.
+        // The carried clip equals the original at its keys; between them it is linear.
         let count = (clip.duration() * 30.0).ceil() as usize;
         for key in [0, count / 3, count] {
             let time = clip.duration() * key as f64 / count as f64;
@@ -130,12 +130,12 @@ fn limbs_of_other_bodies_point_where_the_heros_do() {
                             "{name}, {} at {time}: bone {bone} {off}°",
                             clip.name
                         );
-                        // Its clip has the pose, but between keys.
+                        // The carried clip has nearly the same pose between its keys.
                         let off = angle(b[bone], c[bone]);
                         assert!(off < 12.0, "{name}, {} at {time}: {off}°", clip.name);
                     }
                 }
-                // Its hips bob as the hero's do, by the length of its legs.
+                // The hips bob as the hero's do, scaled by the length of the legs.
                 let size = found.legs[0].length() / body.legs[0].length();
                 let up = |models: &[DAffine3], hips: JointId| models[hips.index()].translation.y;
                 let bob = up(&target, found.hips) - up(&standing[1], found.hips);
@@ -163,14 +163,14 @@ fn what_does_not_fit_is_refused() {
     let same = Retarget::new((&rig.skeleton, &body), (&rig.skeleton, &body)).unwrap();
     assert!(same.pose(&small.rest_pose()).is_err());
 
-    // A clip that lasts for ages has no more keys than one of an hour.
+    // A very long clip has no more keys than a clip of an hour.
     let still = Keyframes::Rotation(vec![Quat::IDENTITY; 2]);
     let channel = Channel::new(body.head, Interpolation::Linear, vec![0.0, 1e30], still).unwrap();
     let carried = same.clip(&Clip::new("ages", vec![channel])).unwrap();
     assert_eq!(carried.channels()[0].times().len(), 108_001);
 }
 
-/// A skeleton may be a chain of any length, in any order: that is no reason to run out of stack.
+/// A skeleton may be a chain of any length, in any order. It does not overflow the stack.
 #[test]
 fn a_long_chain_of_joints_is_no_trouble() {
     let rig = hero();

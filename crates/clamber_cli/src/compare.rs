@@ -11,16 +11,16 @@ use thiserror::Error;
 
 /// Compares two recordings of one scene tick by tick, bit for bit.
 ///
-/// For example, the recordings of one fight on two platforms. Prints the first tick and the first field that differ; of
-/// arenas the creatures and fighters that differ, or whose input does.
-/// Exits with 1 if the recordings differ, with 2 if one cannot be read.
+/// The recordings may come from two platforms, for example. Prints the first tick and the first field that differ. For
+/// arenas, prints the creatures and fighters that differ, or the fighter whose input differs. Exits with 1 if the
+/// recordings differ, with 2 if one cannot be read or their scenes differ.
 #[derive(Args, Clone, Debug)]
 pub struct CompareOptions {
     /// A recording.
     #[arg(value_name = "FILE.mcap")]
     pub first: PathBuf,
 
-    /// Another recording, which should be the same.
+    /// The other recording, expected to be equal.
     #[arg(value_name = "OTHER.mcap")]
     pub second: PathBuf,
 }
@@ -40,7 +40,7 @@ pub enum CompareError {
     /// A recording has no tick that can be read.
     #[error("{}: there is no tick in it", .0.display())]
     Empty(PathBuf),
-    /// The recordings are not of one scene.
+    /// The recordings are of different scenes. The text names the property that differs, in the plural: `creatures`.
     #[error("the recordings cannot be compared: their {0} differ")]
     Scene(&'static str),
 }
@@ -49,39 +49,40 @@ pub enum CompareError {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Comparison {
-    /// So many ticks are equal in every bit, and there are no others.
+    /// The recordings have the same ticks, this many, and all are equal in every bit.
     Equal(u64),
     /// The first tick that differs.
     Differ(Box<Difference>),
     /// The first tick in which arenas differ.
     ArenasDiffer(Box<ArenaDifference>),
-    /// The step to this tick has other inputs for a fighter, or for the climber; all is equal so far.
+    /// The inputs of the step to this tick differ. All ticks before are equal in every bit.
     InputsDiffer {
         /// The tick.
         tick: u64,
-        /// The fighter's name.
+        /// The fighter's name, or `the climber`.
         fighter: String,
     },
-    /// The step to this tick has other orders, in arenas that are equal so far.
+    /// The orders of the step to this tick differ. All ticks before are equal in every bit.
     OrdersDiffer {
         /// The tick.
         tick: u64,
     },
-    /// One ends after so many ticks that are equal, the other goes on.
+    /// This many ticks are equal; then one recording ends and the other goes on.
     Shorter(u64),
-    /// What both have is equal in every bit, but each may lack ticks of the other one: recorders left them out.
+    /// The common ticks are equal in every bit, but at least one recording has gaps, where its recorder left ticks out.
     Partly {
-        /// Ticks that both have.
+        /// Number of ticks that both recordings have.
         equal: u64,
-        /// Ticks that only the first one has, and only the second.
+        /// Number of ticks that only the first recording has, and number that only the second has.
         alone: [u64; 2],
     },
 }
 
-/// Compares two recordings. The first counts as the recorded one, the second as the replayed one.
+/// Compares two recordings, the first as the recorded run, the second as its replay.
 ///
 /// # Errors
-/// [`CompareError`] if one cannot be read, or they are of different creatures or of different ticks.
+/// [`CompareError`] if a recording cannot be read or has no ticks, or if the two differ in their kind of scene,
+/// creature, tick length, configuration or first tick.
 pub fn compare(options: &CompareOptions) -> Result<Comparison, CompareError> {
     let both = [open(&options.first)?, open(&options.second)?];
     for (recording, path) in both.iter().zip([&options.first, &options.second]) {
@@ -155,7 +156,7 @@ fn arenas(
         return Err(CompareError::Scene("first ticks"));
     }
     let mut met = Met::default();
-    // Whose inputs a step has, and the tick before it.
+    // The numbers of the fighters to which the inputs of the next step belong, and the number of the tick before.
     let (mut fighters, mut before): (Vec<usize>, _) = (Vec::new(), None);
     let (mut one, mut other) = (first.ticks_from(0), second.ticks_from(0));
     while let Some((ours, theirs)) =
@@ -198,7 +199,8 @@ fn arenas(
     Ok(met.ended())
 }
 
-/// The next tick that both recordings have: either may have gaps.
+/// Returns the next tick that both recordings have, `None` after the last one. Either may have gaps: the ticks that
+/// only one of them has are counted in `met`.
 fn both<T>(
     [first, second]: [&mut dyn Iterator<Item = Result<T, RecordError>>; 2],
     options: &CompareOptions,
@@ -243,19 +245,19 @@ fn both<T>(
     }
 }
 
-/// Ticks that two recordings have.
+/// Counts of the ticks of two recordings.
 #[derive(Default)]
 struct Met {
-    /// Both.
+    /// Ticks that both have.
     equal: u64,
-    /// One alone.
+    /// Ticks that only the first has, and only the second.
     alone: [u64; 2],
-    /// True if one lacks ticks before its end.
+    /// True if a recording lacks ticks before its end.
     has_gaps: bool,
 }
 
 impl Met {
-    /// How recordings compare that are equal wherever both have ticks.
+    /// The result for recordings whose common ticks are all equal.
     fn ended(&self) -> Comparison {
         let Self { equal, alone, .. } = *self;
         match (self.has_gaps, alone) {
@@ -266,10 +268,10 @@ impl Met {
     }
 }
 
-/// Compares two recordings and prints the result; returns true if they are equal.
+/// Compares two recordings and prints the result. Returns true if they are equal.
 ///
 /// # Errors
-/// As [`compare`].
+/// See [`compare`].
 pub fn print(options: &CompareOptions) -> Result<bool, CompareError> {
     for path in [&options.first, &options.second] {
         let Ok(recording) = AnyRecording::open(path) else {

@@ -7,7 +7,7 @@ use clamber_cli::compare::{self, CompareOptions};
 use clamber_cli::inspect::{self, InspectOptions};
 use clap::{Parser, Subcommand};
 
-/// Tools for creatures that are climbed, and for recordings of those who climb them.
+/// Tools for climbable creatures, and for recordings of climbs.
 #[derive(Debug, Parser)]
 #[command(name = "clamber", version)]
 struct Arguments {
@@ -41,7 +41,8 @@ fn main() -> ExitCode {
     }
 }
 
-/// Ends quietly when whoever reads the output has gone away, as `head` does: Rust's standard output tells of it by a panic.
+/// Exits quietly with 0 when the reader of standard output, such as `head`, has closed it. `println!` panics in that
+/// case.
 fn end_with_reader() {
     let others = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |panic| {

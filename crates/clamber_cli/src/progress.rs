@@ -1,11 +1,12 @@
-//! Progress of long work on standard error.
+//! Shows the progress of long work on standard error.
 
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-/// A bar on a terminal; elsewhere a line every few seconds, so that a log shows that work goes on.
+/// A progress bar on a terminal. Elsewhere it prints a line every few seconds, so that a log shows that the work goes
+/// on.
 pub(crate) struct Progress {
     bar: Option<ProgressBar>,
     of: &'static str,
@@ -15,11 +16,11 @@ pub(crate) struct Progress {
     told: Instant,
 }
 
-/// Time between two lines.
+/// Shortest time between two lines of a log.
 const EVERY: Duration = Duration::from_secs(5);
 
 impl Progress {
-    /// Progress of `all` steps. `of` names them, in the plural.
+    /// Progress of `all` steps. `of` names the steps, in the plural.
     pub(crate) fn new(all: usize, of: &'static str) -> Self {
         let bar = std::io::stderr().is_terminal().then(|| {
             let bar = ProgressBar::new(all as u64);
@@ -39,12 +40,12 @@ impl Progress {
         }
     }
 
-    /// One step more is done.
+    /// Counts one more step as done.
     pub(crate) fn step(&mut self) {
         self.set(self.done + 1);
     }
 
-    /// So many steps are done.
+    /// Sets the number of steps that are done.
     pub(crate) fn set(&mut self, done: usize) {
         self.done = done;
         if let Some(bar) = &self.bar {

@@ -1,4 +1,4 @@
-//! The giant and real models pass the inspection. Recordings are compared. Wrong arguments are told.
+//! The commands of `clamber`: inspections of the giant and of real models, comparisons of recordings, and errors.
 
 #![expect(
     clippy::unwrap_used,
@@ -80,7 +80,7 @@ fn the_import_is_told_before_the_measurements() {
     assert!(report["answers"].as_u64().unwrap() > 100, "{text}");
 }
 
-/// The giant's brain fits the giant, and all of it can happen; a broken one is told with its line.
+/// The giant's brain fits the giant, and all of it can happen. The error for a broken brain names its line.
 #[test]
 fn brains_are_inspected() {
     let brain = giant::brain_path();
@@ -112,7 +112,8 @@ fn brains_are_inspected() {
     std::fs::remove_file(&broken).unwrap();
 }
 
-/// A brain is proposed for each model, in 40 lines at most, and fits it; some that jump at their ends are warned of.
+/// `--propose-brain` writes a brain for each model, in 40 lines at most, and it fits the model. Without its `close`
+/// entries, `--brain` warns of some clips that jump at their ends.
 #[test]
 fn brains_are_proposed() {
     let file = format!("{}/proposed.json", env!("CARGO_TARGET_TMPDIR"));
@@ -136,7 +137,7 @@ fn brains_are_proposed() {
         assert_eq!(json["body"]["height"], 12.5, "{text}");
         let is_giant = path == giant::path();
         assert_eq!(json["body"]["fur"].is_null(), is_giant, "{text}");
-        // A flat creature of the edge cases has no room for one.
+        // A flat creature of the edge cases has no room for a weak point.
         let has_none = is_giant || creature.contains("quad_skin");
         let weak_points = &json["body"]["weak_points"];
         assert_eq!(weak_points.is_null(), has_none, "{creature}\n{text}");
@@ -146,7 +147,7 @@ fn brains_are_proposed() {
         assert_eq!(ended.status.code(), Some(0), "{creature}\n{text}\n{report}");
         assert!(!report.contains("does not end as it begins"), "{report}");
         (proposed, longest) = (proposed + 1, longest.max(lines));
-        // Without what closes them.
+        // The same brain without the `close` entries, which make clips end as they begin.
         let mut open = json.clone();
         let clips = open["body"]["clips"].as_object_mut();
         let clips = clips.into_iter().flat_map(|clips| clips.values_mut());
@@ -201,7 +202,7 @@ fn errors_name_what_is_wrong() {
     }
 }
 
-/// A recording of a ride, made of this seed, as a file of the target folder.
+/// Records a ride with this seed into a file of the target folder.
 fn recorded(name: &str, seed: u64, ticks: u64) -> String {
     let options = BattleOptions::ride(0, seed);
     let creature = giant::giant().unwrap();
@@ -240,7 +241,7 @@ fn recordings_are_equal_or_the_first_field_that_differs_is_told() {
     }
 }
 
-/// A recording of a duel in which the second fighter aims otherwise in this tick.
+/// Records a duel. The second fighter's walk input is changed for the tick `aims_otherwise`.
 fn recorded_duel(name: &str, aims_otherwise: Option<u64>, ticks: u64) -> String {
     let file = format!("{}/{name}.mcap", env!("CARGO_TARGET_TMPDIR"));
     let inputs = (0..ticks).map(|tick| {
@@ -255,7 +256,7 @@ fn recorded_duel(name: &str, aims_otherwise: Option<u64>, ticks: u64) -> String 
     file
 }
 
-/// A recording without one of its chunks, as a recorder leaves one out whose disk is too slow.
+/// Copies a recording without one of its chunks. A recorder whose disk is too slow leaves such a gap.
 fn without_chunk(file: &str, index: usize) -> String {
     let bytes = std::fs::read(file).unwrap();
     let (mut at, mut chunks, mut out) = (8, 0, bytes[..8].to_vec());
@@ -285,7 +286,7 @@ fn without_chunk(file: &str, index: usize) -> String {
     name
 }
 
-/// Where ticks are missing, no more is said than is known.
+/// Only ticks that both recordings have are compared. Ticks that only one of them has are counted.
 #[test]
 fn recordings_with_gaps_are_compared_where_both_have_ticks() {
     let duel = recorded_duel("gaps", None, 240);
@@ -401,7 +402,7 @@ fn joints_are_printed_as_a_tree_and_a_brain_with_its_sizes() {
     let said = String::from_utf8(found.stdout).unwrap();
     assert!(found.status.success(), "{said}");
     assert!(said.contains("40.991 units tall, posed at rest"), "{said}");
-    // The foot is below the shin, and hangs from it.
+    // The foot is below the shin in space, and a child of it in the tree.
     let line = |name: &str| {
         let named = |line: &&str| line.split_whitespace().next() == Some(name);
         said.lines().find(named).unwrap().to_owned()
@@ -426,7 +427,7 @@ fn joints_are_printed_as_a_tree_and_a_brain_with_its_sizes() {
     assert!(!said.contains("WARNING"), "{said}");
 }
 
-/// CI holds what can be climbed on the giant: who changes it or the graph sees it here.
+/// Guards the numbers of the giant's climbability: a change of the giant or of the graph that moves them fails here.
 #[test]
 fn the_giant_can_be_climbed() {
     let giant = giant::path();
@@ -446,13 +447,13 @@ fn the_giant_can_be_climbed() {
     close("area", 4102.0);
     close("reachable_area", 3589.0);
     close("rest_area", 523.0);
-    // A jump leads to the arm: without one it takes 21.7 s.
+    // The second weak point is on the arm. A jump leads there; without the jump it takes 21.7 s.
     for (index, seconds) in [26.9, 15.2, 25.3].into_iter().enumerate() {
         let point = &report["weak_points"][index];
         let found = point["seconds"].as_f64().unwrap();
         assert!((found - seconds).abs() < 1.0, "{point}: {seconds}");
     }
-    // On fur alone there is no way up: the giant wears belts of stone.
+    // On fur alone there is no way up, as the giant wears belts of stone.
     let ended = clamber(&["climbability", giant, "--require", "weak_points=3"]);
     assert_eq!(ended.status.code(), Some(1));
     let (text, error) = (ended.stdout, String::from_utf8(ended.stderr).unwrap());
@@ -485,7 +486,7 @@ fn climbability_refuses_what_it_does_not_know() {
     }
 }
 
-/// Whoever reads the output may go away at any time, as `head` does.
+/// The reader of the output, such as `head`, may close it at any time.
 #[test]
 fn it_ends_with_its_reader() {
     for arguments in [vec!["--joints"], vec!["--propose-brain"]] {

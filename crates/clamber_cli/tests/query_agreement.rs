@@ -1,5 +1,5 @@
-//! Every query has the same bits as brute force over all triangles, on real models in motion, at seeded places near the
-//! skin.
+//! Every query on real models in motion gives the same bits as brute force over all triangles, at seeded random places
+//! near the skin.
 
 #![expect(
     clippy::unwrap_used,
@@ -14,7 +14,7 @@ use clamber_surface::rig::Playback;
 use clamber_surface::surface::SkinnedSurface;
 use glam::{DQuat, DVec3};
 
-/// Number of poses of each clip.
+/// Number of poses of each clip in which the queries are compared.
 const POSES: u32 = 4;
 
 /// Compares all queries over the poses of all clips; returns the number of hits.

@@ -1,4 +1,4 @@
-//! The error of skinning against f64 stays within the stated bound, over all clips of real models.
+//! The skinning error against f64 stays within the stated bound, over all clips of real models.
 
 #![expect(
     clippy::unwrap_used,
@@ -10,7 +10,7 @@ use clamber_scenes::{Creature, beast::beast, test_data};
 use clamber_surface::rig::Playback;
 use clamber_surface::skin::skin;
 
-/// Number of poses of each clip.
+/// Number of poses of each clip in which the error is measured.
 const POSES: u32 = 12;
 
 /// The largest error of any coordinate of any vertex over the poses of all clips, as a share of its bound, and the

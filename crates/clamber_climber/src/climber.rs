@@ -13,20 +13,22 @@ use crate::{
 /// A game's own rules for a step, passed to [`Climber::step_with`].
 #[derive(Clone, Copy, Default)]
 pub struct StepRules<'a> {
-    /// What may be stood on, stepped onto, hung from, gripped, and passed through, and with which friction. By default
-    /// [`ContactQuery::usual`](crate::ContactQuery::usual).
+    /// Decides which contacts may be stood on, stepped onto, hung from, gripped, and passed through, and with which
+    /// friction. By default [`ContactQuery::usual`](crate::ContactQuery::usual).
     pub contact: Option<&'a ContactRuleFn<'a>>,
-    /// Handlers of the game's custom modes. In each tick, all but the current mode's are asked in this order whether
-    /// they begin, until one does. A climber in a custom mode whose handler is missing falls. By default none.
+    /// Handlers of the game's custom modes. In each tick, every handler but the current mode's is asked, in this order,
+    /// whether its mode begins, until one does. A climber in a custom mode whose handler is missing falls. By default
+    /// none.
     pub modes: &'a [&'a dyn CustomMode],
-    /// Velocity of the air, in world space, metres a second, such as the wind's. A climber that has touched nothing for
-    /// a second takes it as its frame ([`ClimberState::base_velocity`]): steering in the air is measured against it.
-    /// The fastest fall is always measured against it. It moves no climber that does not steer: a wind that pushes is a
-    /// [`Blow`](crate::Blow) in each tick, as in the [guide](crate::guide#ground-that-moves). By default zero.
+    /// Velocity of the air, in world space, metres a second, for example of wind. A climber that has touched nothing
+    /// for a second takes it as its frame ([`ClimberState::base_velocity`]): steering in the air is measured against
+    /// it. The terminal speed is always measured against it. It does not move a climber that does not steer: for a wind
+    /// that pushes, use a [`Blow`](crate::Blow) in each tick, as in the [guide](crate::guide#ground-that-moves). By
+    /// default zero.
     pub air_velocity: DVec3,
-    /// Id of this climber among the obstacles of others ([`ClimberGroup`](crate::ClimberGroup)). Of two climbers at one
-    /// place, the ids decide who parts to which side; without them they stay there. `contact` gets it with each query,
-    /// so that one rule can tell climbers apart. By default `None`.
+    /// Id of this climber among the obstacles of others ([`ClimberGroup`](crate::ClimberGroup)). If two climbers are at
+    /// one place, their ids decide to which side each parts; without ids they stay there. `contact` gets the id with
+    /// each query, so that one rule can tell climbers apart. By default `None`.
     pub id: Option<ObstacleId>,
 }
 
@@ -55,7 +57,7 @@ impl<'a> StepRules<'a> {
 pub struct Climber {
     config: ClimberConfig,
     state: ClimberState,
-    /// Kept so that its memory is reused. Holds the contacts of the last step.
+    /// Memory that is reused from step to step. Holds the contacts of the last step.
     scratch: Scratch,
 }
 
@@ -88,7 +90,7 @@ impl Climber {
     ///
     /// # Errors
     /// [`ClimberError`] for a configuration outside its ranges, and [`ClimberError::ModeInUse`] for one that switches
-    /// off the climber's current mode. Nothing is changed then.
+    /// off the climber's current mode. The climber is unchanged then.
     pub fn set_config(&mut self, config: ClimberConfig) -> Result<(), ClimberError> {
         config.validate()?;
         let mode = self.state.mode;
@@ -123,8 +125,8 @@ impl Climber {
         &self.state
     }
 
-    /// Contacts of the last step: those of its movements, in the order in which they were found, then its support.
-    /// Empty before the first step and after [`Climber::restore`].
+    /// Contacts of the last step: first the contacts of its movements, in the order in which they were found, then its
+    /// support. Empty before the first step and after [`Climber::restore`].
     pub fn contacts(&self) -> &[ClimberContact] {
         &self.scratch.contacts
     }
@@ -134,13 +136,13 @@ impl Climber {
         crate::step::body(&self.config, &self.state).at(self.state.position)
     }
 
-    /// Sets the state, to one from this or another run.
+    /// Sets the state to a state from this or another run.
     ///
     /// # Errors
     /// [`ClimberError::NotFinite`] if the state is not finite. [`ClimberError::Support`] if it stands, grips or hangs
     /// without a support, or has a support in another mode of this crate. [`ClimberError::OutOfRange`] if stamina, hit
     /// points or the progress of a pull-up are not from 0 to 1, a length or time is negative, or the heading is not a
-    /// unit vector. Nothing is changed then.
+    /// unit vector. The climber is unchanged then.
     pub fn restore(&mut self, state: ClimberState) -> Result<(), ClimberError> {
         state.validate()?;
         self.state = state;
@@ -165,7 +167,7 @@ impl Climber {
         self.step_with(input, obstacles, &StepRules::default(), dt)
     }
 
-    /// [`Climber::step`] by a game's own rules: for contacts, and custom modes.
+    /// [`Climber::step`] with a game's own rules for contacts, and its custom modes.
     ///
     /// # Errors
     /// As [`Climber::step`]. [`ClimberError::SameMode`] if two of the modes have the same id, and
@@ -200,7 +202,7 @@ impl Climber {
         let is_solid = |id: ObstacleId, of: &dyn Obstacle, at: &Contact| rule(id, of, at).solid;
         let is_ground = |id: ObstacleId, of: &dyn Obstacle, at: &Contact| rule(id, of, at).stand;
         let has_rule = rules.contact.is_some();
-        // Few ticks ask for steps.
+        // Evaluated at the first query only: few ticks query steps.
         let keeps_off = OnceCell::new();
         let is_step = |id: ObstacleId, of: &dyn Obstacle, at: &Contact| {
             !*keeps_off.get_or_init(|| judge.keeps_off_curbs()) || rule(id, of, at).step
@@ -221,11 +223,11 @@ impl Climber {
             obstacles,
             dt,
         };
-        // A copy, so that nothing is changed if the tick is refused, or if an obstacle panics.
+        // A copy, so that the climber is unchanged if the tick is refused, or if an obstacle panics.
         let mut state = self.state;
         let mut tick = Tick::new(&self.config, &mut state, asked, &mut self.scratch)?;
         let Some(report) = tick.run() else {
-            // A game's own obstacle may return numbers that are not finite. The climber waits where it is.
+            // An obstacle of the game's own may return numbers that are not finite. The climber then waits where it is.
             self.scratch.contacts.clear();
             return Ok(StepReport {
                 events: vec![ClimberEvent::NotFinite],

@@ -26,16 +26,17 @@ pub struct ClimberContact {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum ContactPhase {
-    /// It was in the way of the climber, or struck it, while its support carried it and it did not move on its own.
+    /// The obstacle was in the way of the climber, or struck it, while the support carried the climber and it did not
+    /// move on its own.
     Carried,
-    /// The sweep of the climber's own movement hit it.
+    /// The sweep of the climber's own movement hit the obstacle.
     Swept,
-    /// It overlapped the climber after its own movement, at the tick's end, and pushed it out.
+    /// The obstacle overlapped the climber after its own movement, at the tick's end, and pushed it out.
     Overlapped,
-    /// The climber stands on it at the tick's end.
+    /// The climber stands on the obstacle at the tick's end.
     Ground,
-    /// The climber grips it, or hangs from a grip on it, at the tick's end.
+    /// The climber grips the obstacle, or hangs from a grip on it, at the tick's end.
     Grip,
-    /// The climber hangs from a ledge of it at the tick's end.
+    /// The climber hangs from a ledge of the obstacle at the tick's end.
     Ledge,
 }

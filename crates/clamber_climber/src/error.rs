@@ -2,7 +2,7 @@ use thiserror::Error;
 
 use crate::ClimberMode;
 
-/// Why a climber could not be made, configured, restored or stepped. Nothing was changed.
+/// The reason why a climber could not be made, configured, restored or stepped. The climber is unchanged.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum ClimberError {
@@ -27,7 +27,7 @@ pub enum ClimberError {
         to_three_digits(*lacks)
     )]
     NoRoom {
-        /// How deep the body would be in what is around it, metres.
+        /// Depth of the body in the obstacles around it, metres.
         lacks: f64,
     },
     /// Two custom modes have the same id.

@@ -6,8 +6,8 @@ use crate::{Climber, ClimberObstacle};
 
 /// The climbers of a scene, as obstacles to each other for one tick.
 ///
-/// A climber that stands on another one is where that one carries it, which is where its own support carries that one,
-/// and so on: a group makes their obstacles from the ground up. Keep it from tick to tick, for its memory.
+/// A climber that stands on another one is carried by it, and that one by its own support, and so on. So a group makes
+/// the obstacles from the ground up. Keep a group from tick to tick: it reuses its memory.
 ///
 /// ```
 /// use clamber_climber::{Climber, ClimberConfig, ClimberGroup, ClimberInput, StepRules};
@@ -33,19 +33,19 @@ use crate::{Climber, ClimberObstacle};
 pub struct ClimberGroup {
     /// In the caller's order.
     bodies: Vec<(ObstacleId, ClimberObstacle)>,
-    /// True for those in `bodies` that are where their support carries them.
+    /// For each of `bodies`, true once it is where its support carries it.
     carried: Vec<bool>,
 }
 
 impl ClimberGroup {
-    /// Makes the obstacles of all climbers for the next tick of `dt` seconds. Call it before any of them is stepped,
-    /// when the other `obstacles` are where they are at the tick's end. Their order does not matter, nor does that of
-    /// the climbers. Of two climbers with one id, the first counts.
+    /// Makes the obstacles of all climbers for the next tick of `dt` seconds. Call it before any climber is stepped,
+    /// when the other `obstacles` are in their state at the tick's end. The order of obstacles and climbers does not
+    /// matter. If two climbers have the same id, the first counts.
     ///
-    /// Step each climber with its own id ([`StepRules::id`](crate::StepRules::id)), the one that it has here. Two
-    /// climbers at exactly one place part to opposite sides by their ids; without ids they stay there.
+    /// Step each climber with the id that it has here ([`StepRules::id`](crate::StepRules::id)). Two climbers at
+    /// exactly one place part to opposite sides by their ids; without ids they stay there.
     ///
-    /// Of climbers that hold each other in a circle, the one with the lowest id lets go.
+    /// If climbers hold each other in a circle, the one with the lowest id lets go.
     pub fn update<'a>(
         &mut self,
         climbers: impl Iterator<Item = (ObstacleId, &'a Climber)> + Clone,
@@ -66,7 +66,7 @@ impl ClimberGroup {
         });
         self.carried
             .extend(is_on_another.map(|is_on_another| !is_on_another));
-        // From the ground up, one storey in each round at least, or one circle.
+        // From the ground up. Each round settles the climbers on at least one more level, or breaks one circle.
         while self.carried.contains(&false) {
             let mut any = false;
             for (index, (_, climber)) in climbers.clone().enumerate() {
@@ -88,14 +88,15 @@ impl ClimberGroup {
         }
     }
 
-    /// The climber, by its place in `bodies`, that carries another one.
+    /// Index in `bodies` of the climber that carries another one.
     fn carrier_of(&self, climber: &Climber) -> Option<usize> {
         let on = climber.state().support.map(|on| on.attachment.obstacle);
         self.bodies.iter().position(|(id, _)| Some(*id) == on)
     }
 
-    /// Finds a circle of climbers of whom each carries the next, and lets the one with the lowest id fall: it lets go in
-    /// its step. Call it when the carrier of everybody left is left as well: then there is a circle among them.
+    /// Finds a circle of climbers in which each carries the next, and lets the one with the lowest id fall: it lets go
+    /// in its step. Call it when the carrier of every remaining climber remains as well: then these climbers contain a
+    /// circle.
     fn break_circle<'a>(
         &mut self,
         climbers: impl Iterator<Item = (ObstacleId, &'a Climber)> + Clone,
@@ -108,7 +109,7 @@ impl ClimberGroup {
         let Some(first) = self.carried.iter().position(|is_carried| !is_carried) else {
             return;
         };
-        // After as many steps as there are climbers, whoever is reached is in the circle.
+        // After as many steps as there are climbers, the climber that is reached is in the circle.
         let steps = 0..self.bodies.len();
         let inside = steps.fold(first, |index, _| next(index).unwrap_or(index));
         let (mut lowest, mut index) = (inside, inside);

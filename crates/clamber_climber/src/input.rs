@@ -9,10 +9,10 @@ use crate::ClimberError;
 #[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
 pub struct ClimberInput {
     /// Direction to walk or climb in, in world space. Its length is the share of full speed; more than 1 counts as 1.
-    /// The component along up is ignored. On a hold, it says where to climb when it is pressed, or turned by more than
-    /// 20 degrees: towards a wall is up, away from it down, and under a ceiling it is the direction itself. While it is
-    /// held, the climber goes on in one direction, over bumps, round edges, and from a wall onto its ceiling
-    /// ([`HoldingMemory`](crate::HoldingMemory)).
+    /// The component along up is ignored. On a hold, the climbing direction is found when the stick is pressed, or
+    /// turned by more than 20 degrees: towards a wall means up, away from it means down, and under a ceiling `walk`
+    /// itself is the direction. While the stick is held, the climber goes on in one direction, over bumps, round edges,
+    /// and from a wall onto its ceiling ([`HoldingMemory`](crate::HoldingMemory)).
     pub walk: DVec3,
     /// Direction to climb in, in world space, on holds and ledges. Only its component along the hold counts. Zero:
     /// `walk` is used instead. For bots, and for cameras that look at the wall.
@@ -24,11 +24,11 @@ pub struct ClimberInput {
     /// True as long as the jump button is down. Used only with
     /// [`GroundConfig::jump_release_gravity`](crate::GroundConfig::jump_release_gravity) above 1.
     pub jump_held: bool,
-    /// True as long as the grip button is down: grips what is in reach and holds on. False lets go.
+    /// True as long as the grip button is down: the climber grips a hold in reach and holds on. False lets go.
     pub grip: bool,
-    /// True as long as the crouch button is down: in every mode, a body with a height
-    /// ([`BodyConfig::height`](crate::BodyConfig::height)) is its lower ball alone. Released, it is the whole capsule
-    /// again where there is room. A body without a height does not change.
+    /// True as long as the crouch button is down. In every mode, a body with a height
+    /// ([`BodyConfig::height`](crate::BodyConfig::height)) is then its lower ball alone. After the button is released,
+    /// it is the whole capsule again where there is room. A body without a height does not change.
     pub crouch: bool,
     /// A blow that struck the climber since the last tick.
     pub blow: Option<Blow>,
@@ -47,9 +47,9 @@ pub struct ClimberInput {
 pub struct Blow {
     /// Change of the climber's velocity, in world space, metres a second.
     pub velocity: DVec3,
-    /// Hit points that it costs, 0 to 1. Ignored without [`ClimberConfig::health`](crate::ClimberConfig::health).
+    /// Hit points that the blow costs, 0 to 1. Ignored without [`ClimberConfig::health`](crate::ClimberConfig::health).
     pub damage: f64,
-    /// The obstacle that dealt the blow, if one did. Events repeat it.
+    /// The obstacle that dealt the blow, if one did. Events repeat this id.
     pub by: Option<ObstacleId>,
 }
 

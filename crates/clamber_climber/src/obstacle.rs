@@ -9,53 +9,54 @@ use glam::DVec3;
 use crate::Climber;
 use crate::step::CONTINUOUS;
 
-/// Most steps of a sweep. Capsules that pass each other take a few, capsules that just graze a few dozen.
+/// Maximum number of steps of a sweep. Capsules that pass each other take a few, capsules that just graze a few dozen.
 const STEPS: u32 = 64;
 
-/// Bodies whose axes are nearer to each other than this share of their radii are at one place, and do not stop each
-/// other.
+/// Distance between the axes of two bodies, as a fraction of their radii, below which they are at one place, and do not
+/// stop each other.
 pub(crate) const SAME_PLACE: f64 = 1e-7;
 
-/// Contacts whose normal is farther from up than this cosine are on a climber's side: 60 degrees, where nobody stands.
+/// Cosine from up of a contact normal, below which the contact is on a climber's side: 60 degrees, where no climber
+/// stands.
 const SIDE: f64 = 0.5;
 
 /// A climber as an obstacle to other climbers, for one tick: a solid capsule that is where its support carries it.
 ///
-/// Make the obstacles of all climbers before any of them is stepped, and give each climber those of the others
+/// Make the obstacles of all climbers before any of them is stepped, and give each climber the obstacles of the others
 /// ([`ClimberGroup`](crate::ClimberGroup) does). Then the results do not depend on the order, or the threads, in which
 /// they are stepped.
 ///
 /// Climbers stand on each other. They stop, push or pass each other ([`Others`](crate::Others)), and never crush each
-/// other. What a climber does by itself in this tick is unknown when its obstacle is made, so the obstacle moves by it
-/// one tick later, and pushes nobody by itself: with [`Others::Push`](crate::Others::Push), the two bodies overlap, and
-/// each parts from the other when it is stepped.
+/// other. The climber's own movement in this tick is unknown when its obstacle is made. So the obstacle makes this
+/// movement one tick later, and does not push by itself: with [`Others::Push`](crate::Others::Push), the two bodies
+/// overlap, and each moves apart from the other when it is stepped.
 ///
-/// The obstacle's velocity is that of its support; its own counts only where it moves away from the contact. So whoever
-/// follows another one keeps pace, two that fall together meet at the speed between them, and two that run into each
-/// other stop.
+/// The obstacle's velocity is the velocity of the climber's support, plus the climber's own velocity as far as that
+/// moves away from the contact. So a climber that follows another one keeps pace, two climbers that fall together meet
+/// at their relative speed, and two that run into each other stop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClimberObstacle {
     /// The capsule at the tick's end, in world space.
     now: WorldCapsule,
-    /// Its displacement over the tick, metres.
+    /// Displacement of the capsule over the tick, metres.
     way: DVec3,
-    /// True if its support was placed elsewhere.
+    /// True if the support was placed elsewhere, or the body does not move.
     placed: bool,
-    /// The capsule after its own last tick, in world space.
+    /// The capsule after the climber's own last tick, in world space.
     before: WorldCapsule,
-    /// Unit vector that points up for it.
+    /// Unit vector that points up for the climber.
     up: DVec3,
-    /// Velocity of its support, or of its frame in the air, metres a second.
+    /// Velocity of the climber's support, or of its frame in the air, metres a second.
     base: DVec3,
-    /// Its own velocity, relative to that.
+    /// The climber's own velocity, relative to `base`, metres a second.
     own: DVec3,
     /// Mass, kg.
     mass: f64,
-    /// Its own velocity in its last tick, relative to its support.
+    /// The climber's own velocity in its last tick, relative to its support, metres a second.
     walk: DVec3,
-    /// What it does with others.
+    /// Whether the climber blocks, pushes or passes others.
     others: Others,
-    /// The lowest of the climbers that it stands on or holds.
+    /// The lowest of the climbers that this one stands on or holds, directly or through others.
     carried_by: Option<ObstacleId>,
 }
 
@@ -74,15 +75,15 @@ pub(crate) struct Apart {
 
 impl ClimberObstacle {
     /// The obstacle of a climber for the next tick of `dt` seconds. Call it before the climber is stepped, when
-    /// `obstacles` are where they are at the tick's end. Of these, only the climber's support is asked: who stands on
-    /// another climber comes after that one, whose obstacle is then among them.
+    /// `obstacles` are in their state at the tick's end. Only the climber's support is queried. If that is another
+    /// climber, make the other's obstacle first and include it in `obstacles`.
     pub fn new(climber: &Climber, obstacles: &[(ObstacleId, &dyn Obstacle)], dt: f64) -> Self {
         let id = climber.state().support.map(|on| on.attachment.obstacle);
         let on = obstacles.iter().find(|(other, _)| Some(*other) == id);
         Self::on(climber, on.map(|(_, obstacle)| *obstacle), dt)
     }
 
-    /// The obstacle of a climber on its support; `None` if there is none, or if it is gone.
+    /// The obstacle of a climber on its support; `None` if it has no support, or the support is gone.
     pub(crate) fn on(climber: &Climber, support: Option<&dyn Obstacle>, dt: f64) -> Self {
         let (state, config) = (climber.state(), climber.config());
         let begin = state.position - state.own_way;
@@ -138,7 +139,7 @@ impl ClimberObstacle {
         }
     }
 
-    /// The obstacle of a climber that falls, although something carries it.
+    /// The obstacle of a climber that falls although it has a support.
     pub(crate) fn falling(climber: &Climber, dt: f64) -> Self {
         let (state, gravity) = (climber.state(), climber.config().gravity);
         let position = state.position + (state.velocity + gravity * (0.5 * dt)) * dt;
@@ -164,8 +165,9 @@ impl ClimberObstacle {
         }
     }
 
-    /// A point of the body: on the ball about one of the axis's ends, whose index is the key, in radii. So who stands on
-    /// its head stays there when it crouches, stands up, or is resized.
+    /// The material point of a contact: on the ball about one end of the axis. The key is the index of this end, and
+    /// the coordinates are relative to it, in radii. So a climber that stands on another one's head stays there when
+    /// the other crouches, stands up, or is resized.
     fn material(&self, apart: &Apart) -> MaterialPoint {
         let [low, high] = self.now.ends.map(|end| end.distance_squared(apart.on_axis));
         let is_above = apart.away.dot(self.up) > 0.0;
@@ -178,9 +180,9 @@ impl ClimberObstacle {
         }
     }
 
-    /// The part of its own velocity with which a point of its surface moves away from what touches it there: above, its
-    /// fall; on its sides, the level part away from the other. With all of its velocity, two climbers that run into
-    /// each other would swap theirs, as balls do, and who stands on another one would feel each of its steps.
+    /// The part of the climber's own velocity with which its surface moves away from a contact at `point`: above, its
+    /// fall; on its sides, the level part away from the contact. With all of its velocity, two climbers that run into
+    /// each other would swap velocities, as balls do, and a climber on top of another would feel each of its steps.
     fn receding(&self, point: DVec3) -> DVec3 {
         let out = (point - self.now.nearest_on_axis(point)).normalize_or_zero();
         let (rise, high) = (self.own.dot(self.up), out.dot(self.up));
@@ -206,13 +208,13 @@ impl ClimberObstacle {
             let apart = between(&self.now, &moved);
             let gap = apart.distance - sum;
             if apart.distance <= SAME_PLACE * sum {
-                // There is no way out that both would agree on.
+                // The two bodies have no direction of separation in common.
                 return None;
             }
             let there = ways[0].lerp(ways[1], apart.on_other);
             let is_near = gap <= capsule.sweep_tolerance();
             let touches = gap <= 0.0 || is_near && apart.away.dot(there) < 0.0;
-            // The plane between both separates them until one end of the capsule reaches it.
+            // The plane between both bodies separates them until one end of the capsule reaches it.
             let gets_there = |(end, way): (DVec3, DVec3)| {
                 let closing = -apart.away.dot(way);
                 let left = apart.away.dot(end - apart.on_axis) - sum;
@@ -300,7 +302,7 @@ impl Obstacle for ClimberObstacle {
         if target == TargetMotion::Still {
             return self.meet(capsule, displacements);
         }
-        // In the frame of this body, which is then at rest at its final position.
+        // Swept in the frame of this body, in which it is at rest at its final position.
         let ways = displacements.map(|way| way - self.way);
         let mut hit = self.meet(&capsule.moved(self.way), ways)?;
         hit.contact.point -= self.way * (1.0 - hit.time);
@@ -319,7 +321,7 @@ impl Obstacle for ClimberObstacle {
     }
 
     fn character(&self) -> Option<CharacterBody> {
-        // Where it was placed, it was before.
+        // A body that was placed counts as having been there before.
         let capsule = if self.placed { self.now } else { self.before };
         Some(CharacterBody {
             capsule,

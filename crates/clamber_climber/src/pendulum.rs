@@ -1,38 +1,38 @@
 //! A pendulum: a body that hangs by its hands from a moving pivot.
 //!
-//! While the arm is taut, velocity Verlet on the sphere: half a kick of gravity, a turn along the
-//! great circle, half a kick (RATTLE of Andersen 1983, whose projection is exact for a sphere). It
-//! conserves energy over any time; projecting positions instead loses energy at a rate that depends
-//! on the tick. The arm pulls and never pushes. It goes slack when its tension would be negative;
-//! then the body flies until the arm is at full length, where its speed along the arm is lost.
+//! While the arm is taut, the integrator is velocity Verlet on the sphere: half a kick of gravity, a turn along the
+//! great circle, half a kick (RATTLE of Andersen 1983, whose projection is exact for a sphere). It conserves energy
+//! over any time; projecting positions instead loses energy at a rate that depends on the tick. The arm pulls and never
+//! pushes. It goes slack when its tension would be negative; then the body flies until the arm is at full length, where
+//! its speed along the arm is lost.
 //!
-//! Everything is in the frame of the pivot, which does not turn. The change of the pivot's velocity
-//! over a tick acts on the body as an impulse at the tick's start.
+//! All vectors are in the frame of the pivot, which does not turn. The change of the pivot's velocity over a tick acts
+//! on the body as an impulse at the tick's start.
 
 use glam::DVec3;
 
-/// Largest angle of a step of the integrator, radians, both as phase at the pendulum's natural
-/// frequency and as angle turned. The error of the period is 1/24 of its square, 0.04 %.
+/// Largest angle of a step of the integrator, radians, both as phase at the pendulum's natural frequency and as angle
+/// turned. The error of the period is 1/24 of its square, 0.04 %.
 const STEP: f64 = 0.1;
 
-/// Most steps in a tick: twice what an arm of 1.5 m needs for a tick of 0.25 s. Shorter arms are
+/// Maximum number of steps in a tick: twice what an arm of 1.5 m needs for a tick of 0.25 s. Shorter arms are
 /// integrated more coarsely; gravity times the length bounds their error.
 const STEPS: f64 = 32.0;
 
-/// How often an arm may go slack or become taut within a tick. More changes than this are rounding.
+/// Maximum number of times that an arm goes slack or becomes taut within a tick. More changes than this are rounding.
 const EVENTS: usize = 8;
 
-/// An arm is taut if it is short of its full length by at most this share.
+/// Share of its full length by which an arm may be shorter and still count as taut.
 const TAUT: f64 = 1e-9;
 
-/// An arm of this length or less, metres, has no direction.
+/// Length up to which an arm has no direction, metres.
 const SHORTEST: f64 = 1e-9;
 
-/// Pieces of a flight that are searched for the time at which the arm is at full length. A body that
-/// leaves the sphere and returns within one piece was barely outside.
+/// Number of pieces of a flight that are searched for the time at which the arm is at full length. A body that leaves
+/// the sphere and returns within one piece was barely outside.
 const PIECES: usize = 8;
 
-/// Bisections of a piece, until its ends are neighbouring numbers.
+/// Number of bisections of a piece, until its ends are neighbouring numbers.
 const HALVINGS: usize = 52;
 
 /// A body at the end of an arm.
@@ -86,8 +86,8 @@ pub(crate) struct PendulumReport {
 impl Pendulum {
     /// Advances the pendulum by one tick. Afterwards the body is at most `length` from the pivot.
     ///
-    /// A body that is farther away at the start is pulled in along the arm. Nothing changes if an
-    /// argument or the result is not finite, or `dt` is not positive.
+    /// A body that is farther away at the start is pulled in along the arm. The pendulum is unchanged if an argument or
+    /// the result is not finite, or `dt` is not positive.
     pub(crate) fn step(&mut self, tick: &PendulumTick) -> PendulumReport {
         let mut next = *self;
         let report = next.integrate(tick);

@@ -1,4 +1,4 @@
-//! What physics engines need to know of a climber, and what their bodies do to it.
+//! The interface of a climber to physics engines: the data for its kinematic proxy, and blows by the engine's bodies.
 
 use clamber_world::{ObstacleId, ProxyBody, ProxyTouch};
 use glam::DVec3;
@@ -6,19 +6,20 @@ use glam::DVec3;
 use crate::step::slow_speed;
 use crate::{Blow, Climber, ClimberMode, ContactPhase};
 
-/// An impact slower than this share of [`slow_speed`] is no blow to a climber on its feet or in the air.
+/// Fraction of [`slow_speed`] below which an impact is no blow to a climber on its feet or in the air.
 const FELT: f64 = 0.02;
 
-/// A body counts as lying on the climber, not as being in its way, if the cosine from up of the direction to it is
-/// above this: 60 degrees.
+/// Cosine from up of the direction to a body, above which the body counts as lying on the climber and not as in its
+/// way: 60 degrees.
 const ABOVE: f64 = 0.5;
 
 impl Climber {
-    /// What a physics engine needs to know of this climber after its step, so that dynamic bodies collide with it:
-    /// [`ClimberProxy`](https://docs.rs/clamber_world) does in rapier. `world` is the id of the engine's obstacle.
+    /// The data of this climber after its step that a physics engine needs, so that dynamic bodies collide with the
+    /// climber: [`ClimberProxy`](https://docs.rs/clamber_world) uses it in rapier. `world` is the id of the engine's
+    /// obstacle.
     pub fn proxy_body(&self, world: ObstacleId) -> ProxyBody {
         let (config, state) = (self.config(), self.state());
-        // Walking and climbing stop in front of what is in the way.
+        // A climber that walks or climbs stops in front of obstacles, so its own velocity does not count.
         let is_driven = state.mode.is_holding()
             || state.mode == ClimberMode::Standing && !state.standing.shoved;
         let attachment = state.support.map(|support| support.attachment);
@@ -39,7 +40,7 @@ impl Climber {
             frame_velocity: state.base_velocity,
             up: config.up(),
             support_normal: self.support_normal(),
-            // A hold is let go for legs to swing, which every nudge would do.
+            // Every blow makes a climber let its legs swing from its hold, so slower impacts are ignored there.
             gentle: if state.mode.is_holding() {
                 slow
             } else {
@@ -49,8 +50,8 @@ impl Climber {
         }
     }
 
-    /// The normal of what backs it: of its support, or of the ground that it touches without one, as when it tumbles.
-    /// What it hangs from does not back it.
+    /// The normal of the surface behind the climber: of its support, or without one, of the ground that it touches, for
+    /// example while it tumbles. `None` while it hangs by its hands: a grip or a ledge does not back it.
     fn support_normal(&self) -> Option<DVec3> {
         let (state, up) = (self.state(), self.config().up());
         if matches!(state.mode, ClimberMode::Hanging | ClimberMode::LedgeHanging) {
@@ -65,8 +66,8 @@ impl Climber {
         support.or_else(ground)
     }
 
-    /// What the climber touched by itself in the last step in an engine's world, without what lies on it: bodies that
-    /// it pushes or slides along by its own rules.
+    /// Contacts of the climber's own movement in the last step with the obstacle `world` of an engine, without bodies
+    /// that lie on the climber: bodies that it pushes or slides along by its own rules.
     pub fn proxy_touches(&self, world: ObstacleId) -> impl Iterator<Item = ProxyTouch> + '_ {
         let up = self.config().up();
         let of_world = self.contacts().iter().filter(move |contact| {

@@ -7,7 +7,7 @@ use glam::DVec3;
 use crate::step::Judge;
 use crate::{Climber, ClimberConfig, ClimberError, ClimberMode, StepRules};
 
-/// Length of the tick that stands for the present: nothing moves in it.
+/// Length of the tick in which obstacles are queried as they are now, seconds: no obstacle moves in it.
 const NOW: f64 = 1.0;
 
 impl Climber {
@@ -16,7 +16,7 @@ impl Climber {
     ///
     /// # Errors
     /// As [`Climber::set_config`], and [`ClimberError::NoRoom`] if the new body would be pushed aside farther than it
-    /// grows, or would be crushed. Nothing is changed then.
+    /// grows, or would be crushed. The climber is unchanged then.
     pub fn try_resize(
         &mut self,
         config: ClimberConfig,
@@ -25,7 +25,7 @@ impl Climber {
         self.try_resize_with(config, obstacles, &StepRules::default())
     }
 
-    /// [`Climber::try_resize`] by the rules of its steps: what the rule for contacts lets pass takes no room.
+    /// [`Climber::try_resize`] with the rules of its steps: contacts that are not solid by the rule take no room.
     ///
     /// # Errors
     /// As [`Climber::try_resize`].
@@ -54,7 +54,7 @@ impl Climber {
                 Ok(())
             }
             Err(error) => {
-                // What was set before is never refused.
+                // The previous configuration is valid, so this does not fail.
                 let _ = self.set_config(before);
                 self.replace_state(state);
                 Err(error)
@@ -62,7 +62,8 @@ impl Climber {
         }
     }
 
-    /// Where the body of the current configuration has room, near to where that of another one was.
+    /// A position with room for the body of the current configuration, near the position of the body that `before`
+    /// gives.
     fn room_for(
         &mut self,
         before: &ClimberConfig,
@@ -75,12 +76,12 @@ impl Climber {
             return Ok(state.position);
         }
         let wider = body.radius - old.radius;
-        // A ball that hangs below a ledge touches its wall beside it, not what it holds.
+        // A ball that hangs below a ledge touches the wall, not the ledge that it holds.
         let rests = state
             .support
             .filter(|_| state.mode != ClimberMode::LedgeHanging);
         let wanted = match rests {
-            // The arms are as much longer or shorter as the body.
+            // The arms get longer or shorter in proportion to the body.
             Some(support) if state.mode == ClimberMode::Hanging && old.radius > 0.0 => {
                 let hold = support.attachment.point;
                 hold + (state.position - hold) * (body.radius / old.radius)
@@ -106,7 +107,7 @@ impl Climber {
             .with_filters(filters)
             .with_character(crate::step::among_others(&config));
         let grows = wider > 0.0 || config.body.height > before.body.height;
-        // A body that turns needs room as well.
+        // A body that turns with a new gravity needs room as well.
         let turns = config.body.height > 0.0 && config.up() != before.up();
         if !grows && !turns {
             return Ok(mover.slide(&Path::placed(body, wanted)).position);
@@ -118,7 +119,7 @@ impl Climber {
         if moved.missing_room > body.margin || aside > most {
             return Err(ClimberError::NoRoom { lacks });
         }
-        // Not to the other side of a thin wall.
+        // The body must not get to the other side of a thin wall.
         let core = clamber_mover::MoverBody {
             radius: old.radius.min(body.radius),
             ..body.crouched()

@@ -5,7 +5,7 @@ use glam::DVec3;
 
 use crate::{ClimberConfig, ClimberMode, ClimberState};
 
-/// What a climber may do with a contact: the answer of a [`ContactRuleFn`].
+/// The uses that a climber may make of a contact, and its friction: the result of a [`ContactRuleFn`].
 ///
 /// ```
 /// use clamber_climber::ContactRule;
@@ -16,39 +16,39 @@ use crate::{ClimberConfig, ClimberMode, ClimberState};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactRule {
-    /// Whether the contact blocks the body. If not, the contact is not there at all for the climber: it falls, walks
-    /// and reaches through, and the other fields do not matter.
+    /// Whether the contact blocks the body. If not, the contact does not exist for the climber: the climber falls,
+    /// walks and reaches through it, and the other fields do not matter.
     pub solid: bool,
-    /// Whether the climber may stand on it. If not, it slides off, as off a slope that is too steep. Level ground of
-    /// this kind leaves it lying in [`ClimberMode::Sliding`].
+    /// Whether the climber may stand on the ground. If not, it slides off, as off a slope that is too steep. Level
+    /// ground of this kind leaves it lying in [`ClimberMode::Sliding`].
     pub stand: bool,
-    /// Whether walking may lead up onto it; other characters are never steps. If not, its steps, slopes and edges block
-    /// like a vertical wall to a climber that stands on something with `step`. Ground that is flush with the feet, or
-    /// lower, is walked onto all the same; `stand` decides there.
+    /// Whether walking may lead up onto the obstacle; other characters are never steps. If not, its steps, slopes and
+    /// edges block like a vertical wall for a climber that stands on ground with `step`. Ground that is flush with the
+    /// feet, or lower, can be walked onto in any case; `stand` decides there.
     pub step: bool,
-    /// Whether the climber may hang from it, where it has the shape of a ledge.
+    /// Whether the climber may hang from the obstacle, where it has the shape of a ledge.
     pub hang: bool,
-    /// Whether hands may grip it.
+    /// Whether hands may grip the surface.
     pub grip: bool,
-    /// How well feet and hands hold, as a share of the usual: 1 as usual, 0 not at all. Any value is allowed: NaN and
-    /// both infinities count as 1, and other negative values as 0.
+    /// Grip of feet and hands, as a multiple of the usual: 1 as usual, 0 none. Any value is allowed: NaN and both
+    /// infinities count as 1, and other negative values as 0.
     ///
     /// - Below 1, as on ice: feet accelerate and brake by no more than this times
-    ///   [`GroundConfig::friction`](crate::GroundConfig::friction), gravity pulls the climber down slopes that it stands
-    ///   on, and ground that speeds up or turns takes it along by no more than that. Hands that climb slip down along
-    ///   the hold at (1 - friction) times the [climbing speed](crate::GripConfig::climb_speed), times the sine of the
-    ///   hold's slope, but not off its end.
-    /// - Above 1, as in mud: walking and climbing are this many times slower, and feet brake this many times harder down
-    ///   from more than the walking speed.
+    ///   [`GroundConfig::friction`](crate::GroundConfig::friction), gravity pulls the climber down slopes that it
+    ///   stands on, and ground that speeds up or turns accelerates the climber by no more than that. Hands that climb
+    ///   slip down along the hold at (1 - friction) times the [climbing speed](crate::GripConfig::climb_speed), times
+    ///   the sine of the hold's slope, but not off its end.
+    /// - Above 1, as in mud: walking and climbing are this many times slower, and feet brake this many times harder
+    ///   down from more than the walking speed.
     /// - Always: a factor on [`GroundConfig::slide_friction`](crate::GroundConfig::slide_friction) and
     ///   [`TumbleConfig::friction`](crate::TumbleConfig::friction).
     ///
-    /// The friction of the support at the tick's beginning counts.
+    /// The friction of the support at the tick's beginning applies.
     pub friction: f64,
 }
 
 impl ContactRule {
-    /// Stood on, stepped onto and hung from, but not gripped: ground and walls. The default.
+    /// Can be stood on, stepped onto and hung from, but not gripped: ground and walls. The default.
     pub const SOLID: Self = Self {
         solid: true,
         stand: true,
@@ -58,13 +58,13 @@ impl ContactRule {
         friction: 1.0,
     };
 
-    /// As [`ContactRule::SOLID`], and gripped: fur, vines.
+    /// Like [`ContactRule::SOLID`], and can be gripped: fur, vines.
     pub const GRIP: Self = Self {
         grip: true,
         ..Self::SOLID
     };
 
-    /// Blocks the body, and is of no other use: slick walls, force fields.
+    /// Only blocks the body: slick walls, force fields.
     pub const BLOCK: Self = Self {
         stand: false,
         step: false,
@@ -72,7 +72,7 @@ impl ContactRule {
         ..Self::SOLID
     };
 
-    /// Not there for this climber: open doors, ghosts, one-way platforms from below.
+    /// Does not exist for this climber: open doors, ghosts, one-way platforms from below.
     pub const PASS: Self = Self {
         solid: false,
         ..Self::BLOCK
@@ -114,7 +114,7 @@ impl ContactRule {
         Self { friction, ..self }
     }
 
-    /// The friction: finite and not negative.
+    /// The friction, made finite and not negative.
     pub(crate) fn usable_friction(&self) -> f64 {
         if self.friction.is_finite() {
             self.friction.max(0.0)
@@ -133,8 +133,8 @@ impl Default for ContactRule {
 /// A game's rule for contacts, passed to [`Climber::step_with`](crate::Climber::step_with) by
 /// [`StepRules::contact`](crate::StepRules::contact).
 ///
-/// It must be a pure function during a tick: it is called any number of times and in any order, for contacts at any
-/// time of the tick, and once for the climber's support.
+/// The function must be pure during a tick: it is called any number of times and in any order, for contacts at any time
+/// of the tick, and once for the climber's support.
 pub type ContactRuleFn<'a> = dyn Fn(&ContactQuery<'_>) -> ContactRule + 'a;
 
 /// A contact that a [`ContactRuleFn`] decides about, and the climber as it was at the tick's beginning.
@@ -143,8 +143,8 @@ pub type ContactRuleFn<'a> = dyn Fn(&ContactQuery<'_>) -> ContactRule + 'a;
 pub struct ContactQuery<'a> {
     /// The climber, by [`StepRules::id`](crate::StepRules::id).
     pub climber: Option<ObstacleId>,
-    /// The climber's state at the tick's beginning. With its [`memory`](ClimberState::memory), a rule can depend on
-    /// what the game's modes remember.
+    /// The climber's state at the tick's beginning. Through its [`memory`](ClimberState::memory), a rule can depend on
+    /// the game's modes.
     pub state: &'a ClimberState,
     /// The climber's configuration.
     pub config: &'a ClimberConfig,
@@ -152,25 +152,27 @@ pub struct ContactQuery<'a> {
     pub dt: f64,
     /// The obstacle.
     pub id: ObstacleId,
-    /// The contact. In sweeps it is the contact at the time of the sweep. For the climber's support, its normal is that
-    /// of the last face that the climber lay flat on, and its distance the body's radius.
+    /// The contact. In sweeps it is the contact at the time of the sweep. For the climber's support, its normal is the
+    /// normal of the last face that the climber lay flat on, and its distance is the body's radius.
     pub contact: &'a Contact,
     pub(crate) obstacle: &'a dyn Obstacle,
 }
 
-/// A body below a plane by up to this share of its margin is on it: far more than the rounding of a creature's skin.
+/// A body below a plane by up to this fraction of its margin counts as on it: far more than the rounding of a
+/// creature's skin.
 const ON: f64 = 0.1;
 
-/// A climber that stands on an obstacle is above its plane, although deformation pushes its feet into it by up to this
-/// share of its radius.
+/// Depth, as a fraction of its radius, by which a climber that stands on an obstacle may be below a plane of that
+/// obstacle and still count as above it: deformation pushes its feet into the obstacle.
 const SUNK: f64 = 0.5;
 
-/// Faces whose normal has no more than this cosine from up are walls or ceilings, also to a climber that stands.
+/// Cosine from up of a face's normal, up to which the face is a wall or a ceiling, for a climber that stands on the
+/// obstacle, too.
 const GRAZING: f64 = 0.05;
 
 impl<'a> ContactQuery<'a> {
-    /// The rule without a game's own: everything is solid and is stood on and stepped onto. [Fur](SurfaceKind::Fur) is
-    /// gripped, and every ledge is hung from, except on other characters ([`ContactQuery::is_character`]).
+    /// The default rule: every contact is solid, and can be stood on and stepped onto. [Fur](SurfaceKind::Fur) can be
+    /// gripped, and every ledge can be hung from, except on other characters ([`ContactQuery::is_character`]).
     pub fn usual(&self) -> ContactRule {
         let holds = !self.is_character();
         ContactRule {
@@ -180,8 +182,8 @@ impl<'a> ContactQuery<'a> {
         }
     }
 
-    /// The rule of a one-way platform: [`ContactQuery::usual`] from above, and [`ContactRule::PASS`] otherwise. To a
-    /// climber that jumps or falls past its edge, the platform is not there, so that hands do not catch it.
+    /// The rule of a one-way platform: [`ContactQuery::usual`] from above, and [`ContactRule::PASS`] otherwise. For a
+    /// climber that jumps or falls past its edge, the platform does not exist, so that hands do not catch it.
     pub fn one_way(&self) -> ContactRule {
         if self.is_from_above() {
             self.usual()
@@ -210,17 +212,18 @@ impl<'a> ContactQuery<'a> {
         self.obstacle.character().is_some()
     }
 
-    /// Where the contact's material was at the tick's beginning, where it is at its end, and its velocity. `None` if
-    /// the obstacle reports no motion.
+    /// Positions of the contact's material at the tick's beginning and end, and its velocity. `None` if the obstacle
+    /// reports no motion.
     pub fn path(&self) -> Option<WorldPath> {
         let path = self.obstacle.path(&self.contact.material, self.dt)?;
         path.is_finite().then_some(path)
     }
 
-    /// True if the climber comes from above, as a one-way platform asks: the contact's face is level enough to be stood
-    /// on, and at the tick's beginning the climber's lowest point was not below the face's plane. Down to a
-    /// [margin](crate::BodyConfig::margin) below, it counts as above unless it rises relative to the material. A
-    /// climber that stands on the same body, or hangs from its edge, is above it, and beside its walls below the feet.
+    /// True if the climber comes from above, in the sense of a one-way platform: the contact's face is level enough to
+    /// be stood on, and at the tick's beginning the climber's lowest point was not below the face's plane. Down to a
+    /// [margin](crate::BodyConfig::margin) below, the climber counts as above unless it rises relative to the material.
+    /// If the climber stands on the same body or hangs from its edge, this is also true for steeper upward faces and
+    /// for walls; while it stands, only for walls below its feet.
     ///
     /// To drop through a platform, let the rule return [`ContactRule::PASS`] until the climber has fallen by a margin:
     /// for as long as a key is held, 0.05 s at least.

@@ -1,13 +1,12 @@
 //! How hard a support shakes: its acceleration through a low-pass filter, and the excess above a threshold.
 //!
-//! The filter is exact for an acceleration that is constant over each tick. Its response to a
-//! velocity change V within a tick is V / time constant, however short the tick. Unfiltered
-//! accelerations could not be compared with a threshold: on animation with linear interpolation
-//! between keys they grow without bound as ticks get shorter.
+//! The filter is exact for an acceleration that is constant over each tick. Its response to a velocity change V within
+//! a tick is V / time constant, however short the tick. Unfiltered accelerations could not be compared with a
+//! threshold: on animation with linear interpolation between keys they grow without bound as ticks get shorter.
 
 use glam::DVec3;
 
-/// The filtered acceleration of a support: what a climber on it feels.
+/// The filtered acceleration of a support, as a climber on it feels it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Shake {
     /// Metres a second squared, in the space of the velocities.
@@ -18,8 +17,8 @@ impl Shake {
     /// Filters one tick of `dt` seconds in which the velocity changed by `velocity_change`, metres a
     /// second.
     ///
-    /// A time constant of zero or less does not filter. Nothing changes if `dt` is not positive and
-    /// finite, or the result would not be finite.
+    /// A time constant of zero or less does not filter. The shake is unchanged if `dt` is not positive and finite, or
+    /// the result would not be finite.
     pub fn step(&mut self, velocity_change: DVec3, time_constant: f64, dt: f64) {
         if !(dt > 0.0 && dt.is_finite()) {
             return;

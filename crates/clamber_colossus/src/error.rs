@@ -5,11 +5,11 @@ use thiserror::Error;
 
 use crate::brain::BrainError;
 
-/// Why a creature was refused, or does not go on. Nothing was changed.
+/// Why a creature was refused, or cannot go on. Building, restoring or placing a creature changes nothing if it fails.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum ColossusError {
-    /// The brain is at fault.
+    /// The brain file is invalid, or does not fit the creature.
     #[error(transparent)]
     Brain(#[from] BrainError),
     /// The clips do not fit the skeleton.
@@ -24,14 +24,14 @@ pub enum ColossusError {
     /// A number is infinite, NaN or out of its range.
     #[error("{what} is {found}, which is not {range}")]
     OutOfRange {
-        /// Which number.
+        /// The name of the number.
         what: &'static str,
-        /// The range that it must be in.
+        /// The allowed range.
         range: &'static str,
-        /// The number.
+        /// The number found.
         found: f64,
     },
-    /// A state was saved by a creature of another kind.
+    /// A state that was saved by a creature of another kind.
     #[error("the state is of another kind of creature: {0}")]
     OtherKind(&'static str),
 }

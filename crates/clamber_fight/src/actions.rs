@@ -4,55 +4,62 @@ use clamber_climber::ClimberInput;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-/// A press raises the sword for a stab, which then charges, and the next press strikes; bits of
-/// [`ClimberInput::actions`]. While it stays down, the charge grows faster. After a stab that was broken off it has to
-/// be let go and pressed anew. The upper 16 bits of the actions are the game's.
+/// Stab button, a bit of [`ClimberInput::actions`]. The first press raises the sword for a stab, which then charges.
+/// The next press strikes. The charge grows faster while the button stays down. After a stab was broken off, the button
+/// has to be released and pressed again. The upper 16 bits of the actions are left to the game.
 pub const STAB: u32 = 1;
-/// A press cuts with the sword.
+/// Cut button, a bit of [`ClimberInput::actions`]. A press cuts with the sword.
 pub const CUT: u32 = 1 << 1;
-/// Draws the bow as long as it is down, and shoots when it is let go.
+/// Bow button, a bit of [`ClimberInput::actions`]. The bow is drawn while the button is down, and shoots when it is
+/// released.
 pub const BOW: u32 = 1 << 2;
-/// A press throws a stone.
+/// Throw button, a bit of [`ClimberInput::actions`]. A press throws a stone.
 pub const THROW: u32 = 1 << 3;
 
-/// Bits of [`PlayerInput::buttons`] beside the actions.
+/// Bit of [`PlayerInput::buttons`] for [`ClimberInput::jump`]. It lies above the eight bits of the actions, like the
+/// next three.
 const JUMP: u16 = 1 << 8;
+/// Bit of [`PlayerInput::buttons`] for [`ClimberInput::jump_held`].
 const JUMP_HELD: u16 = 1 << 9;
+/// Bit of [`PlayerInput::buttons`] for [`ClimberInput::grip`].
 const GRIP: u16 = 1 << 10;
+/// Bit of [`PlayerInput::buttons`] for [`ClimberInput::crouch`].
 const CROUCH: u16 = 1 << 11;
+/// Bits of [`PlayerInput::buttons`] for the lower eight bits of [`ClimberInput::actions`].
 const ACTIONS: u16 = 0xff;
 
-/// Steps of a unit vector's component.
+/// Rounding steps per unit of a vector's component: the largest `i8`, so that components from -1 to 1 fit.
 const STEPS: f64 = 127.0;
 
-/// Length up to which a vector may be longer than 1 by rounding.
+/// Vectors up to this length are not normalised. Rounding to 127ths makes a unit vector up to 0.7 % longer; normalising
+/// it again would change its bits in a second round trip.
 const LONGEST: f64 = 1.01;
 
 /// A player's input for one tick in thirteen bytes, to be sent over a network.
 ///
-/// [`PlayerInput::from_input`] rounds: directions to 1/127 of their length, the aim to 0.006 degrees. All peers step their
-/// arenas with [`PlayerInput::to_input`], which gives all of them the same bits. Its order is 0. It holds no blow: blows come out of
-/// the arena itself. Of the actions it holds the lower eight bits.
+/// [`PlayerInput::from_input`] rounds: directions to 1/127 of their length, the aim to 0.006 degrees. It sets `order`
+/// to 0. All peers step their arenas with [`PlayerInput::to_input`], which gives all of them the same bits. A blow is
+/// not sent, since the arena itself deals the blows. Only the lower eight bits of the actions are sent.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct PlayerInput {
-    /// The direction to walk in, along x and z, in 127ths.
+    /// Direction to walk in, along x and z, in 127ths.
     pub walk: [i8; 2],
-    /// The direction to climb in, in 127ths; zero for none.
+    /// Direction to climb in, in 127ths; zero for none.
     pub climb: [i8; 3],
-    /// Where it aims: the angle about Y from +Z, in 65,536ths of a turn, and the angle above the level, in 65,536ths of
-    /// half a turn.
+    /// Direction of the aim: the angle about Y from +Z, in 65,536ths of a turn, and the angle above the horizontal, in
+    /// 65,536ths of half a turn.
     pub aim: [i16; 2],
-    /// Buttons.
+    /// Buttons: the lower eight bits are the actions; the bits above them are jump, jump held, grip and crouch.
     pub buttons: u16,
-    /// What the player asks the game to do in this tick, in numbers of the game's own; 0 for nothing. With rollback the
-    /// peers turn it into [`Order`](crate::Order)s, all of them in the same tick.
+    /// Request of the player to the game in this tick, as a number that the game defines; 0 for none. With rollback,
+    /// all peers turn it into [`Order`](crate::Order)s in the same tick.
     pub order: u16,
 }
 
 impl PlayerInput {
     /// Rounds an input. A vector that is not finite counts as zero.
     pub fn from_input(input: &ClimberInput) -> Self {
-        // What was rounded once may be a little longer than 1, and stays as it is.
+        // A vector that was rounded before may be a little longer than 1. It is not normalised, so that its bits stay.
         let unit = |v: DVec3| {
             if !v.is_finite() {
                 DVec3::ZERO
@@ -77,7 +84,7 @@ impl PlayerInput {
             walk: [step(walk.x), step(walk.z)],
             climb: climb.to_array().map(step),
             aim: [
-                // Half a turn is the same to both sides.
+                // Wraps around: half a turn to the left and half a turn to the right are the same angle.
                 (turn.round() as i32 as u16).cast_signed(),
                 (rise.round() as i32).clamp(-32_768, 32_767) as i16,
             ],
@@ -90,7 +97,7 @@ impl PlayerInput {
         }
     }
 
-    /// The input that an arena takes.
+    /// Converts back to the input that [`Arena::step`](crate::Arena::step) takes.
     pub fn to_input(self) -> ClimberInput {
         let part = |x: i8| (f64::from(x) / STEPS).max(-1.0);
         let [turn, rise] = self.aim;

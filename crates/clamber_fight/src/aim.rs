@@ -1,26 +1,26 @@
-//! Where to aim so that an arrow meets a target that moves: for bots, and for a mark on the screen.
+//! Where to aim so that an arrow meets a moving target: for bots, and for a mark on the screen.
 
 use glam::DVec3;
 
-/// How an arrow gets to a target.
+/// How to shoot an arrow so that it meets a target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lead {
-    /// Velocity with which it has to be shot, metres a second. Its length is the arrow's speed.
+    /// Launch velocity, metres a second. Its length is the arrow's speed.
     pub velocity: DVec3,
-    /// Seconds until it is there.
+    /// Seconds until the arrow meets the target.
     pub seconds: f64,
 }
 
-/// The soonest way for an arrow without drag from one place to a target: the flat one of two arcs. `None` if it does
-/// not get there, or if a number is not finite.
+/// How to shoot an arrow without drag so that it meets a moving target as soon as possible: on the flatter of two
+/// possible arcs. `None` if the target is out of reach or already at `from`, if the speed is not positive, or if a
+/// number is not finite.
 ///
-/// `target` is where the target is now, `velocity` its velocity, which stays, and `speed` the arrow's speed. Places are
-/// in metres, velocities in metres a second, gravity in metres a second squared.
+/// `target` is the target's position now, `velocity` its constant velocity, and `speed` the arrow's speed. Positions
+/// are in metres, velocities in metres a second, gravity in metres a second squared.
 ///
-/// The times at which an arrow of this speed and the target can be at one place are the positive roots of `|g|^2 t^4 /
-/// 4 - (w.g) t^3 + (|w|^2 - d.g - s^2) t^2 + 2 (d.w) t + |d|^2`, d being the way to the target, w its velocity, g
-/// gravity and s the speed. The least of them is found between the roots of the derivatives, where the polynomial is
-/// monotone.
+/// The arrow and the target can meet at the positive roots of `|g|^2 t^4 / 4 - (w.g) t^3 + (|w|^2 - d.g - s^2) t^2 + 2
+/// (d.w) t + |d|^2`, where d is the vector from `from` to the target, w its velocity, g gravity and s the speed. The
+/// smallest root is found between the roots of the derivatives, where the polynomial is monotone.
 pub fn lead(
     from: DVec3,
     target: DVec3,
@@ -35,8 +35,8 @@ pub fn lead(
     if d == DVec3::ZERO {
         return None;
     }
-    // Seconds of a straight flight as the unit of time, and the distance as that of length: all coefficients are
-    // moderate then.
+    // The unit of length is the distance, and the unit of time is the duration of a straight flight. In these units no
+    // coefficient is extreme.
     let (length, unit) = (d.length(), d.length() / speed);
     let (d, w, g) = (d / length, w / speed, g * (unit / speed));
     let polynomial = [
@@ -54,12 +54,11 @@ pub fn lead(
     })
 }
 
-/// The least positive root of a polynomial with the given coefficients, that of the constant first, whose constant is
-/// positive.
+/// The smallest positive root of a polynomial. Coefficients begin with the constant, which must be positive.
 fn first_root(polynomial: &[f64; 5]) -> Option<f64> {
     let all = derivatives(polynomial);
     let bound = bound(polynomial)?;
-    // Roots of each derivative separate those of the one above.
+    // Between the roots of its derivative, each polynomial is monotone.
     let mut breaks: Vec<f64> = Vec::new();
     for level in all.iter().rev() {
         breaks = roots_between(level, &breaks, bound);
@@ -67,7 +66,7 @@ fn first_root(polynomial: &[f64; 5]) -> Option<f64> {
     breaks.into_iter().next()
 }
 
-/// The polynomial and its derivatives down to the linear one.
+/// The polynomial and its derivatives, down to the linear one.
 fn derivatives(polynomial: &[f64; 5]) -> [[f64; 5]; 4] {
     let mut all = [*polynomial; 4];
     for level in 1..4 {
@@ -79,7 +78,7 @@ fn derivatives(polynomial: &[f64; 5]) -> [[f64; 5]; 4] {
     all
 }
 
-/// A number beyond all roots (Cauchy's bound); `None` without any coefficient but the constant.
+/// A number above all roots (Cauchy's bound); `None` if all coefficients but the constant are zero.
 fn bound(polynomial: &[f64; 5]) -> Option<f64> {
     let most = |values: &[f64]| values.iter().fold(0.0f64, |most, x| most.max(x.abs()));
     let highest = (1..5).rev().find(|power| polynomial[*power] != 0.0)?;
@@ -87,7 +86,7 @@ fn bound(polynomial: &[f64; 5]) -> Option<f64> {
     Some(bound.min(1e18))
 }
 
-/// Positive roots below `bound` of a polynomial that is monotone between the given numbers, in order.
+/// Positive roots up to `bound`, ascending. The polynomial must be monotone between consecutive `breaks`.
 fn roots_between(polynomial: &[f64; 5], breaks: &[f64], bound: f64) -> Vec<f64> {
     let at = |t: f64| polynomial.iter().rev().fold(0.0, |sum, x| sum * t + x);
     let mut roots = Vec::new();
@@ -104,7 +103,7 @@ fn roots_between(polynomial: &[f64; 5], breaks: &[f64], bound: f64) -> Vec<f64> 
     roots
 }
 
-/// The root between two numbers, to the last bit but few.
+/// The root between two numbers, by bisection, to within a few units in the last place.
 fn bisect(at: impl Fn(f64) -> f64, [mut low, mut high]: [f64; 2], rises: bool) -> f64 {
     for _ in 0..200 {
         let middle = 0.5 * (low + high);

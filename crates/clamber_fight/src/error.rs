@@ -4,18 +4,18 @@ use thiserror::Error;
 
 use crate::arena::KindId;
 
-/// Why an arena refuses something. It is unchanged then, if not said otherwise.
+/// Why an arena refuses a call. The arena is unchanged then, unless the variant says otherwise.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum ArenaError {
     /// A number of a configuration is outside its range.
     #[error("`{name}` is {found}, and has to be {range}")]
     OutOfRange {
-        /// The number.
+        /// Name of the number.
         name: &'static str,
-        /// What it may be.
+        /// The valid range.
         range: &'static str,
-        /// What it is.
+        /// The invalid value.
         found: f64,
     },
     /// The brain of a creature was made for another tick.
@@ -28,7 +28,7 @@ pub enum ArenaError {
         /// Tick of the arena, seconds.
         arena: f64,
     },
-    /// There is not one input for each fighter.
+    /// The number of inputs differs from the number of fighters.
     #[error(
         "{found} inputs were given for {fighters} fighters: give one for each, by ascending number"
     )]
@@ -41,13 +41,13 @@ pub enum ArenaError {
     /// An input holds a blow.
     #[error("the input of fighter {fighter} holds a blow; the arena deals the blows itself")]
     Blow {
-        /// The fighter, by its number.
+        /// The fighter's position in the list of inputs, from 0.
         fighter: usize,
     },
     /// An input has a number that is not finite.
     #[error("the input of fighter {fighter} has a number that is not finite")]
     InputNotFinite {
-        /// The fighter, by its number.
+        /// The fighter's position in the list of inputs, from 0.
         fighter: usize,
     },
     /// Two terrains have the same id.
@@ -56,28 +56,28 @@ pub enum ArenaError {
         /// The id.
         found: u64,
     },
-    /// A terrain's id is one of those that the arena gives to creatures and fighters.
+    /// A terrain's id is in the range that the arena uses for creatures and fighters.
     #[error("a terrain has the id {found}, which is the arena's: take one below {below}")]
     TerrainId {
         /// The id.
         found: u64,
-        /// Where the arena's ids begin.
+        /// Smallest id that the arena uses itself.
         below: u64,
     },
-    /// A state is of another arena.
+    /// A state does not belong to this arena, or is inconsistent. The text gives the reason.
     #[error("this state is of another arena: {0}")]
     OtherArena(&'static str),
-    /// What was read is not a saved arena, or orders that were written, or it is damaged.
+    /// Bytes are damaged, or are neither a saved arena nor saved orders.
     #[error("this is not what was saved, or it is damaged: {0}")]
     Damaged(String),
-    /// The arena was saved by another version.
+    /// The arena was saved in another version of the format.
     #[error(
         "this arena was saved in version {found} of the format, and this is version {expected}"
     )]
     Version {
         /// The version found.
         found: u32,
-        /// The version that can be read.
+        /// The version that this build reads.
         expected: u32,
     },
     /// The arena was saved with another configuration.
@@ -90,7 +90,7 @@ pub enum ArenaError {
         /// The hash of this arena.
         expected: u64,
     },
-    /// A creature is of a kind that the arena does not know.
+    /// The arena does not know the kind of a creature.
     #[error(
         "this arena does not know a kind of creature (hash {0:016x}): load its files, unchanged, and give the kind to `Arena::add_kind`", kind.0
     )]
@@ -98,28 +98,29 @@ pub enum ArenaError {
         /// The kind.
         kind: KindId,
     },
-    /// Somebody joins an arena that was stepped already.
+    /// A creature or a fighter is added without an order after the arena's first step.
     #[error(
         "this arena was stepped already: let them join by an order, `Order::AddCreature` or `Order::AddFighter`"
     )]
     Begun,
-    /// An order is none that can be followed.
+    /// An order cannot be followed.
     #[error("order {index} cannot be followed: {reason}")]
     Order {
-        /// Its index in the list.
+        /// Index of the order in the list.
         index: usize,
-        /// What is wrong with it.
+        /// Why it cannot be followed.
         reason: String,
     },
-    /// A climber refuses its configuration, its state or its input.
+    /// A climber rejects its configuration, its state or its input.
     #[error(transparent)]
     Climber(#[from] ClimberError),
-    /// A creature cannot be posed, or refuses its state. After a failed step the arena has to be restored.
+    /// A creature cannot be posed, or rejects its configuration or state. If a step returns this, the arena has to be
+    /// restored.
     #[error(transparent)]
     Creature(#[from] ColossusError),
 }
 
-/// Checks a number of a configuration.
+/// Checks that a number of a configuration is in its range.
 pub(crate) fn within(
     name: &'static str,
     range: &'static str,
@@ -133,15 +134,15 @@ pub(crate) fn within(
     }
 }
 
-/// Numbers of configurations are no larger than this: sums and products of them are finite.
+/// Largest number in a configuration, in the number's own unit. It keeps sums and products of such numbers finite.
 const MOST: f64 = 1e9;
 
-/// Checks that a number is not negative, and not too large.
+/// Checks that a number is from 0 to 1e9.
 pub(crate) fn not_negative(name: &'static str, found: f64) -> Result<(), ArenaError> {
     within(name, "from 0 to 1e9", found, [0.0, MOST])
 }
 
-/// Checks that a number is positive, and not too large.
+/// Checks that a number is positive and at most 1e9.
 pub(crate) fn positive(name: &'static str, found: f64) -> Result<(), ArenaError> {
     within(
         name,

@@ -1,4 +1,4 @@
-//! For tests: a limb to strike.
+//! A limb to strike, for tests.
 
 use std::sync::Arc;
 
@@ -6,13 +6,16 @@ use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
 use clamber_surface::rig::JointId;
 use glam::Vec3;
 
-/// Sides of the limb's rings, and rings of each of its two parts.
+/// Vertices of each of the limb's rings.
 const SIDES: u32 = 10;
+/// Rings of quads in each of the limb's two parts.
 const RINGS: u32 = 3;
+/// Radius of the limb, metres.
 const RADIUS: f32 = 0.35;
+/// Length of the limb, metres.
 const LENGTH: f32 = 2.4;
 
-/// A closed tube along z of two parts, each on a joint of its own.
+/// A closed tube along z with two parts, each on its own joint.
 pub(crate) fn limb() -> Arc<ColliderMesh> {
     let (mut positions, mut triangles, mut influences) = (Vec::new(), Vec::new(), Vec::new());
     let rings = 2 * RINGS;

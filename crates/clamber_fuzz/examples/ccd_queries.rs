@@ -1,6 +1,7 @@
 //! Tests the sweeps with files of continuous collision queries whose exact answers are known.
 //!
-//! Usage: `ccd_queries FILE.csv...`. `--help` describes the files, `clamber_fuzz::ccd` how the answers are judged.
+//! Usage: `ccd_queries FILE.csv...`. `--help` describes the files; `clamber_fuzz::ccd` describes how the answers are
+//! judged.
 
 use std::process::ExitCode;
 

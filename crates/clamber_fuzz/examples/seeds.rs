@@ -1,4 +1,4 @@
-//! Writes the start file for fuzzing imports into a folder: `seeds fuzz/corpus/import`.
+//! Writes the seed file for fuzzing imports into a folder: `seeds fuzz/corpus/import`.
 
 use std::io;
 use std::path::PathBuf;

@@ -107,7 +107,7 @@ fn check_triangles(
     }
 }
 
-/// Checks that a second build gives the same mesh, and so does a build from the mesh itself.
+/// Checks that a second build of the source, and a build from the mesh itself, give the same mesh.
 fn check_again(mesh: &ColliderMesh, source: &Source, options: &BuildOptions) {
     let again = ColliderMesh::build(&source.source(), options);
     assert!(again.is_ok_and(|(again, _)| again == *mesh));

@@ -2,8 +2,8 @@
 
 use glam::Vec3;
 
-/// A source of choices and numbers. The first four bytes seed a random generator, which takes over where the
-/// bytes end: a few bytes make a whole case, and a fuzzer that changes one byte changes one choice.
+/// A source of choices and numbers. The first four bytes seed a random generator, which takes over after the last byte:
+/// a few bytes make a whole case, and a fuzzer that changes one byte changes one choice.
 pub(crate) struct Bytes<'a> {
     rest: &'a [u8],
     beyond: fastrand::Rng,

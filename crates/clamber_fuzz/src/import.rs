@@ -12,8 +12,8 @@ use crate::seed::glb;
 
 /// Loads any bytes as a file, and uses the rig; returns true if the file loads.
 ///
-/// Bytes with a zero in them that do not begin as a GLB are taken for the two chunks of a GLB: JSON up to the
-/// first zero, and binary after it. So a fuzzer need not get any length right.
+/// Bytes that contain a zero and do not begin as a GLB are wrapped as the two chunks of a GLB: JSON before the first
+/// zero, binary after it. So a fuzzer does not have to get any length right.
 ///
 /// # Panics
 /// If the rig breaks a promise of the library.
@@ -47,7 +47,7 @@ fn use_rig(rig: &Rig) {
     }
     let mut positions = Vec::new();
     for pose in &poses {
-        // Valid files may have poses beyond the library's limits: those are errors here.
+        // A valid file may have poses beyond the library's limits. The library rejects them with an error.
         let Ok(palette) = rig.skeleton.palette(pose) else {
             continue;
         };

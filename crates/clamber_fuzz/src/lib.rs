@@ -1,8 +1,9 @@
 //! Fuzz targets, stress cases and exact collision tests for clamber. Not published.
 //!
 //! - [`import()`], [`builder()`], [`palettes()`] and [`queries()`] are the fuzz targets. Each makes a case from any
-//!   bytes, runs the library on it, checks what must hold, and returns how much it checked. **A panic is a finding.**
-//!   `fuzz/` passes them to libFuzzer; `tests/seeded.rs` runs them on seeded random bytes, with the other tests.
+//!   bytes, runs the library on it, checks the library's promises, and returns how much it checked. **A panic is a
+//!   finding.** `fuzz/` passes them to libFuzzer; `tests/seeded.rs` runs them on seeded random bytes, with the other
+//!   tests.
 //! - [`ccd`] compares sweeps with exact answers, from files and from the cases that `clamber_oracle` constructs.
 //! - [`stress`] makes cases that are hard in known ways, at the sizes of real creatures.
 //!

@@ -1,4 +1,4 @@
-//! Meshes made from bytes: small ones, as unlike a limb as the contract allows.
+//! Meshes made from bytes. They are small, and as unlike a limb as the contract allows.
 
 use clamber_surface::mesh::{
     BuildOptions, ColliderMesh, Cracks, Influence, MeshSource, SurfaceKind, SurfaceTag, Winding,
@@ -8,10 +8,10 @@ use glam::Vec3;
 
 use crate::bytes::Bytes;
 
-/// Largest coordinate of a valid mesh, 2^98: a vector of three stays within 2^99.
+/// Largest coordinate of a valid mesh, 2^98: a vector of three such coordinates is shorter than 2^99.
 const FARTHEST: f32 = (1u128 << 98) as f32;
 
-/// Scales of a mesh's coordinates.
+/// Factors for a mesh's coordinates: some are 1, the others make very small or very large meshes.
 const SCALES: [f32; 8] = [1.0, 1.0, 1.0, 1e-3, 1e3, 1e-20, 1e20, FARTHEST / 8.0];
 
 /// A [`MeshSource`] that owns its data.
@@ -52,7 +52,7 @@ impl Source {
         }
     }
 
-    /// [`Source::valid`], sometimes with rest spaces, sometimes with faults. The flag is true if faults were put in.
+    /// [`Source::valid`], sometimes with rest spaces, sometimes with faults. The flag is true if the source has faults.
     pub(crate) fn any(bytes: &mut Bytes<'_>) -> (Self, bool) {
         let mut source = Self::valid(bytes);
         if bytes.one_in(4) {
@@ -67,7 +67,7 @@ impl Source {
         (source, faults > 0)
     }
 
-    /// Changes something, which may make the source invalid.
+    /// Makes one random change. The source may be invalid after it.
     fn spoil(&mut self, bytes: &mut Bytes<'_>) {
         let vertex = bytes.below(self.positions.len().max(1));
         let index = bytes.pick(&[0, self.positions.len() as u32, u32::MAX]);
@@ -142,7 +142,7 @@ pub(crate) fn tag(bytes: &mut Bytes<'_>) -> SurfaceTag {
 
 type Shape = (Vec<Vec3>, Vec<[u32; 3]>);
 
-/// Triangles of any vertices: they may share vertices, be doubled, cross, or have no area.
+/// Triangles between random vertices. They may share vertices, be duplicates, cross each other, or have no area.
 fn soup(bytes: &mut Bytes<'_>) -> Shape {
     let many = bytes.one_in(4);
     let vertices = 3 + bytes.below(if many { 198 } else { 12 });
@@ -188,8 +188,8 @@ fn grid(bytes: &mut Bytes<'_>) -> Shape {
     (positions, triangles)
 }
 
-/// Influences of every vertex, of which the first has a positive weight, and the end of each vertex's influences. No
-/// ends are given if all vertices have equally many.
+/// Influences of every vertex, and the end of each vertex's influences. The first influence of a vertex has a positive
+/// weight. If all vertices have equally many influences, no ends are given.
 fn influences(bytes: &mut Bytes<'_>, vertices: usize, joints: usize) -> (Vec<Influence>, Vec<u32>) {
     let most = bytes.pick(&[1, 2, 4, 16]);
     let uneven = bytes.one_in(2);

@@ -1,5 +1,5 @@
-//! The fuzz target of poses: any palette at any place is rejected without a change, or every position is finite
-//! and what the skinning contract says.
+//! The fuzz target of poses: any palette at any place is either rejected without a change, or gives finite positions,
+//! exactly as the skinning contract defines them.
 
 use std::sync::Arc;
 
@@ -15,7 +15,7 @@ use crate::bytes::Bytes;
 use crate::mesh::built;
 use crate::poses::{is_absurd, is_tame, palette, similarity};
 
-/// Counts of what was checked.
+/// Numbers of checked poses and motions.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Palettes {
     /// Poses that were accepted.
@@ -96,7 +96,8 @@ impl State {
     }
 }
 
-/// The matrices that the previous positions must come from: those of the last pose, in the current model frame.
+/// The matrices of the previous positions: the last pose's matrices, in the current model frame; after a jump, the
+/// current matrices.
 fn previous_palette(
     surface: &SkinnedSurface,
     jump: bool,
@@ -116,7 +117,7 @@ fn previous_palette(
     last.iter().map(moved).collect()
 }
 
-/// Checks every vertex against the skinning contract, by every query for positions.
+/// Checks the position of every vertex, from each query for positions, against the skinning contract.
 fn check_positions(surface: &SkinnedSurface, palette: &Palette, previous: &[Affine]) {
     let (mesh, space) = (surface.mesh(), surface.in_model());
     let mut all = Vec::new();
@@ -151,7 +152,7 @@ fn skinned(mesh: &ColliderMesh, palette: &[Affine], v: VertexId) -> Vec3 {
     })
 }
 
-/// Checks the motions of some anchors; returns how many had one.
+/// Checks the motions of some anchors; returns the number of motions.
 fn check_motions(surface: &SkinnedSurface, bytes: &mut Bytes<'_>) -> usize {
     let triangles = surface.mesh().triangles().len();
     let mut moved = 0;
@@ -201,7 +202,7 @@ fn check_motion(motion: &Motion) {
     assert!(motion.angular_velocity.is_finite(), "{motion:?}");
     assert!(unit(motion.frame.as_dquat().length()), "{motion:?}");
     assert!(unit(motion.normal.as_dvec3().length()), "{motion:?}");
-    // A ratio of two areas, of which one may be 2^200 times the other: it may be infinite, never NaN.
+    // The ratio of two areas. One area may be 2^200 times the other, so the ratio may be infinite, but never NaN.
     assert!(motion.area_ratio >= 0.0, "{motion:?}");
     let [larger, smaller] = motion.stretches;
     assert!(smaller >= 0.0 && larger >= smaller, "{motion:?}");

@@ -1,4 +1,4 @@
-//! Palettes and places in the world made from bytes.
+//! Palettes, and places in the world, made from bytes.
 
 use clamber_surface::geometry::{Affine, Similarity, rotation_from_axis_angle};
 use clamber_surface::rig::Palette;
@@ -6,11 +6,11 @@ use glam::{DAffine3, DMat3, DQuat, DVec3, Vec3};
 
 use crate::bytes::Bytes;
 
-/// All numbers of a tame pose and all coordinates of a tame mesh are below this, 2^40: nothing computed from them
-/// comes near 2^100.
+/// 2^40: all numbers of a tame pose and all coordinates of a tame mesh are below it. No result computed from them comes
+/// near 2^100, the limit of coordinates.
 const TAME: f32 = (1u64 << 40) as f32;
 
-/// A palette for `joints` joints of a mesh with the given radius. With `faults` it is sometimes one that must be
+/// A palette for `joints` joints of a mesh with the given radius. With `faults` it is sometimes a palette that must be
 /// rejected.
 pub(crate) fn palette(bytes: &mut Bytes<'_>, joints: usize, radius: f32, faults: bool) -> Palette {
     let kind = bytes.byte() % 16;
@@ -18,7 +18,7 @@ pub(crate) fn palette(bytes: &mut Bytes<'_>, joints: usize, radius: f32, faults:
     let mut matrices: Vec<Affine> = Vec::with_capacity(joints);
     for joint in 0..joints {
         let mut one = match kind {
-            // All joints move as one.
+            // All joints have the same matrix.
             0 | 1 if joint > 0 => matrices[0],
             _ => matrix(bytes, kind, unit),
         };
@@ -49,7 +49,7 @@ fn matrix(bytes: &mut Bytes<'_>, kind: u8, unit: f32) -> Affine {
             f64::from(bytes.share()),
             1.0,
         ),
-        // Singular: into a plane, onto a line (10), or to a point (11).
+        // Singular matrices: onto a plane or a line (10), to a point (11).
         10 => diagonal(1.0, bytes.pick(&[0.0, 1.0]), 0.0),
         11 => DMat3::ZERO,
         12 => turn * 1e-43,
@@ -109,7 +109,7 @@ pub(crate) fn is_tame(palette: &Palette, place: &Similarity, radius: f32) -> boo
 fn is_tame_place(place: &Similarity) -> bool {
     let far = place.translation.abs().max_element();
     let turn = (place.rotation.length() - 1.0).abs();
-    // `max_element` ignores NaN.
+    // `max_element` ignores NaN, so finiteness is tested separately.
     let finite = place.translation.is_finite();
     finite && (0.1..10.0).contains(&place.scale) && far < f64::from(TAME) && turn < 1e-6
 }

@@ -1,5 +1,5 @@
-//! The fuzz target of queries: any query of any surface, with any edits, gives brute force's answer bit for bit.
-//! A length that is NaN or negative finds nothing.
+//! The fuzz target of queries: the answer to any query of any surface, after any edits, equals the answer of brute
+//! force bit for bit. A query with a length that is NaN or negative finds nothing.
 
 use std::sync::Arc;
 
@@ -17,10 +17,10 @@ use crate::bytes::Bytes;
 use crate::mesh::{built, tag};
 use crate::poses::{palette, similarity};
 
-/// Counts of what was checked.
+/// Numbers of checked queries and edits.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Queries {
-    /// Hits, which brute force found as well.
+    /// Hits. Brute force found the same ones.
     pub hits: usize,
     /// Queries with valid arguments, with or without hits.
     pub answered: usize,
@@ -30,7 +30,7 @@ pub struct Queries {
     pub edits: usize,
 }
 
-/// Runs queries that are made from any bytes on a surface made from them, and compares with brute force.
+/// Runs random queries on a random surface, both made from the bytes, and compares the answers with brute force.
 ///
 /// # Panics
 /// If a check fails.
@@ -46,7 +46,7 @@ pub fn queries(data: &[u8]) -> Queries {
         let mesh = surface.mesh();
         let faults = bytes.one_in(8);
         let palette = palette(&mut bytes, mesh.joint_count(), mesh.radius(), faults);
-        // If the pose is rejected, the surface is queried in its old one.
+        // If the pose is rejected, the queries use the surface's old pose.
         let _ = surface.advance(&palette, similarity(&mut bytes, faults));
         for _ in 0..bytes.below(4) {
             seen.edits += usize::from(edit(&mut surface, &mut bytes));
@@ -59,7 +59,7 @@ pub fn queries(data: &[u8]) -> Queries {
     seen
 }
 
-/// Makes an edit; returns false if it was rejected, and checks that nothing has changed then.
+/// Makes a random edit; returns true if it was accepted. If it was rejected, checks that the surface has not changed.
 fn edit(surface: &mut SkinnedSurface, bytes: &mut Bytes<'_>) -> bool {
     let mesh = surface.mesh().clone();
     // An id may be one past the end.
@@ -101,7 +101,8 @@ fn add_triangle(
     Ok(())
 }
 
-/// Adds a vertex, and if it has area, a triangle with the vertex in place of the first corner.
+/// Adds a vertex, and a triangle with this vertex in place of the first corner. If the triangle is rejected, only the
+/// vertex is added.
 fn add_vertex(
     edit: &mut SurfaceEdit<'_>,
     mesh: &ColliderMesh,
@@ -143,7 +144,7 @@ fn shown(surface: &SkinnedSurface) -> Vec<bool> {
     ids.map(|id| surface.is_enabled(TriangleId(id))).collect()
 }
 
-/// Asks at some places, and compares the answers.
+/// Asks questions from four places, and compares the answers with brute force.
 fn compare(surface: &SkinnedSurface, bytes: &mut Bytes<'_>, seen: &mut Queries) {
     let space = surface.in_model();
     let brute_force = BruteForce::new(space);
@@ -163,7 +164,7 @@ fn compare(surface: &SkinnedSurface, bytes: &mut Bytes<'_>, seen: &mut Queries) 
     }
 }
 
-/// Questions of every kind from one place, sound ones and others.
+/// Questions of every kind from one place, with valid arguments and with others.
 fn questions(bytes: &mut Bytes<'_>, positions: &[Vec3], size: f32, all: &mut Vec<Question>) {
     let origin = place(bytes, positions, size);
     let to = place(bytes, positions, size);
@@ -219,7 +220,7 @@ fn questions(bytes: &mut Bytes<'_>, positions: &[Vec3], size: f32, all: &mut Vec
     }
 }
 
-/// A displacement of a shape whose aim is at `way` from it.
+/// A displacement for a shape whose target is at `way` from it.
 fn motion(bytes: &mut Bytes<'_>, way: Vec3) -> Vec3 {
     match bytes.byte() % 4 {
         0 => Vec3::ZERO,
@@ -239,7 +240,7 @@ fn tolerance(bytes: &mut Bytes<'_>, radius: f32) -> f32 {
     }
 }
 
-/// Checks that there is a capsule exactly for valid arguments.
+/// Checks that [`Capsule::new`] succeeds if and only if its arguments are valid.
 fn check_capsule(
     Shape {
         ends: [a, b],
@@ -251,7 +252,7 @@ fn check_capsule(
     assert_eq!(capsule.is_some(), usable, "{a}, {b}, {radius}");
 }
 
-/// Checks that there is a ray exactly for valid arguments.
+/// Checks that [`Ray::new`] succeeds if and only if its arguments are valid.
 fn check_ray(origin: Vec3, aim: Vec3) {
     let ray = Ray::new(origin, aim);
     let usable = origin.is_finite() && aim.is_finite() && aim != Vec3::ZERO;
@@ -291,7 +292,8 @@ impl Queries {
     /// Compares one answer with brute force's, and checks that a question with invalid arguments finds nothing.
     ///
     /// If coordinates differ in size by about 2^50, bounds may rule out contacts that the exact test cannot decide. So
-    /// if brute force leaves a contact undecided, only a first contact is compared, and only if both have decided it.
+    /// if brute force leaves a contact undecided, the answers are compared only for a first contact, and only if both
+    /// answers are decided.
     fn ask(&mut self, brute_force: &BruteForce<'_>, space: &ModelSpace<'_>, question: &Question) {
         let mut comparison = Comparison::default();
         comparison.ask(brute_force, question);
@@ -314,7 +316,7 @@ impl Queries {
     }
 }
 
-/// True if the answers may differ, since brute force could not decide a contact: see [`Queries::ask`].
+/// True if the answers may differ because brute force could not decide a contact: see [`Queries::ask`].
 fn is_undecided(brute_force: &BruteForce<'_>, asked: &Comparison, question: &Question) -> bool {
     let any = |rows: &[Found]| rows.iter().any(Found::is_undecided);
     let Question::CastCapsule { cast, .. } = *question else {

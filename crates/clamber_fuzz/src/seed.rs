@@ -1,12 +1,12 @@
-//! A small valid file as a start for fuzzing.
+//! A small valid file, the seed of import fuzzing.
 
 use serde_json::{Value, json};
 
-/// A square of two triangles on two joints, as the two chunks of a GLB, JSON and binary. [`crate::import()`]
-/// takes them with a zero between.
+/// A square of two triangles on two joints, as the two chunks of a GLB: JSON and binary. [`crate::import()`] takes them
+/// with a zero between them.
 ///
-/// It has most of what an import reads: a skin, a clip with three kinds of interpolation, extras, a rigid mesh
-/// without indices, a sparse accessor.
+/// The file has most of the features that an import reads: a skin, a clip with three kinds of interpolation, extras, a
+/// rigid mesh without indices, and a sparse accessor.
 pub fn square() -> (Vec<u8>, Vec<u8>) {
     let mut chunks = Chunks::default();
     let square = [0., 0., 0., 1., 0., 0., 1., 1., 0., 0., 1., 0.];

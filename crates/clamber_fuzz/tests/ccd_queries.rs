@@ -10,8 +10,10 @@ use std::path::PathBuf;
 use clamber_fuzz::ccd::{CcdOptions, run};
 use clamber_scenes::test_data;
 
-/// Number of files and of queries in the test data.
+/// Number of files in the test data.
 const FILES: usize = 13;
+
+/// Number of queries in the test data.
 const QUERIES: usize = 1_909;
 
 /// All query files of the test data.

@@ -2,14 +2,16 @@
 
 use clamber_fuzz::{Palettes, Queries, builder, import, palettes, queries, square};
 
-/// Random bytes for a target. Their first four seed all choices beyond their end.
+/// Random bytes for a target. The first four seed all choices beyond the last byte.
 fn random_bytes(rng: &mut fastrand::Rng) -> Vec<u8> {
     let length = rng.usize(4..200);
     (0..length).map(|_| rng.u8(..)).collect()
 }
 
-/// A file with some tokens of the JSON replaced, bytes changed, or the binary chunk cut. It may still be valid.
+/// A file with digits of the JSON replaced by tokens, bytes of the binary chunk changed, or the binary chunk cut. It
+/// may still be valid.
 fn mutated(json: &[u8], binary: &[u8], rng: &mut fastrand::Rng) -> Vec<u8> {
+    /// Replacements for a digit: numbers at limits, other JSON values, and values that glTF uses elsewhere.
     const TOKENS: [&str; 12] = [
         "0",
         "-1",

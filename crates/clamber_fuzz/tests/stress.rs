@@ -1,7 +1,6 @@
 //! Stress cases: every family of meshes in every family of poses, at every place in turn.
 //!
-//! The tests run a few small cases, and with `--ignored` many and large ones. `cargo xtask soak` runs cases for any
-//! time.
+//! The tests run a few small cases; with `--ignored`, many and large ones. `cargo xtask soak` runs cases for any time.
 
 use clamber_fuzz::stress::{Case, MeshFamily, Place, PoseFamily, Seen, run};
 
@@ -26,7 +25,7 @@ fn stress(mesh: MeshFamily, triangles: usize, ticks: usize, seeds: u64) -> Seen 
     all
 }
 
-/// Runs [`stress`] briefly, and checks that enough was checked.
+/// Runs [`stress`] briefly, and checks that it made enough checks.
 fn briefly(mesh: MeshFamily) {
     let seen = stress(mesh, 600, 3, 2);
     let cases = 2 * PoseFamily::ALL.len();
@@ -42,7 +41,7 @@ fn briefly(mesh: MeshFamily) {
     }
 }
 
-/// A test of a family, and its long form.
+/// A test of a family, and a long test of it.
 macro_rules! families {
     ($($name:ident, $long:ident: $family:ident;)*) => {$(
         #[test]
@@ -112,7 +111,7 @@ fn ten_million_triangles() {
     let seen = run(&case, None);
     println!("{case}: {seen:?}");
     println!("{:.0} s", start.elapsed().as_secs_f64());
-    // Only Linux reports its peak memory there.
+    // Only Linux reports its peak memory in this file.
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let peak = status.lines().find(|line| line.starts_with("VmHWM"));
     println!("{}", peak.unwrap_or("peak memory unknown"));

@@ -19,7 +19,7 @@ fn each(kind: Kind, cases: u32, seed: u64, mut visit: impl FnMut(&Case, &Answer)
     }
 }
 
-/// Checks so many cases of every kind.
+/// Checks `cases` cases of every kind.
 fn check(cases: u32, seed: u64) {
     let mut capped = 0;
     for kind in KINDS {

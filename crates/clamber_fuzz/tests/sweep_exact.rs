@@ -1,5 +1,5 @@
-//! Tests the sweeps with edge-edge and vertex-face motions in exact numbers: with contacts and near misses that are
-//! known by construction, and with proofs of the claims about all others.
+//! Tests the sweeps with edge-edge and vertex-face motions in exact numbers. Some contacts and near misses are known by
+//! construction; the claims about all other motions are proved.
 
 #![expect(
     clippy::unwrap_used,

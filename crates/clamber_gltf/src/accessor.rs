@@ -10,16 +10,16 @@ use gltf::buffer::View;
 use crate::buffers::Buffers;
 use crate::{GltfErrorKind, LoadOptions};
 
-/// Bytes of memory that a file may take for each byte of it and its buffers.
+/// Bytes of memory that a file may take for each byte of the file and its buffers.
 ///
 /// Real models take up to 3 times their size. A file that makes the loader read the same data many times is refused
-/// before memory runs out. Meshes that are shown many times are read once, and what they make after the first showing is
-/// limited by [`LoadOptions::max_repeated_vertices`] instead. Charges are estimates: a file that is made to take as much
-/// as it may takes up to 100 times its size, plus [`FREE_GROWTH`], plus 512 bytes for each vertex of that limit
+/// before memory runs out. Meshes that are shown many times are read once, and [`LoadOptions::max_repeated_vertices`]
+/// limits the vertices of their further showings instead. Charges are estimates: a file that is made to take as much
+/// memory as it can takes up to 100 times its size, plus [`FREE_GROWTH`], plus 512 bytes for each vertex of that limit
 /// (`tests/files/broken.rs`).
 const MAX_GROWTH: usize = 24;
 
-/// Bytes of memory that any file may take: small files may rightly grow by a larger factor.
+/// Bytes of memory that every file may take besides, because small files may rightly grow by a larger factor.
 const FREE_GROWTH: usize = 1 << 20;
 
 /// Reads accessors of one file.

@@ -10,7 +10,7 @@ use gltf::buffer::Source;
 
 use crate::{GltfErrorKind, uri};
 
-/// The bytes of every buffer that is read; a file that several buffers name is held once.
+/// The bytes of every buffer that is read. A file that several buffers name is held once.
 pub(crate) struct Buffers {
     held: Vec<Vec<u8>>,
     /// The index of each buffer in `held`; `None` for a buffer that is not read.
@@ -18,19 +18,20 @@ pub(crate) struct Buffers {
 }
 
 impl Buffers {
-    /// The bytes of a buffer, at least as many as it claims; `None` for one that is not read, or an index out of range.
+    /// The bytes of a buffer, at least as many as it claims; `None` for a buffer that is not read, or an index out of
+    /// range.
     pub(crate) fn get(&self, buffer: usize) -> Option<&[u8]> {
         let bytes = self.held.get((*self.of_buffer.get(buffer)?)?)?;
         Some(bytes.as_slice())
     }
 
-    /// How many bytes all buffers hold.
+    /// Number of bytes that all buffers hold.
     pub(crate) fn held(&self) -> usize {
         let lengths = self.held.iter().map(Vec::len);
         lengths.fold(0, usize::saturating_add)
     }
 
-    /// Reads the buffers that are marked as read, each file once.
+    /// Reads the buffers that `read` marks, each file once.
     pub(crate) fn load(
         document: &Document,
         mut blob: Option<Vec<u8>>,
@@ -93,7 +94,7 @@ const DATA: &str = "data:";
 struct Claims {
     /// `None` for a buffer inside the document.
     path_of_buffer: Vec<Option<String>>,
-    /// The largest length that a buffer claims of each file.
+    /// For each file, the largest length that a buffer claims of it, bytes.
     length_of_file: BTreeMap<String, usize>,
 }
 
@@ -121,7 +122,7 @@ pub(crate) type Resolve<'a> = dyn FnMut(&str) -> io::Result<Vec<u8>> + 'a;
 
 /// The source of the files beside a document.
 pub(crate) enum Files<'a> {
-    /// None: a buffer in another file is an error.
+    /// No files: a buffer in another file is an error.
     None,
     /// This folder and those below.
     Folder(&'a Path),
@@ -130,7 +131,7 @@ pub(crate) enum Files<'a> {
 }
 
 impl Files<'_> {
-    /// Reads the first `length` bytes of a file, or all if it is shorter.
+    /// Reads the first `length` bytes of a file, or all bytes if it is shorter.
     fn read(&mut self, path: &str, length: usize, object: &str) -> Result<Vec<u8>, GltfErrorKind> {
         match self {
             Self::None => Err(GltfErrorKind::invalid(
@@ -150,7 +151,7 @@ impl Files<'_> {
                     path: PathBuf::from(path),
                     error,
                 })?;
-                // Bytes that no buffer claims must not raise the limit of memory.
+                // Bytes that no buffer claims must not raise the memory limit.
                 bytes.truncate(length);
                 Ok(bytes)
             }

@@ -19,16 +19,17 @@ pub(crate) struct Collision {
     pub(crate) positions: Vec<Vec3>,
     pub(crate) influences: Vec<Influence>,
     pub(crate) influence_ends: Vec<u32>,
-    /// The rest space of each vertex: each skin and each rigid mesh has one of its own.
+    /// The rest space of each vertex. Each skin and each rigid mesh has its own rest space.
     pub(crate) spaces: Vec<u32>,
     pub(crate) triangles: Vec<[u32; 3]>,
     pub(crate) tags: Vec<SurfaceTag>,
-    /// Of each material that is used, the triangles that have it: from here, before there. Ascending.
+    /// For each primitive with a material, the index of the material and the range of the primitive's triangles.
+    /// Ascending.
     pub(crate) materials: Vec<(usize, Range<usize>)>,
 }
 
 impl Collision {
-    /// Appends vertices; gives the index of the first.
+    /// Appends vertices; returns the index of the first.
     pub(crate) fn append(
         &mut self,
         vertices: &Vertices,
@@ -67,7 +68,7 @@ impl Collision {
         ColliderMesh::build(&source, options)
     }
 
-    /// Of each material with a name, the triangles of the built mesh that have it.
+    /// The triangles of the built mesh, by the name of their material. Triangles without a named material are left out.
     pub(crate) fn named_materials(
         &self,
         report: &BuildReport,

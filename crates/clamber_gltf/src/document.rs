@@ -1,8 +1,8 @@
 //! Parses bytes into a validated document.
 //!
-//! The parser's own validation trusts some indices, so they are checked here before it runs. It also refuses whole files
-//! for faults that do not matter to a collider. Most of them are in objects that are never read, which [`prune()`] takes
-//! out before it runs; others are dropped from its list of errors.
+//! The parser's own validation trusts some indices, so they are checked here before it runs. The validation also
+//! refuses whole files for faults that do not matter to a collider. Most of these faults are in objects that are never
+//! read, which [`prune()`] takes out before the validation; the others are dropped from its list of errors.
 
 use gltf::Document;
 use gltf::json::Root;
@@ -14,18 +14,18 @@ use crate::{GltfErrorKind, ImportWarning, LoadOptions};
 /// The first bytes of a GLB.
 const MAGIC: &[u8] = b"glTF";
 
-/// What some exporters write before JSON, against the specification.
+/// Bytes that some exporters write before JSON, against the specification.
 const BYTE_ORDER_MARK: &[u8] = b"\xEF\xBB\xBF";
 
-/// Bytes of a GLB's header.
+/// Size of a GLB's header, bytes.
 const GLB_HEADER: usize = 12;
 
-/// Bytes of a GLB's header and its first chunk's header.
+/// Size of a GLB's header and its first chunk's header, bytes.
 const GLB_HEADERS: usize = 20;
 
 /// Extensions that a file may require although this importer does not implement them.
 ///
-/// They change how the file looks, allow integers where this importer accepts them anyway, or animate
+/// The extensions change how the file looks, allow integers where this importer accepts them anyway, or animate
 /// properties that belong to no node. Channels of such properties are skipped and reported.
 const HARMLESS: [&str; 12] = [
     "EXT_lights_ies",
@@ -100,8 +100,8 @@ fn kind(bytes: &[u8]) -> Result<Kind, GltfErrorKind> {
     }
 }
 
-/// Checks that a GLB is at least as long as its header claims, and that the claimed length includes the headers: the
-/// parser subtracts their length from it.
+/// Checks that a GLB is at least as long as its header claims, and that the claimed length includes the headers,
+/// because the parser subtracts the headers' length from it.
 fn check_glb_length(bytes: &[u8]) -> Result<(), GltfErrorKind> {
     let found = bytes.len();
     let claimed = bytes.get(8..GLB_HEADER).map_or(GLB_HEADER, |b| {
@@ -118,7 +118,7 @@ fn check_glb_length(bytes: &[u8]) -> Result<(), GltfErrorKind> {
     Ok(())
 }
 
-/// Parses the JSON of a document. Also tells for each buffer whether its bytes are read.
+/// Parses the JSON of a document. Also returns, for each buffer, whether its bytes are read.
 fn parse_json(
     json: &[u8],
     options: &LoadOptions,
@@ -128,7 +128,7 @@ fn parse_json(
     let value = serde_json::from_slice(json).map_err(GltfErrorKind::format)?;
     let pruned = prune(value, options, warnings)?;
     let root = serde_json::from_value::<Root>(pruned.json).map_err(|error| {
-        // The text has lines, which the value has not: if the parser refuses it for the same reason, it tells the line.
+        // The value has no line numbers. If the parser refuses the text for the same reason, that error has the line.
         let without_line = error.to_string();
         let of_text = serde_json::from_slice::<Root>(json)
             .err()
@@ -153,8 +153,8 @@ fn check_attributes(root: &Root) -> Result<(), GltfErrorKind> {
     Ok(())
 }
 
-/// Runs the parser's checks, and ignores harmless errors: positions without their range, primitives
-/// without positions, and accessors without data, which are all zeros.
+/// Runs the parser's checks, and ignores harmless errors: positions without their range, primitives without positions,
+/// and accessors without data, whose elements are all zeros.
 fn validate(root: &Root) -> Result<(), GltfErrorKind> {
     let mut errors = Vec::new();
     root.validate(root, gltf::json::Path::new, &mut |path, error| {

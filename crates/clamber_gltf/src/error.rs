@@ -8,13 +8,13 @@ use thiserror::Error;
 /// An error from loading a file: which file, and why.
 ///
 /// The message includes the causes. So [`source`](std::error::Error::source) is always `None`, and a printed chain of
-/// errors repeats nothing. The causes themselves are fields of [`GltfErrorKind`].
+/// errors does not repeat them. The causes themselves are fields of [`GltfErrorKind`].
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct GltfError {
     /// Path of the document; `None` if it was loaded from bytes.
     pub path: Option<PathBuf>,
-    /// What is wrong, and with which object of the file.
+    /// The fault, and the object of the file that has it.
     pub kind: GltfErrorKind,
 }
 
@@ -45,7 +45,7 @@ pub enum GltfErrorKind {
     /// A symbolic link leads out of the document's folder.
     #[error("{object}: its file {file} is a link to {target}, outside the document's folder")]
     OutsideFolder {
-        /// Which object names the file, by kind and index.
+        /// The object that names the file, by kind and index.
         object: String,
         /// Path of the file in the document's folder.
         file: PathBuf,
@@ -70,15 +70,15 @@ pub enum GltfErrorKind {
     /// extension that is not supported.
     #[error("not a valid glTF 2.0 file: {reason}")]
     Format {
-        /// What is wrong.
+        /// Description of the fault.
         reason: String,
     },
     /// An object of the file violates the specification, or a limit of this importer.
     #[error("{object}: {reason}")]
     Invalid {
-        /// Which object, by kind and index or name.
+        /// The object, by kind and index or name.
         object: String,
-        /// What is wrong with it.
+        /// Description of the object's fault.
         reason: String,
     },
     /// The file has no such skin.
@@ -102,7 +102,7 @@ pub enum GltfErrorKind {
     EmptyScene {
         /// Index of the scene: the one in the options, else the file's default scene, else the first.
         scene: usize,
-        /// Index of the first scene that shows a mesh; `None` if there is none.
+        /// Index of the first scene that shows a mesh; `None` if no scene shows one.
         other: Option<usize>,
     },
     /// Meshes that are shown many times make more vertices than the options allow.
@@ -111,7 +111,7 @@ pub enum GltfErrorKind {
          raise LoadOptions::max_repeated_vertices if that is meant"
     )]
     TooManyRepeats {
-        /// Which object, by kind and index.
+        /// The object that is shown too often, by kind and index.
         object: String,
         /// [`LoadOptions::max_repeated_vertices`](crate::LoadOptions::max_repeated_vertices).
         limit: usize,
@@ -127,7 +127,7 @@ pub enum GltfErrorKind {
     Skeleton {
         /// The creature, by its skins, or the file.
         object: String,
-        /// What is wrong with the joints.
+        /// The fault of the joints.
         error: RigError,
     },
     /// The collision meshes do not form a valid collider mesh.
@@ -135,7 +135,7 @@ pub enum GltfErrorKind {
     Collider {
         /// The creature, by its skins, or the file.
         object: String,
-        /// What is wrong with the meshes.
+        /// The fault of the meshes.
         error: MeshError,
     },
     /// The height in the options is not finite, or not greater than 0.
@@ -154,7 +154,7 @@ pub enum GltfErrorKind {
     },
 }
 
-/// What to do about a scene without a mesh.
+/// The end of the message about a scene without a mesh: which other scene shows one.
 fn other_scene(other: Option<usize>) -> String {
     other.map_or_else(
         || ", and no other scene does: the file's meshes are in none".into(),

@@ -1,4 +1,4 @@
-//! Reads what a file tells this library, under the key `clamber` of an object's extras:
+//! Reads the key `clamber` in the extras of a file's objects:
 //!
 //! - a material: `{"clamber": {"surface": "fur", "ledge": true}}`,
 //! - a node with a mesh: `{"clamber": {"role": "collision"}}`,
@@ -68,7 +68,7 @@ pub(crate) struct NodeExtras {
     pub(crate) weak_point: Option<WeakPointExtras>,
 }
 
-/// What a mesh is for.
+/// The use of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum Role {
@@ -84,11 +84,11 @@ pub(crate) enum Role {
 )]
 pub(crate) struct WeakPointExtras {
     pub(crate) hit_points: f64,
-    /// In model units; `None` for the node's scale.
+    /// Radius, in model units; `None` for the node's scale.
     pub(crate) radius: Option<f32>,
     #[serde(default)]
     pub(crate) major: Flag,
-    /// 0 by default; 1 for a major one, which is hidden until all minor ones are used up.
+    /// By default 0, and 1 for a major weak point, which is hidden until all weak points of order 0 are used up.
     pub(crate) order: Option<u32>,
 }
 
@@ -109,7 +109,8 @@ impl WeakPointExtras {
     }
 }
 
-/// How much later than the end of its clip a marker may be written, seconds.
+/// Seconds by which a marker may be later than the end of its clip. The marker is then moved to the end, because the
+/// times of key frames are rounded to f32 and its own time is not.
 const ROUNDED: f64 = 1e-3;
 
 #[derive(Debug, Default, PartialEq, Deserialize)]
@@ -118,7 +119,7 @@ const ROUNDED: f64 = 1e-3;
     expecting = "an object such as {\"markers\": [{\"name\": \"hit\", \"time\": 0.4}]}"
 )]
 struct AnimationExtras {
-    /// Metres a second over ground.
+    /// Speed over ground, metres a second.
     speed: Option<f64>,
     #[serde(default)]
     markers: Vec<MarkerExtras>,
@@ -128,7 +129,7 @@ struct AnimationExtras {
 #[serde(deny_unknown_fields)]
 struct MarkerExtras {
     name: String,
-    /// Seconds after the clip's first key frame.
+    /// Time after the clip's first key frame, seconds.
     time: f64,
 }
 
@@ -151,7 +152,7 @@ impl TryFrom<serde_json::Value> for Flag {
     }
 }
 
-/// The tag in a material's extras; the default if there is none.
+/// The tag in a material's extras; the default tag without extras.
 pub(crate) fn tag_of(material: &Material<'_>) -> Result<SurfaceTag, GltfErrorKind> {
     let object = || {
         let name = material.name().unwrap_or("without a name");
@@ -187,8 +188,7 @@ pub fn tag_in_extras(extras: &str) -> Result<Option<SurfaceTag>, GltfError> {
     }
 }
 
-/// The extras of each node; the default for a node without any. A node without a role has the role of its
-/// mesh.
+/// The extras of each node; the default for a node without any. A node without a role has the role of its mesh.
 pub(crate) fn of_nodes(
     nodes: &[Node<'_>],
     warnings: &mut Vec<ImportWarning>,
@@ -235,7 +235,7 @@ pub(crate) fn with_markers(animation: &Animation<'_>, clip: Clip) -> Result<Clip
     let duration = clip.duration();
     let marker = |MarkerExtras { name, time }| Marker {
         name,
-        // The times of key frames are rounded to f32, this one is not.
+        // The times of key frames are rounded to f32; the marker's time is not.
         time: if time < duration + ROUNDED {
             time.min(duration)
         } else {

@@ -32,9 +32,9 @@ pub fn load(path: impl AsRef<Path>) -> Result<Rig, GltfError> {
 /// Loads a creature from a file like [`load`], with options.
 ///
 /// # Errors
-/// As [`load`]. Also [`GltfErrorKind::NoSuchScene`] and [`GltfErrorKind::NoSuchSkin`] for what the file does not have,
-/// [`GltfErrorKind::BadHeight`] for a height that is not finite or not greater than 0, and
-/// [`GltfErrorKind::NoHeight`] if a height is set but the collider has none in the rest pose.
+/// As [`load`]. Also [`GltfErrorKind::NoSuchScene`] and [`GltfErrorKind::NoSuchSkin`] if the file lacks the scene or
+/// the skin in the options, [`GltfErrorKind::BadHeight`] for a height that is not finite or not greater than 0, and
+/// [`GltfErrorKind::NoHeight`] if a height is set but the collider has no height in the rest pose.
 pub fn load_with(path: impl AsRef<Path>, options: &LoadOptions) -> Result<Rig, GltfError> {
     from_path(path.as_ref(), |bytes, files| one(bytes, files, options))
 }
@@ -65,8 +65,9 @@ pub fn load_slice(bytes: &[u8], options: &LoadOptions) -> Result<Rig, GltfError>
 ///
 /// Use it for files in an archive, from the web, or embedded in the program. `resolve` is called with a path relative
 /// to the document, percent-decoded, with `/` between its parts. It returns the contents of the whole file. It is
-/// called in the order of the buffers, once for each file even if several buffers name it, and only for buffers that are
-/// read. Their paths must not be absolute or lead out of the document's folder, which is checked before the first call.
+/// called in the order of the buffers, once for each file even if several buffers name it, and only for buffers that
+/// are read. Their paths must not be absolute or lead out of the document's folder, which is checked before the first
+/// call.
 ///
 /// ```
 /// use std::io;
@@ -206,7 +207,7 @@ struct Collider {
     scale: Option<f64>,
 }
 
-/// Builds the collider, and scales it if a height is set. A scaled collider is built twice: the first mesh tells which
+/// Builds the collider, and scales it if a height is set. A scaled collider is built twice: the first mesh shows which
 /// vertices count for the height, and the second is welded and bounded at the final size.
 fn collider(
     mut collision: Collision,

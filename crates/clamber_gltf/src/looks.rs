@@ -16,8 +16,8 @@ pub(crate) struct Looks {
     pub(crate) colors: Vec<[f32; 4]>,
 }
 
-/// Reads normals, texture coordinates and colours. Their counts must equal `vertices`, the number of
-/// positions. Normals are morphed like the positions.
+/// Reads normals, texture coordinates and colours. Their counts must equal `vertices`, the number of positions. Normals
+/// are morphed like the positions.
 pub(crate) fn looks(
     primitive: &Primitive<'_>,
     vertices: usize,
@@ -58,7 +58,7 @@ pub(crate) fn looks(
     Ok(looks)
 }
 
-/// Reads colours with opacity, which is 1 if the file has none.
+/// Reads colours with opacity. The opacity is 1 if the file has none.
 fn colors(accessor: &Accessor<'_>, reader: &Reader<'_>) -> Result<Vec<[f32; 4]>, GltfErrorKind> {
     if accessor.dimensions().multiplicity() == 3 {
         let opaque = |[r, g, b]: [f32; 3]| [r, g, b, 1.0];

@@ -1,9 +1,8 @@
 //! Groups the skins and meshes of a file into creatures.
 //!
-//! Skins that share joints are one creature, and so are skins where a joint of one is a descendant of
-//! a joint of the other: exporters write a skin per mesh, per material, or per armature. A mesh
-//! without a skin belongs to the creature whose joint it is under. A file without skins is one
-//! creature of rigid pieces.
+//! Skins that share joints are one creature, and so are skins where a joint of one is a descendant of a joint of the
+//! other: exporters write a skin per mesh, per material, or per armature. A mesh without a skin belongs to the creature
+//! whose joint it is under. A file without skins is one creature of rigid pieces.
 
 use gltf::Mesh;
 use gltf::mesh::Semantic;
@@ -39,7 +38,7 @@ pub(crate) fn all(
     extras: &[NodeExtras],
     warnings: &mut Vec<ImportWarning>,
 ) -> Vec<Members> {
-    // Skins of other scenes have no joints left.
+    // Pruning has taken the joints from skins that only meshes of other scenes use.
     let mut used = vec![false; tree.skins.len()];
     for skin in tree.nodes.iter().filter_map(|node| node.skin()) {
         used[skin.index()] = true;
@@ -98,8 +97,8 @@ pub(crate) fn all(
     creatures
 }
 
-/// The creature with the wanted skin; without one the creature with the most triangles, the first of
-/// equal ones.
+/// The creature with the wanted skin. Without a wanted skin, the creature with the most triangles; the first of equal
+/// ones.
 pub(crate) fn choose(
     tree: &Tree<'_>,
     creatures: &[Members],
@@ -123,8 +122,7 @@ pub(crate) fn choose(
     Ok(chosen.clone())
 }
 
-/// For each skin, the number of its creature. Creatures are numbered from 0, in the order of their
-/// first skins.
+/// For each skin, the number of its creature. Creatures are numbered from 0, in the order of their first skins.
 fn creature_of_skin(tree: &Tree<'_>) -> Vec<usize> {
     let count = tree.skins.len();
     let mut above: Vec<usize> = (0..count).collect();
@@ -146,8 +144,8 @@ fn creature_of_skin(tree: &Tree<'_>) -> Vec<usize> {
         }
         skin_above[node] = skin_of_joint[node].or(inherited);
     }
-    // The smallest skin represents its creature, so numbers ascend by first skin, and the skin above
-    // another one has its number already.
+    // The smallest skin represents its creature, so numbers ascend by first skin, and the skin above another one has
+    // its number already.
     let mut numbers = vec![0; count];
     let mut next = 0;
     for skin in 0..count {
@@ -161,8 +159,8 @@ fn creature_of_skin(tree: &Tree<'_>) -> Vec<usize> {
     numbers
 }
 
-/// For each node, the number of the creature that the nearest joint at or above it belongs to. In a
-/// file without skins every node may be a joint, so all nodes belong to creature 0.
+/// For each node, the number of the creature that the nearest joint at or above it belongs to. In a file without skins
+/// every node may be a joint, so all nodes belong to creature 0.
 fn creature_of_node(tree: &Tree<'_>, of_skin: &[usize]) -> Vec<Option<usize>> {
     let nobody = of_skin.is_empty().then_some(0);
     let mut of_node = vec![nobody; tree.nodes.len()];
@@ -178,8 +176,8 @@ fn creature_of_node(tree: &Tree<'_>, of_skin: &[usize]) -> Vec<Option<usize>> {
     of_node
 }
 
-/// The smallest skin of the set that `skin` is in. Halves the path to it on the way, so that paths stay
-/// short in any order of skins.
+/// The smallest skin of the set that `skin` is in. Halves the path to it on the way, so that paths stay short in any
+/// order of skins.
 fn representative(above: &mut [usize], mut skin: usize) -> usize {
     while above[skin] != skin {
         above[skin] = above[above[skin]];

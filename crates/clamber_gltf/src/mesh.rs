@@ -1,5 +1,5 @@
-//! Loads the meshes of a creature: collision meshes are merged into one collider mesh, visual meshes
-//! are kept as they are.
+//! Loads the meshes of a creature: collision meshes are merged into one collider mesh, visual meshes are kept as they
+//! are.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -27,7 +27,7 @@ pub(crate) struct Meshes {
 struct Gathered {
     collision: Collision,
     visual: Vec<VisualMesh>,
-    /// Where each set of vertices was put. Primitives often share vertices.
+    /// The place of each set of vertices that was added. Primitives often share vertices.
     places: BTreeMap<Vec<usize>, Place>,
     unweighted: usize,
     morphed: usize,
@@ -46,12 +46,12 @@ struct Place {
     visual: Option<usize>,
 }
 
-/// A node that shows a mesh, and how.
+/// A node that shows a mesh, with the binding and the role of the mesh there.
 struct Instance<'a> {
     node: &'a Node<'a>,
     mesh: Mesh<'a>,
     binding: Binding<'a>,
-    /// The rest space: meshes that are bound differently have different ones.
+    /// The rest space. Meshes that are bound differently have different rest spaces.
     space: u32,
     role: Role,
     morph_weights: &'a [f32],
@@ -64,8 +64,8 @@ pub(crate) fn load(
     warnings: &mut Vec<ImportWarning>,
 ) -> Result<Meshes, GltfErrorKind> {
     let mut gathered = Gathered::default();
-    // A mesh that several nodes show with one skin is loaded once, since the skin places it. But each
-    // of these nodes may give it another role.
+    // A mesh that several nodes show with one skin is loaded once, because the skin places it. But each of these nodes
+    // may give it another role.
     let mut shown = BTreeSet::new();
     for instance in instances(contents, members, joints) {
         let weights: Vec<u32> = instance.morph_weights.iter().map(|w| w.to_bits()).collect();
@@ -99,11 +99,11 @@ pub(crate) fn load(
     })
 }
 
-/// Memory that a primitive takes beside its vertices and triangles, bytes, rounded up.
+/// Memory that a primitive takes besides its vertices and triangles, bytes, rounded up.
 const PRIMITIVE_BYTES: usize = 256;
 
-/// The nodes of a creature that show a mesh. If one of them has the role `collision`, nodes without a
-/// role are visual only.
+/// The nodes of a creature that show a mesh. If one of them has the role `collision`, nodes without a role are visual
+/// only.
 fn instances<'a>(
     contents: &'a Contents<'a>,
     members: &'a Members,
@@ -194,7 +194,7 @@ impl Gathered {
         Ok(())
     }
 
-    /// The place of a primitive's vertices, which are read unless another primitive has the same ones.
+    /// The place of a primitive's vertices. They are read unless another primitive has the same vertices.
     fn place(
         &mut self,
         instance: &Instance<'_>,

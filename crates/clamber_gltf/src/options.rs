@@ -5,8 +5,8 @@ use clamber_surface::mesh::{BuildOptions, SurfaceTag};
 
 /// Options for loading a creature.
 ///
-/// The default loads the creature with the most triangles of the default scene, with the size and the tags that the file
-/// gives it.
+/// The default loads the creature with the most triangles of the default scene, with the size and the tags that the
+/// file gives it.
 ///
 /// ```
 /// use clamber_gltf::LoadOptions;
@@ -19,7 +19,7 @@ use clamber_surface::mesh::{BuildOptions, SurfaceTag};
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct LoadOptions {
-    /// Index of the scene to load. `None` for the file's default scene; in a file that names none, the first scene that
+    /// Index of the scene to load. `None` for the file's default scene; without a default scene, the first one that
     /// shows a mesh; in a file without scenes, everything. Meshes that the scene does not show are left out.
     pub scene: Option<usize>,
     /// Index of a skin of the creature to load; `None` for the creature with the most triangles.
@@ -31,11 +31,11 @@ pub struct LoadOptions {
     pub height: Option<f32>,
     /// Function that chooses the tags of surfaces; `None` keeps the file's tags.
     pub tagger: Option<Tagger>,
-    /// How many vertices a file may make by showing meshes more than once: each showing after the first counts all
-    /// vertices of its mesh. The limit for triangles is twice that. 2^20 by default.
+    /// Largest number of vertices that a file may make by showing meshes more than once: each showing after the first
+    /// counts all vertices of its mesh. The limit for triangles is twice this number. 2^20 by default.
     ///
-    /// It bounds the memory that a small file can take: half a gigabyte by default. Vertices that are shown once are limited
-    /// by the size of the file instead.
+    /// The limit bounds the memory that a small file can take: half a gigabyte by default. The size of the file limits
+    /// the vertices that are shown once.
     pub max_repeated_vertices: usize,
 }
 
@@ -113,7 +113,7 @@ impl LoadOptions {
         }
     }
 
-    /// Gives all surfaces the same tag, whatever the file says.
+    /// Gives all surfaces the same tag and ignores the file's tags.
     #[must_use]
     pub fn with_tag(self, tag: SurfaceTag) -> Self {
         self.with_tags(move |_, _| tag)

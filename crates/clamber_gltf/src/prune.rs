@@ -1,15 +1,16 @@
-//! Takes out of a document what is never read, before the parser sees it.
+//! Removes the parts of a document that are never read, before the parser sees it.
 //!
 //! The parser refuses a whole file for a fault in a single object. Textures, images, cameras, other scenes, and all
 //! accessors, views and buffers that only these use are never read, so no fault in them may refuse a file. Lists keep
-//! their lengths, since objects name each other by index: what is not read becomes the least that the parser accepts.
+//! their lengths, because objects name each other by index: an object that is not read becomes the smallest one that
+//! the parser accepts.
 
 use gltf::json::Value;
 use serde_json::{Map, json};
 
 use crate::{GltfErrorKind, ImportWarning, LoadOptions};
 
-/// A document of which only what is read is left.
+/// A document without the parts that are never read.
 pub(crate) struct Pruned {
     pub(crate) json: Value,
     /// For each buffer, whether its bytes are read.
@@ -46,7 +47,7 @@ const READ_OF_MATERIAL: [&str; 7] = [
 /// Members of a material's metallic-roughness model that are read.
 const READ_OF_PBR: [&str; 3] = ["baseColorFactor", "metallicFactor", "roughnessFactor"];
 
-/// Members of a node that is a joint only.
+/// Members that a node keeps if its mesh is not shown: the node may still be a joint.
 const READ_OF_JOINT: [&str; 6] = [
     "children",
     "matrix",
@@ -56,10 +57,10 @@ const READ_OF_JOINT: [&str; 6] = [
     "translation",
 ];
 
-/// An extension by which a node shows its mesh many times.
+/// Pointer to the extension by which a node shows its mesh many times.
 const INSTANCING: &str = "/extensions/EXT_mesh_gpu_instancing";
 
-/// Takes out of a document what is never read.
+/// Removes the parts of a document that are never read.
 pub(crate) fn prune(
     mut json: Value,
     options: &LoadOptions,
@@ -96,7 +97,7 @@ fn whole_numbers(value: &mut Value) {
     match value {
         Value::Number(number) if number.is_f64() => {
             let float = number.as_f64().unwrap_or(f64::NAN);
-            // Zero keeps its sign, and 2^53 and more may have been rounded.
+            // A negative zero keeps its sign, and numbers of 2^53 and more may have been rounded.
             let whole = float > 0.0 && float < 9_007_199_254_740_992.0 && float.fract() == 0.0;
             if whole || float.to_bits() == 0 {
                 *value = json!(float as u64);
@@ -108,7 +109,7 @@ fn whole_numbers(value: &mut Value) {
     }
 }
 
-/// No extension of an object is read.
+/// Removes the extensions of all objects, because none is read.
 fn drop_extensions(value: &mut Value) {
     match value {
         Value::Array(items) => items.iter_mut().for_each(drop_extensions),
@@ -120,7 +121,7 @@ fn drop_extensions(value: &mut Value) {
     }
 }
 
-/// Channels without a node are legal and must be skipped, but the parser requires a node.
+/// Removes channels without a node. They are legal and must be skipped, but the parser requires a node.
 fn drop_channels_without_node(root: &mut Map<String, Value>, warnings: &mut Vec<ImportWarning>) {
     let mut dropped = 0;
     for animation in list_mut(root, "animations") {
@@ -158,7 +159,8 @@ fn strip_materials(root: &mut Map<String, Value>, warnings: &mut Vec<ImportWarni
     }
 }
 
-/// Takes the meshes from all nodes that the loaded scene does not show.
+/// Removes the meshes from all nodes that the loaded scene does not show, and the joints from skins that only such
+/// nodes use.
 fn choose_scene(
     root: &mut Map<String, Value>,
     options: &LoadOptions,
@@ -204,7 +206,7 @@ fn choose_scene(
             node.retain(|name, _| READ_OF_JOINT.contains(&name.as_str()));
         }
     }
-    // A skin that only hidden meshes have makes no creature. One that no mesh has is reported later.
+    // A skin that only hidden meshes use makes no creature. A skin that no mesh uses is reported later.
     for (skin, hidden) in skins.0.iter_mut().zip(hidden.0) {
         *skin |= !hidden;
     }
@@ -248,12 +250,13 @@ fn mesh_count(nodes: &[Value], shown: &[bool]) -> usize {
         .count()
 }
 
-/// The nodes that a scene names; `None` for what is no index.
+/// The nodes that a scene names; `None` for an entry that is no index.
 fn roots(scene: &Value) -> impl Iterator<Item = Option<usize>> {
     items(scene.get("nodes")).map(index)
 }
 
-/// For each node, whether it or a node below it has a mesh. In one pass for all scenes: a file may have many.
+/// For each node, whether it or a node below it has a mesh. Takes one pass for all scenes, because a file may have
+/// many.
 fn lead_to_mesh(nodes: &[Value]) -> Vec<bool> {
     let mut parents = vec![Vec::new(); nodes.len()];
     for (parent, node) in nodes.iter().enumerate() {
@@ -286,8 +289,8 @@ fn shown(nodes: &[Value], scene: &Value) -> Vec<bool> {
     shown
 }
 
-/// Replaces meshes, accessors, views and buffers that are not read by the least that the parser accepts. Gives for each
-/// buffer whether it is read.
+/// Replaces meshes, accessors, views and buffers that are not read by the smallest ones that the parser accepts.
+/// Returns, for each buffer, whether it is read.
 fn keep_what_is_read(root: &mut Map<String, Value>) -> Vec<bool> {
     let mut meshes = Marks::new(list(root, "meshes"));
     list(root, "nodes")
@@ -350,7 +353,7 @@ impl Marks {
         Self(vec![false; objects.len()])
     }
 
-    /// Marks the object with this index. What is no index of the list is left for the parser to refuse.
+    /// Marks the object with this index. The parser refuses an index that is not in the list.
     fn mark(&mut self, named: Option<&Value>) {
         if let Some(mark) = named
             .and_then(index)
@@ -389,17 +392,17 @@ impl Marks {
     }
 }
 
-/// An index of an object.
+/// A value as an index; `None` if it is no index.
 fn index(value: &Value) -> Option<usize> {
     usize::try_from(value.as_u64()?).ok()
 }
 
-/// The items of a list, none if it is missing or no list.
+/// The items of a list; none if it is missing or not a list.
 fn items(value: Option<&Value>) -> impl Iterator<Item = &Value> {
     value.and_then(Value::as_array).into_iter().flatten()
 }
 
-/// A list of the document.
+/// A list of the document; empty if it is missing.
 fn list<'a>(root: &'a Map<String, Value>, name: &str) -> &'a [Value] {
     root.get(name)
         .and_then(Value::as_array)

@@ -1,4 +1,4 @@
-//! What primitives hold, each read once, however often it is shown.
+//! The vertices and triangles of primitives. Each is read once, however often it is shown.
 
 use std::cell::{OnceCell, RefCell};
 use std::collections::BTreeMap;
@@ -13,7 +13,7 @@ use crate::accessor::Reader;
 use crate::looks::{self, Looks};
 use crate::vertices::{self, WeightSet};
 
-/// Vertices and triangles that were read. What is asked for again counts as repeated.
+/// Vertices and triangles that were read. Each further request for them counts as a repeat.
 #[derive(Default)]
 pub(crate) struct Readings {
     shapes: RefCell<BTreeMap<Vec<usize>, Rc<Shape>>>,
@@ -80,7 +80,7 @@ impl Readings {
 }
 
 impl Shape {
-    /// Its sets of joints and weights, of the primitive that it was read from.
+    /// The shape's sets of joints and weights. `primitive` must be the one that the shape was read from.
     pub(crate) fn weights(
         &self,
         primitive: &Primitive<'_>,
@@ -94,7 +94,7 @@ impl Shape {
         .map(Vec::as_slice)
     }
 
-    /// Its normals, texture coordinates and colours, of the primitive that it was read from.
+    /// The shape's normals, texture coordinates and colours. `primitive` must be the one that the shape was read from.
     pub(crate) fn looks(
         &self,
         primitive: &Primitive<'_>,
@@ -109,7 +109,7 @@ impl Shape {
     }
 }
 
-/// The value of a cell, which `read` gives the first time.
+/// The value of a cell. `read` makes it in the first call.
 fn once<T>(
     cell: &OnceCell<T>,
     read: impl FnOnce() -> Result<T, GltfErrorKind>,
@@ -121,7 +121,7 @@ fn once<T>(
     Ok(cell.get_or_init(|| value))
 }
 
-/// Marks the part of a key that tells morphed vertices apart; no attribute has this number.
+/// Marks the part of a key that tells morphed vertices apart. [`attributes`] uses the numbers below it.
 const MORPHED: usize = 6;
 
 /// Numbers that are equal for primitives whose vertices have the same accessors: three for each attribute that is read.

@@ -11,9 +11,9 @@ use crate::warning::ImportWarning;
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Rig {
-    /// The joints of the skins, in the skins' order, then the nodes of rigid meshes, then all other
-    /// nodes above these. A node is several joints if skins give it different inverse bind matrices.
-    /// Node 3 without a name is called `"node 3"`.
+    /// The joints of the skins, in the skins' order, then the nodes of rigid meshes, then all other nodes above these.
+    /// A node is several joints if skins give it different inverse bind matrices. Node 3 without a name is called
+    /// `"node 3"`.
     pub skeleton: Skeleton,
     /// The clips that move the skeleton, in the order of the file. Animation 3 without a name is called `"clip 3"`.
     pub clips: Vec<Clip>,
@@ -23,16 +23,17 @@ pub struct Rig {
     pub visual: Vec<VisualMesh>,
     /// All materials of the file, in its order.
     pub materials: Vec<Material>,
-    /// Of each material with a name that the collider has, its triangles, ascending. Materials of the same name are one.
+    /// The collider's triangles by the name of their material, ascending. Materials of the same name are merged;
+    /// triangles without a named material are left out.
     pub collider_materials: BTreeMap<String, Vec<TriangleId>>,
     /// The weak points, in the order of the file's nodes.
     pub weak_points: Vec<WeakPoint>,
-    /// What the import found, changed and skipped.
+    /// The import's report: the collider's build, the scale, and all that was skipped or repaired.
     pub report: ImportReport,
 }
 
 impl Rig {
-    /// A creature made in code, of a skeleton and a collider. The other fields are empty.
+    /// A creature made in code, from a skeleton and a collider. The other fields are empty.
     pub fn new(skeleton: Skeleton, collider: Arc<ColliderMesh>) -> Self {
         Self {
             skeleton,
@@ -63,7 +64,7 @@ impl Rig {
     }
 }
 
-/// What an import found, changed and skipped.
+/// The report of an import: the collider's build, the scale, and all that was skipped or repaired.
 #[derive(Clone, Debug, Default)]
 #[non_exhaustive]
 pub struct ImportReport {
@@ -72,6 +73,6 @@ pub struct ImportReport {
     /// The factor by which [`LoadOptions::with_height`](crate::LoadOptions::with_height) scaled the creature; `None` if
     /// no height was set. Multiply your own lengths and speeds in file units by it.
     pub scale: Option<f64>,
-    /// What was skipped or repaired, in the order in which it was found.
+    /// Objects that were skipped or repaired, in the order in which they were found.
     pub warnings: Vec<ImportWarning>,
 }

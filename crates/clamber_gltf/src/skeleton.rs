@@ -16,7 +16,7 @@ pub(crate) struct Joints {
     pub(crate) skeleton: Skeleton,
     /// By node: its joints. There are several if skins give the node different inverse bind matrices.
     pub(crate) of_node: BTreeMap<usize, Vec<JointId>>,
-    /// By index of the skin: the joint for each index that its meshes name.
+    /// By skin: the joint for each joint index that the skin's meshes name.
     pub(crate) of_skin: BTreeMap<usize, Vec<JointId>>,
     /// By node: the joint that moves the rigid mesh there.
     pub(crate) of_rigid: BTreeMap<usize, JointId>,
@@ -27,7 +27,7 @@ pub(crate) struct Joints {
 struct Gathering {
     /// Node and inverse bind matrix of each joint.
     joints: Vec<(usize, Affine)>,
-    /// By node, and bits of the inverse bind matrix.
+    /// Joints by node and by the bits of the inverse bind matrix.
     numbers: BTreeMap<(usize, [u32; 12]), JointId>,
     of_node: BTreeMap<usize, Vec<JointId>>,
 }
@@ -47,8 +47,8 @@ impl Gathering {
     }
 }
 
-/// Builds the skeleton: the joints of the skins, in the skins' order, then the nodes of rigid meshes,
-/// then all other nodes above these.
+/// Builds the skeleton: the joints of the skins, in the skins' order, then the nodes of rigid meshes, then all other
+/// nodes above these.
 pub(crate) fn load(
     contents: &Contents<'_>,
     members: &Members,

@@ -1,4 +1,4 @@
-//! Reads the transforms of nodes as translation, rotation and scale, also those given as matrices.
+//! Reads the transforms of nodes, also matrices, as translation, rotation and scale.
 
 use clamber_surface::rig::Transform;
 use glam::{DAffine3, DMat3, DVec3, Quat, Vec3};
@@ -6,11 +6,11 @@ use gltf::Node;
 
 use crate::ImportWarning;
 
-/// The largest error of a decomposed matrix that gives no warning, as a share of a column's length: a
-/// millimetre in a metre.
+/// The largest error of a decomposed matrix that gives no warning, as a share of a column's length: a millimetre in a
+/// metre.
 const SHEAR_WORTH_TELLING: f64 = 1e-3;
 
-/// How far a scale that was meant to be 1 may be from it.
+/// Largest difference from 1 of a scale that is read as 1. Blender's rounding errors are mostly smaller.
 const ROUNDED: f32 = 1e-6;
 
 /// Reads the transforms of nodes as translation, rotation and scale.
@@ -44,9 +44,9 @@ pub(crate) fn of_nodes(nodes: &[Node<'_>], warnings: &mut Vec<ImportWarning>) ->
     transforms
 }
 
-/// A scale, without the rounding errors that exporters write where none is meant: Blender's are mostly below 1e-6.
-/// Joints without a scale are posed with less work. Each joint moves what hangs from it by at most 1e-6 of its
-/// distance.
+/// Replaces a scale that is nearly 1 by 1: exporters write rounding errors where no scale is meant, and Blender's are
+/// mostly below 1e-6. Joints without a scale are posed with less work. The change at a joint moves anything under the
+/// joint by at most 1e-6 of its distance.
 pub(crate) fn without_rounding(scale: Vec3) -> Vec3 {
     let axis = |axis: f32| {
         if (axis - 1.0).abs() <= ROUNDED {
@@ -58,8 +58,8 @@ pub(crate) fn without_rounding(scale: Vec3) -> Vec3 {
     Vec3::from(scale.to_array().map(axis))
 }
 
-/// Decomposes a matrix into translation, rotation and scale. Also gives the largest error of a column,
-/// as a share of its length. A column of length zero gets a direction perpendicular to the others.
+/// Decomposes a matrix into translation, rotation and scale. Also returns the largest error of a column, as a share of
+/// its length. A column of length zero gets a direction perpendicular to the others.
 fn decompose(matrix: &[[f32; 4]; 4]) -> (Transform, f64) {
     let column = |c: usize| DVec3::from_array([0, 1, 2].map(|row| f64::from(matrix[c][row])));
     let linear = DMat3::from_cols(column(0), column(1), column(2));

@@ -4,8 +4,8 @@ use gltf::{Document, Node, Skin};
 
 use crate::GltfErrorKind;
 
-/// All nodes and skins of a file, and the hierarchy of the nodes. Every node has at most one parent, and
-/// there are no cycles.
+/// All nodes and skins of a file, and the hierarchy of the nodes. Every node has at most one parent, and there are no
+/// cycles.
 pub(crate) struct Tree<'a> {
     pub(crate) nodes: Vec<Node<'a>>,
     pub(crate) skins: Vec<Skin<'a>>,
@@ -47,8 +47,8 @@ impl<'a> Tree<'a> {
     }
 }
 
-/// All nodes, by generation from the roots down. A node that cannot be reached from a root is an error: it
-/// is in a cycle, or below one.
+/// All nodes, by generation from the roots down. A node that cannot be reached from a root is an error: it is in a
+/// cycle, or below one.
 fn parents_first(
     nodes: &[Node<'_>],
     parent_of: &[Option<usize>],

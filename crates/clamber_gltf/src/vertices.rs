@@ -41,7 +41,7 @@ pub(crate) fn has_surface(primitive: &Primitive<'_>) -> bool {
 /// Why a primitive is skipped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum PassedOver {
-    /// It belongs to a skinned mesh, but lacks joints and weights.
+    /// The primitive belongs to a skinned mesh, but lacks joints and weights.
     NoWeights,
     PointsOrLines,
     NoPositions,
@@ -60,7 +60,7 @@ pub(crate) fn passed_over(primitive: &Primitive<'_>, binding: &Binding<'_>) -> O
     (unskinned && matches!(binding, Binding::Skin(_))).then_some(PassedOver::NoWeights)
 }
 
-/// Reads positions, with morph targets at these weights, and charges what they make.
+/// Reads positions, with morph targets at these weights, and charges the memory that their vertices take later.
 pub(crate) fn positions(
     primitive: &Primitive<'_>,
     morph_weights: &[f32],
@@ -114,13 +114,12 @@ pub(crate) fn vertices(
     Ok(vertices)
 }
 
-/// Bound on the memory that a vertex takes in a collider and a visual mesh, bytes. It is charged before
-/// it is allocated, so that files that claim more vertices than they hold are refused before memory
-/// runs out.
+/// Bound on the memory that a vertex takes in a collider and a visual mesh, bytes. It is charged before it is
+/// allocated, so that files that claim more vertices than they hold are refused before memory runs out.
 const BUILD_BYTES: usize = 256;
 
-/// Positions or normals with morph targets applied. A target that does not move them is `None`. The
-/// sums are taken in f64 in the order of the targets, and rounded once.
+/// Positions or normals with morph targets applied. A target that does not move them is `None`. The sums are taken in
+/// f64 in the order of the targets, and rounded once.
 pub(crate) fn morphed<'a>(
     rest: Vec<[f32; 3]>,
     targets: impl Iterator<Item = Option<Accessor<'a>>>,
@@ -257,8 +256,8 @@ pub(crate) fn triangles(
         let reason = format!("has {} corners, not a multiple of 3", indices.len());
         return Err(GltfErrorKind::invalid(object, reason));
     }
-    // A strip makes up to three corners of every index, once for the collider and once for drawing, and the triangle's
-    // number among those of its material.
+    // A strip makes up to one triangle of every index: three corners for the collider, three for drawing, and the
+    // triangle's number in the list of its material.
     reader.charge(object, indices.len().saturating_mul(7 * size_of::<u32>()))?;
     Ok(corners(&indices, primitive.mode()).collect())
 }

@@ -14,8 +14,8 @@ use crate::{GltfErrorKind, LoadOptions};
 
 /// A mesh to draw.
 ///
-/// The vertices are as in the file: they are not welded, but split where normals or texture coordinates
-/// differ. The triangles are grouped by material.
+/// The vertices are as in the file: they are not welded, but split where normals or texture coordinates differ. The
+/// triangles are grouped by material.
 #[derive(Clone, Debug, Default)]
 #[non_exhaustive]
 pub struct VisualMesh {
@@ -23,15 +23,15 @@ pub struct VisualMesh {
     pub name: String,
     /// Rest positions in mesh space, with morph targets at their rest weights.
     pub positions: Vec<Vec3>,
-    /// Unit vectors in mesh space, one for each vertex. Zero where the file's normal cannot be
-    /// normalised; empty if the file has no normals.
+    /// Unit vectors in mesh space, one for each vertex. Zero where the file's normal cannot be normalised; empty if the
+    /// file has no normals.
     pub normals: Vec<Vec3>,
     /// For each `TEXCOORD_n`, from 0 on, the texture coordinates of every vertex.
     pub tex_coords: Vec<Vec<Vec2>>,
     /// `COLOR_0`: linear red, green, blue and opacity, one for each vertex; empty if the file has none.
     pub colors: Vec<[f32; 4]>,
-    /// Influences of the first vertex, then of the second, and so on. Each vertex's are sorted by
-    /// joint, and their weights are normalised like those of a collider.
+    /// Influences of the first vertex, then of the second, and so on. The influences of a vertex are sorted by joint,
+    /// and their weights are normalised as in a collider.
     pub influences: Vec<Influence>,
     /// For each vertex, where its influences end in `influences`.
     pub influence_ends: Vec<u32>,
@@ -45,7 +45,8 @@ pub struct VisualMesh {
 pub struct VisualPrimitive {
     /// Index into [`Rig::materials`](crate::Rig::materials); `None` for glTF's default material.
     pub material: Option<usize>,
-    /// The tag of the material. Without a material, the tagger's tag, or the default without a tagger.
+    /// The tag of the material. Without a material, the tagger's tag for surfaces without one, or the default without a
+    /// tagger.
     pub tag: SurfaceTag,
     /// Corners, counter-clockwise seen from outside, as indices into the mesh's vertices.
     pub triangles: Vec<[u32; 3]>,
@@ -87,8 +88,7 @@ pub enum Alpha {
 }
 
 impl VisualMesh {
-    /// A mesh without triangles. Refuses positions that are not finite, and weights that cannot be
-    /// normalised.
+    /// A mesh without triangles. Refuses positions that are not finite, and weights that cannot be normalised.
     pub(crate) fn new(
         name: String,
         vertices: &Vertices,
@@ -182,7 +182,7 @@ pub(crate) fn materials(
             emissive: material.emissive_factor(),
             alpha: match material.alpha_mode() {
                 AlphaMode::Opaque => Alpha::Opaque,
-                // The specification's default.
+                // 0.5 is the specification's default.
                 AlphaMode::Mask => Alpha::Mask(material.alpha_cutoff().unwrap_or(0.5)),
                 AlphaMode::Blend => Alpha::Blend,
             },

@@ -1,6 +1,6 @@
 use std::fmt;
 
-/// Something in a file that was skipped or repaired. `Display` gives a message of one line.
+/// A part of a file that was skipped or repaired. `Display` gives a message of one line.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ImportWarning {
@@ -35,7 +35,8 @@ pub enum ImportWarning {
         /// Number of nodes with a mesh.
         meshes: usize,
     },
-    /// Nodes that show their mesh at several places (`EXT_mesh_gpu_instancing`); it was loaded at the node's own.
+    /// Nodes that show their mesh at several places (`EXT_mesh_gpu_instancing`). The mesh was loaded once, at the
+    /// node's own place.
     Instances {
         /// Number of nodes.
         nodes: usize,
@@ -106,7 +107,7 @@ pub enum ImportWarning {
     },
     /// An animation that moves no joint of the skeleton, skipped.
     UnusedAnimation {
-        /// Its name; `"clip 3"` for animation 3 without a name.
+        /// Name of the animation; `"clip 3"` for animation 3 without a name.
         animation: String,
     },
     /// Animation channels that move morph targets, or a node that is not in the skeleton, skipped.
@@ -119,7 +120,7 @@ pub enum ImportWarning {
 }
 
 impl ImportWarning {
-    /// Its approximate size in memory, bytes.
+    /// Approximate size of the warning in memory, bytes.
     pub(crate) fn bytes(&self) -> usize {
         let held = match self {
             Self::WeakPointWithoutJoint { node: text }

@@ -49,8 +49,8 @@ pub(crate) fn load(
     Ok(weak_points)
 }
 
-/// A node's scale at rest: the cube root of its change of volume, so that the ball of this radius has the
-/// volume of the transformed unit ball.
+/// A node's scale at rest: the cube root of its change of volume, so that the ball of this radius has the volume of the
+/// transformed unit ball.
 fn radius_of(model_from_node: &DAffine3) -> f32 {
     libm::cbrt(model_from_node.matrix3.determinant().abs()) as f32
 }

@@ -10,11 +10,12 @@ pub struct MoverBody {
     /// first end should be zero, since ground beside and under the feet, and grips, are searched around the ball at the
     /// position only.
     pub axis: [DVec3; 2],
-    /// Radius of the capsule, metres, positive. A resting body has its axis at this distance from what it touches.
+    /// Radius of the capsule, metres, positive. The axis of a resting body is at this distance from the surface it
+    /// rests on.
     pub radius: f64,
     /// Thickness of the outer layer, metres, not negative and less than the radius. The rest of the body is the core,
-    /// which enters nothing. A larger margin tolerates rougher deformation, but more overlap is visible; 1/40 of the
-    /// radius is a good start.
+    /// which does not enter obstacles. A larger margin tolerates rougher deformation, but more overlap is visible; 1/40
+    /// of the radius is a good start.
     pub margin: f64,
 }
 
@@ -64,8 +65,8 @@ impl MoverBody {
     /// Checks the axis, the radius and the margin.
     ///
     /// # Errors
-    /// [`MoverError`] for an axis that is not finite, a radius that is not positive, or a margin that is negative or not
-    /// less than the radius.
+    /// [`MoverError`] for an axis that is not finite, a radius that is not positive, or a margin that is negative or
+    /// not less than the radius.
     pub fn validate(&self) -> Result<(), MoverError> {
         if !self.axis.iter().all(|end| end.is_finite()) {
             return Err(MoverError::NotFinite("axis"));

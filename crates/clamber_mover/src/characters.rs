@@ -1,8 +1,9 @@
-//! Other characters among the obstacles: they stop a body, and never push it.
+//! Other characters among the obstacles. They stop a body, and never push it.
 //!
 //! The half-space of a contact with a character always contains the displacement of the body's own frame. So a
-//! character takes the body's own motion towards it, and no more: it neither carries the body off nor presses it into
-//! anything, whatever it does itself. Where walls and characters together leave no room, the walls alone count.
+//! character only stops the body's own motion towards it: however the character moves, it neither carries the body off
+//! nor presses it into an obstacle. Where walls and characters together leave no room, the solver ignores the
+//! characters.
 
 use clamber_world::{CharacterBody, Obstacle, ObstacleId, Others, WorldCapsule};
 use glam::DVec3;
@@ -17,27 +18,28 @@ use crate::{Hit, IntoOthers, Mover, Path, Touch};
 pub(crate) struct Characters<'a> {
     obstacles: &'a [(ObstacleId, &'a dyn Obstacle)],
     dt: f64,
-    /// True if there are any.
+    /// True if any obstacle is a character.
     any: bool,
-    /// The body as one of them.
+    /// The body as a character; `None` if it is not one.
     into: Option<IntoOthers>,
-    /// True if walls and characters have left no room, so that the walls alone count.
+    /// True if walls and characters have left no room, so that the characters are ignored.
     yielding: bool,
 }
 
 impl Characters<'_> {
-    /// True for a contact with one of them.
+    /// True for a contact with a character.
     pub(crate) fn has(&self, touch: &Touch) -> bool {
         self.of(touch).is_some()
     }
 
-    /// The character that a contact is with.
+    /// The character that a contact is with; `None` for a contact with another obstacle.
     fn of(&self, touch: &Touch) -> Option<CharacterBody> {
         let obstacle = self.any.then(|| find(self.obstacles, touch.obstacle))?;
         obstacle?.character()
     }
 
-    /// The offset of a half-space of a contact with a character.
+    /// The offset of a half-space of a contact with a character, lowered by the allowed depth. The half-space contains
+    /// the frame's displacement.
     fn offset(&self, path: &Path, half_space: &HalfSpace, touch: &Touch) -> f64 {
         if self.yielding {
             return f64::NEG_INFINITY;
@@ -46,7 +48,7 @@ impl Characters<'_> {
         offset.min(half_space.normal.dot(path.frame))
     }
 
-    /// How deep a body may be in what it touches.
+    /// Depth to which the body may overlap the character of a contact, metres; 0 for other obstacles.
     pub(crate) fn allowed(&self, path: &Path, touch: &Touch) -> f64 {
         let (Some(into), Some(other)) = (self.into, self.of(touch)) else {
             return 0.0;
@@ -60,7 +62,7 @@ impl Characters<'_> {
             Others::Push => DEEPEST * least,
             Others::Pass => f64::INFINITY,
         };
-        // What is deep already has come in by a side.
+        // A body that is this deep has come in from the side.
         let is_deep = path.body.radius - touch.contact.distance > DEEP * least;
         if is_deep || self.has_beside(path, touch, into.up) {
             most
@@ -69,14 +71,14 @@ impl Characters<'_> {
         }
     }
 
-    /// True for a contact with one of them that is beside the body at the start of a movement.
+    /// True for a contact with a character that is beside the body at the start of a movement.
     pub(crate) fn has_beside(&self, path: &Path, touch: &Touch, up: DVec3) -> bool {
         let body = path.body.at(path.start);
         self.of(touch)
             .is_some_and(|other| is_beside(&body, &other.capsule, up))
     }
 
-    /// True if a hit along `way` stops the body. A character that comes to meet a body does not.
+    /// True if a hit along `way` stops the body. A character stops only the body's own motion, relative to the frame.
     pub(crate) fn stop(&self, path: &Path, hit: &Hit, way: DVec3) -> bool {
         if !self.has(&hit.touch) {
             return true;
@@ -100,7 +102,8 @@ impl Characters<'_> {
         }
     }
 
-    /// How deep a body is in what it touches, as far as the contact may move it. `way` is its displacement.
+    /// Depth from which a contact may push the body out, metres, at most `depth`, the actual depth. `way` is the body's
+    /// displacement.
     pub(crate) fn depth(&self, path: &Path, touch: &Touch, way: DVec3, depth: f64) -> f64 {
         if depth <= 0.0 || !self.has(touch) {
             depth
@@ -113,10 +116,11 @@ impl Characters<'_> {
     }
 }
 
-/// How deep characters that push each other overlap at most, as a share of the smaller radius.
+/// Maximum overlap of two characters that push each other, as a fraction of the smaller radius.
 const DEEPEST: f64 = 0.75;
 
-/// Who stands on another character is no deeper in it than this share of the smaller radius.
+/// Depth, as a fraction of the smaller radius, above which a body counts as having come in from the side. A body that
+/// stands on another character does not get this deep.
 const DEEP: f64 = 0.5;
 
 /// True if two upright bodies are beside each other, and neither is on top of the other: the lowest point of each is
@@ -131,7 +135,7 @@ pub fn is_beside(a: &WorldCapsule, b: &WorldCapsule, up: DVec3) -> bool {
 }
 
 impl IntoOthers {
-    /// True if a body carries another character: one that is above it and has no greater mass.
+    /// True if the body carries another character: one that is above it and has no greater mass.
     pub(crate) fn carries(&self, body: &WorldCapsule, other: &CharacterBody) -> bool {
         let [highest, lowest] = [body, &other.capsule].map(|body| {
             let [a, b] = body.ends.map(|end| end.dot(self.up));
@@ -163,7 +167,7 @@ impl<'a> Mover<'a> {
         self.characters().has(touch)
     }
 
-    /// Adds a contact with its half-space, and the wall that stands for its slope.
+    /// Adds a contact with its half-space, and the vertical wall that replaces its slope.
     pub(crate) fn add_contact(
         &mut self,
         path: &Path,
@@ -187,7 +191,8 @@ impl<'a> Mover<'a> {
         memory.yielding_walls.extend(wall.map(yielding));
     }
 
-    /// Leaves characters out of the rest of a movement. False if none is among its contacts, or they are left out.
+    /// Ignores characters in the rest of a movement. False if none is among its contacts, or if they are ignored
+    /// already.
     pub(crate) fn leave_characters_out(&mut self) -> bool {
         let characters = self.characters();
         if !characters.any || characters.yielding {

@@ -5,17 +5,17 @@ use crate::{Mover, MoverBody, Touch};
 /// Contacts farther than the nearest by less than this fraction of the body's radius count as equally near.
 const AS_NEAR: f64 = 0.05;
 
-/// Most contacts for which a hand's reach is tested: a surface behind a wall has many triangles.
+/// Maximum number of contacts for which a hand's reach is tested: a surface behind a wall has many triangles.
 const TRIES: usize = 16;
 
-/// The end of the line to a contact may be blocked over this length, as a fraction of the body's radius: the triangles
-/// around the contact are there, and rounding moves them. Thicker armour above fur keeps hands off.
+/// Length at the end of the line to a contact that may be blocked, as a fraction of the body's radius: the triangles
+/// around the contact are there, and rounding moves them. Armour above fur that is thicker than this keeps hands off.
 const AT_HAND: f64 = 0.0025;
 
 impl Mover<'_> {
     /// Finds the contact that hands grip at a position: the nearest one within `reach` metres of the body's ball that
-    /// `can_grip` accepts and that a hand can reach. Of contacts about equally near, the one with the highest `merit`
-    /// is chosen; a merit of 1 outweighs a tenth of the radius in distance.
+    /// `can_grip` accepts and that a hand can reach. Among contacts about equally near, the one with the highest
+    /// `merit` is chosen; a merit of 1 outweighs a tenth of the radius in distance.
     pub fn find_grip(
         &mut self,
         body: &MoverBody,
@@ -24,8 +24,8 @@ impl Mover<'_> {
         can_grip: impl Fn(&Touch) -> bool,
         merit: impl Fn(&Touch) -> f64,
     ) -> Option<Touch> {
-        // Nearly always there is a grip close to the body. Contacts that are farther than the nearest grip, and not
-        // about as near, do not matter: a grip that is found within this short reach is the one of the whole reach.
+        // Nearly always there is a grip close to the body. A contact that is farther than the nearest grip by more than
+        // `as_near` cannot be chosen. So the grip found within this short reach is also the grip of the whole reach.
         let as_near = AS_NEAR * body.radius;
         let at_body = as_near + 0.5 * body.margin;
         if at_body < reach {
@@ -48,8 +48,8 @@ impl Mover<'_> {
     ) -> Option<Touch> {
         let overlaps = self.overlap(&body.crouched(), position, reach).iter();
         let distances = overlaps.map(|touch| touch.contact.distance);
-        // Nothing is nearer than the nearest of all contacts, nor within the core, except for an obstacle that crushes
-        // the body.
+        // Within this distance no obstacle can block the line to a contact: no contact is nearer than the nearest one,
+        // and no obstacle is inside the core unless it crushes the body.
         let clear = distances
             .fold(f64::INFINITY, f64::min)
             .max(body.core_radius());
@@ -86,8 +86,8 @@ impl Mover<'_> {
         None
     }
 
-    /// True if nothing is on the line from a position to a contact, against obstacles in their current state. The last
-    /// `slack` metres of the line are ignored. Also true for input that is not finite.
+    /// True if no obstacle blocks the line from a position to a contact, with obstacles in their current state. The
+    /// last `slack` metres of the line are ignored. Also true for input that is not finite.
     pub fn can_reach(&mut self, position: DVec3, touch: &Touch, slack: f64) -> bool {
         let way = touch.contact.point - position;
         let length = way.length() - slack;

@@ -9,7 +9,7 @@ use crate::{Hit, Mover, MoverBody, Touch};
 /// Parameters of a search for ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GroundProbe {
-    /// The shape that is to stand on the ground. Its position is an argument of the search, as in
+    /// The shape that is to stand on the ground. Its position is an argument of the search, for example of
     /// [`Mover::find_ground`].
     pub body: MoverBody,
     /// Unit vector that points up.
@@ -29,11 +29,11 @@ pub struct Ground {
     pub position: DVec3,
 }
 
-/// Ground is searched at least this far below, however small the reach, as a fraction of the margin: far more than the
+/// Minimum search distance below the feet, as a fraction of the margin, however small the reach: far more than the
 /// rounding of f32, by which a standing body may be above its ground.
 const UNDERFOOT: f64 = 0.1;
 
-/// Slopes on all sides support a body if they leave less than this of a unit step down: the sine of 6 degrees.
+/// Slopes on all sides support a body if they shorten a unit step down to less than this length: the sine of 6 degrees.
 const SUPPORTED: f64 = 0.1;
 
 /// Contacts underfoot that are farther than the nearest by less than this fraction of the margin count as equally near.
@@ -45,7 +45,7 @@ const ONE_FACE: f64 = 1e-6;
 /// Cosine of the largest angle by which the ground may turn under a body that slides over it in a tick: 45 degrees.
 const SAME_SIDE: f64 = 0.7;
 
-/// Most slopes that are considered together.
+/// Maximum number of slopes that are considered together.
 const WEDGE: usize = 16;
 
 impl GroundProbe {
@@ -65,8 +65,8 @@ pub fn slope(normal: DVec3, up: DVec3) -> f64 {
 }
 
 impl Mover<'_> {
-    /// Finds the ground straight below a position or, if there is none, the nearest beside it. The search distance is
-    /// the probe's reach, or a tenth of the body's margin if that is more.
+    /// Finds the ground straight below a position, or else the nearest ground beside it. The search distance is the
+    /// probe's reach, or a tenth of the body's margin if that is more.
     pub fn find_ground(&mut self, probe: &GroundProbe, position: DVec3) -> Option<Ground> {
         let probe = &GroundProbe {
             reach: probe.reach.max(probe.least()),
@@ -82,7 +82,7 @@ impl Mover<'_> {
         let body = &probe.body;
         let down = -probe.up * (probe.reach + body.margin);
         let Hit { touch, time, .. } = self.meet_ground(probe, position, down)?;
-        // Back up, until the whole body just touches what its core has met.
+        // Raises the body until it just touches the contact that its core has met.
         let rise = (body.radius - touch.contact.distance) / touch.normal.dot(probe.up);
         let position = position + down * time + probe.up * rise;
         Some(Ground { touch, position })
@@ -100,8 +100,8 @@ impl Mover<'_> {
             }
         }
         let best = best?;
-        // A triangle's nearest point may be on an inner edge of a wall and look like a ledge. So the body must meet it
-        // first in a cast.
+        // The nearest point of a triangle may be on an inner edge of a wall and look like a ledge. So the body must
+        // meet the ground first in a cast.
         let way = (best.contact.distance - body.core_radius()).max(0.0) + probe.least();
         let toward = -best.normal * way;
         let Hit { touch, time, .. } = self.meet_ground(probe, position, toward)?;
@@ -118,9 +118,9 @@ impl Mover<'_> {
         (is_level && self.is_ground(&hit.touch)).then_some(hit)
     }
 
-    /// The contact of the last movement that holds the body up: of those that can, the most level one, if its slope is
-    /// at most `max_slope`, radians, or if the contacts together leave the body no way down. `None` if the body is not
-    /// held up.
+    /// The contact of the last movement that holds the body up: the most level of the contacts that can, if its slope
+    /// is at most `max_slope`, radians, or if the contacts together leave the body no way down. `None` if the body is
+    /// not held up.
     pub fn holding_up(&self, up: DVec3, max_slope: f64) -> Option<Touch> {
         let ground = self.touched().iter().filter(|touch| self.is_ground(touch));
         let best = ground.copied().reduce(|best, touch| {
@@ -149,7 +149,7 @@ impl Mover<'_> {
     }
 
     /// The contact that the body has slid to since it touched `met`: the nearest one within the margin of its ball, on
-    /// the same obstacle, with a normal within 45 degrees of `met`'s. Of equally near contacts, the one on the most
+    /// the same obstacle, with a normal within 45 degrees of `met`'s. Among equally near contacts, the one on the most
     /// level face is taken, since rounding must not decide on which of two faces the body stands.
     pub fn still_underfoot(
         &mut self,
@@ -219,7 +219,7 @@ impl Mover<'_> {
             return None;
         }
         let core = probe.body.core_at(position);
-        // Stay below a ceiling: otherwise it would block every way from there.
+        // Limits the rise to the room below a ceiling, which would otherwise block every way from there.
         let room = self.obstruction(&core, up * height);
         let rise = room.map_or(height, |hit| {
             (height * hit.time - probe.body.margin).max(0.0)
@@ -236,7 +236,7 @@ impl Mover<'_> {
     }
 
     /// The position of the body on a tread below `over`, if the tread is level enough and higher than `position`, and
-    /// the body fits under what is above it.
+    /// the body fits under the obstacles above it.
     fn tread_below(&mut self, probe: &GroundProbe, position: DVec3, over: DVec3) -> Option<DVec3> {
         let down = GroundProbe {
             reach: (over - position).dot(probe.up),
@@ -244,14 +244,14 @@ impl Mover<'_> {
         };
         let ground = self.find_ground_below(&down, over)?;
         if self.is_character(&ground.touch) {
-            // Nobody is a step.
+            // A character is never a step.
             return None;
         }
         let rise = (ground.position - position).dot(probe.up);
         if rise <= probe.body.margin || !self.is_step(&ground.touch) {
             return None;
         }
-        // The body stands a margin off what its core has met, so perhaps higher than the core started.
+        // The body stands a margin above the contact that its core has met, so perhaps higher than the core started.
         let lift = (ground.position - over).dot(probe.up);
         let core: WorldCapsule = probe.body.core_at(over);
         let is_free = lift <= 0.0 || self.is_free(&core, probe.up * lift);

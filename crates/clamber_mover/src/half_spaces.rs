@@ -3,15 +3,15 @@
 //!
 //! A least-distance problem in three dimensions, solved by a dual active-set method (Goldfarb and Idnani 1983, "A
 //! numerically stable dual method for solving strictly convex quadratic programs"). At most three planes support the
-//! point. Each pivot adds the plane that is violated most. Of the at most seven subsets that contain this plane, the
-//! one whose point satisfies all four planes is the next basis. Since every subset is tested, no sign of a multiplier
-//! is needed, and normals that are parallel to rounding do no harm.
+//! point. Each pivot adds the plane that is violated most. At most seven subsets of these four planes contain the new
+//! one; the subset whose point satisfies all four planes is the next basis. Since every subset is tested, the method
+//! does not depend on the signs of the multipliers, and normals that are parallel up to rounding do no harm.
 //!
 //! If the intersection is empty, or becomes much nearer with a little relief, all planes are relaxed by the same
 //! amount, the least that helps. Planes that are opposite to within a hundredth of a degree intersect thousands of
 //! times as far away as they overlap. Such an intersection is of no use, and counts as empty. The distance of the
 //! nearest point is a convex function of the relief: with more relief, the point comes nearer ever more slowly. So each
-//! attempt that fails gives a lower bound of the relief.
+//! attempt that fails gives a lower bound on the relief.
 
 use glam::DVec3;
 
@@ -28,26 +28,29 @@ const PROBE: f64 = 1e-11;
 /// a hundred times the rounding of a point on three planes. Times [`STEEPEST`] it is 1e-9.
 const HELD: f64 = 1e-13;
 
-/// After this many pivots, [`HELD`] doubles with each: where many planes meet in one point, rounding could otherwise
-/// make them alternate for ever. Sets of 32 planes take a dozen pivots at most.
+/// After this many pivots, [`HELD`] doubles with each pivot: where many planes meet in one point, rounding could
+/// otherwise make them alternate endlessly. Sets of 32 planes take a dozen pivots at most.
 const PATIENCE: usize = 64;
 
-/// Doublings of [`HELD`] until everything counts as satisfied.
+/// Number of doublings of [`HELD`] until every plane counts as satisfied.
 const DOUBLINGS: usize = 44;
 
-/// A smaller sine is rounding: two planes at such an angle cannot both support the point.
+/// Sine of the angle below which two planes count as parallel: a smaller sine is rounding, and two planes at such an
+/// angle cannot both support the point.
 const PARALLEL: f64 = 1e-13;
 
-/// The least relief is found so precisely that the point is exact to this fraction of the largest gap, at any
-/// steepness.
+/// Precision of the point, as a fraction of the largest gap. The least relief is found to this precision divided by the
+/// largest steepness.
 const NARROW: f64 = 1e-8;
 
-/// First step beyond the estimated least relief, as a fraction of the precision sought, and the factor by which it
-/// grows each time that it is not enough.
+/// First step beyond the estimated least relief, as a fraction of the precision sought.
 const FIRST_STEP: f64 = 0.25;
+
+/// Factor by which the step grows each time that it is not enough.
 const LONGER: f64 = 8.0;
 
-/// Most attempts to find the least relief. Three or four are usual; every third attempt halves the interval.
+/// Maximum number of attempts to find the least relief. Three or four are usual; every third attempt halves the
+/// interval.
 const ATTEMPTS: usize = 150;
 
 /// All points y with `normal . y >= offset`.
@@ -72,8 +75,8 @@ pub struct Projection {
 }
 
 /// Projects `target` onto the intersection of half-spaces: the nearest point inside all of them. If the intersection is
-/// empty, the point that violates the worst plane least, and of these the nearest. Planes that leave no room between
-/// them and are within 2e-4 radians of opposite count as having no intersection.
+/// empty, the result is the point at which the worst plane is violated least; among several such points, the nearest.
+/// Planes that leave no room between them and are within 2e-4 radians of opposite count as having no intersection.
 ///
 /// The point is exact to 1e-9 of the largest gap between target and plane, to 1e-9 of the distance, and to the rounding
 /// of coordinates. If the intersection is empty, [`Projection::missed`] is exact to 1e-12 of that gap, and the point to
@@ -116,12 +119,12 @@ struct Search<'a> {
     reach: f64,
 }
 
-/// Bounds from a relief that is not enough.
+/// Bounds that follow from a relief that is not enough.
 #[derive(Clone, Copy)]
 struct TooLittle {
     /// No relief below this is enough.
     least: f64,
-    /// Estimated relief from which other planes carry: where nearly closed planes cease to carry.
+    /// Estimated relief above which other planes carry the point: where nearly closed planes cease to carry it.
     turn: f64,
 }
 
@@ -148,7 +151,7 @@ struct Corner {
 }
 
 impl<'a> Search<'a> {
-    /// `None` if the target is above all planes.
+    /// `None` if the target is above all planes, to within 1e-300.
     fn new(target: DVec3, planes: &'a [HalfSpace], free: f64, steepest: f64) -> Option<Self> {
         let gaps = planes.iter().filter_map(|plane| gap(plane, target));
         let size = gaps.fold(0.0, f64::max);
@@ -217,7 +220,7 @@ impl<'a> Search<'a> {
     }
 
     /// The nearest point above all planes lowered by `relief`, if it is within reach and more relief does not pay.
-    /// Otherwise, a lower bound of the relief.
+    /// Otherwise, a lower bound on the relief.
     fn sound(&self, relief: f64) -> Result<DVec3, TooLittle> {
         let at = |relief: f64| {
             let least = |least| TooLittle { least, turn: least };
@@ -231,8 +234,8 @@ impl<'a> Search<'a> {
                     .carries_for()
                     .min(corner.lacks_itself(self.free).max(0.0)),
         };
-        // In most cases the planes that carry decide at once. If others meet them in the point, these may carry from
-        // here on. Then the distance itself is measured, unless it is all rounding.
+        // In most cases the planes that carry the point decide at once. If the point is on other planes, too, these may
+        // carry it at a larger relief. Then the change in distance is measured, unless it is all rounding.
         let distance = corner.point.length();
         let steepest = if distance <= self.free {
             STEEPEST
@@ -255,8 +258,8 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The nearest point above all planes lowered by `relief`, and the planes that carry it. If there is none within
-    /// reach, a lower bound of the relief.
+    /// The nearest point above all planes lowered by `relief`, and the planes that carry it. `Err` with a lower bound
+    /// on the relief if no point is within reach.
     fn nearest(&self, relief: f64) -> Result<Corner, f64> {
         let mut corner = Corner::nowhere();
         let mut held = HELD;
@@ -279,7 +282,7 @@ impl<'a> Search<'a> {
         Err(relief)
     }
 
-    /// Number of planes, lowered by `relief`, that a point is on, or nearly on.
+    /// Number of planes, lowered by `relief`, that a point violates, is on, or is nearly on.
     fn met(&self, point: DVec3, relief: f64) -> usize {
         let near = 100.0 * HELD * (1.0 + point.length());
         let gaps = self.planes.iter().filter_map(|plane| {
@@ -289,7 +292,7 @@ impl<'a> Search<'a> {
         gaps.filter(|missed| *missed >= -near).count()
     }
 
-    /// The plane that a point misses most, if by more than `slack`.
+    /// The plane that a point violates most, if by more than `slack`.
     fn worst(&self, point: DVec3, relief: f64, slack: f64) -> Option<Wall> {
         let scale = 1.0 / self.size;
         let mut worst: Option<Wall> = None;
@@ -323,7 +326,7 @@ impl TooLittle {
     }
 }
 
-/// By how much a point misses a plane; `None` if the plane is to be ignored.
+/// The amount by which a point violates a plane, negative inside the half-space; `None` if the plane is ignored.
 fn gap(plane: &HalfSpace, point: DVec3) -> Option<f64> {
     let gap = plane.offset - plane.normal.dot(point);
     ((0.25..=4.0).contains(&plane.normal.length_squared()) && gap.is_finite()).then_some(gap)
@@ -334,7 +337,7 @@ impl Wall {
         self.gap - self.normal.dot(point)
     }
 
-    /// Orders walls that are missed by the same amount, by their values alone.
+    /// Orders walls that are violated by the same amount, by their values alone.
     fn precedes(&self, other: &Self) -> bool {
         let key = |wall: &Self| [wall.gap, wall.normal.x, wall.normal.y, wall.normal.z];
         let (own, others) = (key(self), key(other));
@@ -365,13 +368,13 @@ impl Corner {
         &self.walls[..self.count]
     }
 
-    /// The nearest point above these walls and a new one that the current point misses. So the new wall is one of those
-    /// that carry the result. `None` if there is no such point.
+    /// The nearest point above these walls and a new one that the current point violates. So the new wall is one of the
+    /// walls that carry the result. `None` if there is no such point.
     fn joined(&self, wall: Wall, slack: f64) -> Option<Self> {
         let mut best: Option<Self> = None;
         let mut nearest = f64::INFINITY;
-        // The new wall with none, one or two of the old ones: the subset that carries is the answer. If rounding leaves
-        // no such subset, the nearest point is the answer.
+        // The new wall is tried with none, one or two of the old ones: the subset that carries is the answer. If
+        // rounding leaves no such subset, the nearest point is the answer.
         for kept in [0b000, 0b001, 0b010, 0b100, 0b011, 0b101, 0b110_usize] {
             if kept >> self.count != 0 {
                 continue;
@@ -420,7 +423,7 @@ impl Corner {
         }
     }
 
-    /// A lower bound of the additional relief that these walls need for a point within reach, from their multipliers.
+    /// A lower bound on the additional relief that these walls need for a point within reach, from their multipliers.
     /// Their point gives the same bound, but between nearly parallel walls it is mostly rounding.
     fn lacks_itself(&self, reach: f64) -> f64 {
         let (mut sum, mut weights, mut gap) = (DVec3::ZERO, 0.0, 0.0);
@@ -436,7 +439,7 @@ impl Corner {
         }
     }
 
-    /// A lower bound of the additional relief that these walls and a new one need for a point within reach. Each
+    /// A lower bound on the additional relief that these walls and a new one need for a point within reach. Each
     /// combination of walls with weights of at least zero gives a bound; the largest one counts.
     fn lacks(&self, wall: Wall, reach: f64) -> f64 {
         let mut most = f64::NEG_INFINITY;
@@ -450,7 +453,7 @@ impl Corner {
             let Some(axes) = axes(others.walls()) else {
                 continue;
             };
-            // The weights with which the others oppose the new one.
+            // The weights with which the other walls oppose the new one.
             let (mut sum, mut weights, mut gap) = (wall.normal, 1.0, wall.gap);
             let mut opposes = true;
             for (other, axis) in others.walls().iter().zip(&axes).rev() {
@@ -504,7 +507,7 @@ impl Corner {
 }
 
 /// Unit vectors, each perpendicular to the normals of all walls before its own, so that a step along it does not change
-/// the distance to those walls. `None` if nothing is left of a normal.
+/// the distance to those walls. `None` if a normal is a combination of the normals before it, up to rounding.
 fn axes(walls: &[Wall]) -> Option<[DVec3; 3]> {
     let mut axes = [DVec3::ZERO; 3];
     for (k, wall) in walls.iter().enumerate().take(3) {

@@ -1,9 +1,9 @@
 //! Ledges: the first one that a body catches, and how a ledge goes on beside a body that hangs from it.
 //!
 //! A hanging body is below the edge, at the wall, and its hands lie on the top. Straight ahead of it, rays look for the
-//! wall below the edge, and a ball for the hand looks for the top. Where the wall ends, the same is tried farther on.
-//! Failing that, the body goes around the corner: its wall is then whatever is nearest, which is the corner's vertical
-//! edge until the next wall is nearer, so that it turns on a circle.
+//! wall below the edge, and a ball for the hand looks for the top. Where the wall ends, the same search is made farther
+//! along. If that fails, the body goes around the corner: its wall is then the nearest surface. At an outer corner this
+//! is the corner's vertical edge until the next wall is nearer, so the body turns on a circle.
 
 use clamber_world::WorldCapsule;
 use glam::DVec3;
@@ -70,12 +70,11 @@ impl LedgeHold {
 }
 
 /// A ledge goes on where its top is higher or lower by at most this fraction of the body's radius, and its wall farther
-/// ahead or back. Beyond half of the radius a body that rolls along the wall would have to turn by more than 60
-/// degrees.
+/// ahead or back by at most as much. With a step of more than half the radius, a body that rolls along the wall would
+/// have to turn by more than 60 degrees.
 const STEP: f64 = 0.5;
 
-/// What a contact may differ from [`STEP`], as a fraction of the body's radius, so that a step of exactly that height
-/// counts.
+/// Tolerance added to [`STEP`], as a fraction of the body's radius, so that a step of exactly that height counts.
 const SLACK: f64 = 0.05;
 
 /// Depths below the hands at which the wall is looked for, as fractions of the body's radius. The first is just below
@@ -94,18 +93,19 @@ const STRAIGHT: f64 = 0.94;
 /// width, so that no ledge that is wide enough is missed.
 const PLACES: f64 = 0.1;
 
-/// Length of the level part of a unit normal above which a face counts as a wall's: 60 degrees from level.
+/// Length of the level part of a unit normal above which a face counts as a wall: the normal is within 60 degrees of
+/// level.
 const UPRIGHT: f64 = 0.5;
 
-/// Where hands look for the top of a corner, to the side of the direction straight ahead, as fractions of the body's
-/// radius: enough for a corner of 45 degrees.
+/// Sideways offsets, from the direction straight ahead, at which hands look for the top of a corner, as fractions of
+/// the body's radius: enough for a corner of 45 degrees.
 const BESIDE: [f64; 5] = [0.0, 0.2, -0.2, 0.45, -0.45];
 
 /// Radius of a finger, as a fraction of the body's radius: it falls into a gap that a hand would cover.
 const FINGER: f64 = 0.05;
 
-/// A wall within this multiple of the body's radius touches the body. It has to be less than for the parts of its own
-/// wall that are [`OBLIQUE`] to it, 1.05.
+/// A wall within this multiple of the body's radius touches the body. It must be less than 1.05: that is the distance
+/// to the body's own wall in a direction that is just within [`OBLIQUE`] of straight aside.
 const TOUCHES: f64 = 1.04;
 
 /// A ledge that a body can hang from.
@@ -116,8 +116,8 @@ pub struct Ledge {
     pub touch: Touch,
     /// Level unit vector straight towards the wall.
     pub facing: DVec3,
-    /// Where the wall is, straight ahead of the position that the ledge was found from, and at its height, in world
-    /// space.
+    /// Point of the wall in world space, straight ahead of the position that the ledge was found from, and at that
+    /// height.
     pub wall: DVec3,
 }
 
@@ -185,7 +185,7 @@ impl Mover<'_> {
     }
 
     /// The first ledge beside a position that [`Mover::ledge_ahead`] finds and `counts` accepts, up to `way`, metres in
-    /// world space: across a gap, or past the edge of a step. `None` if something is between the position and the
+    /// world space: across a gap, or past the edge of a step. `None` if an obstacle is between the position and the
     /// ledge.
     pub fn ledge_beside(
         &mut self,
@@ -201,7 +201,7 @@ impl Mover<'_> {
         let aside = up * (hold.height(position) - DEPTHS[1] * radius) + facing * before;
         let hand = WorldCapsule::ball(position + aside, PLACES * radius);
         let free = self.cast(&hand, way).map_or(1.0, |hit| hit.time);
-        // A whole number of places stays that number whatever the rounding.
+        // With the tolerance, rounding does not add a place to a whole number of places.
         let places = (way.length() / (PLACES * radius) - SLACK).ceil().max(1.0);
         let mut place = 0.0;
         while place < places {
@@ -220,8 +220,8 @@ impl Mover<'_> {
 
     /// The ledge in an inner corner: above the wall that the body touches along `aside`, a level unit vector.
     ///
-    /// `None` if there is no such wall, or no ledge on it, or if the ledge that the body holds does not lead there, as
-    /// where a gap is between the walls. Height differences are as in [`Mover::ledge_ahead`].
+    /// `None` if there is no such wall, or no ledge on it, or if the ledge that the body holds does not lead there, for
+    /// example because of a gap between the walls. Height differences are as in [`Mover::ledge_ahead`].
     pub fn ledge_in_corner(
         &mut self,
         hold: &LedgeHold,
@@ -232,9 +232,9 @@ impl Mover<'_> {
         self.leads_to(hold, &ledge).then_some(ledge)
     }
 
-    /// The ledge around the corner at a position: above what is nearest to it of all walls that the body faces, no more
-    /// than `within` metres away. At an outer corner that is the corner's edge, which the body faces as it goes around
-    /// it.
+    /// The ledge around the corner at a position: the ledge above the nearest of all walls that the body faces, at most
+    /// `within` metres away. At an outer corner, the nearest wall is the corner's edge, which the body faces as it goes
+    /// around it.
     ///
     /// `None` as for [`Mover::ledge_in_corner`].
     pub fn ledge_around(
@@ -247,7 +247,7 @@ impl Mover<'_> {
         self.leads_to(hold, &ledge).then_some(ledge)
     }
 
-    /// The ledge above the nearest of the walls that are about in one direction, no more than `within` metres away.
+    /// The ledge above the nearest of the walls in roughly one direction, at most `within` metres away.
     fn nearest_ledge(
         &mut self,
         hold: &LedgeHold,
@@ -287,7 +287,7 @@ impl Mover<'_> {
         if turn >= STRAIGHT || (ledge.wall - hold.held).dot(ledge.facing) <= 0.0 {
             return true;
         }
-        // Along the edge, where the two walls meet.
+        // The place on the edge where the two walls meet.
         let finger = FINGER * radius;
         let to_edge = (HAND + BEYOND) * radius - 2.0 * finger;
         let edge = hold.held - hold.facing * to_edge;
@@ -297,8 +297,8 @@ impl Mover<'_> {
         rises.any(|rise| self.top_below(hold, there, rise, finger).is_some())
     }
 
-    /// The top under a hand beyond the edge of a wall, `to_wall` metres ahead of a position, with room for the hand on
-    /// its way there.
+    /// The ledge that a hand holds beyond the edge of a wall, `to_wall` metres ahead of a position, with room for the
+    /// hand on its way there.
     fn hand_on(
         &mut self,
         hold: &LedgeHold,
@@ -330,8 +330,8 @@ impl Mover<'_> {
         None
     }
 
-    /// The top under a ball that comes down from `rise` above a point at the height of the ledge, as a fraction of the
-    /// body's radius.
+    /// The top under a ball that comes down onto a point at the height of the ledge. It starts `rise` above the point,
+    /// a fraction of the body's radius.
     fn top_below(&mut self, hold: &LedgeHold, point: DVec3, rise: f64, ball: f64) -> Option<Touch> {
         let LedgeHold { body, up, .. } = *hold;
         let above = WorldCapsule::ball(point + up * (rise * body.radius + ball), ball);
@@ -341,7 +341,7 @@ impl Mover<'_> {
     }
 }
 
-/// The level direction into a face with a normal, and whether the face is upright. `None` for level faces.
+/// The level direction into a face with the given normal, and whether the face is upright. `None` for level faces.
 fn toward(normal: DVec3, up: DVec3) -> Option<(DVec3, bool)> {
     let level = normal - up * normal.dot(up);
     let toward = (-level).try_normalize()?;

@@ -19,15 +19,15 @@ pub struct MoverMemory {
     /// Contacts that the core started inside of, or that crush it. Sweeps ignore them. Each is in its state at the
     /// start of the tick.
     pub(crate) passed: Vec<Touch>,
-    /// Room that the half-spaces lack for the wanted movement, metres. It is not updated once the body is crushed.
+    /// Room that the wanted movement lacks between the half-spaces, metres. It is not updated once the body is crushed.
     pub(crate) lacking: f64,
     pub(crate) overlaps: Vec<Touch>,
     pub(crate) half_spaces: Vec<HalfSpace>,
-    /// Steep slopes a second time, as vertical walls.
+    /// Vertical walls that replace steep slopes. The slopes themselves are in `half_spaces`.
     pub(crate) walls: Vec<HalfSpace>,
-    /// The same of other characters.
+    /// Like `walls`, for contacts with other characters.
     pub(crate) yielding_walls: Vec<HalfSpace>,
-    /// True if walls and other characters left no room in the last movement, so that the walls alone counted.
+    /// True if walls and other characters left no room in the last movement, so that characters were ignored.
     pub(crate) characters_yield: bool,
     pub(crate) touched: Vec<Touch>,
     /// Velocities of the contacts in `touched`, at the same indices.
@@ -35,9 +35,11 @@ pub struct MoverMemory {
     surroundings: Surroundings,
 }
 
-/// Initial capacities for the contacts of a query and the half-spaces of a movement, so that later ticks hardly ever
-/// allocate: a climber on the giant of 20 m has up to 42 contacts within its reach. Together they take 19 KB.
+/// Initial capacity for the contacts of a query, so that later ticks hardly ever allocate: a climber on the giant of 20
+/// m has up to 42 contacts within its reach. Together with [`HALF_SPACES`], a mover's memory takes 19 KB.
 const CONTACTS: usize = 64;
+
+/// Initial capacity for the half-spaces of a movement, so that later ticks hardly ever allocate.
 const HALF_SPACES: usize = 32;
 
 impl MoverMemory {
@@ -59,13 +61,13 @@ impl MoverMemory {
     }
 }
 
-/// A ray counts as endless if half its length is at least this, metres.
+/// A ray counts as endless if half its length is at least this, metres: squares of longer lengths overflow.
 const LONGEST: f64 = 1e150;
 
 /// The obstacles of one tick, with functions to move a body among them and to query its surroundings.
 ///
-/// Obstacles must already be in their state at the end of the tick. From one call to the next, a mover keeps only its
-/// results [`Mover::overlaps`] and [`Mover::touched`].
+/// Obstacles must already be in their state at the end of the tick. Between calls, a mover keeps only its results
+/// [`Mover::overlaps`] and [`Mover::touched`].
 pub struct Mover<'a> {
     pub(crate) obstacles: &'a [(ObstacleId, &'a dyn Obstacle)],
     dt: f64,
@@ -78,19 +80,20 @@ pub struct Mover<'a> {
 }
 
 /// A body whose axis is behind a face by less than this fraction of its core's radius was pressed through the face, and
-/// comes out where it went in. Only a crushed body gets this deep. A body that is deeper takes the nearest way out,
-/// since a climber may be on either side of thin skin.
+/// is pushed back to the side from which it came. Only a crushed body gets this deep. A deeper body leaves on the
+/// nearest side, since a climber may be on either side of thin skin.
 const PRESSED: f64 = 0.5;
 
-/// An axis nearer to a contact than this fraction of the radius is on the face: the direction between them is rounding.
+/// An axis nearer to a contact than this fraction of the radius counts as on the face, and the separation normal is the
+/// face's normal: the direction between axis and contact is rounding.
 const ON_FACE: f64 = 1e-5;
 
-/// Contacts farther than the nearest by less than this fraction of the core's radius count as equally near, such as
-/// those of the triangles around a vertex.
+/// Contacts farther than the nearest by less than this fraction of the core's radius count as equally near, for example
+/// the contacts with the triangles around a vertex.
 const AS_NEAR: f64 = 2.5e-4;
 
 impl<'a> Mover<'a> {
-    /// A mover for a tick of `dt` seconds. Obstacles may be in any order; of two with the same id, the first is used.
+    /// A mover for a tick of `dt` seconds. Obstacles may be in any order; if two have the same id, the first is used.
     ///
     /// # Errors
     /// [`MoverError::OutOfRange`] if `dt` is not positive and finite.
@@ -120,13 +123,13 @@ impl<'a> Mover<'a> {
         })
     }
 
-    /// The same mover with filters: which contacts block, hold up, and are stepped onto.
+    /// Sets the filters that decide which contacts block the body, hold it up, and are stepped onto.
     #[must_use]
     pub fn with_filters(self, filters: ContactFilters<'a>) -> Self {
         Self { filters, ..self }
     }
 
-    /// The same mover for a body that is a character among others. Without it, others stop the body.
+    /// Makes the body a character among others. Without this call, other characters stop the body.
     #[must_use]
     pub fn with_character(self, body: IntoOthers) -> Self {
         Self {
@@ -151,8 +154,8 @@ impl<'a> Mover<'a> {
         motion_among(self.obstacles, obstacle, point, self.dt)
     }
 
-    /// Where the material at a contact was at the start of the tick, and is at its end: the part of [`Mover::motion`]
-    /// that needs no frame, for a fraction of the time.
+    /// Positions of the material at a contact at the start and at the end of the tick. It is the part of
+    /// [`Mover::motion`] that needs no frame, and takes a fraction of the time.
     pub fn path_of(&self, touch: &Touch) -> Option<WorldPath> {
         path_among(
             self.obstacles,
@@ -162,15 +165,15 @@ impl<'a> Mover<'a> {
         )
     }
 
-    /// Fixes something at `place`, in world space, to the material of a contact. Call [`Attachment::follow`] in later
+    /// Fixes a point at `place`, in world space, to the material of a contact. Call [`Attachment::follow`] in later
     /// ticks.
     pub fn attach(&self, touch: &Touch, place: DVec3) -> Attachment {
         let motion = self.motion(touch.obstacle, &touch.contact.material);
         Attachment::with_motion(touch.obstacle, &touch.contact, motion.as_ref(), place)
     }
 
-    /// The speed along a unit `direction`, metres a second, that an impulse of 1 N s in this direction gives to a
-    /// material point. 0 if the point cannot be pushed.
+    /// Speed that a material point gains along a unit `direction`, metres a second, from an impulse of 1 N s in this
+    /// direction. 0 if the point cannot be pushed.
     pub fn push_response(
         &self,
         obstacle: ObstacleId,
@@ -188,8 +191,8 @@ impl<'a> Mover<'a> {
 
     /// All contacts within `reach` metres of the body's surface at a position, by ascending obstacle and material.
     ///
-    /// If the body was pressed through a surface, only the nearest of the contacts that face inward are kept: turned
-    /// outward, with a negative distance.
+    /// If the body was pressed through a surface, only the nearest of the contacts that face inward are kept. They are
+    /// turned outward and get a negative distance.
     pub fn overlap(&mut self, body: &MoverBody, position: DVec3, reach: f64) -> &[Touch] {
         let capsule = body.at(position).with_radius(body.radius + reach);
         let pressed = PRESSED * body.core_radius();
@@ -231,8 +234,8 @@ impl<'a> Mover<'a> {
         &self.memory.overlaps
     }
 
-    /// The first contact over the tick of a capsule whose ends move by `ways`, against obstacles that move as well.
-    /// `capsule` is the capsule at the start of the tick.
+    /// The first contact over the tick of a capsule whose ends move by `ways`, against moving obstacles. `capsule` is
+    /// the capsule at the start of the tick.
     pub fn sweep(&mut self, capsule: &WorldCapsule, ways: [DVec3; 2]) -> Option<Hit> {
         self.first_solid(capsule, ways, TargetMotion::Moving)
     }
@@ -254,7 +257,7 @@ impl<'a> Mover<'a> {
         })
     }
 
-    /// [`Mover::sweep_where`] among the contacts that did not start inside.
+    /// [`Mover::sweep_where`] without the contacts that the capsule starts inside of.
     pub(crate) fn sweep_past_overlaps(
         &mut self,
         capsule: &WorldCapsule,
@@ -271,9 +274,10 @@ impl<'a> Mover<'a> {
         })
     }
 
-    /// Checks a step up or a snap to the ground, which consider only the end of the tick, against moving obstacles.
-    /// Sweeps the body's core from `start` to `end`, shifted by `correction`. True if it meets nothing, and for input
-    /// that is not finite. Overlaps at the start are ignored, and so are other characters, which part from the body.
+    /// True if the body's core meets no moving obstacle when it is swept over the tick from `start` to `end`, both
+    /// shifted by `correction`. Use it after a step up or a snap to the ground, which consider only the end of the
+    /// tick. Overlaps at the start are ignored, and so are other characters, since characters move apart. Also true for
+    /// input that is not finite.
     pub fn is_clear_with(
         &mut self,
         body: &MoverBody,
@@ -286,8 +290,9 @@ impl<'a> Mover<'a> {
             .is_none()
     }
 
-    /// The first contact of a capsule that moves by `way`, metres in world space. The obstacles stand still meanwhile,
-    /// in their state at the end of the tick. `None` if it meets nothing, and for input that is not finite.
+    /// The first contact of a capsule that moves by `way`, metres in world space. The obstacles do not move: they are
+    /// in their state at the end of the tick. `None` if the capsule meets no obstacle, and for input that is not
+    /// finite.
     pub fn cast(&mut self, capsule: &WorldCapsule, way: DVec3) -> Option<Hit> {
         self.first_solid(capsule, [way; 2], TargetMotion::Still)
     }
@@ -300,7 +305,7 @@ impl<'a> Mover<'a> {
         }
         let direction = direction.try_normalize()?;
         let half = length * 0.5;
-        // An endless ray has no middle, and neither has one so long that its squares overflow.
+        // No middle can be computed for an endless ray, or for one so long that its squared length overflows.
         let (middle, reach) = if half < LONGEST {
             (origin + direction * half, half)
         } else {
@@ -332,20 +337,20 @@ impl<'a> Mover<'a> {
             }
         }
         if reach == f64::INFINITY {
-            // Otherwise all obstacles would count as near for the rest of the tick.
+            // Otherwise the cache would hold all obstacles as near for the rest of the tick.
             surroundings.forget();
         }
         first
     }
 
-    /// True if a capsule that moves by `way` meets nothing, against obstacles in their current state. Also true for
-    /// input that is not finite. Characters that the capsule is inside of leave room, and so do those that it passes or
-    /// carries ([`Mover::with_character`]).
+    /// True if a capsule that moves by `way` meets no obstacle, with obstacles in their current state. Also true for
+    /// input that is not finite. Characters that the capsule starts inside of do not block it, nor do characters that
+    /// it passes or carries ([`Mover::with_character`]).
     pub fn is_free(&mut self, capsule: &WorldCapsule, way: DVec3) -> bool {
         self.obstruction(capsule, way).is_none()
     }
 
-    /// What leaves a capsule no room along `way` first, as [`Mover::is_free`] says.
+    /// The first contact that blocks a capsule along `way`, by the rules of [`Mover::is_free`].
     pub(crate) fn obstruction(&mut self, capsule: &WorldCapsule, way: DVec3) -> Option<Hit> {
         if !self.has_characters {
             return self.cast(capsule, way);
@@ -364,7 +369,7 @@ impl<'a> Mover<'a> {
         })
     }
 
-    /// [`Mover::cast`] past the characters that the capsule is inside of or beside, and past those that it carries.
+    /// [`Mover::cast`] that ignores characters which the capsule is inside of, is beside, or carries.
     pub(crate) fn cast_past_characters(
         &mut self,
         capsule: &WorldCapsule,
@@ -412,8 +417,8 @@ impl<'a> Mover<'a> {
         ways: [DVec3; 2],
         mut ask: impl FnMut(ObstacleId, &dyn Obstacle) -> Option<SweepContact>,
     ) -> Option<Hit> {
-        // A ball that moves by the mean of both displacements encloses the capsule, if its radius includes how far they
-        // are from the mean.
+        // Bounding ball of the whole sweep: the capsule's ball, moved by half the mean displacement of the ends. Its
+        // radius grows by the length of that half, and by the distance of each end's displacement from the mean.
         let (middle, reach) = capsule.bounding_ball();
         let half = (ways[0] + ways[1]) * 0.25;
         let turn = (ways[1] - ways[0]).length() * 0.5;
@@ -426,7 +431,7 @@ impl<'a> Mover<'a> {
             };
             let hit = Hit::new(id, &hit);
             let is_sound = (0.0..=1.0).contains(&hit.time) && hit.touch.is_finite();
-            // Obstacles come by ascending id: of equal times the first stays.
+            // Obstacles come by ascending id. If times are equal, the lowest id is kept.
             if is_sound && first.is_none_or(|best| hit.time < best.time) {
                 first = Some(hit);
             }
@@ -449,7 +454,8 @@ impl<'a> Mover<'a> {
         obstacle.is_none_or(|obstacle| accepts(filter, touch.obstacle, obstacle, &touch.contact))
     }
 
-    /// True if the body is pressed into a contact's face, and not deep: pushing out moves it back to where it went in.
+    /// True if the body was pressed through a contact's face, but not deep: it is then pushed back to the side from
+    /// which it came.
     pub(crate) fn is_pressed_into(body: &MoverBody, touch: &Touch) -> bool {
         touch.faces_inward() && touch.contact.distance < PRESSED * body.core_radius()
     }
@@ -463,7 +469,7 @@ pub(crate) fn find<'a>(
     found.map(|(_, obstacle)| *obstacle)
 }
 
-/// [`Mover::motion`].
+/// Same as [`Mover::motion`].
 fn motion_among(
     obstacles: &[(ObstacleId, &dyn Obstacle)],
     id: ObstacleId,
@@ -474,7 +480,7 @@ fn motion_among(
     motion.is_finite().then_some(motion)
 }
 
-/// Where a material point was at the start of the tick, and is at its end.
+/// Positions of a material point at the start and at the end of the tick.
 pub(crate) fn path_among(
     obstacles: &[(ObstacleId, &dyn Obstacle)],
     id: ObstacleId,
@@ -486,7 +492,7 @@ pub(crate) fn path_among(
 }
 
 /// Applies [`turn_outward`] to the contacts of one obstacle, from index `first` on, body by body: the depth in one body
-/// says nothing about another.
+/// is unrelated to the depth in another.
 fn turn_outward_by_body(
     obstacle: &dyn Obstacle,
     touches: &mut Vec<Touch>,

@@ -1,17 +1,17 @@
 //! Moves a body from its position a tick ago to its wanted position, among obstacles that move.
 //!
-//! The body's core is swept over the tick against all moving obstacles. Each contact becomes a half-space, beyond which
-//! the body may not end. Its plane is at the touched material point's position at the tick's end. Of the displacements
-//! inside all half-spaces, the one nearest to the wanted displacement is taken and swept again, until nothing is in the
-//! way. Then everything that overlaps the whole body, margin included, at the tick's end adds its half-space, the
-//! deepest first. Each contact is evaluated anew after every push, so that inner edges of flat ground, which are deeper
-//! only until the ground has pushed, add none. Contacts that are near but clear are included, since a push may lead
-//! into them.
+//! The body's core is swept over the tick against all moving obstacles. Each contact becomes a half-space in which the
+//! body must end. Its plane touches the body where the touched material point is at the tick's end. The displacement
+//! inside all half-spaces that is nearest to the wanted displacement is taken and swept again, until no obstacle is in
+//! the way. Then each contact that overlaps the whole body, margin included, at the tick's end adds its half-space, the
+//! deepest first. All contacts are evaluated anew after every push, so that inner edges of flat ground, which are
+//! deeper only until the ground has pushed, add no half-space. Contacts that are near but clear are evaluated as well,
+//! since a push may lead into them.
 //!
-//! A half-space limits where the body may end, not how fast it may go. The end of a touched point includes the
+//! A half-space limits where the body may end, not how fast it may go. The end position of a touched point includes the
 //! obstacle's velocity, so being pushed aside, being carried and sliding all happen within the same tick. (Contact
-//! planes solved together: Jolt's CharacterVirtual, box3d's mover, avian's velocity projection. Those collect planes
-//! near the start, with a margin, from obstacles at rest.)
+//! planes solved together: Jolt's CharacterVirtual, box3d's mover, avian's velocity projection. These methods collect
+//! planes near the start, with a margin, from obstacles at rest.)
 
 use clamber_world::{Others, WorldCapsule};
 use glam::DVec3;
@@ -20,11 +20,12 @@ use crate::half_spaces::{HalfSpace, Projection, project_where_it_pays};
 use crate::mover::path_among;
 use crate::{Hit, Mover, MoverBody, Touch};
 
-/// Most rounds of one movement, each with a sweep, an overlap query, or both. Corners take two or three rounds. After
-/// the last one the body stops where the sweep met something.
+/// Maximum number of rounds of one movement, each with a sweep, an overlap query, or both. Corners take two or three
+/// rounds. After the last round the body stops at the sweep's first contact.
 const ROUNDS: u32 = 8;
 
-/// Most half-spaces that the overlaps of one round add.
+/// Maximum number of half-spaces that the overlaps of one round add. Also the maximum for overlaps at the start, and
+/// the number of contacts up to which a crushed body's other overlaps are listed as touched.
 const PUSHES: usize = 16;
 
 /// An overlap up to this fraction of the radius counts as none: more than the rounding of a creature's f32 coordinates,
@@ -32,9 +33,9 @@ const PUSHES: usize = 16;
 pub(crate) const TOUCH: f64 = 2.5e-5;
 
 /// Search distance around the body for contacts that a push may lead into, as a fraction of the margin. A body that is
-/// pushed farther is swept again. It is more than the half margin by which a walking body is pressed onto the ground;
-/// otherwise rounding would decide whether ground contact is found. It is less than the whole margin, by which the core
-/// is clear of what touches the body.
+/// pushed farther is swept again. More than 0.5, since a walking body is pressed onto the ground by half a margin;
+/// otherwise rounding would decide whether ground contact is found. Less than 1, since the core of a touching body is a
+/// whole margin away from the obstacle.
 const NEAR: f64 = 0.75;
 
 /// A movement over the tick, for [`Mover::slide`].
@@ -61,8 +62,8 @@ pub struct Path {
     /// Whether the body moves from start to target, or was placed at the target.
     pub begin: Begin,
     /// Set this if the last movement ended crushed ([`Moved::missing_room`] above the margin). It limits the speed at
-    /// which the body leaves an overlap to 30 radii a second; pushes by obstacles that it meets on its way come on top.
-    /// So a body that was pressed through something does not jump to the other side.
+    /// which the body leaves an overlap to 30 radii a second; pushes by obstacles that the body meets on its way are
+    /// added to this. So a body that was pressed through an obstacle does not jump to the other side.
     pub crushed: bool,
 }
 
@@ -71,7 +72,7 @@ pub struct Path {
 pub enum Begin {
     /// At the start: the body is swept from there.
     Start,
-    /// At the target: the body was placed there, and is only pushed out of what it overlaps.
+    /// At the target: the body was placed there, and is only pushed out of obstacles that it overlaps there.
     Target,
 }
 
@@ -84,22 +85,24 @@ pub struct Walking {
     pub max_slope: f64,
 }
 
-/// A body as a character among others ([`Obstacle::character`](clamber_world::Obstacle::character)): how far it may
-/// come into their sides. What is below stops it all the same; so does what is above, if it has a greater mass.
+/// A body as a character among others ([`Obstacle::character`](clamber_world::Obstacle::character)), which may overlap
+/// the sides of other characters as far as `others` allows. A character below still stops the body, and so does a
+/// character above that has a greater mass.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct IntoOthers {
     /// Unit vector that points up.
     pub up: DVec3,
-    /// What it does with others; [`Others::between`] counts.
+    /// Whether the body blocks, pushes or passes other characters. The result of [`Others::between`] for both applies.
     pub others: Others,
-    /// Its mass, kilograms. It moves up into what is above it and has no greater mass, which it carries.
+    /// Mass of the body, kilograms. The body carries a character that is above it and has no greater mass, and may move
+    /// up into it.
     pub mass: f64,
 }
 
 /// An arm that the body hangs by: it keeps the body's position within `length` of `pivot`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Arm {
-    /// Position at the tick's end, in world space.
+    /// Fixed end of the arm at the tick's end, in world space.
     pub pivot: DVec3,
     /// Length, metres.
     pub length: f64,
@@ -113,11 +116,11 @@ pub struct Moved {
     pub position: DVec3,
     /// Room that the body lacks between obstacles, metres. If it is more than the margin, the body is crushed.
     pub missing_room: f64,
-    /// Depth of the core inside an obstacle, metres; 0 if it is clear of all.
+    /// Depth of the core inside an obstacle, metres; 0 if the core is clear of all obstacles.
     pub penetration: f64,
     /// Rounds of sweeping and pushing that the movement took, at most 8; 0 for an invalid path.
     pub rounds: u32,
-    /// True if nothing is in the way from start to position, except obstacles that the body started inside of or is
+    /// True if no obstacle is in the way from start to position, except obstacles that the body started inside of or is
     /// crushed by. Always true for a body that was placed ([`Begin::Target`]), which is not swept, unless the path is
     /// invalid.
     pub is_clear: bool,
@@ -140,7 +143,7 @@ impl Path {
         }
     }
 
-    /// Pushes a body that was placed at a position, in world space, out of what it overlaps there.
+    /// A movement that pushes a body placed at `position`, in world space, out of obstacles that it overlaps there.
     pub const fn placed(body: MoverBody, position: DVec3) -> Self {
         Self {
             begin: Begin::Target,
@@ -172,8 +175,8 @@ impl Path {
         [way + turn(0), way + turn(1)]
     }
 
-    /// The point of the axis that is nearest to `place` at a time of a movement by `way`. Given at the end of the tick,
-    /// relative to the body's position.
+    /// Finds the point of the axis that is nearest to `place` at `time`, a fraction of a movement by `way`. Returns its
+    /// place at the end of the tick, relative to the body's position.
     pub(crate) fn end_of(&self, way: DVec3, time: f64, place: DVec3) -> DVec3 {
         let then = self
             .core()
@@ -198,8 +201,8 @@ impl Path {
 }
 
 impl Mover<'_> {
-    /// Moves a body along a path. [`Mover::touched`] then holds the contacts that the body touches in the end or was
-    /// kept from entering.
+    /// Moves a body along a path. [`Mover::touched`] then holds the contacts that the body touches at the end, and
+    /// those that stopped it.
     ///
     /// If the path is not finite or its body is invalid ([`MoverBody::validate`]), the body stays at its start, and
     /// [`Moved::is_clear`] is false.
@@ -287,8 +290,8 @@ impl Mover<'_> {
             let before = moved.position;
             let from = *clear_to.get_or_insert(before);
             let pushes = self.push_out(path, &mut moved);
-            // A single push leads straight off its contact. With two pushes, each changes the other's contact. Contacts
-            // are then searched anew, unless there is no room to find.
+            // A single push leads straight off its contact. Several pushes change each other's contacts, so the
+            // contacts are searched anew, unless the body has no room.
             let is_settled = pushes < 2 || moved.position.distance(before) <= touch;
             let is_there = is_settled || moved.missing_room > touch;
             let is_near = moved.position.distance(from) <= near;
@@ -298,14 +301,14 @@ impl Mover<'_> {
         }
     }
 
-    /// The contacts of the last movement, in the order in which they were found: those that the body touches in the end
-    /// or was kept from entering. A contact may be listed twice.
+    /// The contacts of the last movement, in the order in which they were found: those that the body touches at the
+    /// end, and those that stopped it. A contact may be listed twice.
     pub fn touched(&self) -> &[Touch] {
         &self.memory.touched
     }
 
-    /// Adds half-spaces for everything that overlaps the core at the start. It carries the body along over the tick, so
-    /// that the body gets no deeper.
+    /// Adds half-spaces for all obstacles that overlap the core at the start. The half-spaces move with the obstacles
+    /// over the tick, so that the body gets no deeper.
     fn go_with_overlaps(&mut self, path: &Path, moved: &mut Moved) {
         let mut inside = std::mem::take(&mut self.memory.passed);
         inside.sort_unstable_by(Touch::order);
@@ -334,7 +337,7 @@ impl Mover<'_> {
     }
 
     /// Sweeps to the wanted position and adds a half-space for the first contact. If the core started inside of
-    /// obstacles, the first round adds half-spaces for these instead. False if nothing is in the way.
+    /// obstacles, the first round adds half-spaces for these instead. False if no obstacle is in the way.
     fn meet(&mut self, path: &Path, moved: &mut Moved) -> bool {
         let way = moved.position - path.start;
         let hit = if moved.rounds == 1 {
@@ -382,7 +385,7 @@ impl Mover<'_> {
         hit
     }
 
-    /// The first contact along `way`, except what the core started inside of or is crushed by.
+    /// The first contact along `way`, except contacts that the core started inside of or is crushed by.
     fn sweep_from(&mut self, path: &Path, way: DVec3) -> Option<Hit> {
         let core = path.core();
         let inside = std::mem::take(&mut self.memory.passed);
@@ -409,7 +412,8 @@ impl Mover<'_> {
         hit
     }
 
-    /// Stops the body where the sweep meets something, and carries it along with that for the rest of the tick.
+    /// Stops the body at the sweep's first contact, and carries it along with the touched material for the rest of the
+    /// tick.
     fn stop(&mut self, path: &Path, moved: &mut Moved) {
         let way = moved.position - path.start;
         if let Some(Hit { touch, time, .. }) = self.sweep_from(path, way) {
@@ -419,7 +423,7 @@ impl Mover<'_> {
         }
     }
 
-    /// Pushes the body out of everything that overlaps it at its position. Returns the number of pushes.
+    /// Pushes the body out of all obstacles that overlap it at its position. Returns the number of pushes.
     fn push_out(&mut self, path: &Path, moved: &mut Moved) -> usize {
         let body = &path.body;
         let found = moved.position;
@@ -428,7 +432,7 @@ impl Mover<'_> {
         let mut pushes = 0;
         while pushes < PUSHES {
             let capsule = body.at(moved.position);
-            // Half-spaces that are already relaxed allow this much more depth.
+            // The half-spaces are already relaxed by `missing_room`, so they allow this much more depth.
             let mut deepest = moved.missing_room + touching;
             let mut worst: Option<Touch> = None;
             let characters = self.characters();
@@ -466,8 +470,8 @@ impl Mover<'_> {
         pushes
     }
 
-    /// Adds the contacts that overlap a crushed body no deeper than the others. They do not move the body, but it
-    /// touches them.
+    /// Adds the contacts that overlap a crushed body no deeper than the others. They do not move the body, but count as
+    /// touched.
     fn touch_the_rest(&mut self, path: &Path, moved: &Moved, found: DVec3) {
         let body = &path.body;
         let capsule = body.at(moved.position);
@@ -482,7 +486,7 @@ impl Mover<'_> {
         }
     }
 
-    /// Adds a half-space that keeps a body at a position from ending deeper than a contact's face.
+    /// Adds a half-space that pushes a body at `position` out of a contact that overlaps it.
     fn keep_off(&mut self, path: &Path, touch: Touch, position: DVec3) {
         let depth = path.body.radius - touch.contact.distance;
         let offset = touch.normal.dot(position - path.start) + depth;
@@ -500,11 +504,11 @@ impl Mover<'_> {
             let level = (touch.normal - up * rise).normalize_or_zero();
             let lean = touch.normal.dot(level);
             let is_steep = rise < libm::cos(max_slope) && lean > 0.0;
-            // Nobody walks up another character, however large it is.
+            // A body does not walk up another character, however large that is.
             let is_no_step =
                 || !self.is_step(&touch) || self.characters().has_beside(path, &touch, up);
             let is_wall = || is_steep || lean > FLUSH && is_no_step();
-            // Too steep to stand on, and no ceiling: treated as vertical.
+            // An upward face that is too steep to stand on, or that may not be stepped onto, counts as vertical.
             if !(rise > LEVEL && is_wall()) {
                 return None;
             }
@@ -530,7 +534,7 @@ impl Mover<'_> {
             self.memory.lacking = nearest.missed;
         }
         if self.memory.lacking > margin {
-            // The body stays where its frame carries it: weight must not press it ever deeper, and a walk must not
+            // The body stays where its frame carries it: its weight must not press it ever deeper, and walking must not
             // press it through a wall.
             let excess = self.memory.lacking - margin;
             let slip = SLIP * self.dt() * libm::sqrt(excess * margin);
@@ -551,7 +555,8 @@ impl Mover<'_> {
         let nearest = self.nearest_displacement(wanted, free);
         self.memory.half_spaces.truncate(count);
         if nearest.missed > TOUCH * path.body.radius && has_walls {
-            // Steep slopes on all sides hold the body up, as they hold up a body that falls between them.
+            // The walls leave no room: steep slopes on all sides hold the body up, as they do for a body that falls
+            // between them.
             return self.nearest_displacement(wanted, free);
         }
         nearest
@@ -561,8 +566,8 @@ impl Mover<'_> {
     /// room the body moves up to `free` metres from the wanted displacement; beyond, each metre has to gain a quarter
     /// of a metre.
     ///
-    /// Nearly opposite walls intersect many times as far away as they overlap. No body slips out there within a tick,
-    /// so such walls crush it.
+    /// Nearly opposite walls intersect many times as far away as they overlap. A body cannot slip out that far within a
+    /// tick, so such walls crush it.
     fn nearest_displacement(&self, wanted: DVec3, free: f64) -> Projection {
         project_where_it_pays(wanted, &self.memory.half_spaces, free, STEEPEST_PUSH)
     }
@@ -598,23 +603,23 @@ impl Mover<'_> {
     }
 }
 
-/// Largest push for each metre of room that it gains, metres. Between walls within 29 degrees of opposite, a body does
-/// not slip out, as if held by friction of 0.26. A larger value throws a body that is crushed by a few centimetres
-/// several metres away, through whatever is there; a smaller one holds bodies that could slip out.
+/// Maximum push, metres, per metre of room that it gains. Between walls within 29 degrees of opposite, a body does not
+/// slip out, as if held by friction of 0.26. A larger value throws a body that is crushed by a few centimetres several
+/// metres away, through obstacles in its way; a smaller one holds bodies that could slip out.
 pub(crate) const STEEPEST_PUSH: f64 = 4.0;
 
-/// Speed at which a crushed body slips to where there is more room, however slowly the walls part there: this many
-/// times a second the geometric mean of its margin and of the room that it lacks beyond the margin. A body that is only
-/// just crushed does not slip, so that the threshold causes no jerk. The last of the missing room is gained in a few
-/// ticks.
+/// Rate at which a crushed body slips to where there is more room, per second, however slowly the walls part there. The
+/// speed is this rate times the geometric mean of the margin and of the missing room beyond the margin. A body that is
+/// only just crushed does not slip, so that the threshold causes no jerk. The last of the missing room is gained in a
+/// few ticks.
 const SLIP: f64 = 60.0;
 
-/// Speed at which a crushed body leaves what it is inside of, radii a second: half a radius in a tick of 1/60 s.
+/// Maximum speed at which a crushed body leaves an overlap, radii a second: half a radius in a tick of 1/60 s.
 const OUT: f64 = 30.0;
 
-/// Slopes this close to vertical are walls already: sine of the angle from the vertical.
+/// Slopes this close to vertical are walls already, and need no vertical wall: sine of the angle from the vertical.
 const LEVEL: f64 = 1e-3;
 
-/// What may not be stepped onto is no wall where it is this close to level: sine of the slope. As a wall, nearly level
-/// ground would push a body far aside. A ball rolls over edges up to a 400th of its radius unhindered.
+/// A contact that may not be stepped onto becomes a wall only above this slope, as a sine. If nearly level ground
+/// became a wall, it would push a body far aside. A ball rolls over edges up to a 400th of its radius unhindered.
 const FLUSH: f64 = 0.07;

@@ -1,14 +1,17 @@
-//! The obstacles near a query: of a hundred creatures, a climber queries only the one or two that it can touch.
+//! The obstacles near a query, kept for later queries of the tick: among a hundred creatures, a climber queries only
+//! the one or two that it can touch.
 
 use clamber_world::{Obstacle, ObstacleId};
 use glam::DVec3;
 
-/// The search radius is a query's radius times [`FARTHER`], plus [`AHEAD`] metres: later queries of a tick are near the
-/// first.
+/// Metres added to the radius of a search, so that later queries of a tick, which are near the first, find their
+/// obstacles without a new search.
 const AHEAD: f64 = 1.0;
+
+/// Factor from the radius of a query to the radius of a search, before [`AHEAD`] is added.
 const FARTHER: f64 = 2.0;
 
-/// Rounding error of a comparison of distances in f64, as a fraction of them.
+/// Rounding error of a comparison of distances in f64, as a fraction of the distances.
 const SLACK: f64 = 1e-12;
 
 /// Obstacles whose bounds may meet a ball.
@@ -27,7 +30,7 @@ impl Surroundings {
         self.radius = None;
     }
 
-    /// All obstacles whose bounds meet a ball, and possibly others, by ascending id. Of two obstacles with the same id,
+    /// All obstacles whose bounds meet a ball, and possibly others, by ascending id. If two obstacles have the same id,
     /// the first in the list is used.
     pub(crate) fn near<'a>(
         &mut self,

@@ -9,18 +9,19 @@ use glam::DVec3;
 pub struct Touch {
     /// The obstacle.
     pub obstacle: ObstacleId,
-    /// The contact itself. Its distance is from the body's axis. It is negative inside a solid, and negated where the
-    /// body was pressed through thin skin ([`Mover::overlap`](crate::Mover::overlap)).
+    /// The contact itself. `contact.distance` is measured from the body's axis. It is negative inside a solid, and
+    /// negated where the body was pressed through thin skin ([`Mover::overlap`](crate::Mover::overlap)).
     pub contact: Contact,
     /// Separation normal: unit vector from the contact to the nearest point of the body's axis. Where the axis is
-    /// inside a solid, or was pressed through thin skin, it points out.
+    /// inside a solid, or was pressed through thin skin, the normal points outward.
     pub normal: DVec3,
     /// True if a sweep or cast found the contact; false if it overlaps the body.
     pub swept: bool,
 }
 
 impl Touch {
-    /// Orders by depth, then obstacle, then material, so that the order in which contacts were found does not matter.
+    /// Orders by distance, obstacle, material and point, so that the order in which contacts were found does not
+    /// matter.
     pub(crate) fn order(a: &Self, b: &Self) -> Ordering {
         let depth = a.contact.distance.total_cmp(&b.contact.distance);
         let material = a.contact.material.key.cmp(&b.contact.material.key);
@@ -33,20 +34,20 @@ impl Touch {
             .then(places.fold(Ordering::Equal, Ordering::then))
     }
 
-    /// True if the contact continues the face of another one, which the body was inside of at the start of the tick.
-    /// Then it is an inner edge of that face, and no contact of its own. `start` is the position of the contact's
+    /// True if the contact lies on the face of `other`, a contact that the body was inside of at the start of the tick.
+    /// Such a contact is an inner edge of that face and adds no half-space. `start` is the position of the contact's
     /// material at the start of the tick, at most `length` off the plane of that face.
     pub(crate) fn continues(&self, start: DVec3, other: &Self, length: f64) -> bool {
         let out = other.contact.normal.dot(start - other.contact.point).abs();
         self.is_on_face_of(other) && out <= length
     }
 
-    /// True if both lie on faces of one obstacle with nearly the same normal.
+    /// True if both contacts lie on faces of one obstacle with nearly the same normal.
     pub(crate) fn is_on_face_of(&self, other: &Self) -> bool {
         self.obstacle == other.obstacle && self.contact.normal.dot(other.contact.normal) > ONE_FACE
     }
 
-    /// True if both push the body away from one obstacle in nearly the same direction.
+    /// True if both contacts push the body away from one obstacle in nearly the same direction.
     pub(crate) fn pushes_like(&self, other: &Self) -> bool {
         self.obstacle == other.obstacle && self.normal.dot(other.normal) > ONE_FACE
     }
@@ -71,7 +72,7 @@ impl Touch {
             now.contact.distance = apart.length();
             now.normal = apart.normalize_or(self.normal);
         } else {
-            // Past an edge, the other side is no way out: the body goes back the way it came.
+            // On a face, and past an edge, the normal stays: the body leaves an edge on the side from which it came.
             now.contact.distance += self.normal.dot(push);
         }
         now

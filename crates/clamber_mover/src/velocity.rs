@@ -5,7 +5,7 @@ use crate::half_spaces::{HalfSpace, project_where_it_pays};
 use crate::slide::STEEPEST_PUSH;
 use crate::{Mover, Touch};
 
-/// Most half-spaces that limit a velocity together.
+/// Maximum number of half-spaces that limit a velocity together. Further contacts are ignored.
 const STOPS: usize = 24;
 
 fn velocity_in(motion: Option<&WorldPath>) -> DVec3 {
@@ -44,13 +44,13 @@ impl Mover<'_> {
         self.memory.velocities = velocities;
     }
 
-    /// The velocity closest to `velocity` that does not move into any contact of the last movement. It may follow
-    /// obstacles that recede. `limit` is one more half-space of velocities to stay in. Velocities are in metres a
-    /// second, in world space.
+    /// The velocity closest to `velocity` that does not move into any contact of the last movement. The result may
+    /// follow obstacles that recede. `limit` is one more half-space that the result must be in. Velocities are in
+    /// metres a second, in world space.
     ///
-    /// `frame` is the velocity of the support, or of the frame that the body is in. Relative to it, the result is never
-    /// faster than the body and the fastest of the obstacles together: between half-spaces that close like scissors,
-    /// the nearest velocity has no bound.
+    /// `frame` is the velocity of the support, or of the frame that the body is in. Relative to `frame`, the result is
+    /// never faster than the sum of the body's speed and the speed of the fastest obstacle: between half-spaces that
+    /// close like scissors, the nearest velocity has no bound.
     pub fn clip_velocity(&self, velocity: DVec3, frame: DVec3, limit: Option<HalfSpace>) -> DVec3 {
         self.clip_velocity_with(velocity, frame, limit, |_, of_material| of_material)
     }

@@ -3,18 +3,18 @@ use clamber_surface::mesh::{SurfaceKind, SurfaceTag};
 
 use crate::NavigationError;
 
-/// Who climbs, and how finely the skin is divided.
+/// The climber of a graph, and how finely its skin is divided.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "cache", derive(serde::Serialize, serde::Deserialize))]
 pub struct GraphConfig {
     /// The climber's body and abilities.
     pub climber: ClimberConfig,
-    /// Largest side of a patch of skin, metres, positive, at most 1.4 radii of the climber. Default: its radius.
-    /// Smaller patches follow narrow ways better, and cost more.
+    /// Largest side of a patch of skin, metres, positive, at most 1.4 radii of the climber. Default: the climber's
+    /// radius. Smaller patches follow narrow ways better, and cost more.
     pub spacing: f64,
-    /// Materials that can be gripped. Default: fur. The climber's own steps do not know of it: give them the same rule,
-    /// as `StepRules::by(&|query| query.usual().with_grip(config.can_grip(&query.tag())))`, or it does not find the
-    /// holds that the graph promises.
+    /// Materials that can be gripped. Default: fur. The climber's own steps do not read this list. Give them the same
+    /// rule, as `StepRules::by(&|query| query.usual().with_grip(config.can_grip(&query.tag())))`; otherwise the climber
+    /// does not find the holds that the graph promises.
     pub grips: Vec<SurfaceKind>,
 }
 
@@ -38,19 +38,19 @@ impl GraphConfig {
         self.climber.body.radius
     }
 
-    /// How far from its ball it grips, metres; negative if it cannot grip.
+    /// How far from its ball the climber grips, metres; negative if it cannot grip.
     pub(crate) fn reach(&self) -> f64 {
         self.climber.grip.map_or(-1.0, |grip| grip.reach)
     }
 
-    /// Two free balls as near as this have free space in between: no sheet of skin passes between them that does not
-    /// enter one of them. Less than twice the radius.
+    /// Largest distance of two free balls, metres, at which the space between them is free as well: a sheet of skin
+    /// that passes between them enters one of them. Less than twice the radius.
     pub(crate) fn link(&self) -> f64 {
         1.4 * self.radius()
     }
 
     pub(crate) fn check(&self) -> Result<(), NavigationError> {
-        // Checks the climber's numbers.
+        // Creating a climber validates its configuration.
         clamber_climber::Climber::new(self.climber, glam::DVec3::ZERO)?;
         let most = self.link();
         if self.spacing > 0.0 && self.spacing <= most {

@@ -3,7 +3,7 @@ use clamber_surface::rig::RigError;
 use clamber_surface::surface::SurfaceError;
 use thiserror::Error;
 
-/// Why a graph could not be built.
+/// Why a graph could not be built, or a prediction could not be made.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum NavigationError {
@@ -12,12 +12,12 @@ pub enum NavigationError {
     OutOfRange {
         /// Name of the field.
         name: &'static str,
-        /// What it may be.
+        /// The range that it must be in.
         range: &'static str,
-        /// What it is.
+        /// The value that was found.
         found: f64,
     },
-    /// The creature has no skin with an area.
+    /// No triangle of the creature's skin has an area.
     #[error("the creature has no skin: none of its triangles has an area")]
     NoSkin,
     /// The skin is too large for patches of this size.
@@ -29,19 +29,19 @@ pub enum NavigationError {
         found: u64,
         /// The limit.
         most: u64,
-        /// Their size, metres.
+        /// The size of a patch, metres.
         spacing: f64,
     },
-    /// A clip lasts too long to be looked at: 14 hours, or together with the others and on so many patches it would
-    /// take more than 300 MB.
+    /// A clip is too long to be measured: longer than about 14 hours, or the slices of all clips so far would take more
+    /// than 300 MB on this many patches.
     #[error(
         "clip `{clip}` lasts {seconds} s at the rate at which it is played, which is too long for this many patches; shorten it, raise \
          the rate, or choose a larger spacing"
     )]
     TooLong {
-        /// The clip.
+        /// The clip's name.
         clip: String,
-        /// How long it lasts, seconds.
+        /// The clip's length at its rate, seconds.
         seconds: f64,
     },
     /// The caller cancelled the build.

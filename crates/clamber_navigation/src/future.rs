@@ -1,4 +1,4 @@
-//! A creature as it will be.
+//! The future pose of a creature, for predictions.
 
 use std::sync::Arc;
 
@@ -9,12 +9,12 @@ use clamber_surface::surface::SkinnedSurface;
 
 use crate::NavigationError;
 
-/// Tells how a creature will stand: fills in the palette of a time from now on, in seconds, and gives its place in the
-/// world then. `None` if it does not know that far ahead.
+/// Predicts a creature's pose: fills in the palette for a time from now on, in seconds, and returns the creature's
+/// transform in the world then. `None` if it does not know that far ahead.
 ///
-/// Its clips tell, until its brain decides on other ones.
+/// The clips that the creature plays give this pose, until its brain chooses other clips.
 pub trait Future {
-    /// The pose of a time, seconds from now on, not negative. That of time 0 is the pose that the creature has now.
+    /// The pose at a time, seconds from now on, not negative. At time 0 it is the creature's present pose.
     fn pose(&mut self, seconds: f64, palette: &mut Palette) -> Option<Similarity>;
 }
 
@@ -24,7 +24,7 @@ impl<F: FnMut(f64, &mut Palette) -> Option<Similarity>> Future for F {
     }
 }
 
-/// The skin of a creature as it will be: memory that predictions reuse.
+/// The skin of a creature at future times. Predictions reuse its memory.
 #[derive(Clone, Debug)]
 pub struct FutureSkin {
     surface: SkinnedSurface,
@@ -32,7 +32,7 @@ pub struct FutureSkin {
 }
 
 impl FutureSkin {
-    /// Memory for the creature whose skin this is.
+    /// Memory for a creature with this skin.
     pub fn new(mesh: Arc<ColliderMesh>) -> Self {
         Self {
             surface: SkinnedSurface::new(mesh),
@@ -61,7 +61,7 @@ impl FutureSkin {
         &self.surface
     }
 
-    /// Poses the skin as it will be, without motion. False if that is not known.
+    /// Poses the skin at a future time, without motion. False if that pose is not known.
     pub(crate) fn place(
         &mut self,
         future: &mut dyn Future,
@@ -74,7 +74,7 @@ impl FutureSkin {
         Ok(true)
     }
 
-    /// Moves the skin on to where it will be. False if that is not known.
+    /// Moves the skin on to a future time. False if that pose is not known.
     pub(crate) fn advance(
         &mut self,
         future: &mut dyn Future,
@@ -88,7 +88,7 @@ impl FutureSkin {
     }
 }
 
-/// Refuses a time between two looks, seconds, that is not positive.
+/// Refuses a time step, seconds, that is not positive and finite.
 pub(crate) fn check_step(dt: f64) -> Result<(), NavigationError> {
     if dt > 0.0 && dt.is_finite() {
         return Ok(());

@@ -1,4 +1,4 @@
-//! Where somebody who flies comes down.
+//! Predicts where an airborne climber comes down.
 
 use clamber_climber::{Climber, ClimberInput, ClimberState, StepRules};
 use clamber_world::{Obstacle, ObstacleId};
@@ -6,39 +6,39 @@ use clamber_world::{Obstacle, ObstacleId};
 use crate::NavigationError;
 use crate::future::{Future, FutureSkin, check_step};
 
-/// Where a climber that flies touches something.
+/// The first contact that supports an airborne climber.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Landing {
-    /// After so many seconds.
+    /// Seconds until the landing.
     pub seconds: f64,
-    /// The climber then: its support is what it stands on, holds or hangs from.
+    /// The climber's state at the landing, with the support that it stands on, holds or hangs from.
     pub state: ClimberState,
 }
 
-/// Somebody who flies, and what is around.
+/// An airborne climber, and the obstacles around it.
 #[derive(Clone, Copy)]
 pub struct Flight<'a> {
-    /// The climber that flies.
+    /// The airborne climber.
     pub climber: &'a Climber,
-    /// Its input in every tick: one that steers or grips counts.
+    /// The climber's input in every tick. Steering and gripping take effect.
     pub input: &'a ClimberInput,
-    /// Its rules for contacts, and its modes, as in its own steps.
+    /// The climber's contact rules and modes, as in its own steps.
     pub rules: &'a StepRules<'a>,
     /// The creature's obstacle id.
     pub creature: ObstacleId,
-    /// Everything else that it can touch. It is taken to stay as it is.
+    /// All other obstacles that the climber can touch. The prediction keeps them as they are.
     pub others: &'a [(ObstacleId, &'a dyn Obstacle)],
 }
 
 impl FutureSkin {
-    /// Where a climber that falls or jumps comes down, on a creature as it will be then: the climber is stepped, tick
-    /// by tick, until it stands, holds on or hangs. `None` if it does not within `most` seconds, or for as long as the
-    /// future is known. `dt` is the length of a tick, seconds.
+    /// Predicts where a falling or jumping climber comes down on the creature as it moves: steps the climber, tick by
+    /// tick, until it stands, holds on or hangs. `None` if it does not do so within `most` seconds, or before the
+    /// future is no longer known. `dt` is the length of a tick, seconds. A million ticks at most are stepped.
     ///
     /// # Errors
-    /// [`NavigationError::Climber`] if the climber refuses the input, [`NavigationError::Surface`] if a pose does not fit the
-    /// skin, [`NavigationError::OutOfRange`] if `dt` is not positive.
+    /// [`NavigationError::Climber`] if the climber refuses the input, [`NavigationError::Surface`] if a pose does not
+    /// fit the skin, [`NavigationError::OutOfRange`] if `dt` is not positive and finite.
     pub fn landing(
         &mut self,
         flight: &Flight<'_>,

@@ -1,43 +1,44 @@
-//! How far long work has got.
+//! Progress of a build.
 
 use std::ops::ControlFlow;
 
 use crate::NavigationError;
 
-/// What a build does.
+/// The stages of a build.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Stage {
-    /// Looks for room for the climber's ball.
+    /// Finds seats: places with room for the climber's ball.
     Seats,
-    /// Looks how far hands have to reach.
+    /// Measures how far hands have to reach.
     Arms,
     /// Plays the clips.
     Clips,
-    /// Plays jumps from one part to another.
+    /// Plays jumps from one part of the creature to another.
     Jumps,
 }
 
-/// How far a build has got.
+/// The state of a build.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Progress {
-    /// What it does.
+    /// The present stage.
     pub stage: Stage,
-    /// How many steps of this stage it has done.
+    /// Number of steps of this stage that are done.
     pub done: usize,
-    /// How many there are.
+    /// Number of steps in this stage.
     pub of: usize,
 }
 
-/// After so many steps a build tells how far it has got.
+/// A build reports its progress once in this many steps, so that the caller's function costs little. It can be
+/// cancelled only then.
 const TELLS: usize = 256;
 
-/// Tells the caller how far a build has got, and asks whether to go on.
+/// Calls the caller's progress function, and cancels the build if it says so.
 pub(crate) struct Tell<'a>(pub(crate) &'a mut dyn FnMut(Progress) -> ControlFlow<()>);
 
 impl Tell<'_> {
-    /// One step of many: tells only now and then.
+    /// Reports one short step of many: only every [`TELLS`] steps.
     pub(crate) fn at(
         &mut self,
         stage: Stage,
@@ -50,7 +51,7 @@ impl Tell<'_> {
         Ok(())
     }
 
-    /// A long step.
+    /// Reports one long step.
     pub(crate) fn now(
         &mut self,
         stage: Stage,

@@ -1,4 +1,4 @@
-//! How long somebody stays on a creature, without doing anything.
+//! Predicts how long an idle climber stays on a creature.
 
 use clamber_climber::{Climber, ClimberConfig, ClimberMode, Shake, Support};
 use clamber_world::{Obstacle, ObstacleId};
@@ -7,17 +7,17 @@ use glam::DVec3;
 use crate::NavigationError;
 use crate::future::{Future, FutureSkin, check_step};
 
-/// Why somebody does not stay on.
+/// Why a climber is thrown off.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[non_exhaustive]
 pub enum ThrowOff {
-    /// The ground falls away from under its feet.
+    /// The ground falls away from under the climber's feet.
     Thrown,
-    /// A shake knocks it down.
+    /// A shake knocks the climber down.
     Knocked,
-    /// The ground has become too steep to stand on.
+    /// The ground gets too steep to stand on.
     Slipped,
-    /// Its stamina is used up, and its grip opens.
+    /// The climber's stamina is used up, and its grip opens.
     Exhausted,
 }
 
@@ -25,26 +25,26 @@ pub enum ThrowOff {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct RideEnd {
-    /// After so many seconds.
+    /// Seconds until the ride ends.
     pub seconds: f64,
-    /// Why.
+    /// Why the ride ends.
     pub cause: ThrowOff,
 }
 
-/// What becomes of a ride.
+/// The outcome of a ride.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Ride {
-    /// It ends.
+    /// The climber is thrown off.
     Ends(RideEnd),
-    /// The climber stays on for as long as was asked.
+    /// The climber stays on for the whole time that was asked for.
     Stays,
-    /// It cannot be told: the future is not known that far, the climber is not on the creature, or the future does not
-    /// begin with the creature's present pose.
+    /// Unknown: the future is not known that far, the climber is not on the creature, or the future does not begin with
+    /// the creature's present pose.
     Unknown,
 }
 
 impl Ride {
-    /// How it ends, if it does.
+    /// How the ride ends; `None` if it does not end or is unknown.
     pub fn end(self) -> Option<RideEnd> {
         match self {
             Self::Ends(end) => Some(end),
@@ -53,23 +53,23 @@ impl Ride {
     }
 }
 
-/// What a rider feels, from tick to tick.
+/// The state of a climber that rides on a creature, from tick to tick.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Rider {
     pub(crate) holds: bool,
     pub(crate) stamina: f64,
     pub(crate) shake: Shake,
-    /// Velocity of its support.
+    /// Velocity of the climber's support, metres per second.
     pub(crate) velocity: Option<DVec3>,
 }
 
 impl Rider {
-    /// A tick passes, in which its support has moved at a velocity and has a normal now. Says why it does not stay on,
-    /// if it does not.
+    /// Advances the rider by a tick in which its support moves at `velocity`. `normal` is the support's normal after
+    /// the tick. Returns the reason if the rider is thrown off.
     ///
-    /// The rules are those of `clamber_climber`, of a climber that gives no input but its grip: the acceleration of its
-    /// support is low-pass filtered, and shakes cost strength by how much they exceed a threshold, by the trapezoidal
-    /// rule.
+    /// The rules are `clamber_climber`'s rules for a climber whose only input is its grip. The acceleration of its
+    /// support is low-pass filtered. Shakes cost stamina by the integral of their excess over a threshold, by the
+    /// trapezoidal rule.
     pub(crate) fn tick(
         &mut self,
         config: &ClimberConfig,
@@ -116,18 +116,19 @@ impl Rider {
 }
 
 impl FutureSkin {
-    /// How long a climber that stands on this creature, or holds on to it, stays there within `most` seconds if it does
-    /// nothing else: it holds its grip if it does so now. `creature` is the creature's obstacle id, `dt` the length of
-    /// a tick, seconds; a million ticks at most are looked at.
+    /// Predicts how long a climber that stands on this creature or holds on to it stays there, within `most` seconds,
+    /// if it does nothing else. It keeps its grip if it grips now. `creature` is the creature's obstacle id, `dt` the
+    /// length of a tick, seconds. A million ticks at most are predicted.
     ///
-    /// The future has to begin with the pose that the creature has now: a clip that begins has to fade in, as it does
-    /// on the creature. The example `plans` shows how.
+    /// The future has to begin with the creature's present pose: a clip that begins has to fade in, as it does on the
+    /// creature. The example `plans` shows how.
     ///
-    /// Three vertices are skinned a tick. What pushes the climber off, such as an arm that comes over it, is not looked
-    /// for.
+    /// Each tick skins three vertices. The prediction ignores parts of the creature that push the climber off, such as
+    /// an arm.
     ///
     /// # Errors
-    /// [`NavigationError::Surface`] if a pose does not fit the skin, [`NavigationError::OutOfRange`] if `dt` is not positive.
+    /// [`NavigationError::Surface`] if a pose does not fit the skin, [`NavigationError::OutOfRange`] if `dt` is not
+    /// positive and finite.
     pub fn ride(
         &mut self,
         climber: &Climber,
@@ -174,15 +175,16 @@ impl FutureSkin {
         Ok(Ride::Stays)
     }
 
-    /// The hardest shake, metres a second squared, that a climber on this creature will feel where it is, within `most`
-    /// seconds. If it is not on the creature, whose obstacle id is `creature`, or if the future is not known: the shake
-    /// that it feels now.
+    /// The hardest shake that a climber feels at its present place on this creature within `most` seconds, metres per
+    /// second squared. If it is not on the creature, whose obstacle id is `creature`, or if the future is not known,
+    /// the shake that it feels now.
     ///
-    /// `dt` is the time between two looks, seconds. A tenth of a second is enough for a giant: it misses only shakes
-    /// that are over sooner. Half a second ahead is what a bot needs to take hold.
+    /// `dt` is the time between two samples, seconds. A tenth of a second is enough for a giant: it misses only shorter
+    /// shakes. A bot needs half a second ahead to take hold.
     ///
     /// # Errors
-    /// [`NavigationError::Surface`] if a pose does not fit the skin, [`NavigationError::OutOfRange`] if `dt` is not positive.
+    /// [`NavigationError::Surface`] if a pose does not fit the skin, [`NavigationError::OutOfRange`] if `dt` is not
+    /// positive and finite.
     pub fn shake_ahead(
         &mut self,
         climber: &Climber,

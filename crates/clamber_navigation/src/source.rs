@@ -6,31 +6,31 @@ use clamber_surface::rig::{Clip, Skeleton, WeakPoint};
 
 use crate::NavigationError;
 
-/// A creature, as a file brings it: `clamber_gltf::Rig` has these fields.
+/// The creature for which a graph is built. `clamber_gltf::Rig` has most of these fields.
 #[derive(Clone, Copy, Debug)]
 pub struct GraphSource<'a> {
-    /// The skeleton. Its rest pose is the one in which distances are measured.
+    /// The skeleton. Distances are measured in its rest pose.
     pub skeleton: &'a Skeleton,
     /// The skin.
     pub mesh: &'a Arc<ColliderMesh>,
-    /// What it moves by.
+    /// The clips that the creature plays.
     pub clips: &'a [Clip],
-    /// How fast it plays its clips, as a share of what its file says, from 0.0001 to 10,000: 1 for a creature of the
-    /// size for which it was made, less for a larger one. Of a living creature it is
+    /// The rate at which the creature plays its clips, as a share of the file's, from 0.0001 to 10,000: 1 for a
+    /// creature of the size for which the clips were made, less for a larger one. A living creature's rate is
     /// `clamber_colossus::Creature::rate`.
     pub rate: f64,
-    /// Parts of the skin that can be removed one by one, such as plates of armour: the skin below them is divided as
-    /// well. None is a good answer; those of a living creature are `clamber_colossus::CreatureKind::plates`.
+    /// Parts of the skin that can be removed one by one, such as plates of armour. The skin below them is divided into
+    /// patches as well. May be empty; a living creature's plates are `clamber_colossus::CreatureKind::plates`.
     pub plates: &'a [Vec<TriangleId>],
-    /// Where it can be wounded.
+    /// The points at which the creature can be wounded.
     pub weak_points: &'a [WeakPoint],
-    /// Where it stands, and how large it is.
+    /// The creature's transform in the world, with its scale.
     pub world_from_model: Similarity,
-    /// Height of the ground that it stands on, in the world, metres: 0 for most files, whose feet stand at the origin.
+    /// Height of the ground below the creature, in the world, metres: 0 for most files, whose feet stand at the origin.
     pub ground: f64,
 }
 
-/// How fast clips may be played.
+/// Allowed rates of clips, as a share of the file's rate.
 const RATES: std::ops::RangeInclusive<f64> = 1e-4..=1e4;
 
 impl GraphSource<'_> {

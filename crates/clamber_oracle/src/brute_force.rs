@@ -1,5 +1,5 @@
-//! Queries of triangles one by one in f64, in closed form: an arithmetic of its own to hold others against. Where
-//! rounding decides, it is no more exact than they are; see `exact` for that.
+//! Queries that test triangles one by one in f64, in closed form: an independent reference for other implementations.
+//! Where rounding decides the answer, it is no more exact than they are; see `exact` for such cases.
 //!
 //! ```
 //! use clamber_oracle::brute_force::Triangles;
@@ -18,11 +18,11 @@ use glam::DVec3;
 /// The corners of a triangle.
 pub type Corners = [DVec3; 3];
 
-/// A ray that starts on an edge, or hits one, by less than this share of the triangle still counts: more than f64
-/// rounds, so that no ray slips through.
+/// A ray that passes outside an edge still hits the triangle if the barycentric coordinate of its crossing is less than
+/// this below 0. It is larger than the rounding of f64, so that no ray slips through an edge.
 const EDGE: f64 = 1e-12;
 
-/// Triangles that are asked together.
+/// Triangles that are queried together.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Triangles(pub Vec<Corners>);
 
@@ -36,7 +36,7 @@ impl Triangles {
         (nearest <= max_distance).then_some(nearest)
     }
 
-    /// Distance of the nearest point; infinite without triangles.
+    /// Distance of a point from the nearest triangle; infinite without triangles.
     pub fn distance(&self, point: DVec3) -> f64 {
         let distances = self.0.iter().map(|corners| distance(point, corners));
         distances.fold(f64::INFINITY, f64::min)
@@ -48,8 +48,8 @@ impl Triangles {
         distances.fold(f64::INFINITY, f64::min)
     }
 
-    /// Number of triangles that touch a ball, and of those for which rounding decides: the difference of distance and
-    /// radius is at most `unsure`.
+    /// Two numbers of triangles: those that certainly touch a ball, and those for which rounding decides, since
+    /// distance and radius differ by at most `unsure`.
     pub fn within(&self, center: DVec3, radius: f64, unsure: f64) -> [usize; 2] {
         let mut counts = [0; 2];
         for corners in &self.0 {
@@ -63,8 +63,8 @@ impl Triangles {
         counts
     }
 
-    /// The share of its motion, 0 to 1, that a sphere makes until it touches a triangle: 0 if it touches one at the
-    /// start, `None` if it touches none. All lengths are in the unit of the corners.
+    /// The share of a sphere's motion until it touches a triangle, 0 to 1: 0 if it touches one at the start, `None` if
+    /// it touches none. All lengths are in the unit of the corners.
     pub fn cast_sphere(&self, center: DVec3, radius: f64, motion: DVec3) -> Option<f64> {
         let low = center.min(center + motion) - DVec3::splat(radius);
         let high = center.max(center + motion) + DVec3::splat(radius);
@@ -78,7 +78,7 @@ impl Triangles {
     }
 }
 
-/// Where a ray's line meets the plane of a triangle.
+/// The point at which a ray's line crosses the plane of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crossing {
     /// Distance along the ray; negative behind its origin.
@@ -87,8 +87,8 @@ pub struct Crossing {
     pub border: f64,
 }
 
-/// Where a ray's line meets the plane of a triangle (Möller and Trumbore 1997); `None` if they are parallel.
-/// `direction` has length 1.
+/// The point at which a ray's line crosses the plane of a triangle (Möller and Trumbore 1997); `None` if they are
+/// parallel. `direction` has length 1.
 pub fn ray(origin: DVec3, direction: DVec3, &[a, b, c]: &Corners) -> Option<Crossing> {
     let (ab, ac) = (b - a, c - a);
     let across = direction.cross(ac);
@@ -155,12 +155,13 @@ pub fn segment_distance(ends: [DVec3; 2], corners: &Corners) -> f64 {
 fn on_segment(p: DVec3, [from, to]: [DVec3; 2]) -> DVec3 {
     let way = to - from;
     let along = (p - from).dot(way) / way.length_squared();
-    // For a segment without length, its beginning: `along` is NaN then.
+    // For a segment of length 0, `along` is NaN; its beginning is the nearest point.
     let along = if along > 0.0 { along.min(1.0) } else { 0.0 };
     from + way * along
 }
 
-/// Distance of two segments: the least of their ends' distances, and of their lines' if both nearest points are inside.
+/// Distance of two segments: the least distance of an end from the other segment, or the distance of the lines if that
+/// is less and both nearest points are inside the segments.
 fn between_segments(a: [DVec3; 2], b: [DVec3; 2]) -> f64 {
     let ends = [(a[0], b), (a[1], b), (b[0], a), (b[1], a)];
     let distances = ends.map(|(end, other)| on_segment(end, other).distance(end));
@@ -240,7 +241,7 @@ fn root(a: f64, b: f64, c: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Distance of two segments or of a segment and a triangle, by nested search: distances of convex shapes have one
+    /// The minimum of a distance over a parameter from 0 to 1, by ternary search. Distances of convex shapes have one
     /// minimum.
     fn search(distance: impl Fn(f64) -> f64) -> f64 {
         let (mut low, mut high) = (0.0, 1.0);

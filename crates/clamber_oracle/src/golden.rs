@@ -1,5 +1,5 @@
-//! Golden runs: a hash of every bit of a run, and beside it a file with a checksum of every field in every tick. The
-//! hash tells that a run has changed, the file where: in which tick and field first.
+//! Golden runs: a hash of every bit of a run, and a file with a checksum of every field in every tick. The hash shows
+//! that a run has changed. The file shows the first tick and field that differ.
 //!
 //! ```
 //! use clamber_oracle::golden::GoldenRun;
@@ -38,21 +38,21 @@ use std::path::Path;
 #[derive(Clone, Debug, Default)]
 pub struct GoldenRun {
     hash: Hash,
-    /// Whether checksums are kept as well.
+    /// True if checksums are kept as well.
     is_detailed: bool,
     /// Names of the fields, which are the same in every tick.
     names: Vec<String>,
-    /// Of all fields of one tick after another.
+    /// Checksums of all fields, tick after tick.
     checksums: Vec<u16>,
     ticks: usize,
 }
 
-/// Plays a run and holds it against its stored hash. If that differs, plays it again in detail, to find where it parts
-/// from the stored file. With the environment variable `CLAMBER_BLESS`, stores the file instead.
+/// Plays a run and compares its hash with the stored one. If they differ, plays the run again in detail, to find its
+/// first difference from the stored file. With the environment variable `CLAMBER_BLESS`, first stores the file.
 ///
 /// # Errors
-/// In words: what differs, and where first; that the file belongs to another hash; or that it cannot be read or
-/// written.
+/// A message if the hashes differ, with the first difference; if the file belongs to another hash; or if it cannot be
+/// read or written.
 pub fn hold(
     file: impl AsRef<Path>,
     hash: u64,
@@ -116,7 +116,7 @@ impl GoldenRun {
         run
     }
 
-    /// Adds a number to this tick: bits, or a hash of them. It counts for the hash of the run.
+    /// Adds the bits of a number, or a hash of bits, to this tick and to the hash of the run.
     pub fn field(&mut self, name: &str, bits: u64) {
         self.hash.add(&bits.to_le_bytes());
         if self.is_detailed {
@@ -126,9 +126,9 @@ impl GoldenRun {
         }
     }
 
-    /// Adds a checksum of each field of a struct to this tick, named `of` and its own name. They tell where the run
-    /// differs, and do not count for its hash. Numbers are taken with every bit, but for the bits of NaN: the text of
-    /// [`Debug`] has them all.
+    /// Adds a checksum of each field of a struct to this tick, under the field's name with the prefix `of`. These
+    /// checksums show where runs differ, and do not change the hash of the run. They are computed from the text of
+    /// [`Debug`], which differs for any two numbers, but is the same for every NaN.
     pub fn fields(&mut self, of: &str, value: &impl Debug) {
         if !self.is_detailed {
             return;
@@ -136,7 +136,7 @@ impl GoldenRun {
         let text = format!("{value:#?}");
         let mut current: Option<(&str, Hash)> = None;
         for line in text.lines() {
-            // The struct's own fields are indented once. Whatever they hold is indented deeper.
+            // The struct's own fields are indented once; their contents are indented deeper.
             let own = line.strip_prefix("    ");
             let own = own.filter(|rest| !rest.starts_with([' ', '}', ')', ']']));
             if let Some((name, _)) = own.and_then(|rest| rest.split_once(':')) {
@@ -172,7 +172,7 @@ impl GoldenRun {
         self.hash.0
     }
 
-    /// The content of the file of a detailed run: the hash in a line, the fields' names, a line each, an empty line,
+    /// The content of the file of a detailed run: a line with the hash, a line with each field's name, an empty line,
     /// and the checksums, 16 bits each, little endian.
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut bytes = head(self.hash()).into_bytes();
@@ -189,8 +189,9 @@ impl GoldenRun {
         bytes
     }
 
-    /// Where this detailed run and a stored one first differ, in words; `None` if all checksums are equal. A field that
-    /// changed keeps its checksum once in 65,536 ticks, and is then found a tick late.
+    /// A message about the first difference between this detailed run and a stored one; `None` if all checksums are
+    /// equal. A changed field has the same checksum in one of 65,536 ticks on average; its change is then found a tick
+    /// late.
     pub fn difference(&self, stored: &[u8]) -> Option<String> {
         let ours = self.table();
         let stored = stored.get(head(0).len()..).unwrap_or_default();
@@ -262,7 +263,7 @@ mod tests {
         let other = run(&value(1.5000001, [0.0, 1.0]));
         let told = other.difference(&stored).unwrap();
         assert_eq!(told, "the first difference is at tick 0, in body inner");
-        // Only what is added as a number counts for the hash.
+        // Only numbers that `field` adds change the hash.
         assert_eq!(other.hash(), first.hash());
         let told = run(&value(1.5, [-0.0, 1.0])).difference(&stored).unwrap();
         assert_eq!(told, "the first difference is at tick 0, in body place");

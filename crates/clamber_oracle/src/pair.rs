@@ -1,4 +1,4 @@
-//! A triangle and a sphere or capsule that move.
+//! A moving triangle and a moving sphere or capsule.
 
 use glam::Vec3;
 
@@ -34,7 +34,7 @@ pub struct MovingPair {
 }
 
 impl MovingPair {
-    /// Ends of the core at time 0, and their displacements. Those of a sphere are equal.
+    /// Ends of the core at time 0, and their displacements. For a sphere, both ends and both displacements are equal.
     pub fn ends(&self) -> [[Vec3; 2]; 2] {
         match self.core {
             Core::Sphere { center, motion } => [[center; 2], [motion; 2]],

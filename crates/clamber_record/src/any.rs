@@ -2,12 +2,12 @@ use std::path::Path;
 
 use crate::{ArenaInfo, ArenaRecording, Ending, RecordError, Recording, file};
 
-/// A recording of either kind, for programs that are given a file.
+/// A recording of either kind, for programs that open a file without knowing its kind.
 #[derive(Clone, Debug)]
 pub enum AnyRecording {
-    /// Of one climber and its creature, by a [`Recorder`](crate::Recorder).
+    /// A recording of one climber and its creature, written by a [`Recorder`](crate::Recorder).
     Climber(Box<Recording>),
-    /// Of an arena, by an [`ArenaRecorder`](crate::ArenaRecorder).
+    /// A recording of an arena, written by an [`ArenaRecorder`](crate::ArenaRecorder).
     Arena(Box<ArenaRecording>),
 }
 
@@ -25,7 +25,7 @@ impl AnyRecording {
         })
     }
 
-    /// True if it has no ticks.
+    /// True if the recording has no ticks.
     pub fn is_empty(&self) -> bool {
         match self {
             Self::Climber(recording) => recording.is_empty(),
@@ -33,7 +33,7 @@ impl AnyRecording {
         }
     }
 
-    /// How many ticks the recorder has left out after the last one.
+    /// Number of ticks that the recorder left out after the last recorded tick.
     pub fn lost_at_end(&self) -> u64 {
         match self {
             Self::Climber(recording) => recording.lost_at_end(),

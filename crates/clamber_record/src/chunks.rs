@@ -1,4 +1,4 @@
-//! Gathers ticks in chunks, and writes them on a thread of its own while the game goes on.
+//! Gathers ticks in chunks, and writes them on a thread of its own while the game runs.
 
 use std::sync::mpsc::{
     Receiver, Sender, SyncSender, TryRecvError, TrySendError, channel, sync_channel,
@@ -11,13 +11,13 @@ use crate::views::TakenScenery;
 
 /// A tick on its way to the file.
 pub trait TakenTick {
-    /// True if a replay can begin with it: something is saved of it.
+    /// True if a replay can start from this tick: it has a snapshot or a saved state.
     fn is_saved(&self) -> bool;
 
-    /// So many ticks before it were left out.
+    /// Notes that `ticks` ticks before this one were left out.
     fn follows_gap(&mut self, ticks: u64);
 
-    /// True if transforms are due in it.
+    /// True if transforms are due in this tick.
     fn is_due(&self) -> bool;
 
     /// The meshes of this tick.
@@ -29,30 +29,31 @@ pub(crate) trait WriteTicks<T, W>: Send + 'static {
     /// Writes a chunk of ticks.
     fn chunk(&mut self, ticks: &mut [T]) -> Result<(), RecordError>;
 
-    /// So many ticks were left out at the end of the recording.
+    /// Notes that `ticks` ticks were left out at the end of the recording.
     fn ends_in_gap(&mut self, ticks: u64) -> Result<(), RecordError>;
 
-    /// Writes the index and gives back the output.
+    /// Writes the index and returns the output.
     fn finish(self) -> Result<W, RecordError>;
 }
 
-/// Copies of ticks on their way to the file.
+/// Gathers copies of ticks in chunks and passes the chunks to the writing thread.
 pub(crate) struct Chunks<T: TakenTick, W> {
-    /// Ticks in a chunk.
+    /// Number of ticks in a chunk.
     size: usize,
     last: Option<u64>,
-    /// True if the game waits for a slow disk; otherwise chunks are left out.
+    /// If true, the game waits for a slow disk; if false, ticks are left out instead.
     waits: bool,
-    /// Ticks that were left out so far, and since the last chunk that was handed over.
+    /// Number of ticks left out so far.
     dropped: u64,
+    /// Number of ticks left out since the last chunk that was passed to the thread.
     gap: u64,
-    /// Ticks so far of which something is saved: a gap may begin once there are two.
+    /// Number of ticks so far with a snapshot or a saved state. Ticks are left out only once there are two.
     saved: u32,
-    /// The first `gathered` of these are the ticks of the chunk that is being gathered. The others are kept for
-    /// their memory.
+    /// The first `gathered` elements are the ticks of the current chunk. The others are kept so that their memory is
+    /// reused.
     chunk: Vec<T>,
     gathered: usize,
-    /// New meshes of ticks that were left out: the next tick that is not has them.
+    /// New meshes of ticks that were left out. The next recorded tick gets them.
     meshes: Vec<TakenScenery>,
     /// `None` once writing has ended.
     thread: Option<WriterThread<T, W>>,
@@ -60,21 +61,22 @@ pub(crate) struct Chunks<T: TakenTick, W> {
 
 struct WriterThread<T, W> {
     chunks: SyncSender<Chunk<T>>,
-    /// Chunks that were written come back, so that their memory is reused.
+    /// Written chunks, sent back so that their memory is reused.
     written: Receiver<Vec<T>>,
     handle: JoinHandle<Result<W, RecordError>>,
 }
 
-/// Ticks, how many of them from the front belong to the chunk, and how many were left out at the end of the recording.
+/// Ticks, the number of them (from the front) that belong to the chunk, and the number of ticks left out at the end of
+/// the recording.
 type Chunk<T> = (Vec<T>, usize, u64);
 
 impl<T: TakenTick + Send + 'static, W: Send + 'static> Chunks<T, W> {
-    /// Starts the thread.
+    /// Starts the writing thread.
     pub(crate) fn start(
         mut writing: impl WriteTicks<T, W>,
         (chunk_ticks, waits): (u32, bool),
     ) -> Result<Self, RecordError> {
-        // One chunk is gathered, some wait, one is written.
+        // One chunk is being gathered, up to `WAITING` wait in the channel, one is being written.
         let (to_thread, chunks) = sync_channel::<Chunk<T>>(WAITING);
         let (back, written): (Sender<Vec<T>>, _) = channel();
         let work = move || {
@@ -83,7 +85,7 @@ impl<T: TakenTick + Send + 'static, W: Send + 'static> Chunks<T, W> {
                 if lost > 0 {
                     writing.ends_in_gap(lost)?;
                 }
-                // Fails once the recorder waits for the end: then it takes no chunk back.
+                // An error means that the recorder takes no more chunks back. That is harmless.
                 let _ = back.send(chunk);
             }
             writing.finish()
@@ -112,14 +114,16 @@ impl<T: TakenTick + Send + 'static, W: Send + 'static> Chunks<T, W> {
     }
 }
 
-/// Most chunks that wait to be written before the game waits for them, or leaves the next one out.
+/// Largest number of chunks that wait to be written. Beyond it the game waits, or the next chunk is left out. A larger
+/// number bridges longer pauses of the disk, but a crash loses more.
 const WAITING: usize = 8;
 
-/// How long the thread sleeps before it looks for the next chunk: first, and at most. Handing a chunk over does not
-/// wake it, since that takes longer than all else that the game's thread does for a chunk.
+/// First and longest time that the thread sleeps before it looks for the next chunk; the time doubles in between. A
+/// chunk that is passed on does not wake the thread, since waking it takes longer than all other work of the game's
+/// thread for a chunk.
 const SLEEP: [Duration; 2] = [Duration::from_micros(250), Duration::from_millis(50)];
 
-/// The next chunk; `None` when no more will come.
+/// Waits for the next chunk; `None` when no more will come.
 fn next<T>(chunks: &Receiver<T>) -> Option<T> {
     let [mut sleep, longest] = SLEEP;
     loop {
@@ -132,17 +136,17 @@ fn next<T>(chunks: &Receiver<T>) -> Option<T> {
     }
 }
 
-/// What became of a chunk.
+/// Result of passing a chunk to the thread.
 enum Passed<T> {
     On,
-    /// There is no room for it now.
+    /// The queue is full; these are the chunk's ticks.
     Back(Vec<T>),
     /// The thread has ended with an error.
     Ended,
 }
 
 impl<T, W> WriterThread<T, W> {
-    /// Passes a chunk to the thread. If too many others wait, waits for them, or gives it back.
+    /// Passes a chunk to the thread. If the queue is full, waits for room or gives the chunk back, as `waits` says.
     fn pass(&self, chunk: Chunk<T>, waits: bool) -> Passed<T> {
         match self.chunks.try_send(chunk) {
             Ok(()) => Passed::On,
@@ -169,7 +173,7 @@ impl<T, W> WriterThread<T, W> {
 }
 
 impl<T: TakenTick, W> Chunks<T, W> {
-    /// Ticks that were left out so far, since the disk was too slow.
+    /// Number of ticks left out so far because the disk was too slow.
     pub(crate) fn dropped(&self) -> u64 {
         self.dropped
     }
@@ -187,12 +191,13 @@ impl<T: TakenTick, W> Chunks<T, W> {
         }
     }
 
-    /// True if a tick that is pushed now is the first one of its chunk.
+    /// True if a tick that is pushed now becomes the first one of its chunk.
     pub(crate) fn begins(&self) -> bool {
         self.gathered == 0 || self.gathered >= self.size
     }
 
-    /// Adds a tick that was checked. `take` copies it: over one that is there already, or to a new one that it returns.
+    /// Adds a tick that `check` has accepted. `take` copies the tick over the old one that it is given, or returns a
+    /// new copy if it is given `None`.
     pub(crate) fn push(
         &mut self,
         tick: u64,
@@ -221,15 +226,15 @@ impl<T: TakenTick, W> Chunks<T, W> {
         })
     }
 
-    /// Writes what is left.
+    /// Writes the remaining ticks and ends the thread.
     pub(crate) fn finish(&mut self) -> Result<W, RecordError> {
-        // Nothing is lost at the end: the game is over.
+        // The game is over, so it may wait for the disk: no tick is lost here.
         self.waits = true;
         self.hand_over()?;
         self.end()
     }
 
-    /// Passes the gathered ticks to the thread.
+    /// Passes the gathered ticks to the thread, or leaves them out.
     fn hand_over(&mut self) -> Result<(), RecordError> {
         let waits = self.waits || self.saved < 2;
         match self.pass_on(waits) {
@@ -241,8 +246,8 @@ impl<T: TakenTick, W> Chunks<T, W> {
 }
 
 impl<T: TakenTick, W> Chunks<T, W> {
-    /// Passes the gathered ticks to the thread, or leaves them out. False if the thread has ended with an error, `None` if
-    /// there is none.
+    /// Passes the gathered ticks to the thread, or leaves them out. Returns `Some(false)` if the thread has ended with
+    /// an error, and `None` if the thread was joined before.
     fn pass_on(&mut self, waits: bool) -> Option<bool> {
         let thread = self.thread.as_ref()?;
         let mut count = core::mem::take(&mut self.gathered);
@@ -250,7 +255,7 @@ impl<T: TakenTick, W> Chunks<T, W> {
         let saved = ticks.iter().filter(|tick| tick.is_saved()).count();
         self.saved = self.saved.saturating_add(saved as u32);
         if self.gap > 0 {
-            // A gap ends where a replay can begin.
+            // A gap ends only at a tick from which a replay can start.
             let first = ticks.iter().position(TakenTick::is_saved).unwrap_or(count);
             keep_meshes(&mut ticks[..first], &mut self.meshes);
             ticks.rotate_left(first);
@@ -266,7 +271,7 @@ impl<T: TakenTick, W> Chunks<T, W> {
         if count > 0 {
             self.chunk[0].scenery().splice(0..0, self.meshes.drain(..));
         }
-        // At the end what is missing there is told.
+        // An empty chunk tells the thread how many ticks are missing at the end.
         let lost = if count == 0 { self.gap } else { 0 };
         let next = thread.written.try_recv().unwrap_or_default();
         let chunk = core::mem::replace(&mut self.chunk, next);
@@ -318,10 +323,10 @@ impl<T: TakenTick, W> Drop for Chunks<T, W> {
 mod tests {
     use super::*;
 
-    /// Ticks, with how many were left out before them.
+    /// Numbers of written ticks, each with the number of ticks left out before it.
     type Ticks = Vec<(u64, u64)>;
 
-    /// A tick of which something is saved if its number is a multiple of 5.
+    /// A tick that counts as saved if its number is a multiple of 5.
     #[derive(Default)]
     struct Tick {
         number: u64,
@@ -347,7 +352,7 @@ mod tests {
         }
     }
 
-    /// Stores the ticks that it is given, slower than the test makes them.
+    /// Stores the ticks that it is given, and sleeps this long at each chunk.
     struct Slow(Ticks, Duration);
 
     impl WriteTicks<Tick, Ticks> for Slow {
@@ -400,11 +405,12 @@ mod tests {
         }
     }
 
-    /// A game that does not wait goes on at once, and what was left out is counted and told; after a gap the first tick is
-    /// one of which something is saved.
+    /// A game that does not wait is not held up. Ticks that are left out are counted and reported, and the first tick
+    /// after a gap is a saved one.
     #[test]
     fn a_game_that_does_not_wait_loses_ticks_and_no_time() {
-        // Chunks with a saved tick in each, in some, and at other places in each.
+        // Saved ticks are 5 apart: each chunk of 5 begins with one, some chunks of 3 have none, and chunks of 7 have
+        // them at changing places.
         for size in [5, 3, 7] {
             let slow = Slow(Vec::new(), Duration::from_millis(20));
             let mut chunks = Chunks::start(slow, (size, false)).unwrap();
@@ -417,10 +423,10 @@ mod tests {
             }
             let dropped = chunks.dropped();
             let written = chunks.finish().unwrap();
-            // One that waits does so for most of its chunks; a busy machine may hold it up a few times.
+            // A game that waits would do so for most of its chunks. A busy machine may hold it up a few times.
             assert!(waits < 20, "{waits} waits");
             assert!(dropped > 100, "{dropped}");
-            // The last chunk may have lost some more.
+            // `finish` may leave out a few more ticks: the ticks of the last chunk before its first saved tick.
             let lost = 600 - written.len() as u64;
             assert!(
                 (dropped..dropped + 7).contains(&lost),

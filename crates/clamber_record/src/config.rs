@@ -1,5 +1,5 @@
-//! A climber's configuration as metadata: an entry for each number, named by its path. A group that is `None` has no
-//! entries.
+//! A climber's configuration as metadata: one entry for each number, named by the path of its field. A group that is
+//! `None` has no entries.
 //!
 //! A number is stored as the shortest text that reads back to the same bits. JSON has no such text for infinite limits.
 
@@ -16,7 +16,7 @@ use crate::info::parse;
 
 type Metadata = BTreeMap<String, String>;
 
-/// A group of numbers, each named after its field.
+/// A group of numbers, each stored under the name of its field.
 trait Group: Sized {
     /// The prefix of the names, with a dot at its end.
     const PREFIX: &str;
@@ -43,7 +43,7 @@ impl AsText for Others {
     }
 }
 
-/// Implements [`Group`] for a struct. Every field must be listed: a missing or unknown one does not compile.
+/// Implements [`Group`] for a struct. Every field must be listed: a missing or unknown field does not compile.
 macro_rules! group {
     ($group:ident, $prefix:literal, $($field:ident),+) => {
         impl Group for $group {
@@ -140,6 +140,7 @@ group!(
 );
 group!(HealthConfig, "climber.health", safe_speed, fall_damage);
 
+/// Key of the entry of `ClimberConfig::shake_time`, which is in no group.
 const SHAKE_TIME: &str = "climber.shake_time";
 
 pub(crate) fn write(config: &ClimberConfig, metadata: &mut Metadata) {
@@ -188,7 +189,7 @@ fn write_optional<G: Group>(group: Option<&G>, metadata: &mut Metadata) {
     }
 }
 
-/// Reads a group. One entry means that the group exists; then all its entries are required.
+/// Reads a group; `None` if the metadata has no entry of it. If it has one, all entries of the group are required.
 fn read_optional<G: Group>(metadata: &Metadata) -> Result<Option<G>, RecordError> {
     let is_there = metadata.keys().any(|key| key.starts_with(G::PREFIX));
     is_there.then(|| G::read(metadata)).transpose()
@@ -234,7 +235,7 @@ mod tests {
     fn no_two_numbers_share_an_entry() {
         let mut metadata = Metadata::new();
         write(&ClimberConfig::colossus_climber(), &mut metadata);
-        // 3 of gravity, 1 for `shake_time`, and 6, 14, 7, 3, 6, 7, 6, 2 of the groups.
+        // 3 for gravity, 1 for `shake_time`, and 6, 14, 7, 3, 6, 7, 6, 2 for the groups.
         assert_eq!(metadata.len(), 55, "{metadata:?}");
     }
 

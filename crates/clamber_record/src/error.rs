@@ -22,7 +22,7 @@ pub enum RecordError {
     Encode {
         /// Topic of the message.
         topic: &'static str,
-        /// Why.
+        /// Why it cannot be encoded.
         reason: String,
     },
     /// A tick's number is not one more than the number of the tick before.
@@ -38,12 +38,13 @@ pub enum RecordError {
         "the surface has {mesh} joints, but the palette has {palette}: pass the palette that posed it"
     )]
     JointCount {
-        /// Joints of the surface's mesh.
+        /// Number of joints of the surface's mesh.
         mesh: usize,
-        /// Matrices of the palette.
+        /// Number of matrices of the palette.
         palette: usize,
     },
-    /// A figure's skeleton and palette differ in the number of joints, or the skeleton is another one than before.
+    /// A figure's skeleton and palette differ in the number of joints, or the skeleton has another number of joints
+    /// than before.
     #[error(
         "figure {figure} has {skeleton} joints now and a palette of {palette}: pass the palette that posed it, and the \
          same skeleton each time"
@@ -51,26 +52,27 @@ pub enum RecordError {
     FigureJoints {
         /// Name of the figure.
         figure: String,
-        /// Joints of its skeleton.
+        /// Number of joints of the figure's skeleton.
         skeleton: usize,
-        /// Matrices of the palette.
+        /// Number of matrices of the palette.
         palette: usize,
     },
-    /// There is not one input for each fighter that was in the arena before the step.
+    /// The number of inputs is not the number of fighters that were in the arena before the step.
     #[error("{found} inputs were given for {fighters} fighters: pass those of the last step")]
     Inputs {
-        /// Fighters of the arena.
+        /// Number of fighters in the arena before the step.
         fighters: usize,
-        /// Inputs given.
+        /// Number of inputs given.
         found: usize,
     },
-    /// Creatures or fighters were added to the arena since the last tick, and not by an order: no replay has them.
+    /// Creatures or fighters were added to the arena since the last tick without an order, so a replay could not add
+    /// them.
     #[error(
         "creatures or fighters were added to the arena without an order since the recorder saw it last: begin the recording \
          after that, or add them by orders"
     )]
     Joined,
-    /// The arena is not the one of the recording, by the hash of its configuration.
+    /// The arena is not the recorded one: the hash of its configuration differs.
     #[error(
         "this is another arena than the recorded one: its `ArenaConfig` differs (hash {found:016x}, recorded \
          {recorded:016x}); make it with the same one"
@@ -81,13 +83,13 @@ pub enum RecordError {
         /// Hash of the configuration of this arena.
         found: u64,
     },
-    /// The names of an arena's creatures and fighters are not one each, or two have the same.
+    /// The number of names does not fit the arena's creatures or fighters, or a name is used twice or reserved.
     #[error("{0}: give each creature and each fighter of the arena a name of its own")]
     Names(String),
-    /// The arena cannot be saved, or what was saved cannot be restored.
+    /// The arena, a state or an order cannot be saved or restored, or the arena cannot be stepped.
     #[error(transparent)]
     Arena(#[from] clamber_fight::ArenaError),
-    /// The recording ended at an earlier error, which was returned then.
+    /// The recording ended at an earlier error, which an earlier call returned.
     #[error("the recording has ended: an earlier part of it could not be written")]
     Ended,
     /// The duration of a tick is not positive or not finite.
@@ -98,25 +100,27 @@ pub enum RecordError {
         "not an MCAP file: it does not begin with MCAP's magic bytes; open a file made by a recorder"
     )]
     NotMcap,
-    /// An MCAP file without the metadata that a recorder writes first: another program's file, or cut or damaged there.
+    /// The file has no readable metadata of a recording of this kind: it is another program's file, is cut or damaged
+    /// there, or is a recording of the other kind.
     #[error("not a recording of clamber: {0}")]
     NotARecording(String),
     /// The contents of a message are wrong, although the checksum of its chunk is right.
     #[error("the message at byte {at} on {topic} cannot be read: {reason}; record the run again")]
     Message {
-        /// Offset of the message in the file, bytes; of one in a compressed chunk, as if that was not compressed.
+        /// Offset of the message in the file, bytes. In a compressed chunk, the offset is computed as if the chunk were
+        /// not compressed.
         at: u64,
         /// Topic of the message.
         topic: &'static str,
-        /// Why.
+        /// Why it cannot be read.
         reason: String,
     },
     /// The recording does not have this tick.
     #[error("no tick {asked}: the recording holds {}", held(*.ticks))]
     NoTick {
-        /// The tick asked for.
+        /// The tick that was asked for.
         asked: u64,
-        /// The first and the last tick of the recording; `None` without ticks.
+        /// The first and the last tick of the recording; `None` if it has no ticks.
         ticks: Option<(u64, u64)>,
     },
     /// There is no snapshot at or before this tick.
@@ -124,7 +128,7 @@ pub enum RecordError {
     NoSnapshot(u64),
 }
 
-/// The text of an error. mcap's own text for I/O errors leaves out the system's message.
+/// The text of an MCAP error. mcap's own text for I/O errors leaves out the system's message.
 fn reason(error: &mcap::McapError) -> String {
     match error {
         mcap::McapError::Io(source) => source.to_string(),

@@ -1,8 +1,8 @@
-//! Walks the records of an MCAP file from the front. So a file can be read up to where a crash or damage ends
-//! it, and neither footer nor summary is needed.
+//! Walks the records of an MCAP file from the front, so that a file can be read up to a crash or damage. The walk needs
+//! neither footer nor summary.
 //!
-//! A file of any length is read in bounded memory: one record at a time, of which the places of the messages that matter
-//! are kept. Lengths are checked before anything is read. A chunk counts only if its checksum is right, or if it has none.
+//! The walk holds one record in memory at a time, and keeps only the places of ticks and saved states. It checks the
+//! length of a record before it reads the record. It accepts a chunk only if the chunk's checksum is right or missing.
 
 use std::collections::BTreeMap;
 use std::io::Read;
@@ -21,10 +21,10 @@ use crate::{
     ArenaInfo, Ending, RecordError, RecordedArenaTick, RecordedTick, RecordingInfo, topics,
 };
 
-/// Bytes of a record before its body: its kind and its length.
+/// Bytes of a record before its body: one for its kind and eight for its length, as MCAP defines them.
 const PREFIX: usize = 9;
 
-/// Names of the metadata records that are read.
+/// Names of the metadata records that are read. Others are skipped.
 const NAMES: [&str; 4] = [
     ArenaInfo::METADATA,
     RecordingInfo::METADATA,
@@ -32,23 +32,25 @@ const NAMES: [&str; 4] = [
     GAP,
 ];
 
-/// The largest metadata record that is read, bytes.
+/// The largest metadata record that is read, bytes (16 MiB). It bounds the memory that a damaged length can claim.
+/// `Output::new` refuses to write a larger one.
 pub(crate) const METADATA: u64 = 1 << 24;
 
-/// The contents of an MCAP file that recorders write.
+/// The contents of a recorder's MCAP file.
 #[derive(Debug)]
 pub(crate) struct Contents {
-    /// Metadata records by name; the first of those with the same name.
+    /// Metadata records by name. If several have the same name, the first one counts.
     pub(crate) metadata: BTreeMap<String, BTreeMap<String, String>>,
-    /// Ticks and snapshots of one climber, and those of an arena.
+    /// Places of a climber's ticks and snapshots.
     pub(crate) climber: Places,
+    /// Places of an arena's ticks and saved states.
     pub(crate) arena: Places,
     /// How the file ends.
     pub(crate) ending: Ending,
     pub(crate) source: Source,
 }
 
-/// Messages that are read back.
+/// Kinds of messages that are read back.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     Tick,
@@ -70,7 +72,7 @@ impl From<std::io::Error> for Stop {
     }
 }
 
-/// Walks a file.
+/// Opens a file and walks its records.
 pub(crate) fn open(path: &Path) -> Result<Contents, RecordError> {
     let bytes = Bytes::open(path)?;
     read(bytes).map_err(|error| match error {
@@ -82,7 +84,7 @@ pub(crate) fn open(path: &Path) -> Result<Contents, RecordError> {
     })
 }
 
-/// Walks the bytes of a file.
+/// Walks the records in the bytes of a file.
 pub(crate) fn read(bytes: Bytes) -> Result<Contents, RecordError> {
     let mut found = Found::default();
     let walked = match &bytes {
@@ -120,7 +122,7 @@ fn failed(source: std::io::Error) -> RecordError {
     }
 }
 
-/// What was found so far.
+/// Results of the walk so far.
 #[derive(Default)]
 struct Found {
     is_mcap: bool,
@@ -131,7 +133,7 @@ struct Found {
     arena: Places,
 }
 
-/// Reads a file from its front to its end, with a checksum of all that was read.
+/// Reads a file from front to end, and keeps a checksum of everything that was read.
 struct Reader<R> {
     inner: R,
     at: u64,
@@ -139,7 +141,7 @@ struct Reader<R> {
 }
 
 impl<R: Read> Reader<R> {
-    /// Reads so many bytes; [`Stop::Early`] if the file ends before.
+    /// Reads `count` bytes into `into`; [`Stop::Early`] if the file has fewer left.
     fn take(&mut self, count: u64, into: &mut Vec<u8>) -> Result<(), Stop> {
         into.clear();
         let read = self.inner.by_ref().take(count).read_to_end(into)? as u64;
@@ -152,8 +154,9 @@ impl<R: Read> Reader<R> {
         }
     }
 
-    /// Passes over so many bytes.
+    /// Skips `count` bytes.
     fn skip(&mut self, mut count: u64, buffer: &mut Vec<u8>) -> Result<(), Stop> {
+        /// Bytes that are skipped at a time. It bounds the size of the buffer.
         const PIECE: u64 = 1 << 16;
         while count > 0 {
             let piece = count.min(PIECE);
@@ -192,7 +195,7 @@ fn walk(file: impl Read, found: &mut Found) -> Result<(), Stop> {
                 let Some(Record::Metadata(metadata)) = parse(opcode, &buffer) else {
                     return Err(damaged("metadata that cannot be read"));
                 };
-                // Other programs may add any number of them.
+                // Other programs may add any number of metadata records, so only known names are kept.
                 if NAMES.contains(&metadata.name.as_str()) {
                     let known = found.metadata.entry(metadata.name);
                     known.or_insert(metadata.metadata);
@@ -214,7 +217,7 @@ fn walk(file: impl Read, found: &mut Found) -> Result<(), Stop> {
                 let Some(Record::DataEnd(end)) = parse(opcode, &buffer) else {
                     return Err(damaged("a broken data end record"));
                 };
-                // Zero stands for no checksum.
+                // Zero means that there is no checksum.
                 if ![0, before.finalize()].contains(&end.data_section_crc) {
                     let reason =
                         "the checksum of all data is wrong: metadata or an index has changed";
@@ -235,7 +238,7 @@ fn walk(file: impl Read, found: &mut Found) -> Result<(), Stop> {
     }
 }
 
-/// What follows the data: a summary, which is not needed, and the end of the file.
+/// Reads what follows the data: a summary, which is ignored, and the magic bytes at the end of the file.
 fn end_of<R: Read>(reader: &mut Reader<R>) -> Result<(), Stop> {
     let mut last: Vec<u8> = Vec::new();
     let mut piece = vec![0; 1 << 16];
@@ -257,7 +260,7 @@ fn end_of<R: Read>(reader: &mut Reader<R>) -> Result<(), Stop> {
     }
 }
 
-/// The kind and the body of the record at `at`; `None` if it reaches beyond the end.
+/// The kind and the range of the body of the record at `at`; `None` if the record reaches beyond the end.
 fn record(bytes: &[u8], at: usize) -> Option<(u8, core::ops::Range<usize>)> {
     let start = at
         .checked_add(PREFIX)
@@ -303,7 +306,7 @@ impl Found {
                     }),
                 ) => {
                     let from = body.end - message.len();
-                    // Both are within a chunk, which is not that long.
+                    // The bounds fit in 32 bits, because a chunk has at most `LARGEST` bytes.
                     let within = Place {
                         chunk,
                         from: from as u32,
@@ -325,7 +328,7 @@ impl Found {
         Ok(())
     }
 
-    /// Checks a message, which is at a byte of the file, and stores its place.
+    /// Decodes a message, to check it, and stores its place. `at` is the message's offset in the file, for errors.
     fn message(
         &mut self,
         (kind, place): (Kind, Place),
@@ -359,7 +362,7 @@ impl Found {
     }
 }
 
-/// Parses only the kinds that are needed: the parser of the others is not made for arbitrary bytes.
+/// Parses only the kinds of records that are needed: mcap's parser of the other kinds is not made for arbitrary bytes.
 fn parse_inner(opcode: u8, body: &[u8]) -> Option<Record<'_>> {
     matches!(opcode, op::CHANNEL | op::MESSAGE)
         .then(|| parse(opcode, body))

@@ -5,23 +5,24 @@ use clamber_climber::ClimberConfig;
 
 use crate::{RecordError, config};
 
-/// The metadata of a recording: all that is needed to make its scene again, as it was before the first tick.
+/// The metadata of a recording: everything that a replay needs to make the scene again, as it was before the first
+/// tick.
 ///
-/// It is stored as two metadata records. Floating-point numbers are stored as the shortest text that reads back
+/// The file stores the metadata as two records. Floating-point numbers are stored as the shortest text that reads back
 /// to the same bits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordingInfo {
-    /// The creature's name, for people.
+    /// The creature's name, for people. The log calls the creature by it.
     pub creature: String,
-    /// The creature's [`creature_fingerprint`](crate::creature_fingerprint). It tells whether the creature has
+    /// The creature's [`creature_fingerprint`](crate::creature_fingerprint), to find out whether the creature has
     /// changed since.
     pub creature_fingerprint: u64,
     /// Duration of a tick, seconds; positive and finite.
     pub tick_seconds: f64,
-    /// The climber's configuration. Each number is an entry, `climber.` and the path of its field. A group that is
-    /// `None` has no entries.
+    /// The climber's configuration. Each number is an entry, named `climber.` and the path of its field. A group that
+    /// is `None` has no entries.
     pub climber: ClimberConfig,
-    /// What the scene was made from, in the caller's own entries: seed, options, files.
+    /// The caller's own entries about what the scene was made from: seed, options, files.
     pub settings: BTreeMap<String, String>,
     /// The version of this crate that wrote the recording. A recorder always writes its own.
     pub version: String,

@@ -1,4 +1,4 @@
-//! What a recording is of: one climber and its creature, or an arena.
+//! The kinds of recordings: one climber and its creature, or an arena.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -9,37 +9,37 @@ use crate::recorder::ClimberMemory;
 use crate::taken::Taken;
 use crate::{RecordError, RecordedTick, RecordingInfo, topics};
 
-/// A recording of one climber and its creature, in a scene that the game steps by itself.
+/// Marks a recording of one climber and its creature, in a scene that the game steps itself.
 #[derive(Clone, Copy, Debug)]
 pub enum OfClimber {}
 
-/// A recording of an arena of `clamber_fight`, which the recorder sees whole.
+/// Marks a recording of a whole arena of `clamber_fight`.
 #[derive(Clone, Copy, Debug)]
 pub enum OfArena {}
 
-/// What a recording is of: [`OfClimber`] or [`OfArena`], and nothing else.
+/// The kind of a recording: [`OfClimber`] or [`OfArena`]. Other crates cannot add kinds.
 pub trait RecordingKind: Sealed {
-    /// What is known of the whole.
+    /// Metadata of the whole recording.
     type Info: Clone + fmt::Debug;
-    /// What is recorded in a tick.
+    /// Data of one recorded tick.
     type Tick;
 
-    /// The name of its metadata.
+    /// Name of the metadata record of this kind.
     #[doc(hidden)]
     const METADATA: &'static str;
-    /// What to do with a recording of this kind.
+    /// Advice in the error for a recording of this kind that was opened as the other kind.
     #[doc(hidden)]
     const READ_WITH: &'static str;
-    /// Where its ticks are.
+    /// Topic of the ticks.
     #[doc(hidden)]
     const TOPIC: &'static str;
-    /// True of an arena.
+    /// True for recordings of an arena.
     #[doc(hidden)]
     const IS_ARENA: bool;
-    /// A tick as it is copied.
+    /// Copy of a tick on its way to the file.
     #[doc(hidden)]
     type Taken: TakenTick;
-    /// What its recorder remembers.
+    /// Data that the recorder keeps from tick to tick.
     #[doc(hidden)]
     type Memory;
 
@@ -49,12 +49,12 @@ pub trait RecordingKind: Sealed {
         settings: BTreeMap<String, String>,
     ) -> Result<Self::Info, RecordError>;
 
-    /// What a message says, or what is wrong with it.
+    /// Decodes the message of a tick; `Err` says why it cannot be read.
     #[doc(hidden)]
     fn tick(message: &[u8]) -> Result<Self::Tick, String>;
 }
 
-/// Only this crate knows kinds.
+/// Keeps other crates from implementing [`RecordingKind`].
 pub trait Sealed {}
 
 impl Sealed for OfClimber {}

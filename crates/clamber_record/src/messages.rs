@@ -1,5 +1,5 @@
-//! clamber's own messages. Their schemas come from foxglove's `Encode`, and prost reads them. In both, field
-//! numbers follow the order of the fields.
+//! clamber's own messages. foxglove's `Encode` makes their schemas, and prost reads them. In both, field numbers follow
+//! the order of the fields.
 
 use clamber_climber::{
     Blow, ClimberInput, ClimberMode, ClimberState, FlyingMemory, HangingMemory, HoldingMemory,
@@ -78,7 +78,7 @@ pub(crate) struct Held {
     pub(crate) coordinates: Vector,
     #[prost(message, required, tag = "4")]
     pub(crate) contact: Vector,
-    /// In the frame of the material, like `normal`.
+    /// In the frame of the material, as `normal` is.
     #[prost(message, required, tag = "5")]
     pub(crate) offset: Vector,
     #[prost(message, required, tag = "6")]
@@ -98,7 +98,7 @@ pub(crate) struct Held {
     pub(crate) user: u32,
 }
 
-/// Memory of the game's own modes.
+/// Memory of the game's custom modes.
 #[derive(Clone, Copy, PartialEq, Encode, prost::Message)]
 pub(crate) struct Memory {
     #[prost(double, tag = "1")]
@@ -128,7 +128,7 @@ pub(crate) struct State {
     pub(crate) velocity: Vector,
     #[prost(message, required, tag = "3")]
     pub(crate) heading: Vector,
-    /// `ClimberMode::number` of its mode.
+    /// `ClimberMode::number` of the current mode.
     #[prost(uint32, tag = "4")]
     pub(crate) mode: u32,
     #[prost(message, optional, tag = "5")]
@@ -163,37 +163,39 @@ pub(crate) struct State {
     pub(crate) memory: Memory,
     #[prost(bool, tag = "20")]
     pub(crate) shoved: bool,
-    /// How long it has lain still, seconds.
+    /// How long a tumbling climber has lain still, seconds.
     #[prost(double, tag = "21")]
     pub(crate) still: f64,
-    /// End of its legs while it hangs, relative to its position.
+    /// End of the climber's legs while it hangs, relative to its position.
     #[prost(message, required, tag = "22")]
     pub(crate) legs: Vector,
     #[prost(bool, tag = "23")]
     pub(crate) crushed: bool,
-    /// How long it has touched nothing, seconds.
+    /// How long the climber has touched nothing, seconds.
     #[prost(double, tag = "24")]
     pub(crate) untouched: f64,
-    /// What it remembers of a held stick while it climbs.
+    /// The held stick and the climbing direction that was found for it.
     #[prost(message, optional, tag = "25")]
     pub(crate) held_stick: Option<HeldStick>,
     /// How long ago a tumbling climber first touched ground, seconds.
     #[prost(double, tag = "26")]
     pub(crate) down: f64,
-    /// How long it has been kept from pulling itself up, seconds.
+    /// How long an obstacle has kept the climber from pulling itself up, seconds.
     #[prost(double, tag = "27")]
     pub(crate) blocked: f64,
     #[prost(bool, tag = "28")]
     pub(crate) gave_up: bool,
     #[prost(bool, tag = "29")]
     pub(crate) returns: bool,
-    /// Direction of the input that leads to its right along a ledge that has turned a corner.
+    /// Direction of the input that leads to the climber's right along a ledge, set while the input has led it around a
+    /// corner.
     #[prost(message, required, tag = "30")]
     pub(crate) right: Vector,
-    /// Its displacement in the last tick beyond that of its support.
+    /// Displacement of the climber in the last tick beyond its support's displacement, or beyond its velocity in the
+    /// air.
     #[prost(message, required, tag = "31")]
     pub(crate) own_way: Vector,
-    /// Share of its weight that it put on its support.
+    /// Share of the climber's weight that it put on its support.
     #[prost(double, tag = "32")]
     pub(crate) load: f64,
 }
@@ -247,7 +249,7 @@ pub(crate) struct Tick {
     pub(crate) scene_fingerprint: u64,
 }
 
-/// A snapshot: what the scene needs to resume from a tick, as the caller's text.
+/// A snapshot: the caller's text from which the scene can resume after a tick.
 #[derive(Clone, PartialEq, Encode, prost::Message)]
 pub(crate) struct Snapshot {
     #[prost(uint64, tag = "1")]
@@ -261,13 +263,13 @@ pub(crate) struct Snapshot {
 pub(crate) struct ArenaTick {
     #[prost(uint64, tag = "1")]
     pub(crate) tick: u64,
-    /// One for each fighter; none before the first step.
+    /// One input for each fighter; empty before the first step.
     #[prost(message, repeated, tag = "2")]
     pub(crate) inputs: Vec<Input>,
-    /// Fingerprint of all.
+    /// Fingerprint of the whole arena.
     #[prost(uint64, tag = "3")]
     pub(crate) fingerprint: u64,
-    /// Fingerprints of the creatures, of the fighters, and of the rest.
+    /// Fingerprints of the creatures, of the fighters, and of the rest, in this order.
     #[prost(uint64, repeated, tag = "4")]
     pub(crate) parts: Vec<u64>,
     /// Numbers of the creatures.
@@ -276,12 +278,12 @@ pub(crate) struct ArenaTick {
     /// Numbers of the fighters.
     #[prost(uint32, repeated, tag = "6")]
     pub(crate) fighters: Vec<u32>,
-    /// The orders of the step, as the arena writes them; empty without any.
+    /// The orders of the step, as `Order::to_bytes` writes them; empty if there are none.
     #[prost(bytes = "bytes", tag = "7")]
     pub(crate) orders: prost::bytes::Bytes,
 }
 
-/// A saved arena.
+/// A saved state of an arena.
 #[derive(Clone, PartialEq, Encode, prost::Message)]
 pub(crate) struct ArenaSnapshot {
     #[prost(uint64, tag = "1")]
@@ -302,10 +304,10 @@ pub(crate) struct Named {
 /// The brain of a creature.
 #[derive(Clone, PartialEq, Encode, prost::Message)]
 pub(crate) struct Brain {
-    /// The state that it is in, with the names of those around it.
+    /// Path of the current state, with the names of the states around it.
     #[prost(string, tag = "1")]
     pub(crate) state: String,
-    /// Seconds for which it has been in that state.
+    /// Time since that state was entered, seconds.
     #[prost(double, tag = "2")]
     pub(crate) seconds: f64,
     #[prost(message, repeated, tag = "3")]
@@ -313,15 +315,15 @@ pub(crate) struct Brain {
     /// Senses that are finite and not 0.
     #[prost(message, repeated, tag = "4")]
     pub(crate) senses: Vec<Named>,
-    /// Hit points left of each weak point.
+    /// Remaining hit points of each weak point.
     #[prost(double, repeated, tag = "5")]
     pub(crate) hit_points: Vec<f64>,
-    /// For each leg whether its foot stands.
+    /// For each leg, whether its foot is planted.
     #[prost(bool, repeated, tag = "6")]
     pub(crate) planted: Vec<bool>,
 }
 
-/// Counts of what the queries of a tick touched.
+/// Counts of the clusters, vertices and triangles that the queries of a tick touched.
 #[derive(Clone, Copy, PartialEq, Encode, prost::Message)]
 pub(crate) struct Touched {
     #[prost(uint64, tag = "1")]
@@ -343,9 +345,8 @@ pub(crate) struct Touched {
 }
 
 impl Tick {
-    /// Appends the message. prost writes it three times as fast as foxglove, but leaves out numbers that
-    /// equal zero, and so loses the sign of a negative zero. A message with a negative zero is written by
-    /// foxglove.
+    /// Appends the encoded message. prost encodes three times as fast as foxglove, but leaves out numbers that equal
+    /// zero, and so loses the sign of a negative zero. Therefore foxglove encodes messages with a negative zero.
     pub(crate) fn write(&self, buffer: &mut Vec<u8>) -> Result<(), String> {
         if self.has_negative_zero() {
             Encode::encode(self, buffer).map_err(|error| error.to_string())
@@ -649,7 +650,7 @@ impl From<Held> for Support {
 }
 
 impl State {
-    /// The climber's state; `Err` with the number of its mode if this version does not know the mode.
+    /// Converts the message to a climber's state; `Err` is the number of a mode that this version does not know.
     pub(crate) fn to_climber(self) -> Result<ClimberState, u32> {
         let mode = ClimberMode::from_number(self.mode);
         Ok(ClimberState {

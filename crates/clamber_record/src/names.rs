@@ -10,7 +10,7 @@ use clamber_world::ObstacleId;
 /// Names of obstacles, by id.
 pub(crate) type ObstacleNames = Arc<Vec<(ObstacleId, String)>>;
 
-/// What a climber is on at the end of a tick.
+/// An obstacle, and the joint of its skin that a climber is on at the end of a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Part {
     obstacle: ObstacleId,
@@ -18,7 +18,8 @@ pub(crate) struct Part {
 }
 
 impl Part {
-    /// The joint of a skin that a climber is on, if its support is on this skin.
+    /// The part that a climber is on; `None` without a support, or if the support's key names no triangle of `mesh`.
+    /// The support may be on another obstacle: see [`Part::is_on`].
     pub(crate) fn of(state: &ClimberState, mesh: &ColliderMesh) -> Option<Self> {
         let at = state.support?.attachment;
         let triangle = u32::try_from(at.material.key).ok()?;
@@ -32,7 +33,7 @@ impl Part {
         self.obstacle == obstacle
     }
 
-    /// `giant (nape)`, with the names of joints by number.
+    /// A name for the log, such as `giant (nape)`. `joint` gives the name of a joint.
     pub(crate) fn name<'a>(
         &self,
         creature: &str,
@@ -45,7 +46,7 @@ impl Part {
     }
 }
 
-/// The name of an obstacle, or its number.
+/// The name of an obstacle, or its number if it has no name.
 pub(crate) fn name_of(names: &[(ObstacleId, String)], obstacle: ObstacleId) -> String {
     let named = names.iter().find(|(id, _)| *id == obstacle);
     named.map_or_else(

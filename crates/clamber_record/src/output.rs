@@ -21,32 +21,35 @@ pub(crate) struct Channel {
     topic: &'static str,
 }
 
-/// A chunk is ended after the tick in which it becomes larger than this, bytes: readers hold a whole chunk in memory, and
-/// refuse those of more than 512 MiB.
+/// A chunk ends after the tick in which it becomes larger than this, bytes (64 MiB). Readers hold a whole chunk in
+/// memory, and refuse chunks of more than 512 MiB.
 const LARGE: u64 = 64 << 20;
 
-/// The metadata record that tells how many ticks were left out at the end, and its key.
+/// Name of the metadata record that says how many ticks were left out at the end.
 pub(crate) const GAP: &str = "clamber gap";
+/// Key of that number in the [`GAP`] record.
 pub(crate) const GAP_TICKS: &str = "ticks";
 
-/// What a message or a record takes beside its data, bytes, and a text beside its letters, at most.
+/// Upper bound of the bytes that a message or a record takes besides its data.
 const MORE: u64 = 1024;
+/// Bytes that a metadata entry takes besides its key and value: their two lengths, four bytes each.
 const TEXTS: usize = 8;
 
 pub(crate) struct Output<W: Write> {
-    /// `None` once it is finished.
+    /// `None` once the file is finished.
     writer: Option<Writer<NoSeek<Gate<W>>>>,
     is_open: Arc<AtomicBool>,
     tick_seconds: f64,
     sequence: u32,
     now: u64,
-    /// Bytes in the chunk that is being written.
+    /// Bytes in the current chunk, with [`MORE`] for each message.
     chunk: u64,
-    /// Kept for its memory.
+    /// Buffer of the encoded message, kept so that its memory is reused.
     buffer: Vec<u8>,
 }
 
-/// Passes bytes on as long as it is open. A writer that is dropped would end its file as if that was whole.
+/// Passes bytes on while it is open. `Output` closes it when dropped: mcap's writer finishes its file on drop, so the
+/// file of a recording that failed would look whole.
 struct Gate<W> {
     out: W,
     is_open: Arc<AtomicBool>,
@@ -82,7 +85,7 @@ impl<W: Write> Output<W> {
         if !(tick_seconds > 0.0 && tick_seconds.is_finite()) {
             return Err(RecordError::TickSeconds(tick_seconds));
         }
-        // A chunk stays in memory until `flush` ends it, so that nothing is patched in the file.
+        // A chunk stays in memory until `flush` ends it, so that bytes in the file never have to be changed.
         let write = WriteOptions::new()
             .compression(None)
             .chunk_size(None)
@@ -128,7 +131,7 @@ impl<W: Write> Output<W> {
         self.channel_named::<M>(topic, topic)
     }
 
-    /// Adds one of several channels of a topic, with a name of its own.
+    /// Adds a channel called `name`. `topic` appears in errors only.
     pub(crate) fn channel_named<M: Encode>(
         &mut self,
         topic: &'static str,
@@ -152,7 +155,7 @@ impl<W: Write> Output<W> {
         self.now
     }
 
-    /// The time of the tick that was begun last.
+    /// The time of the tick that was begun last, nanoseconds since tick 0.
     pub(crate) fn now(&self) -> u64 {
         self.now
     }
@@ -197,13 +200,13 @@ impl<W: Write> Output<W> {
         Ok(writer.write_to_known_channel(&header, &self.buffer)?)
     }
 
-    /// Ends a chunk.
+    /// Ends the current chunk.
     pub(crate) fn flush(&mut self) -> Result<(), RecordError> {
         self.chunk = 0;
         Ok(self.writer()?.flush()?)
     }
 
-    /// Tells readers how many ticks were left out at the end.
+    /// Stores for readers how many ticks were left out at the end.
     pub(crate) fn ends_in_gap(&mut self, ticks: u64) -> Result<(), RecordError> {
         let metadata = BTreeMap::from([(GAP_TICKS.to_owned(), ticks.to_string())]);
         let name = GAP.to_owned();
@@ -216,7 +219,7 @@ impl<W: Write> Output<W> {
         self.writer.as_mut().ok_or(RecordError::Ended)
     }
 
-    /// Ends a chunk that is large after a tick, however few ticks are in it.
+    /// Ends the current chunk if it is larger than [`LARGE`], however few ticks it has.
     pub(crate) fn flush_if_large(&mut self) -> Result<(), RecordError> {
         if self.chunk > LARGE {
             self.flush()?;
@@ -224,7 +227,7 @@ impl<W: Write> Output<W> {
         Ok(())
     }
 
-    /// Writes the index and gives back the output.
+    /// Writes the index and returns the output.
     pub(crate) fn finish(mut self) -> Result<W, RecordError> {
         let mut writer = self.writer.take().ok_or(RecordError::Ended)?;
         writer.finish()?;

@@ -1,25 +1,25 @@
-//! Where the messages of a recording are.
+//! The places of a recording's messages in its file.
 
 use std::ops::RangeInclusive;
 
 use crate::RecordError;
 use crate::source::Place;
 
-/// The places of ticks, and of what was saved after some of them.
+/// The places of ticks, and of the states that were saved after some of them.
 ///
-/// Ticks follow each other, but for gaps, where the recorder has left some out. The first tick after a gap has something
-/// saved.
+/// Tick numbers are consecutive except at gaps, where the recorder left ticks out. The first tick after a gap must have
+/// a saved state before another tick is added.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Places {
-    /// Ticks without a gap between them: the number of the first one, and its index.
+    /// Runs of ticks without gaps: the number of the first tick, and its index in `ticks`.
     runs: Vec<(u64, usize)>,
     ticks: Vec<Place>,
-    /// Ascending ticks.
+    /// Ticks with a saved state, ascending, and the places of the states.
     saved: Vec<(u64, Place)>,
 }
 
 impl Places {
-    /// Adds a tick after the last one.
+    /// Adds a tick. Its number must be one more than the last one's, or larger after a gap.
     pub(crate) fn add_tick(&mut self, tick: u64, place: Place) -> Result<(), RecordError> {
         let last = self.last();
         let follows = last.is_none_or(|last| last.checked_add(1) == Some(tick));
@@ -35,7 +35,7 @@ impl Places {
         Ok(())
     }
 
-    /// True if the last tick is the first one after a gap, and nothing is saved of it.
+    /// True if the last run begins after a gap and has no saved state.
     fn lacks_saved(&self) -> bool {
         let Some((first, _)) = self.runs.last().filter(|_| self.runs.len() > 1) else {
             return false;
@@ -43,12 +43,12 @@ impl Places {
         self.saved.last().is_none_or(|(saved, _)| saved < first)
     }
 
-    /// Adds what was saved after the last tick.
+    /// Adds a state that was saved after the last tick.
     pub(crate) fn add_saved(&mut self, tick: u64, place: Place) -> Result<(), RecordError> {
         if self.last() != Some(tick) {
             return Err(self.order(tick));
         }
-        // Only the last one of a tick counts.
+        // If a tick has several saved states, the last one counts.
         match self.saved.last_mut().filter(|(last, _)| *last == tick) {
             Some(last) => last.1 = place,
             None => self.saved.push((tick, place)),
@@ -74,7 +74,7 @@ impl Places {
         Some(first + ((self.ticks.len() - index) as u64 - 1))
     }
 
-    /// The ticks that are there: ranges with a gap between each two of them.
+    /// The ranges of recorded ticks. There is a gap between each two of them.
     pub(crate) fn runs(&self) -> impl Iterator<Item = RangeInclusive<u64>> + '_ {
         let ends = self.runs.iter().skip(1).map(|(_, index)| *index);
         let ends = ends.chain([self.ticks.len()]);
@@ -84,7 +84,7 @@ impl Places {
         })
     }
 
-    /// The index of the first tick that is not before a number.
+    /// Index of the first tick that is not before `tick`; the number of ticks if all are before it.
     fn index_from(&self, tick: u64) -> usize {
         let after = self.runs.partition_point(|(first, _)| *first <= tick);
         let end = self.runs.get(after).map_or(self.ticks.len(), |run| run.1);
@@ -98,7 +98,7 @@ impl Places {
     /// The place of a tick.
     pub(crate) fn tick(&self, tick: u64) -> Result<&Place, RecordError> {
         let index = self.index_from(tick);
-        // The run of that index begins at or before it; in a gap it is the next one's first.
+        // The run that contains `index`. If `tick` is in a gap, `index` is the first tick after the gap.
         let run = self.runs.partition_point(|(_, first)| *first <= index);
         let number = run.checked_sub(1).map(|run| self.runs[run]);
         let number = number.map(|(first, at)| first + (index - at) as u64);
@@ -109,12 +109,12 @@ impl Places {
         place.filter(|_| is_there).ok_or(none)
     }
 
-    /// The places of the ticks from one on.
+    /// The places of the ticks from `tick` on.
     pub(crate) fn from(&self, tick: u64) -> impl Iterator<Item = &Place> {
         self.ticks.iter().skip(self.index_from(tick))
     }
 
-    /// The last tick at or before one after which something was saved, and the place of that.
+    /// The last tick at or before `tick` that has a saved state, and the place of that state.
     pub(crate) fn saved(&self, tick: u64) -> Result<(u64, &Place), RecordError> {
         self.tick(tick)?;
         let after = self.saved.partition_point(|(at, _)| *at <= tick);
@@ -143,10 +143,10 @@ mod tests {
         for tick in [5, 6, 7] {
             places.add_tick(tick, place(tick as u32)).unwrap();
         }
-        // Back, and twice.
+        // A lower number and a repeated one are refused.
         assert!(places.add_tick(7, place(0)).is_err() && places.add_tick(3, place(0)).is_err());
         places.add_tick(20, place(20)).unwrap();
-        // After a gap there is something saved first.
+        // After a gap, a second tick is refused until the first one has a saved state.
         assert!(places.add_tick(21, place(21)).is_err());
         assert!(places.add_tick(40, place(40)).is_err());
         for at in [118, 119, 120] {
@@ -171,7 +171,7 @@ mod tests {
         assert_eq!(from(7), [7, 20, 21]);
         assert_eq!(from(8), [20, 21]);
         assert_eq!((from(21), from(22)), (vec![21], vec![]));
-        // The last number there is.
+        // The largest tick number.
         let mut last = Places::default();
         last.add_tick(u64::MAX, place(1)).unwrap();
         assert_eq!(last.last(), Some(u64::MAX));

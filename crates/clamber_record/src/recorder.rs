@@ -19,43 +19,43 @@ use crate::views::{FigureJoints, SceneryNames, SceneryView, TakenBrain, TakenFig
 use crate::writing::Writing;
 use crate::{OfClimber, RecordError, RecordingInfo, RecordingKind};
 
-/// How often views for people are recorded, and how large chunks are.
+/// Options of a recorder: how often views for people are recorded, and how large chunks are.
 ///
-/// Inputs, states, fingerprints and events are recorded every tick, whatever the options.
+/// Inputs, states, fingerprints and events are recorded every tick, with any options.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RecordOptions {
-    /// Ticks between two messages of transforms, of the creature and of figures, and of brains; 0 for none. Default 4:
+    /// Ticks between two messages of transforms (of the creature and of figures) and of brains; 0 for none. Default 4:
     /// 15 messages a second at 60 Hz. A message takes 6 kB for a creature of 45 joints. Lower it for smooth motion of
     /// limbs.
     pub transforms_every: u32,
     /// Ticks between two views of the skin and of the climber's body and support; 0 for none. Default 4, like the
-    /// transforms: a skin that is recorded less often lags the joints. Each view skins the whole creature and takes
-    /// some 12 kB. Raise both for large creatures.
+    /// transforms: a skin that is recorded less often lags behind the joints. Each view skins the whole creature and
+    /// takes about 12 kB. Raise both for large creatures.
     ///
-    /// Until a view is written, it shares the surface's mesh. The first edit in that time has to copy the mesh.
+    /// Until a view is written, it shares the mesh with the surface. The first edit in that time has to copy the mesh.
     pub skin_every: u32,
-    /// Ticks between two views of the triangles that queries touched; 0 for none. Default 60: once a second. They are
-    /// shown until the next view of the skin. They count only in ticks with such a view. This is the most expensive
-    /// part: a view takes some 50 kB.
+    /// Ticks between two views of the triangles that queries touched; 0 for none. Default 60: once a second at 60 Hz.
+    /// These triangles are recorded only in ticks with a view of the skin, and shown until the next one. They are the
+    /// most expensive part: a view takes about 50 kB.
     pub touched_every: u32,
     /// Largest number of points in a view of the skin. Default 1000; 0 means 1.
     pub skin_points: usize,
-    /// Ticks in a chunk. Default 60; 0 means 1. A crash loses the chunk being gathered and those not yet written:
-    /// up to ten in all, one or two if the disk keeps up. Raise it for fewer, larger writes. Each tick of a chunk
-    /// waits in memory with its palette.
+    /// Ticks in a chunk. Default 60; 0 means 1. A crash loses the chunk that is being gathered and the chunks that are
+    /// not yet written: up to ten in all, one or two if the disk keeps up. Raise it for fewer, larger writes. Each tick
+    /// stays in memory with its palette until its chunk is written.
     pub chunk_ticks: u32,
-    /// What happens when the disk is slower than the game for some seconds. If false, which is the default, the game is
-    /// never held up: ticks are left out, from a chunk's beginning to where a replay can begin again
-    /// ([`RecorderOf::dropped`] and the log tell). If true, it waits and nothing is lost: for programs that do not play in
-    /// real time.
+    /// Whether the game waits if the disk is slower than the game for some seconds. False, the default: the game is not
+    /// held up. Ticks are left out, from the beginning of a chunk to the next tick from which a replay can start;
+    /// [`RecorderOf::dropped`] counts them, and the log reports them. True: the game waits and no tick is lost, for
+    /// programs that do not play in real time.
     ///
-    /// Ticks are left out only if the recorder was given snapshots of the scene at least twice: without any, no replay could
-    /// go on after a gap, and it waits. An arena's recorder makes them itself.
+    /// Ticks are left out only once two ticks have a snapshot of the scene. Until then the game waits, because without
+    /// a snapshot no replay could continue after a gap. An arena's recorder makes the snapshots itself.
     pub waits: bool,
 }
 
 impl RecordOptions {
-    /// The default, but it waits for the disk, so that nothing is lost.
+    /// The default options, but the game waits for a slow disk, so that no tick is lost.
     pub fn waiting() -> Self {
         Self {
             waits: true,
@@ -77,10 +77,10 @@ impl Default for RecordOptions {
     }
 }
 
-/// What a game passes to [`Recorder::tick`]: the data of one tick, as it is at the end of the tick.
+/// The data of one tick for [`Recorder::tick`], as it is at the end of the tick.
 #[derive(Clone, Copy, Debug)]
 pub struct TickView<'a> {
-    /// Number of the tick: any for the first tick, then one more than the number of the tick before.
+    /// Number of the tick: any number for the first tick, then one more than the number of the tick before.
     pub tick: u64,
     /// The climber's input in this tick.
     pub input: &'a ClimberInput,
@@ -92,30 +92,29 @@ pub struct TickView<'a> {
     pub surface: &'a SkinnedSurface,
     /// The palette that posed the surface.
     pub palette: &'a Palette,
-    /// A hash of the rest of the scene, for a replay to compare; 0 for nothing.
+    /// A hash of the rest of the scene, for a replay to compare; 0 if there is nothing else.
     pub scene_fingerprint: u64,
 }
 
-/// What a game passes to [`Recorder::figure`]: a figure as it is drawn at the end of a tick, such as the climber's
-/// body.
+/// A figure for [`Recorder::figure`], as it is drawn at the end of a tick, such as the climber's body.
 #[derive(Clone, Copy, Debug)]
 pub struct FigureView<'a> {
     /// Name of the figure, for example `"hero"`. The frames of its joints are called `hero/hips` and so on. Choose a
     /// name that no joint of the creature has.
     pub name: &'a str,
-    /// Its skeleton: the same at every call with this name.
+    /// Its skeleton: the same in every call with this name.
     pub skeleton: &'a Skeleton,
     /// The palette that poses it.
     pub palette: &'a Palette,
-    /// Where it is drawn.
+    /// Transform of the figure from model space to world space.
     pub world_from_model: Similarity,
 }
 
 /// Writes a recording, chunk by chunk, on a thread of its own.
 ///
-/// Its `tick` only copies the tick. Once a chunk is complete, the thread skins, encodes and writes its
-/// ticks, in their order, while the game goes on. If the thread falls behind for some seconds, ticks are left out, and
-/// counted and told, or the game waits: see [`RecordOptions::waits`].
+/// `tick` only copies the tick. When a chunk is complete, the thread skins, encodes and writes its ticks in order,
+/// while the game runs. If the thread falls behind by some seconds, either ticks are left out, counted and logged, or
+/// the game waits: see [`RecordOptions::waits`].
 ///
 /// A chunk is held in memory and written as a whole, so the file is readable up to the last written chunk
 /// whenever writing stops. A recorder that is dropped without [`RecorderOf::finish`] finishes the file too, but
@@ -130,28 +129,27 @@ pub struct RecorderOf<K: RecordingKind, W: Write> {
     pub(crate) chunks: Chunks<K::Taken, W>,
 }
 
-/// Writes a recording of one climber and its creature: [`RecorderOf`].
+/// Writes a recording of one climber and its creature, as [`RecorderOf`] describes.
 pub type Recorder<W> = RecorderOf<OfClimber, W>;
 
-/// What a recorder of a climber remembers: the figures that were recorded.
+/// Data that a climber's recorder keeps from tick to tick: the figures that were recorded.
 #[derive(Debug, Default)]
 pub struct ClimberMemory {
     figures: Vec<Arc<FigureJoints>>,
 }
 
 impl<K: RecordingKind, W: Write> RecorderOf<K, W> {
-    /// Gives an obstacle a name, by which the log calls it from the next tick on. Of a recording of one climber the
-    /// creature is to have the name in [`RecordingInfo::creature`]: then the log also names the part of it that the
-    /// climber is on. Creatures and fighters of an arena have those of [`ArenaInfo`](crate::ArenaInfo).
+    /// Names an obstacle in the log from the next tick on. In a recording of one climber, give the creature the name in
+    /// [`RecordingInfo::creature`]: then the log also names the part of the creature that the climber is on. In a
+    /// recording of an arena, creatures and fighters already have the names in [`ArenaInfo`](crate::ArenaInfo).
     pub fn name(&mut self, obstacle: ObstacleId, name: &str) {
         let names = Arc::make_mut(&mut self.names);
         names.retain(|(id, _)| *id != obstacle);
         names.push((obstacle, name.to_owned()));
     }
 
-    /// True if the tick recorded last takes joints, figures and places of meshes: see
-    /// [`RecordOptions::transforms_every`]. In other ticks a figure, or a mesh that was recorded before, need not be
-    /// prepared.
+    /// True if transforms are due in the tick recorded last: see [`RecordOptions::transforms_every`]. In other ticks,
+    /// figures and meshes that were recorded before need not be prepared.
     ///
     /// # Errors
     /// [`RecordError::NoTick`] before the first tick; [`RecordError::Ended`] after writing failed.
@@ -159,9 +157,9 @@ impl<K: RecordingKind, W: Write> RecorderOf<K, W> {
         Ok(self.chunks.last()?.is_due())
     }
 
-    /// Records a mesh at the tick recorded last, for people to look at, such as the ground or a rock: its shape the
-    /// first time, its place whenever [`RecordOptions::transforms_every`] lets transforms be due. What stands still is
-    /// recorded once.
+    /// Records a mesh at the tick recorded last, for people to look at, such as the ground or a rock. The first call
+    /// with a name records the mesh's shape and place, and later calls record its place if transforms are due
+    /// ([`RecordOptions::transforms_every`]). Call it once for a mesh that stands still.
     ///
     /// # Errors
     /// [`RecordError::NoTick`] before the first tick; [`RecordError::Ended`] after writing failed.
@@ -172,17 +170,17 @@ impl<K: RecordingKind, W: Write> RecorderOf<K, W> {
         Ok(())
     }
 
-    /// Ticks that were left out so far, since the disk was too slow: [`RecordOptions::waits`]. A gap ends at a tick with a
-    /// snapshot, or a saved state.
+    /// Number of ticks left out so far because the disk was too slow: see [`RecordOptions::waits`]. A gap ends at a
+    /// tick with a snapshot or a saved state.
     pub fn dropped(&self) -> u64 {
         self.chunks.dropped()
     }
 
-    /// Writes the remaining ticks and the index, and gives back `out`.
+    /// Writes the remaining ticks and the index, and returns `out`.
     ///
     /// # Errors
-    /// [`RecordError::Write`] or another error if a chunk or the index could not be written;
-    /// [`RecordError::Ended`] if a tick has returned that error already.
+    /// [`RecordError::Write`] or another error if a chunk or the index could not be written; [`RecordError::Ended`] if
+    /// an earlier call has returned that error already.
     ///
     /// # Panics
     /// If `out` panicked: that panic is resumed here.
@@ -206,7 +204,7 @@ impl Recorder<BufWriter<File>> {
     }
 }
 
-/// Creates a file, in place of one that is there.
+/// Creates a file. An existing file at that path is overwritten.
 pub(crate) fn create(path: &Path) -> Result<BufWriter<File>, RecordError> {
     let file = File::create(path).map_err(|source| RecordError::Io {
         what: format!("cannot create {}", path.display()),
@@ -272,9 +270,8 @@ impl<W: Write> Recorder<W> {
         })
     }
 
-    /// Records the joints of a figure at the tick recorded last, for people to look at: a replay does not compare
-    /// them. Nothing is recorded in ticks in which [`RecordOptions::transforms_every`] lets no transforms be due.
-    ///
+    /// Records the joints of a figure at the tick recorded last, for people to look at: a replay does not compare them.
+    /// Nothing is recorded in ticks in which no transforms are due ([`RecordOptions::transforms_every`]).
     /// # Errors
     /// [`RecordError::FigureJoints`] if the palette, the skeleton and the skeleton of this name's first call differ in
     /// their number of joints; [`RecordError::NoTick`] before the first tick; [`RecordError::Ended`] after writing
@@ -304,9 +301,9 @@ impl<W: Write> Recorder<W> {
         Ok(())
     }
 
-    /// Records the brain of the creature at the tick recorded last, for people to look at: its state, moods and senses,
-    /// at every change of state and whenever [`RecordOptions::transforms_every`] lets transforms be due; its events and
-    /// blows go to the log. A replay does not compare them.
+    /// Records the brain of the creature at the tick recorded last, for people to look at. State, moods and senses are
+    /// recorded at every change of state, and whenever transforms are due ([`RecordOptions::transforms_every`]). Events
+    /// and blows go to the log. A replay does not compare them.
     ///
     /// # Errors
     /// [`RecordError::NoTick`] before the first tick; [`RecordError::Ended`] after writing failed.
@@ -318,8 +315,9 @@ impl<W: Write> Recorder<W> {
 
     /// Records a snapshot of the scene after the tick recorded last.
     ///
-    /// `scene` is what the scene needs to resume from that tick, in a format of its own. It can leave out the climber's
-    /// state, since every tick has it. [`Recording::snapshot`](crate::Recording::snapshot) reads both back.
+    /// `scene` is a text, in the caller's own format, from which the scene can resume after that tick. It can leave out
+    /// the climber's state, since every tick has it. [`Recording::snapshot`](crate::Recording::snapshot) reads both
+    /// back.
     ///
     /// # Errors
     /// [`RecordError::NoTick`] before the first tick, [`RecordError::Ended`] after writing failed.
@@ -328,8 +326,8 @@ impl<W: Write> Recorder<W> {
         self.snapshot_with(move || Ok::<_, Infallible>(scene))
     }
 
-    /// Records a snapshot as [`Recorder::snapshot`] does, but the recorder's thread makes its text, while the game goes
-    /// on. `scene` is called there, so it has to own a copy of what it writes.
+    /// Records a snapshot as [`Recorder::snapshot`] does, but the recorder's thread calls `scene` to make the text,
+    /// while the game runs. So `scene` has to own a copy of the data that it writes.
     ///
     /// If `scene` fails, the recording ends before its tick, as if the file could not be written: a later
     /// [`Recorder::tick`], or [`Recorder::finish`], returns [`RecordError::Encode`] with the reason. If `scene` panics,

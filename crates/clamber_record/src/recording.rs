@@ -23,7 +23,7 @@ pub enum Ending {
     Damaged {
         /// Offset of that byte in the file.
         at: u64,
-        /// What is wrong there.
+        /// Description of the damage.
         reason: String,
     },
 }
@@ -52,11 +52,11 @@ pub struct RecordedTick {
     pub state_fingerprint: u64,
     /// [`palette_fingerprint`](crate::palette_fingerprint) of the creature's palette.
     pub palette_fingerprint: u64,
-    /// The caller's hash of the rest of the scene; 0 for nothing.
+    /// The caller's hash of the rest of the scene; 0 if there is nothing else.
     pub scene_fingerprint: u64,
 }
 
-/// A snapshot: what a scene needs to resume from a tick.
+/// A snapshot from which a scene can resume after a tick.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct RecordedSnapshot {
@@ -68,7 +68,7 @@ pub struct RecordedSnapshot {
 
 /// A recording that was read: its metadata, and all ticks up to where the file ends or is damaged.
 ///
-/// [`Recording`] is one of a climber, [`ArenaRecording`](crate::ArenaRecording) one of an arena.
+/// [`Recording`] is a recording of one climber, [`ArenaRecording`](crate::ArenaRecording) a recording of an arena.
 #[derive(Clone, Debug)]
 pub struct RecordingOf<K: RecordingKind> {
     info: K::Info,
@@ -82,8 +82,8 @@ pub struct RecordingOf<K: RecordingKind> {
 pub type Recording = RecordingOf<OfClimber>;
 
 impl<K: RecordingKind> RecordingOf<K> {
-    /// Reads a recording from a file of any length: only where its ticks are is kept in memory, and one chunk at a time.
-    /// Chunks may be compressed by zstd or lz4, as other programs write them, and checksums may be left out.
+    /// Reads a recording from a file of any length. Only the places of the ticks and one chunk at a time are kept in
+    /// memory. Chunks may be compressed by zstd or lz4, as other programs write them, and checksums may be missing.
     ///
     /// # Errors
     /// [`RecordError::Io`] if the file cannot be read, and as [`RecordingOf::from_bytes`].
@@ -147,13 +147,13 @@ impl<K: RecordingKind> RecordingOf<K> {
         &self.ending
     }
 
-    /// How many ticks the recorder has left out after the last one, since its disk was too slow: the run went on for so long.
+    /// Number of ticks that the recorder left out after the last recorded one, because its disk was too slow.
     pub fn lost_at_end(&self) -> u64 {
         self.lost_at_end
     }
 
-    /// The ticks that it has: ranges, and between each two of them a gap, where the recorder has left ticks out since its disk
-    /// was too slow. A range after a gap begins with a saved state.
+    /// The ranges of recorded ticks. Between each two of them is a gap, where the recorder left ticks out because its
+    /// disk was too slow. A range after a gap begins with a saved state.
     pub fn runs(&self) -> impl Iterator<Item = RangeInclusive<u64>> + '_ {
         self.places.runs()
     }
@@ -193,7 +193,7 @@ impl<K: RecordingKind> RecordingOf<K> {
 
     /// The ticks from this number on, in order.
     ///
-    /// These are all ticks for a number before the first one, and none for a number after the last one.
+    /// A number before the first tick gives all ticks, a number after the last one gives none.
     pub fn ticks_from(&self, tick: u64) -> impl Iterator<Item = Result<K::Tick, RecordError>> + '_ {
         self.places.from(tick).map(|place| self.decode(place))
     }
@@ -220,7 +220,7 @@ impl Recording {
 }
 
 impl RecordedTick {
-    /// What a message says, or what is wrong with it.
+    /// Decodes the message of a tick; `Err` says why it cannot be read.
     pub(crate) fn decode(message: &[u8]) -> Result<Self, String> {
         let tick = <Tick as prost::Message>::decode(message);
         let tick = tick.map_err(|error| error.to_string())?;

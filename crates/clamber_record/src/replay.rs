@@ -5,10 +5,10 @@ use thiserror::Error;
 
 use crate::{RecordError, RecordedTick};
 
-/// What a game's `step` returns to [`replay`]: the result of one replayed tick, to compare with the recorded one.
+/// The result of one replayed tick. A game's `step` returns it to [`replay`], which compares it with the recorded tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Replayed {
-    /// The climber's state at the end of the tick, as the replay has computed it.
+    /// The climber's state at the end of the tick, as the replay computed it.
     pub state: ClimberState,
     /// [`palette_fingerprint`](crate::palette_fingerprint) of the creature's palette.
     pub palette_fingerprint: u64,
@@ -40,13 +40,13 @@ impl Difference {
     }
 
     /// Fields of the climber's state in which replay and recording differ, such as `velocity` or
-    /// `support.attachment.point`; empty if the states are equal. If an optional field is `None` in one of them alone,
-    /// or the modes differ, only the first field that differs is named.
+    /// `support.attachment.point`; empty if the states are equal. If an optional field is `None` in only one of the
+    /// states, or the modes differ, only the first field that differs is named.
     pub fn fields(&self) -> Vec<String> {
         fields(&self.recorded.state, &self.replayed.state)
     }
 
-    /// Names of what differs: creature, climber, rest of the scene.
+    /// Names of the parts that differ: creature, climber, rest of the scene.
     fn what(&self) -> String {
         let (recorded, replayed) = (&self.recorded, &self.replayed);
         let scene = replayed.scene_fingerprint;
@@ -103,12 +103,12 @@ impl fmt::Display for Difference {
     }
 }
 
-/// The paths of the fields in which two values differ, by the lines of their texts.
+/// Paths of the fields in which two values differ, found by comparing their debug texts line by line.
 fn fields(a: &impl fmt::Debug, b: &impl fmt::Debug) -> Vec<String> {
     let [a, b] = [format!("{a:#?}"), format!("{b:#?}")];
     let alike = a.lines().count() == b.lines().count();
     let mut found = Vec::new();
-    // Names of the fields around a line, each with its indentation.
+    // Names of the fields that enclose the current line, each with its indentation.
     let mut around: Vec<(usize, &str)> = Vec::new();
     for (ours, theirs) in a.lines().zip(b.lines()) {
         let indentation = ours.len() - ours.trim_start().len();
@@ -140,7 +140,7 @@ pub enum ReplayError<E> {
     /// The recording cannot be read.
     #[error(transparent)]
     Record(#[from] RecordError),
-    /// Ticks are missing: the recorder left them out, since its disk was too slow.
+    /// Ticks are missing: the recorder left them out because its disk was too slow.
     #[error(
         "ticks are missing between {last} and {found}: replay each run of the recording by itself, from its first \
          tick's snapshot on"
@@ -154,7 +154,7 @@ pub enum ReplayError<E> {
     /// The scene could not be stepped.
     #[error("the scene failed at tick {tick}: {error}")]
     Scene {
-        /// The tick.
+        /// The tick at which `step` failed.
         tick: u64,
         /// The error of `step`. It is not called `source`, so that it may be any boxed error.
         error: E,
@@ -163,11 +163,11 @@ pub enum ReplayError<E> {
 
 /// Replays ticks and compares each with the recording, up to the first difference.
 ///
-/// `step` is called for one recorded tick after another. It brings its scene to that tick with the recorded input, and
+/// `step` is called for each recorded tick in order. It brings its scene to that tick with the recorded input, and
 /// returns the result. If all ticks agree, their number is returned.
 ///
-/// The ticks must follow each other: of a recording with gaps ([`Recording::runs`](crate::Recording::runs)) replay each run
-/// by itself, from its first tick's snapshot on.
+/// Tick numbers must be consecutive. Replay each run of a recording with gaps
+/// ([`Recording::runs`](crate::Recording::runs)) by itself, from the snapshot of its first tick on.
 ///
 /// # Errors
 /// [`ReplayError::Differs`] at the first tick that differs, [`ReplayError::Record`] for a tick that cannot be read,
@@ -197,8 +197,8 @@ pub fn replay<E>(
     }
 }
 
-/// Plays ticks again by `step`, which tells how a tick differs, up to the first that does: how many agree, and that
-/// difference.
+/// Replays ticks up to the first one that differs. `step` replays a tick and returns its difference. Returns the number
+/// of ticks that agree, and the difference.
 pub(crate) fn compare<T, D, E: From<RecordError>>(
     ticks: impl IntoIterator<Item = Result<T, RecordError>>,
     mut step: impl FnMut(&T) -> Result<Option<D>, E>,
@@ -231,7 +231,7 @@ mod tests {
         other.flying.jumping = !state.flying.jumping;
         assert_eq!(fields(&state, &other), ["velocity", "flying.jumping"]);
 
-        // What is there in one of them only has more lines, and nothing after it can be told.
+        // A field that is `None` in only one state has fewer lines there, so later fields cannot be compared.
         other.velocity = state.velocity;
         other.support_velocity = Some(DVec3::X);
         assert_eq!(fields(&state, &other), ["support_velocity"]);

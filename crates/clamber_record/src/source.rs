@@ -1,4 +1,4 @@
-//! Where the bytes of a recording are: in memory, or in a file of which one chunk is read at a time.
+//! The bytes of a recording: in memory, or in a file from which one chunk is read at a time.
 
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
@@ -12,10 +12,12 @@ use prost::Message;
 
 use crate::RecordError;
 
-/// The largest chunk that is read, bytes, compressed and not: a recorder's has a second of ticks, some megabytes.
+/// The largest chunk that is read, bytes (512 MiB), compressed and decompressed. It bounds the memory that a damaged
+/// length can claim. A recorder's own chunk has a second of ticks by default: some megabytes.
 pub(crate) const LARGEST: u64 = 1 << 29;
 
-/// Bytes of the header of a chunk that is not compressed. Places in others are told as if they were not, too.
+/// Bytes of a chunk's body before its data, if the chunk is not compressed. Offsets in compressed chunks are computed
+/// with it, too.
 pub(crate) const CHUNK_HEADER: u64 = 40;
 
 /// A recording's bytes.
@@ -26,7 +28,7 @@ pub(crate) struct Source(Arc<Inner>);
 struct Inner {
     bytes: Bytes,
     chunks: Vec<ChunkPlace>,
-    /// The chunk that was read last, with its index.
+    /// Index and data of the chunk that was read last.
     last: Mutex<Option<(u32, Arc<[u8]>)>>,
 }
 
@@ -36,14 +38,14 @@ pub(crate) enum Bytes {
     File(Mutex<File>),
 }
 
-/// Where the body of a chunk record is.
+/// The place of a chunk record's body in the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct ChunkPlace {
     pub(crate) at: u64,
     pub(crate) length: u64,
 }
 
-/// Where a message is: in a chunk, whose data may be compressed in the file.
+/// The place of a message: the index of its chunk, and a range of bytes in the chunk's decompressed data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Place {
     pub(crate) chunk: u32,
@@ -87,7 +89,7 @@ impl Source {
         }))
     }
 
-    /// The message at a place.
+    /// Decodes the message at a place.
     pub(crate) fn decode<M: Message + Default>(
         &self,
         place: &Place,
@@ -97,7 +99,7 @@ impl Source {
         self.read(place, topic, decode)
     }
 
-    /// What a function makes of the message at a place.
+    /// Passes the message at a place to `decode` and returns the result.
     pub(crate) fn read<T>(
         &self,
         place: &Place,
@@ -116,7 +118,7 @@ impl Source {
             })
     }
 
-    /// Where a message is in the file, if its chunk is not compressed.
+    /// Offset of a message in the file, bytes, as if its chunk were not compressed.
     pub(crate) fn offset(&self, place: &Place) -> u64 {
         let chunk = self.0.chunks.get(place.chunk as usize);
         chunk.map_or(0, |chunk| chunk.at + CHUNK_HEADER + u64::from(place.from))
@@ -143,10 +145,10 @@ impl Source {
     }
 }
 
-/// A record that is read; `None` if it cannot be. The parser takes as much memory as the lengths of texts say, so these
-/// are compared with what is there first.
+/// Parses a record; `None` if it cannot be read. mcap's parser allocates as much memory as the lengths of texts claim,
+/// so the lengths are first compared with the bytes that are there.
 pub(crate) fn parse(opcode: u8, body: &[u8]) -> Option<Record<'_>> {
-    // Bytes before the first text, and how many texts or maps there are.
+    // Bytes before the first text, and the number of texts and maps.
     let (before, texts) = match opcode {
         op::METADATA => (0, 2),
         op::CHANNEL => (4, 3),
@@ -156,7 +158,7 @@ pub(crate) fn parse(opcode: u8, body: &[u8]) -> Option<Record<'_>> {
     let mut rest = body.get(before..)?;
     for index in 0..texts {
         let text = text_of(&mut rest)?;
-        // The last one of metadata and channels is a map of texts.
+        // The last entry of metadata and channels is a map of texts.
         if opcode != op::CHUNK && index + 1 == texts {
             let mut pairs = text;
             while !pairs.is_empty() {
@@ -167,7 +169,7 @@ pub(crate) fn parse(opcode: u8, body: &[u8]) -> Option<Record<'_>> {
     parse_record(opcode, body).ok()
 }
 
-/// Takes a text, with its length in front, from the front of some bytes.
+/// Takes a text, which its length precedes, from the front of `bytes`.
 fn text_of<'a>(bytes: &mut &'a [u8]) -> Option<&'a [u8]> {
     let (length, rest) = bytes.split_first_chunk::<4>()?;
     let length = usize::try_from(u32::from_le_bytes(*length)).ok()?;
@@ -185,7 +187,7 @@ pub(crate) fn data_of(body: &[u8]) -> Result<Vec<u8>, &'static str> {
         return Err("a chunk of more than 512 MiB");
     }
     let (size, compressed) = (header.uncompressed_size, &data[..]);
-    // One byte more than it should have shows that it has more.
+    // Reading up to one byte more than `size` shows whether the chunk is too long.
     let mut plain = Vec::new();
     let read = match header.compression.as_str() {
         "" => {
@@ -207,7 +209,7 @@ pub(crate) fn data_of(body: &[u8]) -> Result<Vec<u8>, &'static str> {
     if plain.len() as u64 != size {
         return Err("a chunk whose size is not as its header says");
     }
-    // Zero stands for no checksum.
+    // Zero means that there is no checksum.
     if ![0, crc32fast::hash(&plain)].contains(&header.uncompressed_crc) {
         return Err("a chunk whose checksum is wrong");
     }

@@ -1,4 +1,4 @@
-//! The copy of a tick that is made while the game waits. The recording is made from it later.
+//! The copy of a tick that is made on the game's thread. The recorder's thread makes the recording from it later.
 
 use std::fmt;
 use std::sync::Arc;
@@ -26,7 +26,7 @@ pub struct Taken {
     pub(crate) world_from_model: Similarity,
     pub(crate) scene_fingerprint: u64,
     pub(crate) events: Vec<ClimberEvent>,
-    /// For the texts of the events.
+    /// Names of obstacles, for the texts of the events.
     pub(crate) names: ObstacleNames,
     pub(crate) part: Option<Part>,
     pub(crate) matrices: Vec<Affine>,
@@ -43,7 +43,7 @@ pub struct Taken {
     pub(crate) brain: Option<TakenBrain>,
     /// Snapshots of the scene after this tick.
     pub(crate) snapshots: Vec<TakenSnapshot>,
-    /// How many ticks before this one were left out.
+    /// Number of ticks left out before this one.
     pub(crate) gap: u64,
 }
 
@@ -65,7 +65,7 @@ impl crate::chunks::TakenTick for Taken {
     }
 }
 
-/// What makes the text of a snapshot, or tells why there is none.
+/// Function that makes the text of a snapshot, or says why it cannot.
 pub(crate) struct TakenSnapshot(pub(crate) Box<dyn FnOnce() -> Result<String, String> + Send>);
 
 impl fmt::Debug for TakenSnapshot {
@@ -74,12 +74,12 @@ impl fmt::Debug for TakenSnapshot {
     }
 }
 
-/// Data for the views of the skin, beside the palette.
+/// Data for the views of the skin, besides the palette.
 #[derive(Debug)]
 pub(crate) struct TakenSkin {
     pub(crate) mesh: Arc<ColliderMesh>,
     pub(crate) touched: Diagnostics,
-    /// `None` if they are not due.
+    /// Triangles that queries touched; `None` if they are not due.
     pub(crate) triangles: Option<Vec<TriangleId>>,
     /// Ticks until the next view.
     pub(crate) every: u32,
@@ -152,7 +152,8 @@ impl Taken {
         self.snapshots.clear();
         self.gap = 0;
     }
-    /// The name of an obstacle; for the creature, which has its name, with the part of it that the climber is on.
+    /// The name of an obstacle. If it is the creature and the climber is on it, the name includes the part of the
+    /// creature.
     pub(crate) fn name_of(
         &self,
         obstacle: ObstacleId,

@@ -13,7 +13,7 @@ pub const BRAIN: &str = "/brain";
 /// Triangles that queries reached, the triangle that supports the climber, and the climber's body
 /// (`foxglove.SceneUpdate`).
 pub const SCENE: &str = "/scene";
-/// Ground, rocks and what else the caller records to be looked at (`foxglove.SceneUpdate`).
+/// Ground, rocks and other meshes that the caller records for people to look at (`foxglove.SceneUpdate`).
 pub const SCENERY: &str = "/scenery";
 /// Vertices of the posed skin (`foxglove.PointCloud`).
 pub const SKIN: &str = "/skin";

@@ -35,10 +35,11 @@ pub(crate) struct Writing<W: Write> {
     skin: Skin,
     scene: Scene,
     scenery: Sceneries,
-    /// Names of the creature and of its joints, for the log.
+    /// Name of the creature, for the log.
     creature: String,
+    /// Names of the creature's joints, for the log.
     joints: Vec<String>,
-    /// Kept for its memory.
+    /// Posed positions of the vertices, kept so that their memory is reused.
     positions: Vec<Vec3>,
 }
 
@@ -80,7 +81,7 @@ impl<W: Write> Writing<W> {
         })
     }
 
-    /// The snapshots of a tick: texts that the game makes.
+    /// Makes the snapshots of a tick by calling the game's functions for their texts.
     fn snapshots(taken: &mut Taken) -> Result<Vec<Snapshot>, RecordError> {
         let tick = taken.tick;
         let texts = taken.snapshots.drain(..);
@@ -131,7 +132,7 @@ impl<W: Write> Writing<W> {
                 self.output.send(self.channels.brain, now, brain)?;
             }
         }
-        // The mesh is released as soon as possible: until then an edit has to copy it.
+        // The mesh is released as soon as possible: until then, an edit has to copy it.
         if let Some(skin) = taken.skin.take() {
             self.look(taken, &skin, now)?;
         }
@@ -176,7 +177,7 @@ impl<W: Write + Send + 'static> WriteTicks<Taken, W> for Writing<W> {
             let snapshots = match Self::snapshots(taken) {
                 Ok(snapshots) => snapshots,
                 Err(error) => {
-                    // What was recorded before this tick is kept.
+                    // The ticks before this one are kept.
                     self.output.flush()?;
                     return Err(error);
                 }

@@ -6,45 +6,46 @@ use color_quant::NeuQuant;
 
 use crate::{Image, RenderError};
 
-/// Writes an animated GIF, picture by picture. The animation repeats for ever.
+/// Writes an animated GIF, picture by picture. The animation repeats without end.
 ///
 /// All pictures share one palette: colours of the first picture, chosen by NeuQuant (Dekker 1994, "Kohonen neural
-/// networks for optimal colour quantization"), and evenly spaced ones for what comes later. A pixel that keeps its
-/// colour within 8 of 255 in each channel is left out, so that a still background costs nothing. One that is within 8
-/// of the colour of the pixel before it takes that colour. A file without a picture stays empty.
+/// networks for optimal colour quantization"), and evenly spaced colours for later pictures. A pixel that keeps its
+/// colour within 8 of 255 in each channel is left out, so that a still background costs nothing. A pixel within 8 of
+/// the colour of the pixel before it takes that colour. A file without a picture stays empty.
 pub struct Gif {
     path: PathBuf,
     size: (u16, u16),
     /// Time that each picture is shown, in hundredths of a second.
     delay: u16,
-    /// Until the first picture, from which the palette is made.
+    /// The file until the first picture, from which the palette is made.
     file: Option<File>,
     film: Option<Film>,
 }
 
-/// What follows from the first picture.
+/// The encoder and the palette, made from the first picture.
 struct Film {
     encoder: gif::Encoder<BufWriter<File>>,
     palette: Palette,
-    /// The palette's index that each pixel shows.
+    /// Index in the palette of the colour that each pixel shows.
     shown: Vec<u8>,
 }
 
-/// Colours of the palette that are evenly spaced: every combination of four levels of each channel.
+/// Number of colours of the palette that are evenly spaced: every combination of four levels of each channel.
 const EVEN: usize = 64;
 
 /// The index of pixels that are left out; the palette's colours come before it.
 const LEFT_OUT: u8 = u8::MAX;
 
 /// Largest difference in a channel, of 255, at which a pixel keeps the colour that it shows. With this and [`RUN`], ten
-/// seconds of a battle at 640 by 360 and 15 pictures a second take 3.8 MB; with 6 and 4, 4.8 MB. Larger values show.
+/// seconds of a battle at 640 by 360 and 15 pictures a second take 3.8 MB; with 6 and 4, they take 4.8 MB. With larger
+/// values, the differences are visible.
 const KEPT: u8 = 8;
 
-/// Largest difference in a channel at which a pixel takes the colour of the pixel before it, since runs take less
-/// space.
+/// Largest difference in a channel, of 255, at which a pixel takes the colour of the pixel before it, since runs of one
+/// colour take less space.
 const RUN: u8 = 8;
 
-/// One in so many pixels teaches the palette. A picture of 640 by 360 still gives 23,000.
+/// NeuQuant learns the palette from one in so many pixels: 23,000 of a picture of 640 by 360.
 const SAMPLED: i32 = 10;
 
 impl Gif {
@@ -93,7 +94,7 @@ impl Gif {
             .map_err(|error| failed(error.to_string()))
     }
 
-    /// The film; begun with this picture if there was none.
+    /// The film; if it does not exist yet, it begins with this picture.
     fn film(&mut self, first: &Image) -> Result<&mut Film, gif::EncodingError> {
         if let Some(file) = self.file.take() {
             let palette = Palette::of(first);
@@ -148,7 +149,7 @@ impl Film {
     }
 }
 
-/// Colours, and the nearest one of each colour that was asked for.
+/// The colours of a film, and a cache of the nearest colour to each colour that was asked for.
 struct Palette {
     colors: Vec<[u8; 3]>,
     /// For five bits of each channel, the index of the nearest colour plus 1; 0 if it is not known yet.
@@ -156,7 +157,7 @@ struct Palette {
 }
 
 impl Palette {
-    /// The colours of a picture, and even ones.
+    /// A palette of the colours of a picture and evenly spaced colours.
     fn of(image: &Image) -> Self {
         let learned = usize::from(LEFT_OUT) - EVEN;
         let mut colors: Vec<[u8; 3]> = Vec::with_capacity(usize::from(LEFT_OUT));
@@ -174,7 +175,7 @@ impl Palette {
         }
     }
 
-    /// As the file holds it.
+    /// The palette in the file's format: 256 colours of three bytes, the unused ones black.
     fn bytes(&self) -> Vec<u8> {
         let mut bytes = self.colors.concat();
         bytes.resize(3 << 8, 0);
@@ -189,7 +190,7 @@ impl Palette {
         })
     }
 
-    /// The index of the colour nearest to one, as seen to five bits a channel.
+    /// The index of the colour that is nearest to a colour, whose channels are rounded to five bits.
     fn nearest(&mut self, color: [u8; 3]) -> u8 {
         let five = |channel: u8| usize::from(channel >> 3);
         let key = five(color[0]) << 10 | five(color[1]) << 5 | five(color[2]);
@@ -211,9 +212,10 @@ impl Palette {
 mod tests {
     use super::*;
 
+    /// Width and height of the test pictures, pixels. NeuQuant needs 1,024 pixels or more.
     const SIDE: u32 = 96;
 
-    /// A sky that shades from blue to white, and a red square at a place.
+    /// A sky that shades from blue to white, and a red square whose first column and row are `square`.
     fn picture(square: u32) -> Image {
         let mut pixels = Vec::new();
         for y in 0..SIDE {

@@ -15,7 +15,8 @@ pub struct Camera {
     pub field_of_view: f64,
 }
 
-/// Distance of the near plane, metres: nothing nearer is drawn.
+/// Distance of the near plane, metres: parts of meshes nearer than this are not drawn. `overlay.wgsl` has the same
+/// value.
 const NEAR: f64 = 0.1;
 
 impl Camera {
@@ -48,7 +49,7 @@ impl Camera {
         finite && angle && view.cross(self.up).length_squared() > 0.0
     }
 
-    /// From world space relative to the eye to clip space; depth is 1 at the near plane and 0 at infinity.
+    /// The matrix from world space relative to the eye to clip space; depth is 1 at the near plane and 0 at infinity.
     pub(crate) fn clip_from_view(&self, aspect: f64) -> DMat4 {
         let ahead = (self.target - self.eye).normalize();
         let view = look_to_mat4(DVec3::ZERO, ahead, self.up.normalize());

@@ -15,7 +15,7 @@ pub enum RenderError {
         /// Message of the graphics library.
         reason: String,
     },
-    /// The adapter gives no device with the required limits.
+    /// The adapter has no device with the required limits.
     #[error("{adapter} cannot be used: {reason}")]
     Adapter {
         /// Name of the adapter.
@@ -23,7 +23,7 @@ pub enum RenderError {
         /// Message of the graphics library.
         reason: String,
     },
-    /// The device is gone: unplugged, reset, or its driver died. Make a new [`Gpu`](crate::Gpu).
+    /// The device was lost: it was unplugged or reset, or its driver crashed. Make a new [`Gpu`](crate::Gpu).
     #[error("the graphics device was lost: {0}")]
     Lost(String),
     /// The device has no memory left.
@@ -43,7 +43,7 @@ pub enum RenderError {
     Write {
         /// Path of the file.
         path: PathBuf,
-        /// Why.
+        /// The reason.
         reason: String,
     },
 }

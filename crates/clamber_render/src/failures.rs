@@ -1,4 +1,4 @@
-//! Tests that lost devices, devices out of memory, and devices that are too small give errors and never panic.
+//! Tests that lost devices, devices out of memory, and devices with too low limits cause errors, never panics.
 
 use std::io::Write;
 
@@ -70,7 +70,7 @@ fn a_device_that_is_lost_is_an_error_from_then_on() {
     frame.drawn.push(frame.drawn[0]);
     let red = [1.0, 0.0, 0.0, 1.0];
     frame.overlay.line(DVec3::ZERO, DVec3::X, 2.0, red);
-    // In the second round the loss is known already.
+    // In the second round, the renderer knows the loss already.
     for _ in 0..2 {
         let results = [
             renderer.draw(&frame).map(drop),

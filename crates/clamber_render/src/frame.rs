@@ -4,8 +4,8 @@ use glam::{DVec3, Vec3};
 
 use crate::{Camera, Overlay, RenderMeshId};
 
-/// A picture to draw with [`Renderer::draw`](crate::Renderer::draw): the viewpoint, the light, the meshes, and what is
-/// drawn over them.
+/// A picture to draw with [`Renderer::draw`](crate::Renderer::draw): the viewpoint, the light, the meshes, and the
+/// overlay.
 #[derive(Clone, Debug)]
 pub struct Frame<'a> {
     /// The viewpoint.
@@ -23,7 +23,7 @@ pub struct Frame<'a> {
 pub struct Drawn<'a> {
     /// The mesh, from [`Renderer::add_mesh`](crate::Renderer::add_mesh).
     pub mesh: RenderMeshId,
-    /// Its place in the world.
+    /// Placement of the mesh in the world.
     pub world_from_model: Similarity,
     /// The palette that poses it; `None` draws it at rest. A mesh without a skin must have `None`.
     pub palette: Option<&'a Palette>,

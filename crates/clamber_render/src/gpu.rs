@@ -15,16 +15,16 @@ pub struct Gpu {
     pub(crate) device: Device,
     pub(crate) queue: Queue,
     adapter: wgpu::AdapterInfo,
-    /// Why the device was lost, once it is.
+    /// The reason for the loss of the device, once it is lost.
     lost: Arc<Mutex<Option<String>>>,
-    /// The first error outside of `checked`; without a listener the graphics library panics.
+    /// The first error outside of `checked`. Without a listener for such errors, the graphics library panics.
     unasked: Arc<Mutex<Option<RenderError>>>,
 }
 
 impl Gpu {
-    /// Opens the device whose kind is the fastest: a discrete GPU before an integrated one, and software only if there
-    /// is no other. The environment variable `WGPU_BACKEND` restricts the choice to some backends, as everywhere in
-    /// wgpu.
+    /// Opens the device of the fastest kind: a discrete GPU before an integrated one, and a software device only if
+    /// there is no other. The environment variable `WGPU_BACKEND` restricts the choice to some backends, as in all
+    /// programs with wgpu.
     ///
     /// # Errors
     /// [`RenderError::NoAdapter`] if there is no device, [`RenderError::Adapter`] if it cannot be opened.
@@ -35,7 +35,7 @@ impl Gpu {
         )
     }
 
-    /// Opens a device of an instance, with limits that `limits` makes of the largest ones.
+    /// Opens a device of an instance. `limits` gets the largest limits of the adapter, and returns the limits to use.
     pub(crate) fn with(
         descriptor: InstanceDescriptor,
         limits: impl FnOnce(Limits) -> Limits,
@@ -49,7 +49,7 @@ impl Gpu {
             reason: error.to_string(),
         })?;
         let info = adapter.get_info();
-        // The largest sizes that the adapter allows, since creatures may be large.
+        // The largest sizes that the adapter allows: creatures may be large.
         let largest = Limits {
             max_storage_buffer_binding_size: adapter.limits().max_storage_buffer_binding_size,
             max_buffer_size: adapter.limits().max_buffer_size,
@@ -107,7 +107,7 @@ impl Gpu {
         error.or(unasked).map_or(Ok(done), Err)
     }
 
-    /// Buffers for a shader, bound in their order.
+    /// A bind group of buffers for a shader, with the bindings 0, 1 and so on.
     pub(crate) fn bind(&self, layout: &BindGroupLayout, buffers: &[&Buffer]) -> BindGroup {
         let entries: Vec<BindGroupEntry<'_>> = (0..)
             .zip(buffers)

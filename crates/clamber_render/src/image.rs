@@ -36,7 +36,7 @@ impl Image {
         written.map_err(|error| failed(error.to_string()))
     }
 
-    /// The picture at half its width and height, at least 1. Each pixel is the mean of four, in sRGB.
+    /// The picture at half its width and height, each at least 1. Each pixel is the mean of four pixels, in sRGB.
     #[must_use]
     pub fn halved(&self) -> Self {
         let (width, height) = ((self.width / 2).max(1), (self.height / 2).max(1));

@@ -14,7 +14,7 @@ pub struct RenderMeshId(pub(crate) u32);
 pub struct RenderMesh<'a> {
     /// Rest positions, one for each vertex.
     pub positions: &'a [Vec3],
-    /// One for each vertex; if empty, computed from the triangles around each vertex.
+    /// Normals, one for each vertex; if empty, computed from the triangles around each vertex.
     pub normals: &'a [Vec3],
     /// Linear red, green and blue, one for each vertex; if empty, all white.
     pub colors: &'a [[f32; 3]],
@@ -22,22 +22,22 @@ pub struct RenderMesh<'a> {
     pub looks: &'a [Look],
     /// Corners as indices of vertices, counter-clockwise seen from outside.
     pub triangles: &'a [[u32; 3]],
-    /// How joints move it; `None` for a rigid mesh.
+    /// The influences of joints; `None` for a rigid mesh.
     pub skin: Option<SkinSource<'a>>,
 }
 
-/// How joints move a mesh.
+/// The influences of joints on a mesh.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SkinSource<'a> {
     /// Influences of the first vertex, then of the second, and so on, each vertex's by ascending joint.
     pub influences: &'a [Influence],
-    /// For each vertex, where its influences end in `influences`.
+    /// For each vertex, the index in `influences` after its last influence.
     pub ends: &'a [u32],
     /// Number of joints of the palettes that will pose the mesh.
     pub joint_count: usize,
 }
 
-/// How a surface is shaded, beside its colour.
+/// The shading of a surface, apart from its colour.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Look {
     /// Smooth.
@@ -62,13 +62,14 @@ impl From<SurfaceKind> for Look {
     }
 }
 
-/// Bytes of a vertex that stay the same in all poses: position at rest, colour with look.
+/// Bytes of a vertex's data that are the same in all poses: the position at rest, and the colour with the look. The
+/// layout is `Vertex` in `mesh.wgsl`, locations 2 and 3.
 pub(crate) const STILL_BYTES: u64 = 32;
 
-/// Bytes of a posed vertex: position and normal, each with a spare number.
+/// Bytes of a posed vertex: position and normal, each with a spare number. The layout is `Vertex` in `skin.wgsl`.
 pub(crate) const POSED_BYTES: u64 = 32;
 
-/// Bytes of a joint's matrix.
+/// Bytes of a joint's matrix: three rows of four f32, as in `skin.wgsl`.
 pub(crate) const PALETTE_BYTES: u64 = 48;
 
 /// A mesh on the GPU.
@@ -82,7 +83,7 @@ pub(crate) struct Mesh {
     pub(crate) skin: Option<Skin>,
 }
 
-/// How joints move a mesh, on the GPU.
+/// The influences of joints on a mesh, on the GPU.
 #[derive(Debug)]
 pub(crate) struct Skin {
     pub(crate) ends: Buffer,
@@ -162,7 +163,7 @@ pub(crate) fn buffer(gpu: &Gpu, label: &str, contents: &[u8], usage: BufferUsage
         usage,
         mapped_at_creation: true,
     });
-    // It is not mapped if the device is out of memory or lost, which `Gpu::checked` reports.
+    // The buffer is not mapped if the device is out of memory or lost, which `Gpu::checked` reports.
     if let Ok(mut view) = buffer.get_mapped_range_mut(..) {
         view.copy_from_slice(contents);
     }

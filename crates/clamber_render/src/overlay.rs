@@ -20,7 +20,7 @@ struct Line {
     color: Color,
 }
 
-/// Number of lines of a circle.
+/// Number of lines of a circle, even, so that half circles end on a corner.
 const SIDES: u32 = 32;
 
 /// Length of an arrow's head as a share of the arrow.
@@ -80,7 +80,7 @@ impl Overlay {
         self.triangles.push((corners, color));
     }
 
-    /// Adds a circle around an axis of any length, of lines `width` pixels wide. An axis of length 0 is taken for Y.
+    /// Adds a circle around an axis of any length, of lines `width` pixels wide. If the axis has length 0, Y is used.
     pub fn circle(&mut self, center: DVec3, axis: DVec3, radius: f64, width: f32, color: Color) {
         let points = ring(center, axis.normalize_or(DVec3::Y), radius, SIDES);
         for (a, b) in points.clone().zip(points.skip(1)) {
@@ -146,7 +146,7 @@ impl Overlay {
         }
         for line in &self.lines {
             let [a, b] = line.ends.map(|end| (end - eye).as_vec3());
-            // Side -1 of the line as seen from one end is side 1 as seen from the other.
+            // Side -1 of the line, as seen from one end, is side 1 as seen from the other end.
             for (p, other, side) in [
                 (a, b, -1.0),
                 (a, b, 1.0),

@@ -1,8 +1,8 @@
 use crate::Look;
 
-/// Makes the colours and looks of a mesh's vertices from groups of triangles, each of one material, as files have them.
+/// Makes the colours and looks of a mesh's vertices from groups of triangles of one material each, as in model files.
 ///
-/// A vertex has one colour and one look: that of the last group that uses it.
+/// The last group that uses a vertex sets the vertex's colour and look.
 ///
 /// ```
 /// use clamber_render::{Look, RenderMesh, Paint};
@@ -25,14 +25,14 @@ use crate::Look;
 pub struct Paint {
     /// Linear red, green and blue, one for each vertex; white for vertices without a group.
     pub colors: Vec<[f32; 3]>,
-    /// One look for each vertex: that of the last group that uses it; [`Look::Plain`] for vertices without a group.
+    /// One look for each vertex, set by the last group that uses it; [`Look::Plain`] for vertices without a group.
     pub looks: Vec<Look>,
     /// Triangles of all groups, one group after the other.
     pub triangles: Vec<[u32; 3]>,
 }
 
 impl Paint {
-    /// Paint for a mesh of `vertices` vertices, without any group.
+    /// Paint for a mesh of `vertices` vertices, without groups.
     pub fn new(vertices: usize) -> Self {
         Self {
             colors: vec![[1.0; 3]; vertices],

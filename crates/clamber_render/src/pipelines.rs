@@ -13,7 +13,7 @@ use crate::Gpu;
 use crate::mesh::{POSED_BYTES, STILL_BYTES};
 use crate::target::{COLOR, DEPTH, SAMPLES};
 
-/// Bytes of a vertex of an overlay.
+/// Bytes of a vertex of an overlay: three vectors of four f32, as in `overlay.wgsl`.
 pub(crate) const OVERLAY_BYTES: u64 = 48;
 
 #[derive(Debug)]

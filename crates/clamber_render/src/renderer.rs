@@ -16,7 +16,7 @@ use crate::skinning::{Posed, Skinning};
 use crate::target::{SHADOW, Target, read, readback_bytes};
 use crate::{Drawn, Frame, Gpu, Image, RenderError, RenderMesh, RenderMeshId};
 
-/// Opacity factor of the parts of an overlay that are behind a mesh.
+/// Opacity factor of the parts of an overlay that are behind a mesh: 0 hides them, 1 shows no difference.
 const BEHIND: f32 = 0.22;
 
 /// Draws frames into pictures of one size.
@@ -28,7 +28,7 @@ pub struct Renderer {
     target: Target,
     shadow_group: BindGroup,
     meshes: Vec<Mesh>,
-    /// For each mesh, its posed instances: as many as a frame has shown.
+    /// For each mesh, its posed instances: as many as one frame has shown at most.
     posed: Vec<Vec<Posed>>,
     uploaded: u64,
 }
@@ -67,7 +67,7 @@ impl Renderer {
         })
     }
 
-    /// Uploads a mesh to the device. It stays there as long as the renderer lives.
+    /// Uploads a mesh to the device. The mesh stays there until the renderer is dropped.
     ///
     /// # Errors
     /// [`RenderError::Mesh`] for data that is not consistent, not finite, or too large for the device.
@@ -110,7 +110,7 @@ impl Renderer {
         self.uploaded
     }
 
-    /// The device that it draws with.
+    /// The device of this renderer.
     pub fn gpu(&self) -> &Gpu {
         &self.gpu
     }
@@ -273,7 +273,7 @@ impl Renderer {
         Ok(encoder)
     }
 
-    /// Submits commands, after `after` has added more.
+    /// Submits commands; `after` adds more commands first.
     fn submit(
         &self,
         mut encoder: CommandEncoder,
@@ -445,7 +445,7 @@ fn depth(view: &wgpu::TextureView, clear: f32) -> RenderPassDepthStencilAttachme
     }
 }
 
-/// From model space to world space relative to the eye.
+/// The matrix from model space to world space relative to the eye.
 fn view_from_model(drawn: &Drawn<'_>, eye: DVec3) -> Mat4 {
     let root = &drawn.world_from_model;
     let axes = DMat3::from_quat(root.rotation) * root.scale;

@@ -10,10 +10,10 @@ use wgpu::{
 use crate::mesh::{Mesh, PALETTE_BYTES, POSED_BYTES, Skin};
 use crate::{Gpu, RenderError};
 
-/// Vertices in a workgroup, as in the shader.
+/// Number of vertices in a workgroup. `skin.wgsl` has the same value.
 const GROUP: u32 = 64;
 
-/// Most workgroups along the first axis, as in the shader: within the limit of every device.
+/// Largest number of workgroups along the first axis: within the limit of every device. `skin.wgsl` has the same value.
 const ROW: u32 = 32_768;
 
 #[derive(Debug)]
@@ -78,7 +78,7 @@ impl Skinning {
         }
     }
 
-    /// Poses an instance; gives the number of uploaded bytes.
+    /// Poses an instance, and returns the number of uploaded bytes.
     pub(crate) fn run(
         &self,
         gpu: &Gpu,

@@ -1,4 +1,4 @@
-//! The textures that are drawn into, and how a picture is read back.
+//! The textures that pictures are drawn into, and reading a picture back.
 
 use std::sync::mpsc;
 
@@ -10,16 +10,18 @@ use wgpu::{
 
 use crate::{Gpu, Image, RenderError};
 
+/// Format of the picture: four bytes a pixel, in sRGB, as in [`Image`].
 pub(crate) const COLOR: TextureFormat = TextureFormat::Rgba8UnormSrgb;
+/// Format of the depth buffer and of the shadow map.
 pub(crate) const DEPTH: TextureFormat = TextureFormat::Depth32Float;
 
-/// Samples to a pixel.
+/// Number of samples of a pixel, against jagged edges.
 pub(crate) const SAMPLES: u32 = 4;
 
-/// Texels along a side of the shadow map: more is sharper, and slower in software.
+/// Number of texels along a side of the shadow map. More texels make shadows sharper, but are slower in software.
 pub(crate) const SHADOW: u32 = 2048;
 
-/// Rows of a picture begin at multiples of this in a buffer, bytes.
+/// Alignment of a picture's rows in a buffer, bytes; the graphics library requires it.
 const ROW_ALIGNMENT: u32 = wgpu::COPY_BYTES_PER_ROW_ALIGNMENT;
 
 #[derive(Debug)]
@@ -116,7 +118,7 @@ pub(crate) fn read(gpu: &Gpu, buffer: &Buffer) -> Result<Vec<u8>, RenderError> {
     let (sender, receiver) = mpsc::channel();
     gpu.checked(|| {
         buffer.map_async(wgpu::MapMode::Read, .., move |mapped| {
-            // Fails if the device was lost: then the receiver is gone.
+            // `send` fails if the device was lost, since the receiver has been dropped then.
             let _ = sender.send(mapped);
         });
     })?;
@@ -143,7 +145,7 @@ fn extent(width: u32, height: u32) -> Extent3d {
     }
 }
 
-/// Bytes of the buffer that a picture is read back through.
+/// Size of the buffer through which a picture is read back, bytes.
 pub(crate) fn readback_bytes(width: u32, height: u32) -> u64 {
     u64::from(row_bytes(width)) * u64::from(height)
 }

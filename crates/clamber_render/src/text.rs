@@ -23,7 +23,7 @@ pub enum TextSize {
 /// Margin between the text and the edge of its box, pixels.
 const MARGIN: u32 = 8;
 
-/// Share of the picture's colours that shows through the box.
+/// Share of the picture's colours that shows through the box behind the text, from 0 to 1.
 const THROUGH: f32 = 0.35;
 
 impl TextSize {
@@ -46,7 +46,8 @@ impl Image {
         }
         let font = size.font();
         let Size { width, height } = font.character_size;
-        // No more characters than there is room for, so that long text does not overflow a coordinate.
+        // The text is cut to the characters that fit into the picture, so that long text does not overflow a
+        // coordinate.
         let fit = |pixels: u32, each: u32| (pixels / each) as usize + 1;
         let (columns, rows) = (fit(self.width, width), fit(self.height, height));
         let shown = |c: char| {

@@ -30,8 +30,8 @@ impl VisualSource<'_> {
 
 /// Prepares the visual meshes of a rig for a renderer, in the rig's order.
 ///
-/// The colour of a vertex is its own colour times the base colour of its material. Its look follows from the
-/// surface kind of the material's tag. A vertex that several materials share gets those of the last one.
+/// The colour of a vertex is its own colour times the base colour of its material. The look of a vertex follows from
+/// the surface kind of the material's tag. If several materials share a vertex, the last one sets its colour and look.
 ///
 /// ```no_run
 /// use clamber_render::{Gpu, Renderer, visual_meshes};

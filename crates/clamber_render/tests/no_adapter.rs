@@ -1,10 +1,10 @@
-//! Tests that without any graphics driver there is an error that says what to install.
+//! Tests that the error without any graphics driver says which package to install.
 
 use std::process::Command;
 
 use clamber_render::{Gpu, RenderError};
 
-/// Environment variable of the child process, which finds no driver.
+/// Environment variable that is set in the child process, which finds no driver.
 const CHILD: &str = "CLAMBER_WITHOUT_ADAPTER";
 
 #[test]

@@ -1,5 +1,5 @@
 //! Slow references and single stages of larger calls, for measurements in this library's own tests and benches.
-//! Nothing here is covered by a promise of stability.
+//! These items are not covered by any promise of stability.
 
 #[cfg(any(test, feature = "oracle"))]
 mod answers;

@@ -8,8 +8,8 @@ use crate::geometry::{Affine, Capsule, rotation_from_axis_angle};
 use crate::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
 use crate::rig::{JointId, Palette};
 
-/// How many cases of a randomised test are run: all of them if the variable `CLAMBER_ALL_CASES` is set, as `cargo xtask
-/// nightly` does, or a fifth, the first ones.
+/// The number of cases of a randomised test to run: all if the variable `CLAMBER_ALL_CASES` is set, as
+/// `cargo xtask nightly` does, else the first fifth.
 pub(crate) fn cases(all: usize) -> usize {
     match std::env::var_os("CLAMBER_ALL_CASES") {
         Some(_) => all,

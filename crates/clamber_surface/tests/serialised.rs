@@ -19,7 +19,7 @@ use clamber_surface::surface::{Anchor, SkinnedSurface};
 use glam::{DQuat, DVec3, Quat, Vec3};
 use serde_json::{from_str, json, to_string};
 
-/// Writes and reads a value, and compares the `Debug` text: that of a float names exactly one float, with its sign.
+/// Writes and reads a value, and compares the `Debug` text: the text of a float names exactly one float, with its sign.
 fn assert_stays<T>(value: &T)
 where
     T: std::fmt::Debug + serde::Serialize + serde::de::DeserializeOwned,
@@ -111,7 +111,7 @@ fn a_saved_anchor_is_valid_on_a_mesh_rebuilt_and_edited_alike() {
         let moved = again.in_model().motion(&read, 0.1).unwrap();
         let expected = surface.in_model().motion(&anchor, 0.1).unwrap();
         assert_eq!(moved.position, expected.position);
-        // Both halves of the id count.
+        // The mesh id's two parts both count.
         let id = anchor.mesh.to_string();
         let (fingerprint, _) = id.split_once('+').unwrap_or((&id, ""));
         let of_mesh = |text: &str| {
@@ -168,7 +168,7 @@ fn a_palette_whose_lists_differ_in_length_is_refused() {
     assert!(serde_json::from_value::<Palette>(stored).is_ok());
 }
 
-/// A pose in every third of so many ticks at 60 Hz, of a joint that wanders.
+/// Runs ticks at 60 Hz. A wandering joint's pose is recorded in every third tick, except tick 9.
 fn wander(
     track: &mut PoseTrack,
     ticks: std::ops::Range<u32>,

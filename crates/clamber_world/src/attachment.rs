@@ -15,7 +15,7 @@ const PART: f64 = 0.5;
 /// half its speed.
 const ROUNDING: f64 = 0.02;
 
-/// Something fixed to a point of an obstacle's material: a foot, a hand, an arrow, a camera.
+/// Fixes a thing to a point of an obstacle's material: a foot, a hand, an arrow, a camera.
 ///
 /// A small plain value that survives any deformation. Call [`Attachment::follow`] once a tick; [`Attachment::position`]
 /// is then where the attached thing is.
@@ -75,12 +75,12 @@ pub struct Attachment {
 #[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
 #[non_exhaustive]
 pub enum Continuity {
-    /// It moved there from its position when last followed.
+    /// The material moved there from its position when last followed.
     Moved,
-    /// It was teleported there, which is not motion.
+    /// The material was teleported there, which is not motion.
     Placed,
-    /// It moved several times since it was last followed, for example because a creature was advanced twice in one
-    /// tick. The motion covers all of these moves; sweeps against the obstacle cover only the last one.
+    /// The material moved several times since it was last followed, for example because a creature was advanced twice
+    /// in one tick. The motion covers all of these moves; sweeps against the obstacle cover only the last one.
     MovedRepeatedly,
 }
 
@@ -122,8 +122,8 @@ impl Attachment {
     ) -> Self {
         let frame = motion.and_then(|motion| motion.frame);
         let frame = frame.unwrap_or(DQuat::IDENTITY);
-        // The position that the material point reports, since it is followed from there. The contact's may differ by
-        // rounding.
+        // The position that the material point reports, because it is followed from there. The contact's position may
+        // differ by rounding.
         let position = motion.map_or(contact.point, |motion| motion.position);
         Self {
             obstacle,

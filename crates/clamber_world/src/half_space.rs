@@ -23,7 +23,7 @@ pub struct HalfSpace {
 }
 
 impl HalfSpace {
-    /// All that lies below a height in metres, where Y is up.
+    /// Everything below a height in metres, where Y is up.
     pub fn below(height: f64) -> Self {
         Self {
             normal: DVec3::Y,
@@ -32,7 +32,7 @@ impl HalfSpace {
         }
     }
 
-    /// All that lies behind a plane through `point`, in world space. `normal` points out of the solid and may have any
+    /// Everything behind a plane through `point`, in world space. `normal` points out of the solid and may have any
     /// length but zero. `None` if the normal is zero, or a number is not finite.
     pub fn behind(point: DVec3, normal: DVec3) -> Option<Self> {
         let normal = normal.try_normalize()?;
@@ -145,7 +145,7 @@ impl Obstacle for HalfSpace {
         } else {
             height / -self.normal.dot(direction)
         };
-        // Along the plane it is infinite, away from it negative.
+        // The distance is infinite along the plane, and negative away from it.
         ((0.0..f64::INFINITY).contains(&distance) && distance <= max_distance).then(|| Contact {
             distance,
             ..self.contact(origin + direction * distance)

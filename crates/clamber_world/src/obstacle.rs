@@ -22,7 +22,7 @@ fn farthest(bounds: Option<(DVec3, f64)>, from: DVec3) -> f64 {
 #[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
 pub struct ObstacleId(pub u64);
 
-/// A point of an obstacle's material. Its numbers mean something to that obstacle only; on a surface,
+/// A point of an obstacle's material. Only that obstacle can interpret its numbers; on a surface,
 /// [`MaterialPoint::triangle`] is the triangle.
 ///
 /// A small plain value. Two values from one obstacle are the same point if their bits are the same.
@@ -47,7 +47,7 @@ pub struct Contact {
     /// Distance from the query's point, the ray's origin or the capsule's segment, metres. Negative only inside a solid
     /// body, where a translation by its magnitude along `normal` leads out.
     pub distance: f64,
-    /// The obstacle's material at `point`. [`Obstacle::motion`] tells in later ticks where it has moved to.
+    /// The obstacle's material at `point`. In later ticks, [`Obstacle::motion`] gives its new position.
     pub material: MaterialPoint,
     /// The obstacle's tag at the point.
     pub tag: SurfaceTag,
@@ -137,22 +137,22 @@ impl PointMotion {
 /// The body of a character that is an obstacle to others.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CharacterBody {
-    /// Its capsule at the start of the tick, in world space.
+    /// The character's capsule at the start of the tick, in world space.
     pub capsule: WorldCapsule,
-    /// How far its support carries it in the tick, metres.
+    /// Displacement by the character's support in the tick, metres.
     pub way: DVec3,
     /// Mass, kg.
     pub mass: f64,
-    /// Its own velocity, relative to what carries it, metres a second.
+    /// The character's own velocity, relative to its support, metres a second.
     pub own_velocity: DVec3,
-    /// What it does where it comes into the side of another one.
+    /// How the character behaves when it runs into the side of another one.
     pub others: Others,
-    /// The lowest of the characters that it stands on or holds, if any: whoever carries it in the end. That one cannot
-    /// hold it, since two that hold each other would be held by nobody.
+    /// The lowest of the characters that this one stands on or holds, if any: it carries all of them. It cannot hold
+    /// this one, because two characters that hold each other would have no support.
     pub carried_by: Option<ObstacleId>,
 }
 
-/// Something that a character can stand on, hit, or be carried by.
+/// An object that a character can stand on, hit, or be carried by.
 ///
 /// Three methods are required: [`overlap_capsule`](Obstacle::overlap_capsule), [`cast_capsule`](Obstacle::cast_capsule)
 /// and [`motion`](Obstacle::motion). The others have default implementations, most of them on top of these three.
@@ -191,9 +191,9 @@ pub trait Obstacle {
     /// exists or is hidden from queries.
     fn motion(&self, point: &MaterialPoint, dt: f64) -> Option<PointMotion>;
 
-    /// Where a material point was a tick of `dt` seconds ago, and is now: the positions and the velocity of
-    /// [`motion`](Obstacle::motion), which this is by default. Override it where these cost less than the whole motion.
-    /// `None` if any of it is not finite, and where there is no motion.
+    /// The positions and the velocity of [`motion`](Obstacle::motion): where a material point was a tick of `dt`
+    /// seconds ago, and is now. By default, computed by `motion`. Override it where these cost less than the whole
+    /// motion. `None` if any of them is not finite, and where there is no motion.
     fn path(&self, point: &MaterialPoint, dt: f64) -> Option<WorldPath> {
         let motion = self.motion(point, dt)?;
         motion.is_finite().then_some(WorldPath {
@@ -203,8 +203,8 @@ pub trait Obstacle {
         })
     }
 
-    /// True if it is known, for less than [`motion`](Obstacle::motion) costs, that the material at a point has not moved
-    /// in the tick that ends now. False if it has, or may have. By default never.
+    /// True if it is known, for less than [`motion`](Obstacle::motion) costs, that the material at a point has not
+    /// moved in the tick that ends now. False if it has moved, or may have. Always false by default.
     fn rests(&self, point: &MaterialPoint) -> bool {
         let _ = point;
         false
@@ -218,7 +218,7 @@ pub trait Obstacle {
 
     /// [`Obstacle::cast_capsule`] restricted to the contacts that `counts` accepts. `counts` is called, in any order,
     /// with the contact of each triangle or solid that could be the first; a contact for which it returns false is
-    /// ignored. A body that is pressed into one solid uses this to meet the others.
+    /// ignored. A body that is pressed into one solid uses this to find its contacts with the others.
     ///
     /// The default calls `counts` with the first contact only, which is right for a single solid.
     fn cast_capsule_where(
@@ -233,7 +233,8 @@ pub trait Obstacle {
     }
 
     /// [`cast_capsule_where`](Obstacle::cast_capsule_where) among the contacts that did not
-    /// [start inside](SweepContact::started_inside). Override it where those can be left out at less cost than one by one.
+    /// [start inside](SweepContact::started_inside). Override it where overlaps can be left out more cheaply than one
+    /// by one.
     fn cast_capsule_past_overlaps(
         &self,
         capsule: &WorldCapsule,
@@ -326,9 +327,9 @@ pub trait Obstacle {
         0.0
     }
 
-    /// The body of another character, if the obstacle is one. Such an obstacle stops bodies, but it neither pushes them
-    /// nor presses them into anything: what overlaps it is free to go with its own support, and walls win. Two
-    /// characters that overlap part from each other.
+    /// The character's body, if the obstacle is another character. Such an obstacle stops bodies, but it neither pushes
+    /// them nor presses them into other obstacles: a body that overlaps it can still move with its own support, and
+    /// walls have priority. Two characters that overlap move apart.
     fn character(&self) -> Option<CharacterBody> {
         None
     }

@@ -1,7 +1,7 @@
-/// What a character does where it comes into the side of another one. Whatever it is, characters stand on each other,
-/// nobody is pressed through a wall, and those that overlap part by their masses.
+/// How a character behaves when it runs into the side of another one. In each case, characters can stand on each other,
+/// no character is pressed through a wall, and overlapping characters move apart by their masses.
 ///
-/// Of two, what is softer to both counts ([`Others::between`]):
+/// The softer of the two characters' choices counts for both ([`Others::between`]):
 ///
 /// | | block | push | pass |
 /// |---|---|---|---|
@@ -12,18 +12,18 @@
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
 pub enum Others {
-    /// It stops.
+    /// The character stops.
     #[default]
     Block,
-    /// It pushes, and is pushed: two that meet go on at the common velocity that their masses give. They overlap by
-    /// what they would have made against each other in a tick, at most by three quarters of the smaller radius.
+    /// The character pushes and is pushed: both go on at the common velocity that their masses give. They overlap by
+    /// the way that each would make against the other in a tick, at most by three quarters of the smaller radius.
     Push,
-    /// It goes through. Two that stand still in each other part softly.
+    /// The character goes through the other one. Two characters that stand still in each other part softly.
     Pass,
 }
 
 impl Others {
-    /// What two characters do with each other.
+    /// The behaviour of two characters towards each other.
     #[must_use]
     pub fn between(self, other: Self) -> Self {
         match (self, other) {
@@ -44,7 +44,7 @@ impl core::fmt::Display for Others {
     }
 }
 
-/// A text that names none of [`Others`].
+/// The error for a text that is no name of [`Others`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct OthersError;
 

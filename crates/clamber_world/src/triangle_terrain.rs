@@ -16,8 +16,8 @@ use crate::{
 
 /// Terrain of plain triangles, without a physics engine: a level, a height field, a rock.
 ///
-/// It stands still. Like skin it is a sheet: a body that is put behind it is not pushed out. Positions are relative to
-/// an origin of its own in f64, so that a level far from the world's origin is as exact as one near it.
+/// The terrain does not move. Like skin it is a sheet: a body that is put behind it is not pushed out. Positions are
+/// relative to an origin of its own in f64, so that a level far from the world's origin is as exact as one near it.
 ///
 /// ```
 /// use clamber_world::{Obstacle, SurfaceTag, TriangleTerrain};
@@ -52,7 +52,7 @@ impl TriangleTerrain {
     /// origin is in the world.
     ///
     /// # Errors
-    /// [`TerrainError`] if an index is out of range, a number is not finite, or there is another number of tags.
+    /// [`TerrainError`] if an index is out of range, a number is not finite, or the number of tags is wrong.
     pub fn new(
         positions: &[Vec3],
         triangles: &[[u32; 3]],
@@ -76,7 +76,7 @@ impl TriangleTerrain {
         let still = Palette::from_matrices([Affine::IDENTITY]);
         surface.place(&still, Similarity::from_translation(origin))?;
         surface.advance(&still, Similarity::from_translation(origin))?;
-        // Known to be without motion, which is not a teleport.
+        // A sleeping surface is known to be at rest, so its points do not count as teleported.
         surface.sleep();
         Ok(Self { surface })
     }

@@ -1,4 +1,4 @@
-//! From where the climber is seen best: a score of some directions around it.
+//! Chooses the direction from which the climber is seen best, by a score of some directions around it.
 
 use clamber::prelude::*;
 use clamber_scenes::battle::{Battle, CREATURE, TERRAIN};
@@ -9,49 +9,58 @@ use super::face::Seen;
 use super::skin::{KEPT, Skin};
 use super::view::ABOVE_GROUND;
 
-/// Directions around the climber, and their heights above the horizon, radians.
+/// Number of directions around the climber at each height.
 const AROUND: u32 = 16;
+/// Heights of the directions above the horizon, radians.
 const HEIGHTS: [f64; 5] = [-0.25, 0.1, 0.4, 0.75, 1.05];
 
 /// Skin nearer to the eye than this counts against a direction, metres.
 const ROOM: f64 = 4.0;
 
-/// Another direction has to be better by so much.
+/// Difference by which another direction's score must be higher. With less, the camera goes to and fro.
 const BETTER: f64 = 0.15;
 
-/// How much things count: a free view of the climber, skin near the eye, the ideal direction, a short way there, skin
-/// on the way there, too little height above the ground, and in a stab a free view of the face and a view from its
-/// front.
+/// Weight of a free view of the climber in the score.
 const FREE: f64 = 3.0;
+/// Weight of the eye's distance from the skin, up to [`ROOM`].
 const NEAR: f64 = 0.8;
+/// Weight of the cosine of the angle to the ideal direction, outside of stabs.
 const IDEAL: f64 = 2.0;
+/// Weight of the cosine of the angle to the eye's current direction.
 const SHORT: f64 = 0.6;
+/// Subtracted if the view of the climber is blocked half way to the new direction.
 const BLOCKED: f64 = 0.8;
+/// Subtracted if the eye would be too low above the ground.
 const LOW: f64 = 1.0;
+/// Weight of a free view of the face, in a stab.
 const FACE: f64 = 1.5;
+/// Weight of the cosine of the angle from the face's front, up to [`PROFILE`], in a stab.
 const FRONT: f64 = 2.0;
 
-/// Cosine of the angle from the face's front from which on it is seen well enough: hardly more than its profile, since
-/// from the front the head hides who is on the nape.
+/// Cosine of the angle from the face's front at which the face is seen well enough. This is hardly more than its
+/// profile: from the front, the head hides a climber on the nape.
 const PROFILE: f64 = 0.25;
 
-/// How much height counts in a stab, up to the sine of this angle: from a low place the head hides who is on its top.
+/// Weight of the sine of the height angle in a stab, up to [`ENOUGH`]: from a low place, the head hides a climber on
+/// its top.
 const HIGH: f64 = 1.2;
+/// Sine of the height angle above which more height does not raise the score.
 const ENOUGH: f64 = 0.5;
 
-/// The climber's head, above the middle of its ball, has to be seen in a stab as well, metres.
+/// Height of the climber's head above the centre of its ball, metres: in a stab, a free view of the head counts as
+/// well.
 const HEAD: f64 = 1.1;
 
-/// A direction should still be free after so many seconds.
+/// Time after which a direction should still be free, seconds.
 const SOON: f64 = 0.5;
 
-/// How far before the skin of the face its sight line begins, metres.
+/// Distance in front of the face's skin at which its sight line begins, metres.
 const BEFORE_FACE: f64 = 0.5;
 
-/// How much higher than the climber the view is directed while it is not on the creature, metres.
+/// Height above the climber at which the camera looks while the climber is not on the creature, metres.
 const LOOKS_UP: f64 = 1.7;
 
-/// What is around the climber in one tick.
+/// The surroundings of the climber in one tick.
 pub(super) struct Scene<'a> {
     battle: &'a Battle<'a>,
     pub(super) skin: &'a Skin,
@@ -59,22 +68,22 @@ pub(super) struct Scene<'a> {
     pub(super) climber: DVec3,
     /// The middle of the giant's joints.
     pub(super) giant: DVec3,
-    /// Where the climber will be soon.
+    /// The climber's position after [`SOON`], if it keeps its velocity.
     soon: DVec3,
     pub(super) up: DVec3,
-    /// How much higher than the climber to look, metres.
+    /// Height above the climber at which the camera looks, metres.
     pub(super) looks_up: f64,
     on_creature: bool,
 }
 
-/// A choice of a direction.
+/// The input of a choice of a direction.
 pub(super) struct Choice {
     pub(super) pivot: DVec3,
     pub(super) distance: f64,
-    /// Unit vectors: where the eye is now, and where it was to go.
+    /// Unit vectors from the pivot: to the eye now, and to the last chosen place of the eye.
     pub(super) away: DVec3,
     pub(super) wanted: DVec3,
-    /// The face should be seen as well.
+    /// True if the face should be seen as well.
     pub(super) stab: bool,
 }
 
@@ -100,7 +109,7 @@ impl<'a> Scene<'a> {
         }
     }
 
-    /// Length of a way from a place that nothing blocks.
+    /// Length of a way from a place up to the first skin or ground, less a distance from it.
     pub(super) fn free(&self, from: DVec3, way: DVec3) -> f64 {
         let far = way.length();
         let Some(toward) = way.try_normalize() else {
@@ -119,8 +128,8 @@ impl<'a> Scene<'a> {
         ground.map_or(skin, |ground| skin.min(0.9 * ground.distance))
     }
 
-    /// The direction from which the climber is best seen if nothing is in the way: outward from what it holds, along
-    /// the line from the giant to it, or from where the eye is already.
+    /// The direction from which the climber is best seen if the view is free: outward from its hold; or a mix of the
+    /// direction of the eye and the direction from the giant to the climber.
     pub(super) fn ideal(&self, away: DVec3) -> DVec3 {
         let state = self.battle.climber().state();
         let level = |way: DVec3| way - self.up * way.dot(self.up);

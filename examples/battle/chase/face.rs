@@ -1,4 +1,4 @@
-//! Where the creature's face is.
+//! The position and direction of the creature's face.
 
 use clamber::prelude::*;
 use clamber_scenes::Creature;
@@ -17,7 +17,7 @@ pub(super) struct Face {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Seen {
     pub(super) place: DVec3,
-    /// Unit vector: where it looks.
+    /// Unit vector in the direction that the face looks.
     pub(super) ahead: DVec3,
 }
 
@@ -47,7 +47,7 @@ impl Face {
         })
     }
 
-    /// Where it is now.
+    /// The face in the battle's current pose.
     pub(super) fn now(&self, battle: &Battle<'_>) -> Option<Seen> {
         let frame = battle.palette().model_from_joint(self.head)?;
         let root = battle.surface().world_from_model();

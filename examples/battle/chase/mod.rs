@@ -1,9 +1,9 @@
 //! The camera that follows the climber.
 //!
-//! It keeps a direction from the climber, and turns it towards the best of some [choices](choice) at a bounded rate, so
-//! that it neither flips nor jumps when the climber's support changes. It stays in front of skin that would hide the
-//! climber, and keeps a distance from all skin. While the climber stabs near the giant's face, it goes to where both
-//! are seen.
+//! The camera keeps a direction from the climber, and turns it towards the best of some [choices](choice) at a bounded
+//! rate, so that it neither flips nor jumps when the climber's support changes. It stays in front of skin that would
+//! hide the climber, and keeps a distance from all skin. While the climber stabs near the giant's face, it moves to a
+//! place from which both are seen.
 
 mod choice;
 mod face;
@@ -20,23 +20,24 @@ use face::Face;
 use skin::Skin;
 use view::{View, first};
 
-/// Distance from the climber, metres.
+/// Usual distance from the climber, metres.
 const FAR: f64 = 7.5;
 
-/// In a stab: for each metre between the climber and the face, and at least, metres.
+/// Distance of the camera in a stab, as a multiple of the distance between the climber and the face.
 const FAR_IN_STAB: f64 = 1.3;
+/// Least distance of the camera in a stab, metres.
 const LEAST_IN_STAB: f64 = 8.0;
 
 /// Distance from a giant that falls dead, as a share of its height.
 const FAR_FROM_DEAD: f64 = 0.75;
 
-/// The face is shown in stabs that are nearer to it than this, metres.
+/// A stab within this distance of the face shows the face as well, metres.
 const NEAR_FACE: f64 = 15.0;
 
-/// Ticks between two choices of a direction.
+/// Number of ticks between two choices of a direction: each choice casts many rays.
 const CHOOSES: u32 = 3;
 
-/// A climber that moves farther than this in a tick was put elsewhere, metres: the camera is there at once.
+/// A climber that moves farther than this in a tick was teleported, metres; the camera follows at once.
 const PUT: f64 = 8.0;
 
 /// The camera and its memory.
@@ -48,12 +49,12 @@ pub(crate) struct Chase {
     ticks: u32,
     /// Height of the creature, metres.
     height: f64,
-    /// The giant was killed.
+    /// True once the giant was killed.
     is_dead: bool,
 }
 
 impl Chase {
-    /// For a creature `height` metres tall.
+    /// A camera for a creature `height` metres tall.
     pub(crate) fn new(height: f64) -> Self {
         Self {
             skin: None,
@@ -108,21 +109,21 @@ impl Chase {
     }
 }
 
-/// What the camera circles and what it looks at, and its distance.
+/// The point that the camera circles, the point that it looks at, and its distance from the first.
 struct Shot {
     center: DVec3,
     target: DVec3,
     distance: f64,
 }
 
-/// What to show in this tick: the climber, the face as well during a stab, or all of a giant that falls dead, which is
-/// `height` metres tall.
+/// The shot of this tick. It shows the climber; during a stab, the face as well; or all of a giant, `height` metres
+/// tall, that falls dead.
 fn shot(scene: &Scene<'_>, view: &View, height: f64) -> Shot {
     let (center, distance) = middle(scene, view.stab);
     let wide = eased(view.wide);
     let far = FAR_FROM_DEAD * height;
     let center = center.lerp(scene.giant, 0.4 * wide);
-    // Less where something comes between, so that the climber stays in the picture.
+    // Less if the camera is near the climber because skin is in the way, so that the climber stays in the picture.
     let near = (view.eye.distance(scene.climber) / FAR).min(1.0);
     let raised = scene.looks_up * near * (1.0 - view.stab) * (1.0 - wide);
     Shot {
@@ -145,7 +146,8 @@ fn stabs(battle: &Battle<'_>, scene: &Scene<'_>) -> bool {
     stabs && face.is_some_and(|face| face.distance(scene.climber) < NEAR_FACE)
 }
 
-/// What the camera circles, and how far from it, at a share of the way from the usual view to that of a stab.
+/// The point that the camera circles, and its distance from there. `stab` is the share of the change from the usual
+/// view to the view of a stab.
 fn middle(scene: &Scene<'_>, stab: f64) -> (DVec3, f64) {
     let climber = scene.climber + scene.up * 0.5;
     let Some(face) = scene.face else {
@@ -158,7 +160,7 @@ fn middle(scene: &Scene<'_>, stab: f64) -> (DVec3, f64) {
     (center, FAR + (far - FAR) * eased)
 }
 
-/// A share that begins and ends slowly.
+/// The share of a change that begins and ends slowly.
 fn eased(share: f64) -> f64 {
     share * share * (3.0 - 2.0 * share)
 }

@@ -1,16 +1,16 @@
-//! The creature's skin as the camera sees it: posed as it is, but with queries that the battle's own measurements do
-//! not see.
+//! A copy of the creature's skin for the camera, in the same pose: its queries do not change the battle's own
+//! measurements.
 
 use clamber::prelude::*;
 use clamber_scenes::battle::Battle;
 use glam::DVec3;
 
-/// Distance of the eye from the skin, metres: what it keeps, and the least for a few ticks if skin comes from two
-/// sides. Visible fur reaches 0.8 m beyond the skin on a giant of 40 m.
+/// Distance that the eye keeps from the skin, metres. Visible fur reaches 0.8 m beyond the skin on a giant of 40 m.
 pub(super) const KEPT: f64 = 1.4;
+/// Least distance of the eye from the skin for a few ticks, if skin comes from two sides, metres.
 pub(super) const LEAST: f64 = 0.9;
 
-/// How often the eye is pushed away from skin on several sides.
+/// Largest number of times that the eye is pushed away from skin on several sides.
 const ROUNDS: usize = 8;
 
 /// The creature's skin.
@@ -29,7 +29,7 @@ impl Skin {
         }
     }
 
-    /// Takes the battle's current pose. A pose that is refused leaves the last one.
+    /// Takes the battle's current pose. If the pose is refused, the last one stays.
     pub(super) fn pose(&mut self, battle: &Battle<'_>) {
         if self.broken != broken(battle) {
             *self = Self::new(battle);

@@ -1,4 +1,4 @@
-//! Where the camera is and where it looks, and how it moves from tick to tick.
+//! The position and direction of the camera, and their motion from tick to tick.
 
 use clamber::geometry::rotation_from_axis_angle;
 use clamber_scenes::battle::TICK;
@@ -9,53 +9,60 @@ use super::FAR;
 use super::choice::{Choice, Scene};
 use super::skin::{KEPT, LEAST};
 
-/// Seconds for which the camera stays after a stab, for the next one; of its way there and back; and of its way from a
-/// giant that falls dead.
+/// Time for which the camera keeps the view of a stab after the stab, in case of another one, seconds.
 const STAYS: f64 = 1.5;
+/// Time of the change to the view of a stab, and back, seconds.
 const CHANGES: f64 = 1.2;
+/// Time of the change to the view of a giant that falls dead, seconds.
 const RETREATS: f64 = 2.5;
 
-/// The fastest turn around the climber, radians a second: usually, and for a stab or where something is in the way; how
-/// fast it gets that fast, radians a second squared; and the share of the way that it turns in a second.
+/// Usual fastest turn around the climber, radians a second.
 const TURN: f64 = 0.9;
+/// Fastest turn around the climber for a stab, or if the view is blocked, radians a second.
 const FAST_TURN: f64 = 1.7;
+/// Largest change of the rate of turning, radians a second squared.
 const SPEEDS_UP: f64 = 4.0;
+/// Rate of turning for each radian of the remaining angle, 1 / s.
 const SHARE: f64 = 2.0;
 
-/// The fastest turn of the view, radians a second.
+/// Fastest turn of the view, radians a second.
 const LOOK: f64 = 2.6;
 
-/// Times for half of a change, seconds: of the place that it circles, of the place that it looks at, of the eye, of the
-/// distance when something comes between, and when that is gone.
+/// Half-life of changes of the point that the camera circles, seconds.
 const PIVOT: f64 = 0.11;
+/// Half-life of changes of the point that the camera looks at, seconds.
 const TARGET: f64 = 0.05;
+/// Half-life of changes of the eye's position, seconds.
 const EYE: f64 = 0.04;
+/// Half-life of a decrease of the distance, when the view gets blocked, seconds.
 const NEARER: f64 = 0.15;
+/// Half-life of an increase of the distance, when the view gets free, seconds.
 const FARTHER: f64 = 0.5;
 
-/// The fastest motion of the eye that skin does not push, metres a second.
+/// Fastest motion of the eye, unless skin pushes it, metres a second.
 const FASTEST: f64 = 30.0;
 
-/// Height above the ground that it keeps, metres.
+/// Height above the ground that the eye keeps, metres.
 pub(super) const ABOVE_GROUND: f64 = 1.0;
 
-/// What the camera remembers of the last tick.
+/// The camera's state after the last tick.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct View {
     pub(super) climber: DVec3,
-    /// The place that it circles, and the one that it looks at.
+    /// The point that the camera circles, and the point that it looks at.
     pub(super) pivot: DVec3,
     pub(super) target: DVec3,
-    /// Unit vector from the pivot to the eye, as it is and as it should be, and how fast it turns.
+    /// Unit vector from the pivot to the eye, the wanted one, and the rate of turning, radians a second.
     pub(super) away: DVec3,
     pub(super) wanted: DVec3,
     pub(super) turns: f64,
     /// Share of the distance that is free.
     pub(super) free: f64,
-    /// 0 for the usual view to 1 for that of a stab, and how many seconds more it is wanted.
+    /// Weight of the stab view in the blend with the usual view, from 0 to 1, and the seconds for which the stab view
+    /// is still wanted.
     pub(super) stab: f64,
     pub(super) stays: f64,
-    /// The same for the view of a giant that falls dead.
+    /// Weight of the view of a giant that falls dead, from 0 to 1.
     pub(super) wide: f64,
     pub(super) eye: DVec3,
     /// Unit vector.
@@ -63,7 +70,7 @@ pub(super) struct View {
 }
 
 impl View {
-    /// Goes on towards the view of a stab or of a dead giant, or back.
+    /// Moves the weights towards the view of a stab or of a dead giant, or back.
     pub(super) fn advance(&mut self, stabs: bool, is_dead: bool) {
         if is_dead {
             self.wide = (self.wide + TICK / RETREATS).min(1.0);
@@ -78,7 +85,7 @@ impl View {
         self.stab += (goal - self.stab).clamp(-step, step);
     }
 
-    /// Turns towards the wanted direction.
+    /// Turns `away` towards the wanted direction.
     pub(super) fn turn(&mut self) {
         let across = self.away.cross(self.wanted);
         let angle = libm::atan2(across.length(), self.away.dot(self.wanted));
@@ -94,7 +101,7 @@ impl View {
     pub(super) fn place(&mut self, scene: &Scene<'_>, distance: f64, is_new: bool) {
         let way = self.pivot + self.away * distance - scene.climber;
         let free = scene.free(scene.climber, way) / way.length().max(1e-9);
-        // With the face in the picture, a way past the head is better than one into it.
+        // With the face in the picture, a way past the head is better than a way into the head.
         let free = free.max(self.stab).max(self.wide);
         let half = if free < self.free { NEARER } else { FARTHER };
         self.free = if is_new {
@@ -111,7 +118,7 @@ impl View {
             let way = (wanted - self.eye) * share(EYE);
             self.eye + way.clamp_length_max(FASTEST * TICK)
         };
-        // In a cleft that closes, less motion may come of staying.
+        // In a cleft that closes, a start from the present eye may need less motion.
         let ways = [eye, if is_new { eye } else { self.eye }].map(|eye| {
             let place = above_ground(scene.skin.keep_out(eye));
             (place, place.distance(self.eye))
@@ -119,7 +126,7 @@ impl View {
         let [moves, stays] = ways;
         let goes = is_new || moves.1 <= FASTEST * TICK || moves.1 <= stays.1;
         let place = if goes { moves.0 } else { stays.0 };
-        // The rest of a long way is for the next ticks, unless skin is too near meanwhile.
+        // A long way takes several ticks, unless skin is too near on it.
         let part = (place - self.eye).clamp_length_max(FASTEST * TICK);
         let parts = [1.0, 0.5, 0.0].map(|share| self.eye + part * share);
         let is_free = |eye: &DVec3| scene.skin.room(*eye, KEPT) > LEAST;
@@ -133,7 +140,8 @@ impl View {
         };
     }
 
-    /// Moves the place that it circles and the one that it looks at towards others. `is_new` puts both there at once.
+    /// Moves the point that the camera circles and the point that it looks at towards new ones. `is_new` puts both
+    /// there at once.
     pub(super) fn aim(&mut self, pivot: DVec3, target: DVec3, is_new: bool) {
         let [to_pivot, to_target] = if is_new {
             [1.0, 1.0]
@@ -145,7 +153,7 @@ impl View {
     }
 }
 
-/// The view of a battle that begins, and of a climber that was put elsewhere.
+/// The first view of a battle, or of a climber that was teleported.
 pub(super) fn first(scene: &Scene<'_>) -> View {
     let away = scene.ideal(DVec3::X);
     let choice = Choice {
@@ -185,7 +193,7 @@ fn above_ground(eye: DVec3) -> DVec3 {
     eye.with_y(eye.y.max(least))
 }
 
-/// Share of a difference that goes in a tick, if half of it goes in a time.
+/// Share of a difference that is removed in a tick, for a half-life in seconds.
 fn share(half: f64) -> f64 {
     1.0 - libm::exp2(-TICK / half)
 }

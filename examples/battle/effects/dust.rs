@@ -1,8 +1,8 @@
-//! Dust where the giant strikes the ground, and the ring of a blow that runs out from there.
+//! Dust where the giant strikes the ground, and the ring of a blow that spreads from there.
 //!
-//! A clip's marker `impact` says when a foot, a knee or a hand strikes; the joint near the ground that came down
-//! fastest is the one that did. The ring grows as far as the limb strikes, or up to a climber that the blow knocks
-//! down.
+//! A clip's marker `impact` gives the time at which a foot, a knee or a hand strikes. Among the joints near the ground,
+//! the one that came down fastest is taken as the joint that struck. The ring grows beyond the limb by a share of the
+//! creature's height, or up to a climber that the blow knocks down.
 
 use clamber::prelude::*;
 use clamber::render::Overlay;
@@ -15,40 +15,45 @@ use glam::DVec3;
 use super::{View, glow};
 use crate::colors::{ORANGE, WHITE, seen_through};
 
-/// Seconds for which a ring grows, and dust rises.
+/// Time for which a ring grows, seconds.
 const RING_LASTS: f64 = 0.9;
+/// Time for which dust rises, seconds.
 const DUST_LASTS: f64 = 1.8;
 
-/// Ticks over which the fall of a joint is measured.
+/// Number of ticks over which the fall of a joint is measured.
 const FALL: usize = 12;
 
-/// A joint strikes the ground within this height, and its sole is looked for within this distance, as shares of the
-/// creature's height.
+/// Largest height above the ground of a joint that strikes it, as a share of the creature's height.
 const LOW: f64 = 0.1;
+/// Largest distance between such a joint and its sole, as a share of the creature's height.
 const AT_SOLE: f64 = 0.12;
 
-/// How far a ring runs beyond the limb, as a share of the creature's height: of a blow, of a fall, and of a step.
+/// Distance that the ring of a blow spreads beyond the limb, as a share of the creature's height.
 const BLOW: f64 = 0.2;
+/// The same for an impact that is not a blow, such as a fall.
 const FALLS: f64 = 0.1;
+/// The same for the dust of a step.
 const STEP: f64 = 0.05;
 
-/// A climber that is knocked down within this time of a blow, seconds, and this distance, as a share of the creature's
-/// height, was knocked down by it.
+/// A climber that falls within this time after a blow counts as knocked down by it, seconds.
 const KNOCKS: f64 = 0.5;
+/// Largest distance of such a climber from the blow, as a share of the creature's height.
 const KNOCKS_AT: f64 = 0.5;
 
-/// Puffs of dust of an impact, and of a step.
+/// Number of puffs of dust of an impact.
 const PUFFS: u32 = 22;
+/// Number of puffs of dust of a step.
 const STEP_PUFFS: u32 = 9;
 
-/// Radius of a puff when it is thrown up and when it is gone, and how high it rises, as shares of the creature's
-/// height.
+/// Radius of a puff at its beginning and at its end, as shares of the creature's height.
 const PUFF: [f64; 2] = [0.012, 0.05];
+/// Height to which puffs rise, as a share of the creature's height.
 const RISES: f64 = 0.05;
 
+/// Colour of dust, linear red, green and blue.
 const DUST: [f32; 3] = [0.50, 0.43, 0.31];
 
-/// Corners of a ring.
+/// Number of corners of a ring.
 const SIDES: u32 = 72;
 
 /// Impacts of the last seconds.
@@ -56,7 +61,7 @@ const SIDES: u32 = 72;
 pub(super) struct Dust {
     height: f64,
     impacts: Vec<Impact>,
-    /// Places of all joints in the last ticks, the current one last.
+    /// Positions of all joints in the last ticks; the current tick is last.
     joints: Vec<Vec<DVec3>>,
     was_down: bool,
 }
@@ -64,12 +69,12 @@ pub(super) struct Dust {
 #[derive(Clone, Copy, Debug)]
 struct Impact {
     place: DVec3,
-    /// Where the ring begins and ends, metres from the place.
+    /// First and last radius of the ring, metres.
     radii: [f64; 2],
-    /// A step has no ring.
+    /// False for a step.
     has_ring: bool,
     seconds: f64,
-    /// Whom it knocked down.
+    /// Position of the climber that it knocked down.
     struck: Option<DVec3>,
 }
 
@@ -133,7 +138,7 @@ impl Dust {
         });
     }
 
-    /// Where the joint that came down fastest is on the ground, and how far the limb reaches around there.
+    /// The place of the joint that came down fastest, or of its sole, and the limb's radius there.
     fn struck_ground(&self, life: &clamber_colossus::Creature) -> Option<(DVec3, f64)> {
         let (first, last) = (self.joints.first()?, self.joints.last()?);
         let low = |place: &DVec3| place.y - on_ground(*place).y < LOW * self.height;
@@ -152,7 +157,7 @@ impl Dust {
         Some(sole.unwrap_or((*place, 0.05 * self.height)))
     }
 
-    /// Ties a knock-down of the climber to the last blow.
+    /// Assigns a knock-down of the climber to the last blow.
     fn knock_down(&mut self, battle: &Battle<'_>, events: &[ArenaEvent]) {
         let state = battle.climber().state();
         let is_down = state.mode == ClimberMode::Tumbling;
@@ -228,7 +233,7 @@ impl Dust {
         let opacity = if impact.has_ring { 0.45 } else { 0.25 };
         let fade = opacity * (1.0 - share) as f32;
         for puff in 0..count {
-            // Golden angles and remainders are spread evenly, and the same in every run.
+            // Multiples of the golden angle and of the golden ratio are spread evenly, and are the same in every run.
             let angle = f64::from(puff) * 2.399_963;
             let other = (f64::from(puff) * 0.618_034).fract();
             let (sin, cos) = libm::sincos(angle);
@@ -247,7 +252,7 @@ fn on_ground(place: DVec3) -> DVec3 {
     place.with_y(valley::height(place.x, place.z))
 }
 
-/// The middle of a sole, and how far its corners are from there.
+/// The middle of a sole, and the largest distance of its corners from there.
 fn center(corners: [DVec3; 4]) -> (DVec3, f64) {
     let middle = corners.iter().sum::<DVec3>() / 4.0;
     let far = corners.map(|corner| corner.distance(middle));

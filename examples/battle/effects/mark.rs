@@ -10,18 +10,22 @@ use crate::overlays::nearer;
 /// Height of the drawn climber, metres.
 const TALL: f64 = 1.75;
 
-/// A climber of more pixels has no mark, and one of fewer has the whole mark.
+/// A climber of this height or more in the picture has no mark, pixels.
 const LARGE: f64 = 18.0;
+/// A climber of this height or less has the opaque mark, pixels.
 const SMALL: f64 = 12.0;
 
-/// The mark: an arrow head of so many pixels, so many above the climber's head.
+/// Width of the mark, an arrow head, pixels.
 const WIDE: f64 = 11.0;
+/// Height of the mark, pixels.
 const HIGH: f64 = 9.0;
+/// Distance of the mark above the climber's head, pixels.
 const ABOVE: f64 = 4.0;
 
-/// It is drawn so many metres nearer to the eye, so that fur does not hide it; its outline so near that nothing does:
-/// of a climber on the far side, the outline is seen and hardly more.
+/// Distance by which the mark is drawn nearer to the eye, metres, so that fur does not hide it.
 const NEARER: f64 = 2.5;
+/// The same for the mark's outline: so near that no mesh hides it. For a climber on the far side, hardly more than the
+/// outline is visible.
 const NEAREST: f64 = 1e3;
 
 /// Draws the mark, if the climber is small enough.
@@ -38,7 +42,7 @@ pub(super) fn draw(over: &mut Overlay, battle: &Battle<'_>, view: &View) {
         return;
     }
     let [right, up] = view.sides(head);
-    // On pictures of many rows it is as large a part of them as on small ones.
+    // On pictures of more than 540 rows, the mark covers the same share of the picture.
     let pixel = pixel * (f64::from(view.rows) / 540.0).max(1.0);
     let tip = head + up * (ABOVE * pixel);
     let corners = [[0.0, 0.0], [-0.5, 1.0], [0.5, 1.0]]

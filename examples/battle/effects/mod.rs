@@ -1,5 +1,5 @@
-//! What makes a fight readable on film: the sword's gleam and its charge, the trails of arrows, hits, dust where the
-//! giant strikes the ground, and a mark over a climber that is small in the picture.
+//! Effects that make a fight readable on film: the sword's gleam and its charge, the trails of arrows, hits, dust where
+//! the giant strikes the ground, and a mark over a climber that is small in the picture.
 
 mod dust;
 mod mark;
@@ -12,7 +12,7 @@ use glam::DVec3;
 use dust::Dust;
 use weapons::Weapons;
 
-/// Effects, and what they remember of earlier ticks.
+/// The effects, with their data from earlier ticks.
 #[derive(Debug)]
 pub(crate) struct Effects {
     dust: Dust,
@@ -27,7 +27,7 @@ pub(crate) struct View {
 }
 
 impl Effects {
-    /// For a creature `height` metres tall.
+    /// Effects for a creature `height` metres tall.
     pub(crate) fn new(height: f64) -> Self {
         Self {
             dust: Dust::new(height),
@@ -41,7 +41,7 @@ impl Effects {
         self.weapons.watch(battle);
     }
 
-    /// Draws all effects; `sword` has the grip and the tip of a sword that is in the hand.
+    /// Draws all effects. `sword` has the grip and the tip of the sword, if it is in the hand.
     pub(crate) fn draw(
         &self,
         over: &mut Overlay,
@@ -72,9 +72,11 @@ impl View {
     }
 }
 
-/// Draws a disc that faces the eye and fades to its rim: discs over each other.
+/// Draws a disc that faces the eye and fades to its rim, as several discs over each other.
 fn glow(over: &mut Overlay, view: &View, place: DVec3, radius: f64, color: [f32; 4]) {
+    /// Number of corners of a disc.
     const SIDES: u32 = 16;
+    /// Radii of the discs, as shares of the largest one.
     const LAYERS: [f64; 7] = [1.0, 0.9, 0.79, 0.67, 0.54, 0.4, 0.22];
     let [right, up] = view.sides(place);
     let [red, green, blue, opacity] = color;

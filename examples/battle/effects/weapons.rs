@@ -15,21 +15,23 @@ use crate::overlays::nearer;
 /// Number of ticks of an arrow's flight that its trail shows.
 const TRAIL: usize = 14;
 
-/// Seconds for which sparks fly, how many, and how far, metres.
+/// Time for which sparks fly, seconds.
 const SPARKS_LAST: f64 = 0.4;
+/// Number of sparks of a hit.
 const SPARKS: u32 = 11;
+/// Distance that sparks fly, metres.
 const SPARKS_FLY: f64 = 1.1;
 
 /// Radius of the ring of a charge around the sword's grip, metres.
 const RING: f64 = 0.5;
 
-/// Lines of a whole ring.
+/// Number of lines of a whole ring.
 const SIDES: u32 = 40;
 
-/// How much nearer to the eye sparks and rings are drawn, metres: fur does not hide them.
+/// Distance by which sparks and rings are drawn nearer to the eye, metres, so that fur does not hide them.
 const NEARER: f64 = 0.4;
 
-/// What the weapons did in the last ticks.
+/// The trails and hits of the weapons in the last ticks.
 #[derive(Debug, Default)]
 pub(super) struct Weapons {
     trails: BTreeMap<ProjectileId, Vec<DVec3>>,
@@ -72,7 +74,7 @@ impl Weapons {
         for (id, place) in &flying {
             self.trails.entry(*id).or_default().push(*place);
         }
-        // The trail of an arrow that has arrived goes after it.
+        // The trail of an arrow that has arrived gets shorter in each tick.
         self.trails.retain(|id, trail| {
             if trail.len() > TRAIL || !flying.contains_key(id) {
                 trail.remove(0);
@@ -155,7 +157,7 @@ fn sparks(over: &mut Overlay, view: &View, hit: &Hit) {
     for spark in 0..SPARKS {
         let angle = f64::from(spark) / f64::from(SPARKS) * core::f64::consts::TAU;
         let (sin, cos) = libm::sincos(angle);
-        // Odd ones fly less far.
+        // Odd sparks fly less far.
         let far = SPARKS_FLY * (1.0 - 0.4 * f64::from(spark % 2));
         let out = right * cos + up * sin;
         let (from, to) = (

@@ -1,22 +1,22 @@
-//! How large is the error of answers on an animated skin, and how long do they take? clamber and other methods side by
-//! side.
+//! How large is the error of answers on an animated skin, and how long do they take? The bench compares clamber with
+//! other methods.
 //!
 //! `queries`: seeded sets of rays, spheres and points at the walking giant: from the front, grazing, aimed at edges and
 //! at vertices, and 1.4 km from the origin; and at a ball of slivers. Each answer is compared with all triangles in
-//! f64. Their positions come from f32 skinning in model space, moved to the creature's place in f64: so the error
-//! includes what a peer loses by world coordinates in f32, and not what all lose by skinning. Answers that pass through
-//! the skin or stop short of it by more than a hundredth of the query's reach are counted apart, as leaks and false
-//! hits, and are not part of the errors. Times are of warm queries, medians of rounds. Fails if clamber has a leak or a
-//! false hit.
+//! f64. The positions of the reference come from f32 skinning in model space, moved to the creature's place in f64. So
+//! the error includes the loss of a peer by world coordinates in f32, and excludes the error of skinning, which all
+//! have in common. Answers that pass through the skin or stop short of it by more than a hundredth of the query's reach
+//! are counted separately, as leaks and false hits, and are not part of the errors. Times are medians of rounds of warm
+//! queries. Fails if clamber has a leak or a false hit.
 //!
-//! `motion`: a sphere that a limb swings into, or that rides on one. It is kept out by the thesis's averaged push-out,
-//! by sub-steps of it, by speculative contacts, and by sweeps. Measured are its depth in the limb at the end of ticks,
-//! how often the limb passes through it, its drift from its place on the skin, and the mean time of a tick. The same is
-//! measured for whole climbers, which float, stand on ground, stand on the limb or hold it: the depth of the limb in
-//! their core.
+//! `motion`: a limb swings into a sphere, or a sphere rides on a limb. The thesis's averaged push-out, sub-steps of it,
+//! speculative contacts, and sweeps keep the sphere out of the limb. The bench measures the sphere's depth in the limb
+//! at the end of ticks, how often the limb passes through it, its drift from its place on the skin, and the mean time
+//! of a tick. It measures the same for whole climbers, which float, stand on ground, stand on the limb or hold it;
+//! their depth is the depth of the limb in their core.
 //!
-//! `skinning`: influences cut to 4, 2 and 1, weights of 16 and 8 bits, positions of 16 bits. Measured are the error of
-//! a vertex, the time and the bytes.
+//! `skinning`: influences cut to 4, 2 and 1, weights of 16 and 8 bits, positions of 16 bits. The bench measures the
+//! error of a vertex, the time and the bytes.
 //!
 //! Prints tables and writes them to `target/measure/accuracy_*.csv`, with plots beside them.
 //!
@@ -34,6 +34,7 @@ use clamber_scenes::measure::is_brief;
 
 type Part = fn(bool) -> Result<(), Box<dyn Error>>;
 
+/// The parts of the bench, by name.
 const PARTS: [(&str, Part); 3] = [
     ("queries", queries::run),
     ("motion", motion::run),

@@ -1,5 +1,5 @@
-//! Skinning with less data: fewer influences, and weights and positions of fewer bits. What each loses, and what it
-//! saves.
+//! Skinning with less data: fewer influences, and weights and positions of fewer bits. The bench measures the error and
+//! the savings of each format.
 //!
 //! All variants use one plain kernel, which differs only in the types that it reads. Like clamber's kernel it has
 //! clusters of 64 vertices that share a list of joints, with a row of weights for each joint, but no dispatch to wider
@@ -22,6 +22,7 @@ const SLOTS: usize = 64;
 /// Number of poses of the walk in which errors are measured.
 const POSES: usize = 8;
 
+/// Columns of the table.
 const COLUMNS: [&str; 8] = [
     "vertices",
     "influences",
@@ -35,6 +36,7 @@ const COLUMNS: [&str; 8] = [
 
 /// A type in which a number of a vertex is stored.
 trait Stored: Copy + Default {
+    /// The name in the table.
     const NAME: &'static str;
     /// The stored value of 1.
     const ONE: f32;
@@ -91,7 +93,7 @@ struct Mesh<W, P> {
 struct Cluster {
     /// The joints, with a row of weights each.
     joints: Vec<u32>,
-    /// Index of its first row.
+    /// Index of the first row.
     row: usize,
     center: [f32; 3],
     /// Size of one step of a stored position.

@@ -1,5 +1,5 @@
-//! Three tables: one to read, with a row for each scene, one for further computing, with a row for each scene and
-//! controller, and one of times.
+//! Three tables: a printed one with a row for each scene, a file with a row for each scene and controller, and a file
+//! of times.
 
 use std::error::Error;
 
@@ -8,6 +8,7 @@ use clamber_scenes::measure::{Bound, Cells, Table, measure_folder, quantile};
 
 use crate::controller::Entry;
 
+/// Columns of the file with a row for each scene and controller.
 const COLUMNS: [&str; 8] = [
     "scenario",
     "scene",
@@ -25,7 +26,7 @@ pub(crate) struct Report {
     computed: Table,
     /// For each controller, the number of scenes passed, and the microseconds of a tick in each scene.
     sums: Vec<(usize, Vec<f64>)>,
-    /// Of the controllers.
+    /// Names of the controllers.
     names: Vec<&'static str>,
 }
 
@@ -72,7 +73,7 @@ impl Report {
         }
     }
 
-    /// Prints the table to read, and writes the other one to a file.
+    /// Prints the first table, and writes the other two to files.
     pub(crate) fn finish(mut self, brief: bool) -> Result<(), Box<dyn Error>> {
         let scenes = self.sums.first().map_or(0, |(_, times)| times.len());
         let row = |name: &str, cells: Vec<String>| {

@@ -1,11 +1,11 @@
-//! What does a tick on an animated skin cost? clamber and other methods side by side.
+//! What does a tick on an animated skin cost? The bench compares clamber with other methods.
 //!
-//! A giant of 3,000 to 500,000 vertices walks. 1 to 1,000 riders on its skin each ask for two overlaps, a ray and the
-//! motion of their footing. A whole tick includes skinning and refitting. Each kind of query, and closest points and
-//! sphere casts, are also timed alone, as the first queries of a tick. All methods answer the same ticks in turn, in
-//! one process, on one thread, so that each finds the caches full of the others' data. Times are medians, for whole
-//! ticks also quartiles. Prints a table and writes it to `target/measure/peers.csv`, with plots beside it. Fails if
-//! clamber's numbers of hits differ between lazy and eager skinning.
+//! A giant of 3,000 to 500,000 vertices walks. Each of 1 to 1,000 riders on its skin makes two overlaps, casts a ray,
+//! and reads the motion of its footing. A whole tick includes skinning and refitting. Each kind of query, and closest
+//! points and sphere casts, are also timed alone, as the first queries of a tick. All methods answer the same ticks in
+//! turn, in one process, on one thread, so that each finds the caches full of the others' data. Times are medians;
+//! whole ticks also have quartiles. Prints a table and writes it to `target/measure/peers.csv`, with plots beside it.
+//! Fails if clamber's numbers of hits differ between lazy and eager skinning.
 //!
 //! Run it with `cargo bench --manifest-path peers/Cargo.toml --bench peers`, and `--features bullet,embree,fcl,physx`
 //! for the installed libraries; briefly with `-- --test`.
@@ -27,12 +27,13 @@ use report::Report;
 struct Effort {
     vertices: &'static [usize],
     riders: &'static [usize],
-    /// Ticks of the walk. Fewer are run, but at least `least_ticks`, if they take longer than `each`.
+    /// Number of ticks of the walk. If they take longer than `each`, fewer are run, but at least `least_ticks`.
     ticks: usize,
     least_ticks: usize,
     each: Duration,
 }
 
+/// The usual run.
 const FULL: Effort = Effort {
     vertices: &[3_000, 30_000, 100_000, 500_000],
     riders: &[1, 10, 100, 1_000],
@@ -41,6 +42,7 @@ const FULL: Effort = Effort {
     each: Duration::from_secs(20),
 };
 
+/// A brief run, for `-- --test`.
 const BRIEF: Effort = Effort {
     vertices: &[2_000],
     riders: &[1, 10],

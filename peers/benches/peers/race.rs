@@ -12,7 +12,7 @@ use clamber_surface::geometry::Sphere;
 use clamber_surface::mesh::ColliderMesh;
 use glam::{DVec3, Vec3};
 
-/// A peer that takes part.
+/// A peer that takes part in a race.
 pub(crate) struct Entrant {
     pub(crate) name: &'static str,
     pub(crate) bytes: usize,
@@ -40,6 +40,7 @@ pub(crate) enum Kind {
     Cast,
 }
 
+/// All kinds of queries.
 pub(crate) const KINDS: [Kind; 4] = [Kind::Ray, Kind::Overlap, Kind::Closest, Kind::Cast];
 
 /// An entrant's median times, microseconds.

@@ -7,6 +7,7 @@ use clamber_surface::mesh::ColliderMesh;
 
 use crate::race::{Entrant, Lap};
 
+/// Columns of the table.
 const COLUMNS: [&str; 14] = [
     "method",
     "vertices",
@@ -192,7 +193,7 @@ impl Report {
     }
 }
 
-/// A number with at least three significant digits; below 1 with three decimals.
+/// A number with at least three significant digits, or with three decimals if it is below 1.
 fn digits(value: f64) -> String {
     let decimals = match value.abs() {
         size if size >= 100.0 => 0,

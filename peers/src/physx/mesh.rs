@@ -1,7 +1,8 @@
 //! PhysX's triangle mesh.
 //!
-//! Its tree is not quantised, because PhysX cannot refit a quantised one: `refitBVH` would print an error at each call,
-//! and leave the tree as it was cooked. Cleaning, and with it welding, is off, so that vertices keep their indices.
+//! The mesh's tree is not quantised, because PhysX cannot refit a quantised one: `refitBVH` would print an error at
+//! each call, and leave the tree as it was cooked. Cleaning, which includes welding, is off, so that vertices keep
+//! their indices.
 
 use std::error::Error;
 use std::ptr::{NonNull, null_mut};
@@ -60,7 +61,7 @@ impl Mesh {
         Ok(())
     }
 
-    /// The original triangle of the one that queries call `face`: cooking sorts the triangles by the tree.
+    /// The collider's triangle for the face index of a query: cooking sorts the triangles by the tree.
     pub(super) fn triangle(&self, face: u32) -> TriangleId {
         // SAFETY: the table has an entry for each triangle, and lives as long as the mesh.
         let table = unsafe {
@@ -82,7 +83,7 @@ impl Drop for Mesh {
 /// Starts PhysX's foundation, once in a process. It allocates with the C library, and prints errors to stdout.
 fn start() -> Result<(), Box<dyn Error>> {
     static STARTED: OnceLock<bool> = OnceLock::new();
-    // SAFETY: called once, and nothing else here makes a foundation.
+    // SAFETY: called once, and no other code here makes a foundation.
     let started = STARTED.get_or_init(|| unsafe { !physx_create_foundation().is_null() });
     started
         .then_some(())

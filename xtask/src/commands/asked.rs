@@ -1,4 +1,4 @@
-//! A call of cargo on a page, read as cargo reads it.
+//! Parses a call of cargo on a page as cargo does.
 
 use cargo_metadata::Metadata;
 use cargo_metadata::camino::Utf8Path;
@@ -8,19 +8,19 @@ use crate::parts::Part;
 use crate::test_run::{Ignored, Packages, Targets, TestRun};
 use crate::workspaces::{Workspace, folder};
 
-/// What a call of `cargo test`, `bench` or `run` asks for.
+/// The targets, packages and features that a call of `cargo test`, `bench` or `run` selects.
 pub(super) struct Asked<'a> {
     pub(super) workspace: &'a Workspace,
-    /// The same call as a run of ours.
+    /// The same call as a [`TestRun`].
     pub(super) run: TestRun,
     /// The words after `--`.
     pub(super) after: Vec<&'a str>,
-    /// True if it names no target.
+    /// True if the call names no target.
     is_unnamed: bool,
 }
 
 impl<'a> Asked<'a> {
-    /// Reads the words after `cargo`, which is called in a folder.
+    /// Parses the words after `cargo`. `folder` is the working folder of the call.
     pub(super) fn read(
         workspaces: &'a [Workspace],
         folder: &Utf8Path,
@@ -47,7 +47,7 @@ impl<'a> Asked<'a> {
                 "--example" => targets.push(Targets::Example(value()?)),
                 "--lib" => targets.push(Targets::Library),
                 "--doc" => targets.push(Targets::Documentation),
-                // Which profile is built, a step decides.
+                // Each step chooses its own profile.
                 "--open" | "--release" | "--ignore-rust-version" | "--quiet" | "--locked" => {}
                 // The name of a test, or a file for a program.
                 word if !word.starts_with('-') => after.insert(0, word),
@@ -91,7 +91,8 @@ impl<'a> Asked<'a> {
         })
     }
 
-    /// What it runs; an error if it names something that does not exist, or that needs further features.
+    /// The parts that the call runs. An error if it names a package or target that does not exist, or a target without
+    /// the features that it requires.
     pub(super) fn parts(&self) -> Result<Vec<Part>, String> {
         let metadata = &self.workspace.metadata;
         if let Packages::Named(names) = &self.run.packages {
@@ -116,7 +117,7 @@ impl<'a> Asked<'a> {
         Ok(parts)
     }
 
-    /// An error if names of tests, before or after `--`, do not stand in the sources of the packages.
+    /// An error if names of tests, before or after `--`, are not in the sources of the packages.
     pub(super) fn check_names(&self) -> Result<(), String> {
         let has_tests =
             |it: &Targets| matches!(it, Targets::Usual | Targets::Library | Targets::Test(_));
@@ -136,7 +137,7 @@ impl<'a> Asked<'a> {
     }
 }
 
-/// The sources of a package.
+/// The text of all sources of a package.
 fn sources(folder: &Utf8Path) -> Result<String, String> {
     let mut all = String::new();
     for file in files(folder)? {
@@ -147,7 +148,7 @@ fn sources(folder: &Utf8Path) -> Result<String, String> {
     Ok(all)
 }
 
-/// The features with their packages, which are those of the run that have them.
+/// The features as `package/feature`, with all packages of the run that have them.
 fn full_names(
     workspace: &Metadata,
     run: &TestRun,

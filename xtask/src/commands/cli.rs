@@ -1,14 +1,14 @@
-//! The program `clamber`, which no step starts: the tests of its package do.
+//! Finds the tests that run the program `clamber`: no step starts it itself.
 
 use cargo_metadata::Metadata;
 
 use crate::files::read;
 use crate::parts::{Kind, Part, parts};
 
-/// Its package.
+/// The package of the program.
 pub(super) const PACKAGE: &str = "clamber_cli";
 
-/// The tests that start it, and their texts.
+/// The tests that start the program, with their texts.
 pub(super) fn tests(main: &Metadata) -> Result<Vec<(Part, String)>, String> {
     let packages = main.workspace_packages().into_iter();
     let parts = packages
@@ -24,7 +24,7 @@ pub(super) fn tests(main: &Metadata) -> Result<Vec<(Part, String)>, String> {
     Ok(tests)
 }
 
-/// The test that has the first of these words, and all options among them, as texts of its own.
+/// The test whose text has the first of these words, and all options among them, as strings.
 pub(super) fn test<'a>(tests: &'a [(Part, String)], words: &[&str]) -> Option<&'a Part> {
     let is_option = |word: &str| word.starts_with("--");
     let has_all = |text: &str| {

@@ -1,10 +1,11 @@
-//! The list of commands: a table of those that a step runs, which is written from what the pages and the steps say, and
-//! one of those that none runs, whose reasons are written by hand.
+//! Writes and reads the list of commands. Its first table has the commands that a step runs, and is generated from the
+//! pages and the steps. Its second table has the commands that no step runs, with reasons that are written by hand.
 
 use std::collections::BTreeMap;
 
 use cargo_metadata::camino::Utf8PathBuf;
 
+/// The beginning of the page.
 const HEAD: &str = "\
 # Commands
 
@@ -14,6 +15,7 @@ a step that does not exist. `cargo xtask commands` writes this page; only the re
 
 ";
 
+/// The beginning of the first table.
 const RUN: &str = "\
 ## Run
 
@@ -24,6 +26,7 @@ are others, so that it takes less time, and builds are those of tests.
 |---|---|---|
 ";
 
+/// The beginning of the second table, which [`reasons`] reads.
 const NOT_RUN: &str = "\
 ## Not run
 
@@ -31,14 +34,14 @@ const NOT_RUN: &str = "\
 |---|---|---|
 ";
 
-/// A command, the pages that it stands in, and who runs it or why nobody does.
+/// A command, the pages that have it, and the step that runs it or the reason why no step does.
 pub(super) struct Row<'a> {
     pub(super) command: &'a str,
     pub(super) pages: &'a [Utf8PathBuf],
     pub(super) says: String,
 }
 
-/// The page.
+/// The text of the whole page.
 pub(super) fn write(run: &[Row], not_run: &[Row]) -> String {
     let table = |rows: &[Row]| rows.iter().map(line).collect::<String>();
     format!("{HEAD}{RUN}{}\n{NOT_RUN}{}", table(run), table(not_run))

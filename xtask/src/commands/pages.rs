@@ -1,5 +1,5 @@
-//! The commands that stand in the pages: lines of blocks that are marked `sh`, `bash` or `console`, indented lines, and
-//! words in backticks, if these begin with a program that is known here.
+//! Finds the commands of the pages: lines of blocks that are marked `sh`, `bash` or `console`, indented lines, and
+//! words in backticks. The last two must begin with a known program.
 
 use std::collections::BTreeMap;
 
@@ -7,19 +7,19 @@ use cargo_metadata::camino::{Utf8Path, Utf8PathBuf};
 
 use crate::files::{files, read};
 
-/// Programs with which a command may begin.
+/// Programs with which a command may begin. A program that is missing here is not checked.
 const PROGRAMS: [&str; 13] = [
     "apt-get", "blender", "cargo", "clamber", "ffmpeg", "node", "npm", "npx", "pip", "python",
     "python3", "rerun", "rustup",
 ];
 
-/// Beginnings of scripts.
+/// Beginning of the paths of scripts, which are commands as well.
 const SCRIPTS: &str = ".ci/";
 
-/// The list itself, and a page of what was.
+/// Pages without checks: the list itself, and the changelog, which describes earlier versions.
 const LEFT_OUT: [&str; 2] = [super::LIST, "CHANGELOG.md"];
 
-/// Commands, each with the pages that it stands in.
+/// Commands, each with the pages that have it.
 pub(super) type Commands = BTreeMap<String, Vec<Utf8PathBuf>>;
 
 /// The commands of all pages, and the pages that have commands but no link to the list.
@@ -73,7 +73,7 @@ pub(super) fn commands(page: &str) -> Vec<String> {
     commands
 }
 
-/// The lines of a block, without comments. What follows a `cd` of its own line begins with that.
+/// The lines of a block, without comments. A line that is only a `cd` is put in front of each following line.
 fn lines_of(block: &str) -> Vec<String> {
     let joined = block.replace("\\\n", " ");
     let mut folder = String::new();
@@ -90,7 +90,7 @@ fn lines_of(block: &str) -> Vec<String> {
     commands
 }
 
-/// The words in backticks of a paragraph or table that are a command. They may go on in the next line.
+/// The commands among the words in backticks of a paragraph or table. The words may continue on the next line.
 fn in_backticks(paragraph: &str) -> Vec<String> {
     let mut rest = paragraph;
     let mut commands = Vec::new();
@@ -109,12 +109,12 @@ fn in_backticks(paragraph: &str) -> Vec<String> {
     commands
 }
 
-/// One blank between words.
+/// The words of a text, separated by one blank.
 fn words(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// True if this begins with a known program and goes on, after variables that are set.
+/// True if the text, after variables that are set, begins with a known program and has further words.
 fn is_command(text: &str) -> bool {
     let is_set = |word: &&str| {
         let name = word.split_once('=').map(|(name, _)| name);

@@ -1,12 +1,12 @@
-//! What `cargo add` and `cargo install` are told to take.
+//! Checks the paths and features of `cargo add` and `cargo install`.
 
 use cargo_metadata::Metadata;
 use cargo_metadata::camino::Utf8Path;
 
-/// Where the clone is, for a project that lies beside it.
+/// Path of the clone from a project in a folder beside it.
 const CLONE: &str = "../clamber";
 
-/// An error if `--path` leads to no package, or if the package has not the features.
+/// An error if there is no package at `--path`, or if the package lacks one of the features.
 pub(super) fn check(words: &[&str], main: &Metadata) -> Result<(), String> {
     let value = |option| {
         let at = words.iter().position(|word| *word == option)?;

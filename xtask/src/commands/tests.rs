@@ -1,4 +1,4 @@
-//! Commands that work, and the like that do not.
+//! Valid commands, and wrong ones that resemble them.
 
 use std::sync::OnceLock;
 
@@ -17,7 +17,7 @@ fn assert_step(command: &str, step: &str) {
     assert_eq!(runs(command), Ok(Some(step.into())), "{command}");
 }
 
-/// Asserts that no step runs a command, though it may work.
+/// Asserts that no step runs a valid command.
 fn assert_nobody(command: &str) {
     assert_eq!(runs(command), Ok(None), "{command}");
 }

@@ -1,4 +1,4 @@
-//! Who runs a command.
+//! Finds the steps that run a command.
 
 use cargo_metadata::Metadata;
 use cargo_metadata::camino::{Utf8Path, Utf8PathBuf};
@@ -12,21 +12,21 @@ use crate::test_run::Ignored;
 use crate::workspaces::{self, Workspace};
 use crate::{Arguments, Task, ci, nightly};
 
-/// The step that builds the documentation.
+/// Name of the step that builds the documentation.
 const DOCUMENTATION: &str = "documentation";
 
-/// Folders at the root of the repository. A word that begins with one of them is a file that must exist.
+/// Folders at the root of the repository. A word that begins with one of them is a path that must exist.
 const FOLDERS: [&str; 5] = [".ci/", "assets/", "crates/", "examples/", "peers/"];
 
-/// The variable that changes no command.
+/// The variable that may precede a command without changing it.
 const DATA: &str = "CLAMBER_TEST_DATA=";
 
-/// What there is to run, and what runs it.
+/// All workspaces, the runs of all steps, and the tests that start `clamber`.
 pub(super) struct Who {
     root: Utf8PathBuf,
     workspaces: Vec<Workspace>,
     plan: Vec<Planned>,
-    /// The tests that start the program `clamber`, and their texts.
+    /// The tests that start the program `clamber`, with their texts.
     cli_tests: Vec<(Part, String)>,
 }
 
@@ -40,7 +40,7 @@ impl Who {
         })
     }
 
-    /// The steps that run a command of some pages, in words; `None` if there are none. An error if the command cannot
+    /// The steps that run a command of some pages, in words; `None` if no step runs it. An error if the command cannot
     /// work.
     pub(super) fn runs(
         &self,
@@ -60,11 +60,11 @@ impl Who {
             .iter()
             .map(|program| self.one(program, &folder, pages));
         let mut runs = runs.collect::<Result<Vec<_>, _>>()?;
-        // Of several, a step would have to run them together.
+        // No step runs several programs of one command together.
         Ok(runs.pop().filter(|_| runs.is_empty()).flatten())
     }
 
-    /// The same of a single program.
+    /// The steps that run a single program, as in [`Who::runs`].
     fn one(
         &self,
         command: &str,
@@ -96,7 +96,8 @@ impl Who {
         Ok(runs.filter(|_| variables.iter().all(|variable| variable.starts_with(DATA))))
     }
 
-    /// A call of `cargo xtask`: a task that is one of those that run steps, or a step.
+    /// The step for a call of `cargo xtask`: all steps of a task, the steps that `--only` names, or the step with the
+    /// task's name.
     fn task(&self, after: &[&str]) -> Result<Option<String>, String> {
         let words = ["xtask"].iter().chain(after);
         let parsed = Arguments::try_parse_from(words).map_err(|error| error.to_string())?;
@@ -114,7 +115,7 @@ impl Who {
         }
     }
 
-    /// A step.
+    /// The step of that name, with its task.
     fn named(&self, step: &str) -> Option<String> {
         let tasks = [("ci", &ci::STEPS[..]), ("nightly", &nightly::STEPS)];
         let mut having = tasks
@@ -123,7 +124,7 @@ impl Who {
         having.next().map(|(task, _)| told(task, step))
     }
 
-    /// A call of `cargo test`, `bench`, `run` or `doc`.
+    /// The steps for a call of `cargo test`, `bench`, `run` or `doc`.
     fn cargo(
         &self,
         words: &[&str],
@@ -133,7 +134,7 @@ impl Who {
         let mut asked = Asked::read(&self.workspaces, folder, words)?;
         let mut parts = asked.parts()?;
         if parts.is_empty() {
-            // Beside a manifest, the page of a workspace may mean that one.
+            // The page of another workspace may mean that workspace, whose manifest is beside the page.
             let beside = pages
                 .first()
                 .and_then(|page| page.parent())
@@ -156,7 +157,7 @@ impl Who {
         Ok(Some(steps.join(", ")).filter(|steps| !steps.is_empty()))
     }
 
-    /// The first step that runs a part as it is asked for.
+    /// The first step that runs a part with the features, ignored tests and options that the call has.
     fn step(&self, part: &Part, asked: &Asked) -> Option<String> {
         let metadata = &asked.workspace.metadata;
         let is_program = matches!(part.kind, Kind::Start | Kind::Example);
@@ -183,7 +184,7 @@ impl Who {
         found.map(|planned| told(planned.task, planned.step))
     }
 
-    /// A call of the program `clamber`: a test has these words.
+    /// The step for a call of the program `clamber`: it runs a test that has the same words.
     fn cli(&self, after: &[&str]) -> Option<String> {
         let test = cli::test(&self.cli_tests, after)?;
         let metadata = &self.workspaces[0].metadata;

@@ -1,17 +1,17 @@
-//! Marks of tests in source files, and of programs that are not compiled in the documentation.
+//! Finds marks of tests in source files, and of programs in the documentation that are not compiled.
 
-/// What a file says of a test or a program.
+/// A mark of a test or a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Mark {
     /// A function is a test.
     Test,
-    /// A test is run only if ignored ones are asked for, in some builds at least.
+    /// A test is ignored, in some builds at least.
     Ignored,
-    /// A program in the documentation is not even compiled.
+    /// A program in the documentation is not compiled.
     NotCompiled,
 }
 
-/// The marks of a text with the numbers of their lines.
+/// The marks of a text, with their line numbers from 1.
 pub(super) fn marks(text: &str) -> Vec<(usize, Mark)> {
     let mut marks = Vec::new();
     let mut start = 0;
@@ -27,7 +27,7 @@ pub(super) fn marks(text: &str) -> Vec<(usize, Mark)> {
                 marks.push((index + 1, Mark::NotCompiled));
             }
         } else if !code.starts_with("//") {
-            // An attribute may go on in further lines.
+            // An attribute may continue on further lines.
             let opened = code.match_indices("#[").map(|(at, _)| at);
             for at in opened {
                 let from = start + (line.len() - code.len()) + at + 2;
@@ -45,8 +45,7 @@ pub(super) fn marks(text: &str) -> Vec<(usize, Mark)> {
     marks
 }
 
-/// The names of the attributes that an attribute stands for: its own, or, after the condition of `cfg_attr`, the
-/// others.
+/// The names of the attributes that an attribute sets: its own name, or the names after the condition of a `cfg_attr`.
 fn names(attribute: &str) -> Vec<&str> {
     let inside = attribute.trim_start().strip_prefix("cfg_attr");
     match inside.and_then(|inside| inside.trim_start().strip_prefix('(')) {
@@ -55,7 +54,7 @@ fn names(attribute: &str) -> Vec<&str> {
     }
 }
 
-/// A text up to the bracket that closes it, cut at the commas between.
+/// A text up to its closing bracket, split at the commas of the same depth.
 fn parts(text: &str) -> Vec<&str> {
     let (mut depth, mut quoted, mut start) = (0, false, 0);
     let mut parts = Vec::new();
@@ -93,7 +92,7 @@ mod tests {
 
     #[test]
     fn finds_ignored_tests_however_they_are_marked() {
-        // `@` for the beginning of an attribute, or the marks below would be found in this file.
+        // `@` replaces the beginning of an attribute. Otherwise the check would find the marks below in this file.
         let text = "\
 @test]
 @ignore]

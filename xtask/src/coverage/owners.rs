@@ -1,13 +1,13 @@
-//! The targets whose tests stand in a file.
+//! Finds the targets whose tests are in a file.
 
 use cargo_metadata::Package;
 use cargo_metadata::camino::{Utf8Path, Utf8PathBuf};
 
 use crate::parts::{Kind, Part, parts};
 
-/// The parts of a package with a harness that a source file may belong to. A target's own file belongs to it alone.
-/// Other files belong to the target in the nearest folder above them; if there are several, any of them may have it as
-/// a module, so all are given.
+/// The parts with a test harness that a source file may belong to. A target's own file belongs to that target alone.
+/// Any other file belongs to the targets in the nearest folder above it. If there are several, each of them may have
+/// the file as a module, so all are returned.
 pub(super) fn owners(package: &Package, file: &Utf8Path) -> Vec<Part> {
     let nearest = package.targets.iter().map(|target| {
         let folder = target.src_path.parent();
@@ -25,7 +25,7 @@ pub(super) fn owners(package: &Package, file: &Utf8Path) -> Vec<Part> {
     with_harness.map(|(part, _)| part).collect()
 }
 
-/// True if a target is as near to a file as the nearest one.
+/// True if a target is as near to a file as the nearest target.
 fn is_near(source: &Utf8PathBuf, file: &Utf8Path, (is_own, depth): (bool, usize)) -> bool {
     if is_own {
         return source == file;

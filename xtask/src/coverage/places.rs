@@ -1,4 +1,4 @@
-//! Marks in the repository's files, and what is wrong with them.
+//! Finds the marks in the repository's files, and their gaps.
 
 use cargo_metadata::camino::{Utf8Path, Utf8PathBuf};
 
@@ -10,14 +10,14 @@ use crate::parts::Part;
 use crate::test_run::Ignored;
 use crate::workspaces::owner;
 
-/// Pages with programs that are not compiled, and the package and its test that has the same programs.
+/// Pages with programs that are not compiled, each with the package and the test that compiles the same programs.
 const COMPILED: [(&str, &str, &str); 3] = [
     ("README.md", "bevy_clamber", "readme"),
     ("crates/bevy_clamber/README.md", "bevy_clamber", "readme"),
     ("docs/recipes/falling_crates.md", "bevy_clamber", "readme"),
 ];
 
-/// A mark, and where it is.
+/// A mark with its file and line.
 #[derive(Clone)]
 pub(super) struct Place {
     pub(super) file: Utf8PathBuf,
@@ -41,7 +41,7 @@ pub(super) fn places(root: &Utf8Path) -> Result<Vec<Place>, String> {
     Ok(places)
 }
 
-/// What is wrong with a mark.
+/// The sentence about a mark that no step covers; `None` if one does.
 pub(super) fn gap(tree: &Tree, place: &Place) -> Option<String> {
     let Place { file, line, mark } = place;
     match mark {
@@ -84,7 +84,7 @@ fn has_harness(tree: &Tree, file: &Utf8Path) -> bool {
     owner.is_some_and(|(_, package)| !owners(package, &tree.root.join(file)).is_empty())
 }
 
-/// A part that a file may belong to, and whose ignored tests no step runs.
+/// A part that the file may belong to and whose ignored tests no step runs.
 fn not_run(tree: &Tree, file: &Utf8Path) -> Option<Part> {
     let (workspace, package) = owner(&tree.workspaces, &tree.root, file)?;
     let here = tree.plan.iter().filter(|planned| planned.is_in(workspace));

@@ -1,4 +1,4 @@
-//! Targets that no step runs.
+//! Finds the targets that no step runs.
 
 use std::collections::BTreeSet;
 
@@ -7,10 +7,10 @@ use crate::plan::Planned;
 use crate::test_run::{Targets, TestRun};
 use crate::workspaces::Workspace;
 
-/// Examples that open a window: steps build them, and do not run them.
+/// Packages and examples that open a window: steps build these examples and do not run them.
 const WINDOWS: [(&str, &str); 2] = [("clamber_bevy_app", "first"), ("clamber_bevy_app", "fox")];
 
-/// What of a workspace no step runs, in sentences.
+/// The targets of a workspace that no step runs, in sentences.
 pub(super) fn gaps(workspace: &Workspace, plan: &[Planned]) -> Vec<String> {
     let here = plan.iter().filter(|planned| planned.is_in(workspace));
     let runs: Vec<&TestRun> = here.map(|planned| &planned.run).collect();

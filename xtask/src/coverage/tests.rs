@@ -1,4 +1,4 @@
-//! Gaps that are made by hand in the real tree.
+//! Tests with gaps that are added to the real repository's data.
 
 use std::collections::BTreeSet;
 use std::sync::OnceLock;
@@ -10,7 +10,7 @@ use super::{Place, Tree, workspaces};
 
 static REAL: OnceLock<Tree> = OnceLock::new();
 
-/// The gaps that a change adds to those that there are. `cargo xtask ci` says that there are none.
+/// The gaps that a change adds to the existing ones. `cargo xtask ci` fails if there are existing ones.
 fn gaps_after(change: impl FnOnce(&mut Tree)) -> Vec<String> {
     let real = || Tree::read(&workspaces::main().unwrap()).unwrap();
     let mut tree = REAL.get_or_init(real).clone();
@@ -20,7 +20,7 @@ fn gaps_after(change: impl FnOnce(&mut Tree)) -> Vec<String> {
     after.difference(&before).cloned().collect()
 }
 
-/// Asserts that there is one gap, and that its sentence has these words.
+/// Asserts that there is exactly one gap, and that its sentence has these words.
 fn assert_gap(gaps: &[String], words: &[&str]) {
     assert_eq!(gaps.len(), 1, "{gaps:#?}");
     for word in words {
@@ -28,7 +28,7 @@ fn assert_gap(gaps: &[String], words: &[&str]) {
     }
 }
 
-/// Adds a copy of a package's first test target, by another name.
+/// Adds a copy of a package's first test target, renamed to `nobody`.
 fn add_test(tree: &mut Tree, package: &str, change: impl FnOnce(&mut Target)) {
     let packages = tree.workspaces[0].metadata.packages.iter_mut();
     let mut packages = packages.filter(|known| known.name == package);
@@ -64,7 +64,7 @@ fn tells_of_a_test_that_nothing_runs() {
 
 #[test]
 fn tells_of_features_that_nothing_turns_on() {
-    // On in the libraries that Bevy's tests are built with, but not in the climber's own tests.
+    // The feature is on in the libraries that Bevy's tests are built with, but not in the climber's own tests.
     let gaps = gaps_after(|tree| add_test(tree, "clamber_climber", require("bevy_reflect")));
     let words = [
         "the test `nobody` of clamber_climber",
@@ -146,7 +146,7 @@ fn tells_of_a_package_whose_ignored_tests_are_no_longer_run() {
 
 #[test]
 fn a_file_has_the_tests_of_the_target_in_whose_folder_it_is() {
-    // Nightly runs the ignored tests of the package `clamber`, but none that require `deterministic`.
+    // Nightly runs the ignored tests of the package `clamber`, except those that require `deterministic`.
     let gaps = gaps_after(|tree| add_mark(tree, "tests/modes/dash.rs", Mark::Ignored));
     assert_eq!(gaps, [""; 0]);
     let gaps = gaps_after(|tree| add_mark(tree, "tests/golden_battle/more.rs", Mark::Ignored));

@@ -1,25 +1,26 @@
-//! Boxes in layers: their order within a layer, and their places.
+//! Arranges boxes in layers: their order within a layer, and their positions.
 //!
-//! An arrow that passes a layer bends there, and the bend takes a place among the boxes, without a width. Within a
-//! layer, boxes and bends are sorted by the mean rank of their neighbours in the layer below, then in the one above,
-//! again and again, and the order with the fewest crossings is kept (Sugiyama, Tagawa, Toda 1981, "Methods for Visual
-//! Understanding of Hierarchical System Structures"). Then each is drawn to the mean place of its neighbours. All of it
-//! is in whole numbers, so the result is the same everywhere.
+//! An arrow that passes a layer bends there, and the bend takes a position among the boxes, without a width. Within a
+//! layer, boxes and bends are sorted by the mean rank of their neighbours in the layer below, then in the layer above,
+//! repeatedly. The order with the fewest crossings is kept (Sugiyama, Tagawa, Toda 1981, "Methods for Visual
+//! Understanding of Hierarchical System Structures"). Then each box moves towards the mean position of its neighbours.
+//! All numbers are integers, so the result is the same on every machine.
 
-/// Sweeps through all layers that look for a better order. The order of a few dozen crates no longer changes after
-/// some ten.
+/// Number of sweeps through all layers that sort them. The order of a few dozen crates no longer changes after some ten
+/// sweeps.
 const SWEEPS: usize = 24;
 
-/// Sweeps through all layers that draw boxes to their neighbours.
+/// Number of sweeps through all layers that move boxes towards their neighbours.
 const PULLS: usize = 40;
 
-/// Distance between neighbours in a layer.
+/// Gap between neighbours in a layer, pixels.
 const GAP: i32 = 28;
 
-/// Fractions of a rank that are told apart: a multiple of all counts of neighbours up to ten.
+/// Resolution of mean ranks, parts of a rank: a common multiple of 1 to 10, so that means of up to ten neighbours are
+/// exact.
 const FINE: usize = 2520;
 
-/// A box or a bend.
+/// A box, or a bend of an arrow.
 #[derive(Clone, Copy, Debug)]
 struct Slot {
     layer: usize,
@@ -30,16 +31,16 @@ struct Slot {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Layers {
     slots: Vec<Slot>,
-    /// The slots of each layer, from left to right.
+    /// Slots of each layer, from left to right.
     rows: Vec<Vec<usize>>,
-    /// From a slot to one in the layer below.
+    /// Legs of arrows, each from a slot to a slot in the layer below.
     legs: Vec<(usize, usize)>,
 }
 
-/// Where everything is.
+/// The arrangement of all slots, in pixels.
 #[derive(Clone, Debug)]
 pub(crate) struct Arranged {
-    /// Width of the whole.
+    /// Width of the whole arrangement.
     pub(crate) width: i32,
     /// Number of layers.
     pub(crate) layers: i32,
@@ -47,7 +48,7 @@ pub(crate) struct Arranged {
     pub(crate) places: Vec<(i32, i32)>,
 }
 
-/// The layer below or the layer above.
+/// The layer below or the layer above a slot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Side {
     Below,
@@ -55,7 +56,7 @@ enum Side {
 }
 
 impl Layers {
-    /// Adds a box, or with a width of 0 a bend, at the right end of a layer; returns its slot.
+    /// Adds a box, or a bend if `width` is 0, at the right end of a layer; returns its slot.
     pub(crate) fn add(&mut self, layer: usize, width: i32) -> usize {
         if self.rows.len() <= layer {
             self.rows.resize_with(layer + 1, Vec::new);
@@ -66,12 +67,12 @@ impl Layers {
         slot
     }
 
-    /// Adds a leg of an arrow, from a slot to one in the layer below.
+    /// Adds a leg of an arrow, from a slot to a slot in the layer below.
     pub(crate) fn connect(&mut self, from: usize, to: usize) {
         self.legs.push((from, to));
     }
 
-    /// Sorts the layers and places everything.
+    /// Sorts the layers and positions all slots.
     pub(crate) fn arrange(mut self) -> Arranged {
         self.sort();
         let middles = self.middles();
@@ -90,7 +91,7 @@ impl Layers {
         }
     }
 
-    /// Sorts each layer, so that few legs cross.
+    /// Sorts each layer for few crossings of legs.
     fn sort(&mut self) {
         let mut rows = self.rows.clone();
         let mut fewest = self.crossings(&rows);
@@ -114,7 +115,8 @@ impl Layers {
         }
     }
 
-    /// The side to which a sweep looks, and the order in which it takes the layers: upwards, then downwards.
+    /// The side whose neighbours a sweep uses, and the order of its layers: upwards in even sweeps, downwards in odd
+    /// ones.
     fn sweep(&self, sweep: usize) -> (Side, Vec<usize>) {
         let layers = 0..self.rows.len();
         if sweep.is_multiple_of(2) {
@@ -124,7 +126,7 @@ impl Layers {
         }
     }
 
-    /// The slots that a slot has legs to, in the layer on one side.
+    /// The slots in the layer on one side that are connected with a slot.
     fn neighbours(&self, slot: usize, side: Side) -> Vec<usize> {
         let legs = self.legs.iter().filter_map(|(from, to)| match side {
             Side::Below => (*from == slot).then_some(*to),
@@ -133,7 +135,7 @@ impl Layers {
         legs.collect()
     }
 
-    /// For each slot, its number in its layer.
+    /// The index of each slot in its layer.
     fn ranks(&self, rows: &[Vec<usize>]) -> Vec<usize> {
         let mut ranks = vec![0; self.slots.len()];
         for row in rows {
@@ -144,7 +146,7 @@ impl Layers {
         ranks
     }
 
-    /// How many pairs of legs cross.
+    /// The number of pairs of legs that cross.
     fn crossings(&self, rows: &[Vec<usize>]) -> usize {
         let ranks = self.ranks(rows);
         let mut crossings = 0;
@@ -159,7 +161,7 @@ impl Layers {
         crossings
     }
 
-    /// For each slot, the place of its middle.
+    /// The position of each slot's middle, pixels.
     fn middles(&self) -> Vec<i32> {
         let mut middles = vec![0; self.slots.len()];
         for row in &self.rows {
@@ -179,7 +181,7 @@ impl Layers {
         middles
     }
 
-    /// The mean place of a slot's neighbours on both sides.
+    /// The mean position of a slot's neighbours on both sides, pixels.
     fn pull(&self, slot: usize, middles: &[i32]) -> i32 {
         let [above, below] = [Side::Above, Side::Below].map(|side| self.neighbours(slot, side));
         let near = above.iter().chain(&below);
@@ -190,8 +192,8 @@ impl Layers {
         }
     }
 
-    /// Places of a row, near the wanted ones and far enough apart: the mean of a row that was pushed to the right and
-    /// of one that was pushed to the left.
+    /// Positions of a row, near the wanted ones and far enough apart: the mean of a row that is pushed to the right and
+    /// a row that is pushed to the left.
     fn spread(&self, row: &[usize], wanted: &[i32]) -> Vec<i32> {
         let (mut rightward, mut leftward) = (wanted.to_vec(), wanted.to_vec());
         for k in 1..row.len() {
@@ -206,7 +208,7 @@ impl Layers {
         both.map(|(a, b)| (a + b).div_euclid(2)).collect()
     }
 
-    /// The least distance between the middles of neighbours in a layer.
+    /// Least distance between the middles of neighbours in a layer, pixels.
     fn apart(&self, left: usize, right: usize) -> i32 {
         (self.slots[left].width + self.slots[right].width) / 2 + GAP
     }

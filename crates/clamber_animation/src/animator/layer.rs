@@ -7,14 +7,14 @@ use crate::{AnimationError, ClipId, MaskId};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum LayerKind {
-    /// Replaces the pose below, by its weight.
+    /// Blends from the pose below to the layer's pose by the layer's weight.
     Override,
     /// Adds to the pose below: each joint's difference from the first frame of the layer's clip, in the joint's own
     /// space.
     Additive,
 }
 
-/// One clip as an [`Animator`](crate::Animator) plays it.
+/// One clip with its playback state, as an [`Animator`](crate::Animator) plays it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Layer {
@@ -22,15 +22,15 @@ pub struct Layer {
     pub clip: ClipId,
     /// Seconds since the clip's first key frame.
     pub time: f64,
-    /// Seconds of the clip per second; negative plays backwards, 0 holds.
+    /// Seconds of the clip per second; negative plays backwards, 0 holds the pose.
     pub speed: f64,
-    /// 0 (not there) to 1.
+    /// Weight of the layer, from 0 (no effect) to 1.
     pub weight: f64,
-    /// Whether the clip repeats, or holds its end.
+    /// Whether the clip repeats or holds its end.
     pub playback: Playback,
-    /// Whether it replaces or adds.
+    /// Whether the layer replaces the pose below or adds to it.
     pub kind: LayerKind,
-    /// The joints that it moves; `None` for all.
+    /// The joints that the layer moves; `None` for all.
     pub mask: Option<MaskId>,
 }
 

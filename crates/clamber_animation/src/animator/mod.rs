@@ -14,8 +14,9 @@ use crate::{AnimationError, AnimationSet, ClipId};
 
 /// Plays clips on one creature: layers, transitions, time.
 ///
-/// It is a plain value without references. The clips stand in an [`AnimationSet`], which all calls get; the pose is a
-/// function of the two. So a clone is a snapshot, and two animators that are equal go on equally.
+/// An animator is a plain value without references. The clips are in an [`AnimationSet`], which every call takes; the
+/// pose is a function of the animator and its set. So a clone is a snapshot, and two equal animators play the same
+/// poses.
 ///
 /// ```
 /// use clamber_animation::{AnimationSet, Animator, Layer, PoseBuffers};
@@ -46,25 +47,25 @@ use crate::{AnimationError, AnimationSet, ClipId};
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Animator {
     layers: Vec<Layer>,
-    /// Seconds of the layers per second.
+    /// Seconds of the layers' time per second.
     rate: f64,
-    /// Differences from the pose before the last change. They decay.
+    /// Offsets from the present layers' pose to the pose before the last change. They decay.
     offsets: Offsets,
 }
 
 impl Default for Animator {
-    /// Plays nothing.
+    /// An animator without layers: it plays the rest pose.
     fn default() -> Self {
         Self::new(Vec::new())
     }
 }
 
-/// Seconds between the two poses from which velocities are taken. Poses are f32: over less time their rounding would
-/// show, over more time the change of velocity would.
+/// Seconds between the two poses whose difference gives velocities. Poses are f32: a shorter step would show their
+/// rounding, a longer one the change of velocity within it.
 const STEP: f64 = 1.0 / 4096.0;
 
 impl Animator {
-    /// Plays layers from the lowest to the topmost one.
+    /// An animator that plays these layers, the lowest first.
     pub fn new(layers: Vec<Layer>) -> Self {
         Self {
             layers,
@@ -78,29 +79,29 @@ impl Animator {
         &self.layers
     }
 
-    /// The layers, to drive weights and speeds from frame to frame. Changes made here show at once, without a
-    /// transition; for one, use [`Animator::change`].
+    /// The layers, to set weights and speeds from frame to frame. Changes made here show at once; for a transition, use
+    /// [`Animator::change`].
     pub fn layers_mut(&mut self) -> &mut [Layer] {
         &mut self.layers
     }
 
-    /// Seconds of the layers per second; 1 unless it was set.
+    /// Seconds of the layers' time per second; the default is 1.
     pub fn rate(&self) -> f64 {
         self.rate
     }
 
-    /// Plays all layers at another rate; negative plays backwards.
+    /// Plays all layers at another rate; a negative rate plays backwards.
     ///
     /// # Errors
-    /// [`AnimationError::OutOfRange`] if it is not finite.
+    /// [`AnimationError::OutOfRange`] if the rate is not finite.
     pub fn set_rate(&mut self, rate: f64) -> Result<(), AnimationError> {
         finite("the rate", rate)?;
         self.rate = rate;
         Ok(())
     }
 
-    /// Plays clips that were made for one size on a creature that is `scale` times as large: at the rate `1 /
-    /// sqrt(scale)`, so that things fall, swing and stride as they do under the same gravity (Froude's law; Alexander
+    /// Sets the rate for clips that were made for one size, on a creature that is `scale` times as large: to `1 /
+    /// sqrt(scale)`. Falls, swings and strides then keep the timing that gravity gives them (Froude's law; Alexander
     /// 1989, "Optimization and gaits in the locomotion of vertebrates").
     ///
     /// # Errors
@@ -118,13 +119,13 @@ impl Animator {
         Ok(())
     }
 
-    /// Changes layers in any way. Within `fade` seconds, the pose becomes that of the new layers, by inertialisation:
+    /// Changes the layers in any way. Within `fade` seconds, the pose becomes the new layers' pose, by inertialisation:
     /// it starts with the velocity that it had, and only the new layers are sampled. A fade of 0 shows the change at
-    /// once. Changes may come during other changes, as often as you like. Allocates.
+    /// once. A change may come at any time, also during another change. Allocates.
     ///
     /// # Errors
-    /// [`AnimationError::OutOfRange`] if the fade is negative or not finite, and the errors of
-    /// [`Animator::pose_into`] for the layers before and after the change.
+    /// [`AnimationError::OutOfRange`] if the fade is negative or not finite, and the errors of [`Animator::pose_into`]
+    /// for the layers before and after the change.
     pub fn change(
         &mut self,
         set: &AnimationSet,
@@ -150,7 +151,7 @@ impl Animator {
     /// Plays a clip on a layer from the clip's start; see [`Animator::change`].
     ///
     /// # Errors
-    /// [`AnimationError::NoLayer`] if the layer does not exist, and those of [`Animator::change`].
+    /// [`AnimationError::NoLayer`] if the layer does not exist, and the errors of [`Animator::change`].
     pub fn play(
         &mut self,
         set: &AnimationSet,
@@ -169,18 +170,19 @@ impl Animator {
         })
     }
 
-    /// True while the pose passes from one animation to another.
+    /// True during a transition.
     pub fn is_fading(&self) -> bool {
         !self.offsets.is_empty()
     }
 
-    /// A bound of what the current fade adds to any joint until it is over: in the units of translations, in radians, or to
-    /// a scale. It is coarse, and only to find restored animators that are broken: infinite if one of its numbers is none.
+    /// An upper bound for the offsets that the current fade adds to any joint until it ends: in the units of
+    /// translations, in radians, or as a change of scale. Infinite if one of the fade's numbers is not finite. The
+    /// bound is coarse, and serves to detect restored animators that are broken.
     pub fn fade_bound(&self) -> f64 {
         self.offsets.bound()
     }
 
-    /// The pose now, and a moment later if it goes on as it does.
+    /// The pose now, and the pose [`STEP`] seconds later at the present speeds.
     fn course(&self, set: &AnimationSet) -> Result<[Pose; 2], AnimationError> {
         let mut buffers = PoseBuffers::default();
         let mut at = |shift: f64| -> Result<Pose, AnimationError> {
@@ -193,7 +195,7 @@ impl Animator {
 }
 
 impl Layer {
-    /// A layer that plays a clip in a loop, over all that is below it.
+    /// A layer that plays a clip in a loop and fully replaces the layers below.
     pub fn new(clip: ClipId) -> Self {
         Self {
             clip,

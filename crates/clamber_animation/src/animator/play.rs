@@ -5,10 +5,10 @@ use super::{Animator, Layer, LayerKind};
 use crate::error::within as check_within;
 use crate::{AnimationError, AnimationSet, ClipId, RootDelta};
 
-/// What an animator has come past.
+/// A marker or an end that an animator has passed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AnimationEvent {
-    /// A marker of a clip.
+    /// A marker of a clip was passed.
     Marker {
         /// Index of the layer.
         layer: usize,
@@ -17,7 +17,7 @@ pub enum AnimationEvent {
         /// Index of the marker in [`Clip::markers`].
         marker: usize,
     },
-    /// A clip that is played once has come to its end, or, backwards, to its start.
+    /// A clip that is played once has reached its end, or its start if it plays backwards.
     Ended {
         /// Index of the layer.
         layer: usize,
@@ -26,17 +26,19 @@ pub enum AnimationEvent {
     },
 }
 
-/// The most loops of a clip that one call plays for the motion of the root.
+/// The most loops of a clip that one call of [`Animator::advance`] counts for root motion. It limits the work for a
+/// very long `dt`.
 const MOST_LOOPS: f64 = 1000.0;
 
 impl Animator {
-    /// Lets `dt` seconds pass. Appends to `events` what was passed: layer by layer, in the order of time. Of a clip
-    /// that is shorter than `dt`, each marker is told once. Returns the motion of the root, mixed from the layers that
-    /// override; zero unless the set has [root motion](AnimationSet::with_root_motion).
+    /// Advances all layers by `dt` seconds. Appends to `events` the markers and ends that were passed: layer by layer,
+    /// and within a layer in order of time. If `dt` spans several loops of a clip, each of its markers is reported
+    /// once. Returns the root motion, mixed from the layers that override; it is zero unless the set has [root
+    /// motion](AnimationSet::with_root_motion).
     ///
     /// # Errors
-    /// [`AnimationError::OutOfRange`] if `dt` is negative or not finite, and those of [`Animator::pose_into`]. Nothing is
-    /// changed then, and no event is added.
+    /// [`AnimationError::OutOfRange`] if `dt` is negative or not finite, and the errors of [`Animator::pose_into`]. The
+    /// animator and `events` are then unchanged.
     pub fn advance(
         &mut self,
         set: &AnimationSet,
@@ -67,7 +69,7 @@ impl Animator {
                 let moved = root.between(clip, [from, to], loops)?;
                 motion = motion.mix(&moved, share * layer.weight);
             }
-            // A layer that is held keeps the time that it was given.
+            // A layer that holds (speed 0) keeps its time as it was given, also outside the clip.
             if way != 0.0 {
                 layer.time = to;
             }
@@ -77,7 +79,7 @@ impl Animator {
     }
 }
 
-/// Appends the markers between two times, and the end.
+/// Appends the markers between two times of a layer, and an event for the clip's end if it was reached.
 fn tell(
     events: &mut Vec<AnimationEvent>,
     index: usize,
@@ -105,7 +107,8 @@ fn tell(
     };
     let duration = clip.duration();
     let ended = layer.playback == Playback::Clamp && from != to && (to <= 0.0 || to >= duration);
-    // A marker is passed when the time leaves it, so that one at a clip's start is told; at an end it is told there.
+    // A marker is passed when the time moves on from it, so a marker at the clip's start is reported. A clip that ends
+    // here reports the markers at its end as well.
     match (loops != 0.0, way > 0.0) {
         (false, true) => times(&|t| from <= t && (t < to || ended && t <= to), &mut marker),
         (false, false) => times(&|t| t <= from && (t > to || ended && t >= to), &mut marker),

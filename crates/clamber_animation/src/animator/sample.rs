@@ -6,7 +6,8 @@ use super::{Animator, Layer, LayerKind};
 use crate::pose::{rotation_of, store_rotation};
 use crate::{AnimationError, AnimationSet, JointMask};
 
-/// Memory for [`Animator::pose_into`], kept from frame to frame so that it does not allocate. Holds nothing else.
+/// Scratch memory for [`Animator::pose_into`], kept from frame to frame so that the call does not allocate. It carries
+/// no state.
 #[derive(Clone, Debug, Default)]
 pub struct PoseBuffers {
     sampled: Pose,
@@ -16,9 +17,9 @@ impl Animator {
     /// The pose at the animator's time. Allocates nothing once the pose and the buffers have the skeleton's size.
     ///
     /// # Errors
-    /// [`AnimationError::NoClip`] or [`AnimationError::NoMask`] if a layer names what the set does not have,
-    /// [`AnimationError::OutOfRange`] if a layer's number is not finite or its weight is not from 0 to 1. The pose's
-    /// content is then undefined.
+    /// [`AnimationError::NoClip`] or [`AnimationError::NoMask`] if a layer names a clip or mask that the set does not
+    /// have, [`AnimationError::OutOfRange`] if a layer's number is not finite or its weight is not from 0 to 1. The
+    /// pose's content is then undefined.
     pub fn pose_into(
         &self,
         set: &AnimationSet,
@@ -28,7 +29,7 @@ impl Animator {
         self.sample(set, 0.0, pose, buffers)
     }
 
-    /// The pose `shift` seconds from now, if everything goes on as it does.
+    /// The pose `shift` seconds from now, if rate, speeds and layers stay as they are.
     pub(super) fn sample(
         &self,
         set: &AnimationSet,
@@ -74,7 +75,7 @@ impl Animator {
     }
 }
 
-/// The pose of a layer's clip; joints that it does not move are at rest.
+/// The pose of a layer's clip; joints that the clip does not move are at rest.
 fn sample_clip(
     set: &AnimationSet,
     layer: &Layer,
@@ -85,7 +86,7 @@ fn sample_clip(
     sample_over(set, layer, time, pose)
 }
 
-/// The same, of the joints that the clip moves; others are left as they are.
+/// As [`sample_clip`], but writes only the joints that the clip moves; the others keep their transforms.
 fn sample_moved(
     set: &AnimationSet,
     layer: &Layer,
@@ -100,7 +101,7 @@ fn sample_moved(
     sample_over(set, layer, time, pose)
 }
 
-/// Writes what a layer's clip moves into a pose at rest.
+/// Writes the joints that a layer's clip moves into a pose in which they are at rest.
 fn sample_over(
     set: &AnimationSet,
     layer: &Layer,
@@ -108,7 +109,7 @@ fn sample_over(
     pose: &mut Pose,
 ) -> Result<(), AnimationError> {
     let clip = set.clip(layer.clip)?;
-    // Before its start, a clip that is played once is at its start.
+    // `Clamp` holds the clip's start at times before it.
     clip.sample_into(time, layer.playback, pose)?;
     if let Some(root) = set.root() {
         root.remove(clip, pose)?;
@@ -138,7 +139,7 @@ fn share_of(mask: Option<&JointMask>, layer: &Layer, joint: usize) -> f64 {
     mask.map_or(1.0, |mask| f64::from(mask.shares()[joint])) * layer.weight
 }
 
-/// A transform between two: vectors linearly, rotations along the shorter arc.
+/// A transform between two others: translation and scale linearly, rotation along the shorter arc.
 fn mix(from: &Transform, to: &Transform, share: f64) -> Transform {
     let lerp = |a: glam::Vec3, b: glam::Vec3| (a.as_dvec3().lerp(b.as_dvec3(), share)).as_vec3();
     let mut mixed = Transform {
@@ -150,7 +151,7 @@ fn mix(from: &Transform, to: &Transform, share: f64) -> Transform {
     mixed
 }
 
-/// Adds a share of the difference between two transforms to a third.
+/// Adds a share of the difference from `first` to `sampled` to a joint's transform.
 fn add(joint: &mut Transform, first: &Transform, sampled: &Transform, share: f64) {
     let way = sampled.translation.as_dvec3() - first.translation.as_dvec3();
     joint.translation = (joint.translation.as_dvec3() + way * share).as_vec3();
@@ -161,7 +162,7 @@ fn add(joint: &mut Transform, first: &Transform, sampled: &Transform, share: f64
     joint.scale = (joint.scale.as_dvec3() + grown * share).as_vec3();
 }
 
-/// How a clip goes on, with its loop counted: the time within the clip, and how many ends it passed.
+/// Maps a layer's time into its clip: returns the time within the clip, and how many whole loops it is past.
 pub(super) fn within(time: f64, duration: f64, playback: Playback) -> (f64, f64) {
     match playback {
         Playback::Loop if duration > 0.0 => (time.rem_euclid(duration), (time / duration).floor()),

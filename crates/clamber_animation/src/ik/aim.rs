@@ -6,17 +6,17 @@ use super::{IkError, frame_turn};
 use crate::pose::{rotation_of, store_rotation};
 use crate::space::{model_from_parent, uniform_inverse};
 
-/// Turns a joint so that two axes of its own space point where they should in model space: the first exactly, the
-/// second as nearly as the first allows. A palm, for example, lies on skin with its normal first and its fingers
-/// second.
+/// Turns a joint so that two axes of its own space point in given directions of model space: the first axis exactly,
+/// the second as nearly as the first allows. For example, a palm lies on skin with its normal as the first axis and its
+/// fingers as the second.
 ///
-/// `axes` are in the joint's own space, `directions` in model space; each may have any length but zero, and the two of
-/// a pair must not be parallel.
+/// `axes` are in the joint's own space, `directions` in model space. Each may have any length but zero, and the two
+/// vectors of a pair must not be parallel.
 ///
 /// # Errors
-/// [`IkError::NotFinite`] for the vectors or the pose, [`IkError::BadSetUp`] if two of a pair are parallel,
-/// [`IkError::NoJoint`], [`IkError::NotInvertible`], and [`IkError::Sheared`] if the joint's parents scale unevenly. The
-/// pose is unchanged then.
+/// [`IkError::NotFinite`] for the vectors or the pose, [`IkError::BadSetUp`] if the two vectors of a pair are parallel
+/// or one is zero, [`IkError::NoJoint`], [`IkError::NotInvertible`], and [`IkError::Sheared`] if the joint's parents
+/// scale unevenly. The pose is then unchanged.
 pub fn aim(
     skeleton: &Skeleton,
     pose: &mut Pose,
@@ -34,7 +34,7 @@ pub fn aim(
     }
     let inverse = uniform_inverse(&parent, joint)?;
     let transform = &mut pose.transforms[joint.index()];
-    // A mirrored joint's axes point the other way before it is turned.
+    // A mirrored joint flips its axes before its rotation applies.
     let signs = transform.scale.as_dvec3().signum();
     let from = frame(axes.map(|axis| axis * signs));
     let to = frame(directions.map(|direction| inverse * direction));
@@ -45,12 +45,12 @@ pub fn aim(
     Ok(())
 }
 
-/// Turns a joint so that the axes of its own space point in model space as a rotation has them. Parents that mirror or
-/// scale uniformly change lengths and sides, but not that.
+/// Turns a joint so that the Y and Z axes of its own space have the same directions in model space as `rotation` gives
+/// them. The parents may mirror or scale uniformly; if they mirror, the X axis points the opposite way.
 ///
 /// # Errors
 /// [`IkError::NotFinite`] for the rotation or the pose, [`IkError::NoJoint`], [`IkError::NotInvertible`], and
-/// [`IkError::Sheared`] if the joint's parents scale unevenly. The pose is unchanged then.
+/// [`IkError::Sheared`] if the joint's parents scale unevenly. The pose is then unchanged.
 pub fn orient(
     skeleton: &Skeleton,
     pose: &mut Pose,
@@ -58,7 +58,7 @@ pub fn orient(
     rotation: DQuat,
 ) -> Result<(), IkError> {
     check_pose(skeleton, pose, [joint])?;
-    // Parents that only rotate need no matrices.
+    // Under parents that only rotate, quaternions suffice.
     let mut parents = DQuat::IDENTITY;
     let mut next = skeleton.joints()[joint.index()].parent;
     let mut only_rotate = pose.transforms[joint.index()].scale == Vec3::ONE;
@@ -86,7 +86,8 @@ pub fn orient(
     Ok(())
 }
 
-/// Two unit vectors across each other, the first along the first.
+/// Two perpendicular unit vectors: the first along `first`, the second in the plane of both. `None` if the two are
+/// parallel or one is zero.
 fn frame([first, second]: [DVec3; 2]) -> Option<[DVec3; 2]> {
     let first = first.try_normalize()?;
     let second = second.try_normalize()?;

@@ -1,49 +1,49 @@
-//! Two bones in a plane, by similar triangles instead of angles.
+//! Two bones in a plane, solved by similar triangles instead of angles.
 //!
-//! With the shoulder at the origin, the target at distance `d` along `u`, and bones of lengths `a` and `b`, the elbow
-//! is at `along = (a² - b² + d²) / 2d` on the line to the target and `across = sqrt((a - along)(a + along))` beside it,
-//! on the side of the pole. No inverse trigonometry is needed, and the product keeps digits that `a² - along²` loses
-//! near a straight arm. (Lander 1998, "Oh My God, I Inverted Kine!", Game Developer, has the same triangle with
-//! angles.)
+//! The shoulder is at the origin, the target at distance `d` along `u`, and the bones have the lengths `a` and `b`. The
+//! elbow is then at `along = (a² - b² + d²) / 2d` on the line to the target and `across = sqrt((a - along)(a + along))`
+//! beside it, on the side of the pole. No inverse trigonometry is needed, and the product keeps digits that `a² -
+//! along²` loses near a straight arm. (Lander 1998, "Oh My God, I Inverted Kine!", Game Developer, has the same
+//! triangle with angles.)
 
 use glam::DVec3;
 
 /// Whether a limb reached its target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Reach {
-    /// Its end is at the target.
+    /// The limb's end is at the target.
     Reached,
-    /// The target is too far, or in the soft part of the limb's reach. The distance that is missing, metres.
+    /// The target is too far, or in the soft part of the limb's reach. The limb's end is this far short of it, metres.
     Short(f64),
-    /// The target is nearer than the limb can fold. By this distance, metres.
+    /// The target is nearer than the limb can fold, by this distance, metres.
     TooNear(f64),
 }
 
-/// Two bones that were bent towards a target.
+/// The result of [`bend`]: two bones bent towards a target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bend {
     /// Elbow or knee, relative to the shoulder or hip.
     pub elbow: DVec3,
     /// Hand or foot, relative to the shoulder or hip.
     pub end: DVec3,
-    /// Whether that is the target.
+    /// Whether `end` is at the target.
     pub reach: Reach,
 }
 
-/// Bends two bones so that their end is at `target`, relative to where they begin.
+/// Bends two bones so that their end is at `target`. All vectors are relative to the start of the first bone.
 ///
-/// `lengths` are those of the bones, not both 0. `pole` is the side to which the elbow goes: of any length, and only
-/// its part across the line to the target counts. Where it has none, any side is taken. `soft` is the share of the full
-/// length from which a far target is approached softly, more than 0 to 1, where 1 does not; see [`soft_distance`].
-/// `least` is the smallest distance to which the limb folds.
+/// `lengths` are the bones' lengths, not both 0. `pole` is the side to which the elbow goes: a vector of any length.
+/// Only its part perpendicular to the line to the target counts. If that part is 0, the side is arbitrary. `soft` is
+/// the share of the full length from which the limb approaches a far target softly, more than 0 to 1, where 1 is not
+/// soft; see [`soft_distance`]. `least` is the smallest distance to which the limb folds.
 ///
-/// All arguments must be finite. The end is at the target to 1e-6 of the bones' length, or `reach` says what is
-/// missing.
+/// All arguments must be finite. The end is at the target to 1e-6 of the bones' length, or `reach` says by how much it
+/// misses.
 pub fn bend(lengths: [f64; 2], target: DVec3, pole: DVec3, soft: f64, least: f64) -> Bend {
     let [first, second] = lengths;
     let full = first + second;
     let wanted = target.length();
-    // A target on the shoulder has no direction: the limb folds across the pole.
+    // A target on the shoulder gives no direction: the limb folds in an arbitrary direction perpendicular to the pole.
     let direction = if wanted > 1e-12 * full {
         target / wanted
     } else {
@@ -75,11 +75,12 @@ pub fn bend(lengths: [f64; 2], target: DVec3, pole: DVec3, soft: f64, least: f64
     }
 }
 
-/// The distance to which a limb of length `full` reaches for a target at `distance`: the distance itself up to
-/// `soft * full`, then ever less of it, never more than `full`.
+/// The distance to which a limb of length `full` reaches for a target at `distance`: the distance itself up to `soft *
+/// full`, then less and less of it, never more than `full`.
 ///
-/// An elbow stretches infinitely fast when a target leaves its reach; with this it does not. The map and its slope are
-/// continuous, its slope is at most 1, and a target at exactly the full length is missed by `(1 - soft) / e` of it.
+/// Without softness, the elbow's angular velocity becomes infinite when a target leaves the limb's reach. The map and
+/// its slope are continuous, the slope is at most 1, and the limb misses a target at exactly the full length by `(1 -
+/// soft) / e` of that length.
 pub fn soft_distance(distance: f64, full: f64, soft: f64) -> f64 {
     let start = soft * full;
     let room = full - start;

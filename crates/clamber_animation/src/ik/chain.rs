@@ -7,25 +7,26 @@ use super::{IkError, arc};
 use crate::pose::{rotation_of, store_rotation};
 use crate::space::{invertible, model_from_joint, model_from_parent, uniform_scale};
 
-/// The most passes over a chain, and how near its end must come, as a share of its length.
+/// The most passes of FABRIK over a chain. It limits the work where the chain converges slowly or not at all.
 const MOST_PASSES: usize = 32;
+/// How near the chain's end must come to the target, as a share of the chain's length.
 const TOLERANCE: f64 = 1e-4;
 
-/// A neck, a tail or a tentacle: any number of joints whose end is brought to a target.
+/// A neck, a tail or a tentacle: a chain of any number of joints, whose end is brought to a target.
 ///
 /// FABRIK (Aristidou and Lasenby 2011, "FABRIK: A fast, iterative solver for the Inverse Kinematics problem") moves the
-/// joints of the pose to and fro along their bones, so the chain stays near the pose that it had. For two bones
-/// [`TwoBone`](super::TwoBone) is exact.
+/// joints of the present pose forwards and backwards along their bones, so the chain stays near that pose. For two
+/// bones [`TwoBone`](super::TwoBone) is exact.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chain {
     joints: Vec<JointId>,
 }
 
 impl Chain {
-    /// The joints from `first` to `end`, which is below it, with all joints between them.
+    /// The chain from `first` down to its descendant `end`, with all joints between them.
     ///
     /// # Errors
-    /// [`IkError::NoJoint`] and [`IkError::NotAChain`].
+    /// [`IkError::NoJoint`] if the skeleton lacks a joint, and [`IkError::NotAChain`] if `end` is not below `first`.
     pub fn new(skeleton: &Skeleton, first: JointId, end: JointId) -> Result<Self, IkError> {
         let joints = skeleton.joints().len();
         for joint in [first, end] {
@@ -48,7 +49,7 @@ impl Chain {
         Ok(Self { joints })
     }
 
-    /// The joints, from the first to the end.
+    /// The joints, from the first one to the end.
     pub fn joints(&self) -> &[JointId] {
         &self.joints
     }
@@ -56,9 +57,9 @@ impl Chain {
     /// Turns the joints so that the end is at a target in model space, to a ten-thousandth of the chain's length.
     ///
     /// # Errors
-    /// [`IkError::NotFinite`] for the target or the pose, [`IkError::NoJoint`], [`IkError::NoLength`] if the chain has none,
-    /// [`IkError::NotInvertible`], and [`IkError::Sheared`] if a joint but the end scales unevenly. The pose is unchanged
-    /// then.
+    /// [`IkError::NotFinite`] for the target or the pose, [`IkError::NoJoint`], [`IkError::NoLength`] if the chain has
+    /// no length, [`IkError::NotInvertible`], and [`IkError::Sheared`] if a joint other than the end scales unevenly.
+    /// The pose is then unchanged.
     pub fn solve(
         &self,
         skeleton: &Skeleton,
@@ -75,7 +76,7 @@ impl Chain {
             return Err(IkError::NotFinite("the pose"));
         }
         invertible(&parent.matrix3, first)?;
-        // In the space of the first joint's parent.
+        // The target in the space of the first joint's parent.
         let target = parent.inverse().transform_point3(target);
         let mut points = Vec::with_capacity(self.joints.len());
         let mut space = DAffine3::IDENTITY;
@@ -110,7 +111,7 @@ impl Chain {
             let [joint, child] = [pair[0], pair[1]].map(JointId::index);
             let here = space * pose.transforms[joint].to_affine();
             let tip = pose.transforms[child].translation.as_dvec3();
-            // In the space of the joint's parent, where its rotation applies.
+            // The bone in the space of the joint's parent, where the joint's rotation applies.
             let bone = rotation_of(&pose.transforms[joint])
                 * (pose.transforms[joint].scale.as_dvec3() * tip);
             let wanted = space.matrix3.inverse() * (points[index + 1] - here.translation);
@@ -122,10 +123,10 @@ impl Chain {
         }
     }
 
-    /// Where the end is, in model space.
+    /// Position of the chain's end in model space.
     ///
     /// # Errors
-    /// [`IkError::NoJoint`] and [`IkError::NotFinite`] for the pose.
+    /// [`IkError::NoJoint`] if the pose or the skeleton does not fit.
     pub fn end(&self, skeleton: &Skeleton, pose: &Pose) -> Result<DVec3, IkError> {
         check_pose(skeleton, pose, self.joints.iter().copied())?;
         let end = self.joints[self.joints.len() - 1];
@@ -138,7 +139,7 @@ impl Chain {
     }
 }
 
-/// Moves points so that the last one is at the target and their distances are kept.
+/// Moves the points so that the last one is at the target, and keeps the distances between neighbours.
 fn reach(points: &mut [DVec3], lengths: &[f64], full: f64, target: DVec3) -> Reach {
     let (start, last) = (points[0], points.len() - 1);
     let distance = start.distance(target);
@@ -180,7 +181,7 @@ fn reach(points: &mut [DVec3], lengths: &[f64], full: f64, target: DVec3) -> Rea
         }
     }
     let gap = points[last].distance(target);
-    // The longest bone is longer than all others together: it cannot fold any further.
+    // The longest bone is longer than all the others together, and the chain cannot fold any further.
     if points[last].distance(start) > distance {
         Reach::TooNear(gap)
     } else {

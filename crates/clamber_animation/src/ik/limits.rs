@@ -3,28 +3,29 @@ use glam::{DQuat, DVec3};
 
 use super::IkError;
 
-/// How far a ball joint turns from its rest: its bone within a cone, and about the bone within a range.
+/// Limits of a ball joint's rotation from rest: a cone for the direction of its bone, and a range for the twist about
+/// the bone.
 ///
-/// A rotation is split into a swing, whose axis is across the bone, and a twist about the bone before it (Dobrowolski
-/// 2015, "Swing-twist decomposition in Clifford algebra").
+/// A rotation is split into a twist about the bone, and a swing after it, whose axis is perpendicular to the bone
+/// (Dobrowolski 2015, "Swing-twist decomposition in Clifford algebra").
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SwingTwist {
     /// Unit vector along the bone, in the joint's own space.
     axis: DVec3,
-    /// Half of the largest swing, as sine and cosine.
+    /// Sine and cosine of half the largest swing.
     half_swing: [f64; 2],
     /// Least and largest twist, radians.
     twist: [f64; 2],
 }
 
 impl SwingTwist {
-    /// Limits about a bone that lies along `axis` in the joint's own space. `swing` is the largest angle of the bone
-    /// from rest, `twist` the range of angles about it, radians, -pi to pi.
+    /// Limits for a bone along `axis` in the joint's own space. `swing` is the bone's largest angle from rest, `twist`
+    /// the range of angles about the bone: radians, -pi to pi.
     ///
     /// # Errors
-    /// [`IkError::BadSetUp`] if the axis has no length, the swing is not from 0 to pi, or the range is not within -pi to pi
-    /// or does not contain 0.
+    /// [`IkError::BadSetUp`] if the axis has no length, the swing is not from 0 to pi, or the range is not within -pi
+    /// to pi or does not contain 0.
     pub fn new(axis: DVec3, swing: f64, twist: [f64; 2]) -> Result<Self, IkError> {
         use core::f64::consts::PI;
         let axis = axis.try_normalize();
@@ -44,8 +45,8 @@ impl SwingTwist {
         })
     }
 
-    /// The rotation within the limits that keeps swing and twist where they are allowed, and whether it is another one.
-    /// `rotation` is a unit quaternion, relative to the joint at rest, in its space at rest.
+    /// Clamps swing and twist to the limits. Returns the rotation, and whether a limit changed it. `rotation` is a unit
+    /// quaternion, relative to the joint's rest rotation, in its rest space.
     pub fn clamp(&self, rotation: DQuat) -> (DQuat, bool) {
         let q = if rotation.w < 0.0 {
             -rotation
@@ -59,7 +60,7 @@ impl SwingTwist {
             self.axis.z * along,
             q.w,
         );
-        // Half a turn of swing leaves the twist open.
+        // With a swing of half a turn, the twist is undefined.
         let twist = if twist.length_squared() > 1e-20 {
             twist.normalize()
         } else {
@@ -108,7 +109,7 @@ mod tests {
             let (limited, is_limited) = limits.clamp(q);
             let bone = limited * axis;
             assert!(bone.dot(axis) >= libm::cos(0.9) - 1e-9, "{q}");
-            // Within them nothing changes, also the second time.
+            // Within the limits nothing changes; clamping twice is the same as clamping once.
             let (again, is_limited_again) = limits.clamp(limited);
             assert!(!is_limited_again, "{q}: {limited}");
             assert!(rotation_vector(again * limited.conjugate()).length() < 1e-9);

@@ -7,21 +7,21 @@ use crate::space::{model_from_joint, model_from_parent, turn_in_model};
 use crate::spring::rotation_from_vector;
 use clamber_surface::geometry::slerp;
 
-/// How far a gaze turns from straight ahead, radians.
+/// Limits of a gaze: its largest angles from straight ahead, radians, and its angular acceleration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LookLimits {
-    /// To either side.
+    /// Largest angle to either side.
     pub yaw: f64,
-    /// Up and down.
+    /// Largest angle up and down.
     pub pitch: f64,
-    /// How fast its turning may change about either axis, radians a second squared: above 0, and infinite to follow a
-    /// target wherever it goes. A gaze with a limit lags behind fast targets, and passes from one shoulder to the other
-    /// in a while.
+    /// The largest angular acceleration about either axis, radians per second squared: above 0; infinite follows the
+    /// target without delay. A gaze with a finite limit lags behind fast targets, and takes time to pass from one
+    /// shoulder to the other.
     pub acceleration: f64,
 }
 
 impl Default for LookLimits {
-    /// 80° to either side, 60° up and down, as fast as its target.
+    /// 80° to either side, 60° up and down, infinite acceleration.
     fn default() -> Self {
         Self {
             yaw: 80f64.to_radians(),
@@ -33,35 +33,38 @@ impl Default for LookLimits {
 
 /// Turns a chain of joints, from the head down to the neck or the spine, so that the eye looks at a target.
 ///
-/// Each joint takes its share of the turn that is left after the joints above it, and the last one takes all of the
-/// rest, so that the gaze arrives; no iteration is needed (Guillaume Blanc, ozz-animation, sample "look at").
+/// The head turns first. Each joint takes its share of the turn that remains, and the last one takes the whole rest, so
+/// the gaze arrives without iteration (Guillaume Blanc, ozz-animation, sample "look at").
 #[derive(Clone, Debug, PartialEq)]
 pub struct LookAt {
-    /// From the chain's last joint up to the head, with shares; joints between those of the chain have none.
+    /// The joints from the chain's last joint up to the head, each with its share; `None` for joints between the
+    /// chain's joints.
     path: Vec<(JointId, Option<f64>)>,
-    /// In the head's own space: where the eye is, and where it looks.
+    /// The eye's position, in the head's own space.
     eye: DVec3,
+    /// The direction in which the eye looks, a unit vector in the head's own space.
     forward: DVec3,
     limits: LookLimits,
-    /// At rest, in the space of the last joint's parent: ahead and up.
+    /// The direction ahead at rest, in the space of the last joint's parent.
     ahead: DVec3,
+    /// The creature's up at rest, in the space of the last joint's parent.
     up: DVec3,
 }
 
-/// What a gaze remembers, so that it does not jump from one shoulder to the other when a target passes behind.
+/// State of a gaze between calls, so that it does not jump from one shoulder to the other when a target passes behind.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct LookMemory {
-    /// The side to which it looks: 1 is left, -1 right, 0 not known yet.
+    /// The side to which the gaze looks: 1 is left, -1 right, 0 not known yet.
     side: f64,
-    /// Seconds since it changed.
+    /// Seconds since the side changed.
     since: f64,
-    /// Where it looks, yaw and pitch in radians, and how fast these change, in a gaze with a limit; `None` before the
-    /// first time.
+    /// Yaw and pitch of the gaze, radians, and their speeds, if the gaze has a limit of acceleration; `None` before the
+    /// first call.
     turned: Option<[Follow; 2]>,
 }
 
-/// An angle that follows another one.
+/// An angle that follows a goal.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Follow {
@@ -70,7 +73,7 @@ struct Follow {
 }
 
 impl Follow {
-    /// Turns towards a goal, as fast as it can still brake before it with half of `most`, its greatest acceleration.
+    /// Turns towards a goal within the acceleration `most`: as fast as half of `most` can still stop at the goal.
     fn step(&mut self, goal: f64, most: f64, dt: f64) {
         if dt <= 0.0 || dt.is_nan() {
             return;
@@ -83,22 +86,23 @@ impl Follow {
     }
 }
 
-/// The most joints from a chain's last one up to its head: they are turned by recursion.
+/// The most joints from a chain's last joint up to its head. Joints are turned by recursion, so this bounds its depth.
 const MOST_JOINTS: usize = 256;
 
-/// How far beyond straight behind a target must be to change the side, and how long the side stays, radians and
-/// seconds.
+/// A target behind must be at least this far past straight behind, radians, for the gaze to change the side.
 const BEHIND: f64 = 0.35;
+/// The gaze keeps its side for at least this time while a target is behind, seconds.
 const STAYS: f64 = 1.0;
 
 impl LookAt {
-    /// A gaze by the joints of `chain`, from the head down, each with the share that it takes of the turn that is left,
-    /// 0 to 1; the last one takes all of it. `eye` and `forward` are in the head's own space, `up` is the creature's up
-    /// in model space at rest.
+    /// A gaze by the joints of `chain`, from the head down, each with the share that it takes of the remaining turn, 0
+    /// to 1; the last one takes the whole rest. `eye` and `forward` are in the head's own space, `up` is the creature's
+    /// up in model space at rest.
     ///
     /// # Errors
-    /// [`IkError::BadSetUp`] if the chain is empty or spans more than 256 joints, a share is not from 0 to 1, or `forward` or `up` have no length or are
-    /// parallel at rest; [`IkError::NoJoint`]; [`IkError::NotAChain`] if a joint is not above the joint before it;
+    /// [`IkError::BadSetUp`] if the chain is empty or spans more than 256 joints, a share is not from 0 to 1, `eye`,
+    /// `forward` or `up` is not finite, or `forward` and `up` have no length or are parallel at rest;
+    /// [`IkError::NoJoint`]; [`IkError::NotAChain`] if a joint is not above the joint before it;
     /// [`IkError::NotInvertible`].
     pub fn new(
         skeleton: &Skeleton,
@@ -167,7 +171,8 @@ impl LookAt {
     /// The same gaze with other limits.
     ///
     /// # Errors
-    /// [`IkError::BadSetUp`] if the yaw is not from 0 to pi or the pitch not from 0 to a quarter turn.
+    /// [`IkError::BadSetUp`] if the yaw is not from 0 to pi, the pitch is not from 0 to a quarter turn, or the
+    /// acceleration is not above 0.
     pub fn with_limits(self, limits: LookLimits) -> Result<Self, IkError> {
         use core::f64::consts::{FRAC_PI_2, PI};
         let in_range =
@@ -182,12 +187,12 @@ impl LookAt {
     }
 
     /// Turns the gaze of a pose towards a target in model space: by `weight`, 0 (not at all) to 1 (all the way), and
-    /// within the limits. `dt` is the time since the last call with this memory, seconds. Returns the angle between the
-    /// gaze and the target that is left, radians.
+    /// within the limits. `dt` is the time since the last call with this memory, seconds. Returns the remaining angle
+    /// between the gaze and the target, radians.
     ///
     /// # Errors
     /// [`IkError::NotFinite`] for target, weight or pose, [`IkError::NoJoint`], [`IkError::NotInvertible`], and
-    /// [`IkError::Sheared`] if a joint's parents scale unevenly. The pose is unchanged then.
+    /// [`IkError::Sheared`] if a joint's parents scale unevenly. The pose is then unchanged.
     pub fn solve(
         &self,
         skeleton: &Skeleton,
@@ -207,7 +212,7 @@ impl LookAt {
             return Err(IkError::NotFinite("the pose"));
         }
         crate::space::uniform_scale(&base.matrix3, last)?;
-        // Everything that can fail, before anything is changed.
+        // Check all scales before anything is changed, so that an error leaves the pose unchanged.
         for (joint, _) in &self.path[..self.path.len() - 1] {
             let scale = pose.transforms[joint.index()].scale.as_dvec3();
             if scale.abs() != DVec3::ONE {
@@ -232,7 +237,7 @@ impl LookAt {
         ))
     }
 
-    /// The direction nearest to one towards the target that the limits allow.
+    /// The direction within the limits that is nearest to the direction to the target.
     fn limited(&self, base: &DMat3, to_target: DVec3, memory: &mut LookMemory, dt: f64) -> DVec3 {
         use core::f64::consts::{PI, TAU};
         let up = (*base * self.up).normalize_or(DVec3::Y);
@@ -247,7 +252,7 @@ impl LookAt {
         let side = if yaw < 0.0 { -1.0 } else { 1.0 };
         let is_behind = yaw.abs() > self.limits.yaw;
         if memory.side == 0.0 || !is_behind {
-            // In front the gaze passes from side to side by itself.
+            // While the target is in front, the gaze may change the side at any time.
             if memory.side != side {
                 memory.since = if is_behind { 0.0 } else { STAYS };
             }
@@ -274,15 +279,15 @@ impl LookAt {
             (yaw, pitch) = (around.angle, up.angle);
         }
         let about = |axis: DVec3, angle: f64| -> DQuat { rotation_from_vector(axis * angle) };
-        // Left is a positive turn about up, and up a negative one about left.
+        // Turning left is a positive rotation about up, turning up a negative one about left.
         about(up, yaw) * (about(left, -pitch) * level)
     }
 }
 
-/// One call of [`LookAt::solve`].
+/// The state of one call of [`LookAt::solve`].
 struct Gaze<'a> {
     look: &'a LookAt,
-    /// The last joint's parent in model space.
+    /// The transform of the last joint's parent in model space.
     base: &'a DAffine3,
     target: DVec3,
     weight: f64,
@@ -291,9 +296,9 @@ struct Gaze<'a> {
 }
 
 impl Gaze<'_> {
-    /// Turns the joints from one of the path on to the head, the head first. A joint's parents are turned after it, so
-    /// their frames, which are composed on the way up to the head, are those of the pose that was given. Returns the
-    /// sight after that, and the point to look at; `None` if the eye is at the target.
+    /// Turns the joints of the path from `index` up to the head, the head first. The frames of a joint's parents are
+    /// composed on the way up to the head, before any of them is turned, so they belong to the given pose. Returns the
+    /// eye's sight afterwards and the point to look at; `None` if the eye is at the target.
     fn turn(
         &mut self,
         pose: &mut Pose,
@@ -312,7 +317,7 @@ impl Gaze<'_> {
         };
         let origin = model.translation;
         if let Some(turn) = sight.turn_to(point, origin) {
-            // The last one takes all that is left.
+            // The last joint takes the whole remaining turn.
             let turn = if index == 0 {
                 turn
             } else {
@@ -325,7 +330,7 @@ impl Gaze<'_> {
         Ok(Some((sight, point)))
     }
 
-    /// The sight of the pose that was given, and the point to look at.
+    /// The sight in the given pose, and the point to look at.
     fn begin(&mut self, model_from_head: &DAffine3) -> Result<Option<(Sight, DVec3)>, IkError> {
         let look = self.look;
         let eye = model_from_head.transform_point3(look.eye);
@@ -342,13 +347,13 @@ impl Gaze<'_> {
         };
         let allowed = look.limited(&self.base.matrix3, to_target, self.memory, self.dt);
         let wanted = slerp(DQuat::IDENTITY, arc(gaze, allowed), self.weight) * gaze;
-        // As a point as far away as the target: the eye moves when the head turns.
+        // A point at the target's distance rather than a direction, because the eye moves when the head turns.
         let point = eye + wanted * way.length();
         Ok(Some((Sight { eye, gaze }, point)))
     }
 }
 
-/// An eye and where it looks, in model space.
+/// An eye's position and its viewing direction, in model space.
 #[derive(Clone, Copy)]
 struct Sight {
     eye: DVec3,
@@ -356,11 +361,11 @@ struct Sight {
 }
 
 impl Sight {
-    /// The turn about an origin that makes the eye look at a point. `None` for points that are nearer to the origin
-    /// than the line of sight passes.
+    /// The rotation about `origin` that makes the eye look at a point. `None` if the point is nearer to `origin` than
+    /// the line of sight is.
     fn turn_to(&self, point: DVec3, origin: DVec3) -> Option<DQuat> {
         let (eye, target) = (self.eye - origin, point - origin);
-        // The point of the line of sight that is as far from the origin as the target is turned onto the target.
+        // The point of the line of sight that is as far from `origin` as the target is rotated onto the target.
         let along = eye.dot(self.gaze);
         let room = along * along - (eye.length_squared() - target.length_squared());
         if room < 0.0 {

@@ -1,9 +1,10 @@
-//! Inverse kinematics: joints are turned so that a hand, a foot or a gaze gets where it should.
+//! Inverse kinematics: solvers turn joints so that a hand, a foot or a gaze reaches its target.
 //!
-//! All solvers work on a [`Pose`](clamber_surface::rig::Pose) and take targets in model space. They change rotations
-//! only, so bones keep their lengths. Mirrored and uniformly scaled parents are no approximation. [`TwoBone`] and
-//! [`Chain`] solve in the space of the chain's parent, which may scale unevenly; a joint *within* their chain must
-//! scale uniformly, and so must all parents for [`aim`], [`orient`] and [`LookAt`], else [`IkError::Sheared`].
+//! All solvers work on a [`Pose`](clamber_surface::rig::Pose) and take targets in model space. They change only
+//! rotations, so bones keep their lengths. Solutions are exact under mirrored and uniformly scaled parents. [`TwoBone`]
+//! and [`Chain`] solve in the space of the chain's parent, which may scale unevenly; a joint *within* their chain must
+//! scale uniformly. [`aim`], [`orient`] and [`LookAt`] need uniform scale in all parents. Otherwise the error is
+//! [`IkError::Sheared`].
 
 mod aim;
 mod bend;
@@ -26,16 +27,17 @@ pub use two_bone::{TwoBone, TwoBoneGoal};
 use glam::{DQuat, DVec3};
 
 /// The smallest rotation from one unit vector to another, without trigonometry. For opposite vectors it is half a turn
-/// about any axis across them.
+/// about any perpendicular axis.
 pub(crate) fn arc(from: DVec3, to: DVec3) -> DQuat {
     half_way(from, to).normalize()
 }
 
-/// [`arc`], not normalised.
+/// As [`arc`], but not normalised.
 fn half_way(from: DVec3, to: DVec3) -> DQuat {
-    // The quaternion of a turn has the cosine and the axis of half of it: those of the vector half way.
+    // A rotation quaternion holds the cosine and the sine of half its angle. The vector half way between both gives
+    // these.
     let half = from + to;
-    // Below this the cross product is all rounding.
+    // Below this length the cross product consists of rounding errors.
     if half.length_squared() < 1e-20 {
         let axis = from.any_orthonormal_vector();
         return DQuat::from_xyzw(axis.x, axis.y, axis.z, 0.0);
@@ -44,15 +46,16 @@ fn half_way(from: DVec3, to: DVec3) -> DQuat {
     DQuat::from_xyzw(axis.x, axis.y, axis.z, from.dot(half))
 }
 
-/// The rotation that takes one pair of perpendicular unit vectors to another.
+/// The rotation that maps one pair of perpendicular unit vectors to another pair.
 pub(crate) fn frame_turn(from: [DVec3; 2], to: [DVec3; 2]) -> DQuat {
     let first = half_way(from[0], to[0]);
-    // The second vector turned by it: a quaternion of any length turns, and scales by the square of that.
+    // The second vector after the rotation `first`. A quaternion that is not normalised also scales, by its squared
+    // length.
     let (axis, real) = (DVec3::new(first.x, first.y, first.z), first.w);
     let across = axis.cross(from[1]);
     let share = 2.0 / first.length_squared();
     let second = from[1] + (across * real + axis.cross(across)) * share;
-    // About the first vector of the pair, by the angle between the second ones.
+    // The rotation about the first vector of the pair, by the angle between the second vectors.
     let cos = second.dot(to[1]);
     let sin = second.cross(to[1]).dot(to[0]);
     let turn = DQuat::from_xyzw(to[0].x * sin, to[0].y * sin, to[0].z * sin, 1.0 + cos);

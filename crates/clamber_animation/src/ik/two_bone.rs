@@ -6,37 +6,38 @@ use super::{IkError, PoleMemory, arc, frame_turn};
 use crate::pose::{rotation_of, store_rotation};
 use crate::space::{invertible, model_from_joint, model_from_parent, uniform_inverse};
 
-/// An arm or a leg of a skeleton.
+/// An arm or a leg of a skeleton, solved as two bones.
 ///
-/// Between its three joints may stand others, such as twist joints, which keep their pose.
+/// Other joints, such as twist joints, may lie between its three joints. They keep their pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TwoBone {
     upper: JointId,
     lower: JointId,
-    /// The end is a point in the space of a joint: of the lower one, or of one below it.
+    /// The joint in whose space `tip` is: the lower joint or one of its descendants.
     end: JointId,
+    /// The limb's end, a point in the space of the joint `end`.
     tip: DVec3,
-    /// The axis about which the elbow bends, where the pose does not say: in the upper joint's own space.
+    /// The axis about which the elbow bends if the pose does not give one, in the upper joint's own space.
     hinge: DVec3,
-    /// Least angle between the bones, as its cosine.
+    /// Cosine of the least angle between the bones.
     least_cos: f64,
 }
 
-/// What a limb should do.
+/// A target for a limb, and how the limb bends to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TwoBoneGoal {
-    /// Where its end should be, in model space.
+    /// The target of the limb's end, in model space.
     pub target: DVec3,
-    /// To which side of the line from shoulder to target the elbow points: a vector in model space of any length.
-    /// `None` for the side to which the pose bends it.
+    /// The side of the line from shoulder to target to which the elbow points: a vector in model space of any length.
+    /// With `None`, the limb keeps the side to which the pose bends it.
     pub pole: Option<DVec3>,
-    /// The share of the limb's length from which a far target is approached softly, more than 0 to 1. 0.97 keeps elbows
-    /// from snapping straight; 1 reaches as far as the bones do, for hands and feet that must not slip.
+    /// The share of the limb's length from which the limb approaches a far target softly, more than 0 to 1. 0.97 keeps
+    /// elbows from snapping straight. 1 reaches as far as the bones do, for hands and feet that must not slip.
     pub soft: f64,
 }
 
 impl TwoBoneGoal {
-    /// Reaches for a point in model space as far as the bones do, and bends the limb where it is bent.
+    /// Reaches for a point in model space as far as the bones do, and keeps the side to which the pose bends the limb.
     pub const fn reach(target: DVec3) -> Self {
         Self {
             target,
@@ -46,36 +47,39 @@ impl TwoBoneGoal {
     }
 }
 
-/// A limb in one pose, in the space of its upper joint's parent.
+/// A limb in one pose, in the space of the upper joint's parent.
 struct Posed {
-    /// Where that space has its origin in model space, and vectors of model space in it.
+    /// The origin of that space in model space.
     origin: DVec3,
+    /// Maps vectors from model space to that space.
     parent_from_model: DMat3,
     shoulder: DVec3,
-    /// Unit vectors along the bones, from shoulder to elbow and from elbow to end, and how long these are.
+    /// Unit vectors along the bones, from shoulder to elbow and from elbow to end.
     bones: [DVec3; 2],
+    /// The lengths of both bones.
     lengths: [f64; 2],
-    /// Unit vector about which the elbow bends.
+    /// The unit vector about which the elbow bends.
     hinge: DVec3,
-    /// Maps vectors in the space of the upper joint, without its rotation, to that of the lower joint's parent.
+    /// Maps vectors from the space of the upper joint, without its rotation, to the space of the lower joint's parent.
     lower_from_upper: DMat3,
 }
 
 impl Posed {
-    /// From shoulder to end.
+    /// The vector from the shoulder to the end.
     fn line(&self) -> DVec3 {
         self.bones[0] * self.lengths[0] + self.bones[1] * self.lengths[1]
     }
 }
 
 impl TwoBone {
-    /// The limb from shoulder to elbow to hand, or from hip to knee to foot. `bends_towards` is where the elbow or knee
-    /// points at rest, in model space: forward for knees, backward for elbows. Only its part across the limb counts.
+    /// The limb from shoulder to elbow to hand, or from hip to knee to foot. `bends_towards` is the direction in which
+    /// the elbow or knee points at rest, in model space: forward for knees, backward for elbows. Only its part
+    /// perpendicular to the limb counts.
     ///
     /// # Errors
     /// [`IkError::NoJoint`], [`IkError::NotAChain`], [`IkError::NoLength`] if a bone has no length at rest,
-    /// [`IkError::NotInvertible`] and [`IkError::Sheared`] for scales, and [`IkError::BadSetUp`] if `bends_towards` is not
-    /// finite or lies along the limb.
+    /// [`IkError::NotInvertible`] and [`IkError::Sheared`] for scales, and [`IkError::BadSetUp`] if `bends_towards` is
+    /// not finite or lies along the limb.
     pub fn new(
         skeleton: &Skeleton,
         [upper, lower, end]: [JointId; 3],
@@ -88,9 +92,8 @@ impl TwoBone {
         Self::with_tip(skeleton, [upper, lower, end], DVec3::ZERO, bends_towards)
     }
 
-    /// The limb of a rig whose foot does not hang below the knee, but stands beside the leg as a target of its own, as
-    /// in files with baked controls. It ends at a point in the space of the lower joint: that where the foot is at
-    /// rest.
+    /// The limb of a rig whose foot is not a descendant of the knee but a separate target beside the leg, as in files
+    /// with baked controls. The limb ends at `point` in the space of the lower joint; pass the foot's position at rest.
     ///
     /// # Errors
     /// As [`TwoBone::new`]; [`IkError::BadSetUp`] also if the point is not finite.
@@ -103,8 +106,8 @@ impl TwoBone {
         Self::to_point_of(skeleton, [upper, lower, lower], point, bends_towards)
     }
 
-    /// [`TwoBone::to_point`] for a limb with more joints, which ends at a point in the space of the last one, `end`: the
-    /// lower joint, or one below it.
+    /// As [`TwoBone::to_point`] for a limb with more joints: it ends at a point in the space of the joint `end`, which
+    /// is the lower joint or one of its descendants.
     ///
     /// # Errors
     /// As [`TwoBone::to_point`].
@@ -161,8 +164,7 @@ impl TwoBone {
         Ok(limb)
     }
 
-    /// The same limb, which does not fold further than to this angle between its bones, radians: 0 is folded flat, pi
-    /// is straight.
+    /// The same limb with a least angle between its bones, radians: 0 is folded flat, pi is straight.
     ///
     /// # Errors
     /// [`IkError::BadSetUp`] if the angle is not from 0 to pi.
@@ -178,31 +180,33 @@ impl TwoBone {
         })
     }
 
-    /// The joints: shoulder, elbow and hand, or hip, knee and foot; the elbow or knee twice if the limb ends at a
-    /// [point](TwoBone::to_point).
+    /// The joints: shoulder, elbow and hand, or hip, knee and foot. If the limb ends at a [point](TwoBone::to_point) in
+    /// the lower joint's space, the elbow or knee comes twice.
     pub fn joints(&self) -> [JointId; 3] {
         [self.upper, self.lower, self.end]
     }
 
-    /// The lengths of both bones in a pose, in model units where the parents do not scale.
+    /// The lengths of both bones in a pose, in the space of the upper joint's parent. These are model units if the
+    /// parents do not scale.
     ///
     /// # Errors
-    /// As [`TwoBone::solve`].
+    /// As [`TwoBone::solve`], for the pose.
     pub fn lengths(&self, skeleton: &Skeleton, pose: &Pose) -> Result<[f64; 2], IkError> {
         check_pose(skeleton, pose, self.joints())?;
         Ok(self.posed(skeleton, pose)?.lengths)
     }
 
     /// Turns the upper and the lower joint so that the end is at the target. With a `memory`, the elbow does not flip
-    /// when the limb passes its pole; pass the seconds since the last call with it.
+    /// when the limb passes its pole; pass with it the seconds since the last call with this memory.
     ///
-    /// The bend of the pose is the plane in which its bones lie. If they are straight, or bent the wrong way, it is
-    /// that in which the limb bends at rest. A pose that is at the target already is kept.
+    /// The limb bends in the plane of the pose's bones. If they are straight, it bends in the plane in which it bends
+    /// at rest. If they are bent the wrong way, it bends in their plane the right way. A pose that is at the target
+    /// already is kept.
     ///
     /// # Errors
-    /// [`IkError::NotFinite`] for the target, the pole or softness; [`IkError::NoJoint`] if the pose is not the skeleton's;
-    /// [`IkError::NoLength`], [`IkError::NotInvertible`] and [`IkError::Sheared`] for the pose. The pose is unchanged
-    /// then.
+    /// [`IkError::NotFinite`] for the target, the pole or the pose; [`IkError::BadSetUp`] if `soft` is not more than 0
+    /// and at most 1; [`IkError::NoJoint`] if the pose is not the skeleton's; [`IkError::NoLength`],
+    /// [`IkError::NotInvertible`] and [`IkError::Sheared`] for the pose. The pose is then unchanged.
     pub fn solve(
         &self,
         skeleton: &Skeleton,
@@ -239,24 +243,24 @@ impl TwoBone {
             .max(0.0)
             .sqrt();
         let solved = bend(lengths, target, pole, goal.soft, least);
-        // As long as the bones, by their construction.
+        // Unit vectors, because the bones keep their lengths.
         let wanted = [solved.elbow / a, (solved.end - solved.elbow) / b];
         self.apply(pose, &posed, wanted);
         Ok(solved.reach)
     }
 
-    /// To which side the limb bends, if it were turned to the target.
+    /// The side to which the limb would bend if it were turned as it is to the target.
     fn side_of(&self, posed: &Posed, target: DVec3) -> DVec3 {
         let reach = posed.line();
         let (Some(from), Some(to)) = (reach.try_normalize(), target.try_normalize()) else {
             return posed.hinge.cross(posed.bones[0]);
         };
-        // The hinge turned along with the line to the end; across both of them is the elbow.
+        // The hinge turned along with the line to the end. The elbow's side is perpendicular to both.
         let hinge = arc(from, to) * posed.hinge;
         to.cross(hinge)
     }
 
-    /// Turns the two joints so that the bones point along unit vectors.
+    /// Turns the two joints so that the bones point along the unit vectors `now`.
     fn apply(&self, pose: &mut Pose, posed: &Posed, now: [DVec3; 2]) {
         let [upper, lower] = [self.upper, self.lower].map(JointId::index);
         let was = posed.bones;
@@ -292,7 +296,7 @@ impl TwoBone {
     fn posed(&self, skeleton: &Skeleton, pose: &Pose) -> Result<Posed, IkError> {
         let upper = &pose.transforms[self.upper.index()];
         let lower = &pose.transforms[self.lower.index()];
-        // What stands between the joints, from the space below the upper joint to the parent of the lower.
+        // The transform from the lower joint's parent to the upper joint, over the joints between them.
         let between = between(skeleton, pose, self.upper, self.lower);
         let below = self.tip_below(skeleton, pose);
         let [upper_scale, lower_scale] = [upper, lower].map(|joint| joint.scale.as_dvec3());
@@ -325,7 +329,8 @@ impl TwoBone {
             }
         }
         let bones = [first / lengths[0], second / lengths[1]];
-        // The plane of the bones, unless they are nearly straight or bent the wrong way.
+        // The hinge is perpendicular to the bones, in the sense of the natural hinge. Nearly straight bones use the
+        // natural hinge itself.
         let natural = rotation * self.hinge;
         let bent = bones[0].cross(bones[1]);
         let sine = bent.length();
@@ -346,11 +351,11 @@ impl TwoBone {
     }
 }
 
-/// The sine of the angle between two bones below which they count as straight: rotations of poses are rounded to f32,
-/// so that the plane of the bones is uncertain by 1e-7 over this.
+/// The sine of the angle between two bones below which they count as straight. Rotations of poses are rounded to f32,
+/// so the angle of the bones' plane is uncertain by 1e-7 divided by this.
 const STRAIGHT: f64 = 1e-3;
 
-/// The transforms of the joints between two, without either.
+/// The composed transform of the joints strictly between `upper` and `lower`.
 fn between(skeleton: &Skeleton, pose: &Pose, upper: JointId, lower: JointId) -> DAffine3 {
     let mut product = DAffine3::IDENTITY;
     let mut next = skeleton.joints()[lower.index()].parent;
@@ -361,7 +366,7 @@ fn between(skeleton: &Skeleton, pose: &Pose, upper: JointId, lower: JointId) -> 
     product
 }
 
-/// Refuses a pose that is not the skeleton's, and a skeleton that lacks one of the joints.
+/// Refuses a pose that does not have the skeleton's number of joints, and a skeleton that lacks one of the joints.
 pub(super) fn check_pose(
     skeleton: &Skeleton,
     pose: &Pose,
@@ -381,7 +386,7 @@ pub(super) fn check_pose(
 }
 
 impl TwoBone {
-    /// The end in the space of the lower joint.
+    /// The limb's end in the space of the lower joint.
     fn tip_below(&self, skeleton: &Skeleton, pose: &Pose) -> DVec3 {
         if self.end == self.lower {
             return self.tip;
@@ -391,7 +396,7 @@ impl TwoBone {
         below.transform_point3(self.tip)
     }
 
-    /// Where the limb ends in a pose, in model space.
+    /// Position of the limb's end in a pose, in model space.
     ///
     /// # Errors
     /// [`IkError::NoJoint`] and [`IkError::NotFinite`] for the pose.

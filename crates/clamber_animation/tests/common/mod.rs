@@ -1,4 +1,4 @@
-//! What the tests of joints share.
+//! Helpers for the tests of joints.
 
 #![allow(
     dead_code,
@@ -20,7 +20,7 @@ pub fn joint(parent: Option<u32>, translation: Vec3) -> Joint {
     }
 }
 
-/// Where a joint is, in model space.
+/// Position of a joint in model space.
 pub fn place(skeleton: &Skeleton, pose: &Pose, joint: u32) -> DVec3 {
     let palette = skeleton.palette(pose).unwrap();
     palette

@@ -1,10 +1,11 @@
-//! Holds with inverse kinematics alone, beside the body.
+//! Compares the body with inverse kinematics alone, on climbs.
 //!
-//! What engines offer: a clip plays, the model is a child of the climber, and a two-bone solver brings each hand and
-//! foot to a place that the game names. Here the places are those that the body chose, so that its choice costs the
-//! others nothing. The model stands where the body has it on average over the climb, seen from the climber, and turns
-//! as the body does. **Hard** reaches as far as the bones do. **Soft** begins to slow down at 97 % of the limb, so that
-//! elbows do not snap, and keeps its elbows by pole memory.
+//! Game engines offer this alternative: a clip plays, the model is a child of the climber, and a two-bone solver brings
+//! each hand and foot to a place that the game names. Here the places are those that the body chose, and the time of
+//! choosing them is not charged to the alternative. The model's offset from the climber is the mean of the body's
+//! offsets over the climb, one mean for holding and one for hanging, and it turns as the body does. **Hard** reaches as
+//! far as the bones do. **Soft** slows down from 97 % of the limb's length on, so that elbows do not snap, and keeps
+//! the bend directions of elbows and knees in a pole memory.
 
 use std::error::Error;
 use std::time::Instant;
@@ -19,17 +20,19 @@ use clamber_scenes::bodies::{Scene, Stage};
 use clamber_scenes::measure::{Cells, Plot, Series, measure_folder, quantile};
 use glam::{DAffine3, DVec3};
 
+/// Length of a tick and of a frame, seconds.
 const DT: f64 = 1.0 / 60.0;
 
-/// Seconds at the start of a climb that do not count.
+/// Time at the start of a climb that is not measured, seconds: the climber settles.
 const SETTLES: f64 = 1.5;
 
-/// What a climb asks of a limb in a frame, in world space.
+/// The goal of a limb in a frame of a climb, in world space.
 #[derive(Clone, Copy)]
 struct Asked {
-    /// Where its hand or foot goes, and how that is turned.
+    /// Position and rotation of the hand or foot.
     end: DAffine3,
-    /// The point that it holds, if it holds one, and which point of the hand or foot should touch it.
+    /// If the limb holds something: the held point in world space, and the point of the hand or foot that should touch
+    /// it, in the space of `end`.
     held: Option<(DVec3, DVec3)>,
 }
 
@@ -37,24 +40,24 @@ struct Asked {
 struct Frame {
     time: f64,
     hangs: bool,
-    /// The climber's.
+    /// Position of the climber.
     position: DVec3,
     root: Similarity,
     limbs: [Asked; 4],
 }
 
-/// A climb as one method shows it.
+/// Measurements of a climb by one method.
 #[derive(Default)]
 struct Shown {
     micros: Vec<f64>,
-    /// Distances from holds, metres, of hands and of feet.
+    /// Distances of hands and of feet from their holds, metres.
     errors: [Vec<f64>; 2],
-    /// Rates at which elbows and knees bend, radians a second.
+    /// Angular speeds of elbows and knees, radians a second.
     rates: Vec<f64>,
     angles: Option<[f64; 4]>,
 }
 
-/// Compares three methods on each climb.
+/// Compares three methods on each climb: hard IK, soft IK, and the body.
 pub(crate) fn compare(
     climbs: &[Scene],
     figure: &Figure,
@@ -82,7 +85,7 @@ pub(crate) fn compare(
                         error,
                     );
                 }
-                // An error of nothing has no place on a logarithmic axis.
+                // A logarithmic axis has no place for an error of 0.
                 let error = (quantile(errors, 0.99) * 1e3).max(0.01);
                 points[index][usize::from(*part == "feet")].push((micros, error));
             }
@@ -107,7 +110,7 @@ pub(crate) fn compare(
     plot.write_svg(&measure_folder().join("body.svg"))
 }
 
-/// Plays a climb with the body.
+/// Plays a climb with the body; returns its frames and the body's measurements.
 fn watch(climb: &Scene, figure: &Figure, most: u32) -> Result<(Vec<Frame>, Shown), Box<dyn Error>> {
     let mut stage = Stage::new(climb)?;
     let mut body = Body::new(figure);
@@ -147,9 +150,10 @@ fn watch(climb: &Scene, figure: &Figure, most: u32) -> Result<(Vec<Frame>, Shown
     Ok((frames, shown))
 }
 
-/// Shows the frames of a climb with inverse kinematics alone.
+/// Shows the frames of a climb with inverse kinematics alone; `soft` is the share of the limb's length from which the
+/// solver slows down, 1 for never.
 fn alone(frames: &[Frame], figure: &Figure, soft: f64) -> Result<Shown, Box<dyn Error>> {
-    // Where the model is on average, seen from the climber.
+    // The model's mean offset from the climber, in the model's axes.
     let seen =
         |frame: &Frame| frame.root.rotation.conjugate() * (frame.root.translation - frame.position);
     let mean = |hangs: bool| {
@@ -216,7 +220,7 @@ fn reach(
 }
 
 impl Shown {
-    /// Measures a pose.
+    /// Measures the hold errors and the joint rates of a pose.
     fn see(
         &mut self,
         figure: &Figure,
@@ -261,7 +265,7 @@ fn limb_of(figure: &Figure, extremity: Extremity) -> &Limb {
     }
 }
 
-/// The space of a hand or foot in the world.
+/// The world-space transform of a hand or foot.
 fn end_in_world(
     figure: &Figure,
     root: &Similarity,

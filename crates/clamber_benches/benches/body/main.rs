@@ -1,15 +1,15 @@
-//! What does the body of a climber cost in a frame, and how far are its hands and feet from what they hold?
+//! Measures the cost of a climber's body in a frame, and the distances of its hands and feet from their holds.
 //!
-//! The project's hero walks, goes up and down stairs, stands with a foot on a block, climbs a wall, hangs from skin
-//! that shakes, and climbs a walking giant. One frame for each tick of 60 Hz, on one thread. Times are medians; those
-//! of the body include its queries, and not the climber's own step. In the same run, one clip of the hero is sampled
+//! The project's hero walks, goes up and down stairs, stands with a foot on a block, climbs a wall, hangs from shaking
+//! skin, and climbs a walking giant. There is one frame for each tick of 60 Hz, on one thread. Times are medians. The
+//! body's times include its queries, but not the climber's own step. In the same run, one clip of the hero is sampled
 //! and its palette is composed, for comparison.
 //!
-//! Then the same climbs with inverse kinematics alone: the model is fixed to the climber, and its limbs reach for the
-//! same places, as far as the bones do (hard) or softly. See [`compare`].
+//! Then the same climbs run with inverse kinematics alone: the model is fixed to the climber, and its limbs reach for
+//! the same places, either as far as the bones do (hard) or with a soft limit. See [`compare`].
 //!
-//! Prints a table and writes it to `target/measure/body.csv`: name, value, bound, holds; and draws errors beside costs
-//! to `target/measure/body.svg`.
+//! Prints a table and writes it to `target/measure/body.csv`: name, value, bound, holds. Plots errors over costs to
+//! `target/measure/body.svg`.
 //!
 //! Run it with `cargo bench -p clamber_benches --bench body`; briefly with `-- --test`.
 
@@ -26,6 +26,7 @@ use clamber_scenes::giant;
 use clamber_scenes::measure::{Bound, Cells, is_brief, quantile};
 use glam::DVec3;
 
+/// Length of a tick and of a frame, seconds.
 const DT: f64 = 1.0 / 60.0;
 
 fn main() -> ExitCode {
@@ -94,7 +95,7 @@ fn run(brief: bool) -> Result<(), Box<dyn Error>> {
     cells.finish("body", brief)
 }
 
-/// Microseconds of a frame of one clip.
+/// The median time to sample one clip and compose its palette, microseconds. Each sample is a mean over 100 frames.
 fn clip_and_palette(figure: &Figure, brief: bool) -> Result<f64, Box<dyn Error>> {
     let set = figure.animations();
     let clip = set.clip(set.find("walk").ok_or("no walk")?)?;
@@ -115,9 +116,9 @@ fn clip_and_palette(figure: &Figure, brief: bool) -> Result<f64, Box<dyn Error>>
 #[derive(Default)]
 struct Seen {
     micros: Vec<f64>,
-    /// Speeds of soles that stand along what they stand on, metres a second.
+    /// Speeds at which planted soles slide along their supports, metres a second.
     slips: Vec<f64>,
-    /// Distances of palms from what they hold, metres.
+    /// Distances of palms from their holds, metres.
     palms: Vec<f64>,
 }
 

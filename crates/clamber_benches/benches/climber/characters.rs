@@ -1,4 +1,4 @@
-//! As many of rapier's character controllers, on meshes that never move.
+//! rapier's character controllers on meshes that never move, one for each climber of the crowd.
 
 use std::error::Error;
 use std::time::Instant;
@@ -13,12 +13,13 @@ use clamber::world::rapier3d::prelude::{ColliderBuilder, PhysicsWorld};
 use clamber_scenes::tour::RATE;
 use rayon::prelude::*;
 
+/// Length of a tick, seconds.
 const DT: f64 = 1.0 / RATE;
 
-/// A mesh of rapier's with a surface's current skin, in world space.
+/// A rapier mesh of a surface's current skin, in world space.
 ///
 /// # Errors
-/// parry's, if it refuses the mesh.
+/// parry's error, if it refuses the mesh.
 pub(crate) fn still_mesh(surface: &SkinnedSurface) -> Result<ColliderBuilder, Box<dyn Error>> {
     let mut positions = Vec::new();
     surface.skin_all(&mut positions);
@@ -39,9 +40,9 @@ pub(crate) struct Character {
     shape: Ball,
     pub(crate) pose: Pose3,
     pub(crate) is_grounded: bool,
-    /// Where it is put back.
+    /// The position to which the character is put back.
     seat: Vector,
-    /// Its own velocity, level, metres a second.
+    /// Horizontal walking velocity, metres a second.
     walk: Vector,
 }
 
@@ -60,7 +61,7 @@ impl Character {
         }
     }
 
-    /// Runs a tick in which it walks, and falls by what gravity adds in a tick.
+    /// Runs a tick: the character walks, and falls by the distance that gravity adds in one tick.
     pub(crate) fn step(&mut self, queries: &QueryPipeline<'_>) {
         let way = self.walk * DT as f32 - Vector::Y * (9.81 * DT * DT) as f32;
         let (shape, pose) = (&self.shape, &self.pose);
@@ -71,7 +72,7 @@ impl Character {
         self.is_grounded = moved.grounded;
     }
 
-    /// Puts it back if it fell or has gone too far.
+    /// Puts the character back on its seat if it is farther than `away` metres from it.
     fn sit(&mut self, away: f64) {
         if f64::from((self.pose.translation - self.seat).length()) > away {
             self.pose.translation = self.seat;
@@ -79,7 +80,7 @@ impl Character {
     }
 }
 
-/// Rapier's queries of all colliders.
+/// rapier's query pipeline over all colliders.
 pub(crate) fn queries(world: &PhysicsWorld) -> QueryPipeline<'_> {
     world.broad_phase.as_query_pipeline(
         &DefaultQueryDispatcher,
@@ -89,13 +90,13 @@ pub(crate) fn queries(world: &PhysicsWorld) -> QueryPipeline<'_> {
     )
 }
 
-/// Many of them in a world that stands still.
+/// Many characters in a static world.
 pub(crate) struct Characters {
     world: PhysicsWorld,
     all: Vec<Character>,
-    /// One is put back if it is farther than this from its seat, metres.
+    /// Distance from its seat at which a character is put back, metres.
     away: f64,
-    /// The largest number that a thread takes at a time.
+    /// The largest number of characters that a thread takes at a time.
     grain: usize,
     grounded: usize,
 }
@@ -114,7 +115,7 @@ impl Characters {
         }
     }
 
-    /// Runs a tick of all of them; returns the seconds.
+    /// Runs a tick of all characters; returns the seconds.
     pub(crate) fn step(&mut self, threads: &rayon::ThreadPool) -> f64 {
         for character in &mut self.all {
             character.sit(self.away);
@@ -128,12 +129,12 @@ impl Characters {
         start.elapsed().as_secs_f64()
     }
 
-    /// Counts those that are on the ground after this tick.
+    /// Counts the characters that are grounded after this tick.
     pub(crate) fn count(&mut self) {
         self.grounded += self.all.iter().filter(|one| one.is_grounded).count();
     }
 
-    /// Their number, over all ticks counted.
+    /// Number of grounded characters, summed over all counted ticks.
     pub(crate) fn grounded(&self) -> usize {
         self.grounded
     }

@@ -1,5 +1,5 @@
-//! A thousand climbers on ten walking giants: which share of two cores does a tick at 60 Hz take, and how much is that
-//! beside as many of rapier's characters on giants that stand still?
+//! A thousand climbers on ten walking giants: the share of two cores that a tick at 60 Hz takes, and its ratio to as
+//! many of rapier's characters on giants that stand still.
 
 use std::error::Error;
 use std::sync::Arc;
@@ -17,28 +17,33 @@ use rayon::prelude::*;
 
 use super::characters::{Character, Characters, still_mesh};
 
+/// Length of a tick, seconds.
 const DT: f64 = 1.0 / RATE;
 
-/// Distance between giants, metres, and the number of giants in a row.
+/// Distance between giants, metres.
 const APART: f64 = 60.0;
+
+/// Number of giants in a row.
 const ROW: usize = 5;
 
-/// Smallest Y of the unit normal of a seat to stand on.
+/// Smallest Y of a seat's unit normal, so that a climber can stand there while the giant walks.
 const LEVEL: f64 = 0.85;
 
-/// Distance from its seat at which a climber is put back, metres: it fell, or has gone far enough.
+/// Distance from its seat at which a climber is put back, metres: the climber has fallen, or has walked far enough.
 const AWAY: f64 = 6.0;
 
-/// Ticks that are not timed, at the start.
+/// Number of ticks at the start that are not timed; also the number of ticks in each turn of rapier's characters.
 const SETTLE: usize = 30;
 
-/// Smallest share of all climbers' ticks that they must spend on the giants, not falling.
+/// Smallest share of ticks that climbers must spend on the giants, and rapier's characters on the ground. Below it the
+/// bench fails, since it would measure falling.
 const LEAST_BUSY: f64 = 0.7;
 
-/// Largest number of climbers that a thread takes at a time.
+/// The largest number of climbers that a thread takes at a time. With rayon's larger pieces one thread waits for the
+/// other's last piece.
 const GRAIN: usize = 16;
 
-/// The activity of a climber in all ticks.
+/// The activity of a climber, the same in all ticks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Part {
     Stands,
@@ -46,7 +51,7 @@ enum Part {
     Climbs,
 }
 
-/// Of five climbers two stand, one walks, two climb.
+/// The activities of five climbers in a row: two stand, one walks, two climb.
 const PARTS: [Part; 5] = [
     Part::Stands,
     Part::Climbs,
@@ -60,7 +65,7 @@ struct Rider {
     part: Part,
     giant: usize,
     seat: Anchor,
-    /// Direction in which it walks or climbs, in world space.
+    /// World-space direction of walking or climbing.
     direction: DVec3,
 }
 
@@ -72,7 +77,7 @@ struct Giant {
     palette: Palette,
 }
 
-/// Adds rows for `riders` climbers on `giants` giants of about `vertices` vertices.
+/// Adds rows for `riders` climbers on `giants` giants of about `vertices` vertices each.
 pub(crate) fn measure(
     (giants, vertices, riders): (usize, usize, usize),
     ticks: usize,
@@ -83,7 +88,7 @@ pub(crate) fn measure(
         .clip_like(&["walk"])
         .ok_or("the giant has no walk clip")?;
     let mut giants = herd(&creature, giants, walk.duration());
-    // Twice, since the first pose takes them from the origin to their places, at thousands of metres a second.
+    // Posed twice: the first pose moves the giants from the origin to their places, at thousands of metres a second.
     pose(&mut giants, &creature, walk, 0)?;
     pose(&mut giants, &creature, walk, 0)?;
     let mut riders = seated(&giants, riders)?;
@@ -102,7 +107,7 @@ pub(crate) fn measure(
         let start = Instant::now();
         two.install(|| step(&mut riders, &giants, &terrain))?;
         let stepped = start.elapsed().as_secs_f64();
-        // They take turns of many ticks, so that each finds its own data in the caches.
+        // Climbers and characters take turns of many ticks, so that each finds its own data in the caches.
         if (tick + 1).is_multiple_of(SETTLE) {
             for turn in 0..SETTLE {
                 let seconds = characters.step(&two);
@@ -181,8 +186,8 @@ pub(crate) fn measure(
     Ok(())
 }
 
-/// The valley and the giants as meshes that never move, and as many of rapier's characters where climbers could stand.
-/// None of them can climb: one in five walks, as of the climbers, and the others stand.
+/// The valley and the giants as meshes that never move, and `count` of rapier's characters at places where climbers
+/// could stand. rapier's characters cannot climb: one in five walks, as among the climbers, and the others stand.
 fn beside(
     giants: &[Giant],
     count: usize,
@@ -266,7 +271,7 @@ fn seated(giants: &[Giant], count: usize) -> Result<Vec<Rider>, Box<dyn Error>> 
     Ok(riders)
 }
 
-/// Puts climbers that fell or went far back, just above their seats.
+/// Puts climbers that are more than [`AWAY`] from their seats back to a place just above the seats.
 fn sit(riders: &mut [Rider], giants: &[Giant]) -> Result<(), Box<dyn Error>> {
     for rider in riders {
         let surface = &giants[rider.giant].surface;

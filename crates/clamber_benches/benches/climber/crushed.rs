@@ -1,7 +1,7 @@
-//! What does a tick cost that crushes a climber, beside a tick in which it has room?
+//! Measures a tick that crushes a climber, compared with a tick in which the climber has room.
 //!
 //! Boxes of skin close in on a climber from two, five and all 26 directions, until it has three quarters of the room
-//! that it needs, and move back. Times are medians over the ticks that crush it and over the others.
+//! that it needs, and move back. Times are medians over the ticks that crush the climber, and over the other ticks.
 
 use std::error::Error;
 use std::sync::Arc;
@@ -12,18 +12,19 @@ use clamber_scenes::measure::{Bound, Cells, quantile};
 use clamber_scenes::tour::RATE;
 use glam::{DQuat, DVec3, Vec3};
 
+/// Length of a tick, seconds.
 const DT: f64 = 1.0 / RATE;
 
-/// Half the size of a wall along its sides and its thickness (Y), metres.
+/// Half extents of a wall, metres. Y is its thickness.
 const HALF: Vec3 = Vec3::new(1.0, 0.5, 1.0);
 
-/// Largest and smallest distance of the walls from the climber's start, metres. The climber's radius is 0.4.
+/// Largest and smallest distance of the walls' faces from the climber's start, metres. The climber's radius is 0.4.
 const GAP: [f64; 2] = [0.45, 0.3];
 
-/// Seconds in which the walls close in, and in which they move back.
+/// Duration of closing in, and again of moving back, seconds.
 const CLOSE: f64 = 2.0;
 
-/// A tick that crushes may cost so many times a tick with room.
+/// Bound: the largest ratio of a tick that crushes to a tick with room.
 const MOST: f64 = 5.0;
 
 /// Adds rows for two, five and 26 walls.
@@ -96,7 +97,7 @@ fn row(
     Ok(())
 }
 
-/// A wall: a box whose faces are made of squares of a metre.
+/// The mesh of a wall: a box whose faces are divided into squares of 1 m.
 fn wall() -> Result<ColliderMesh, Box<dyn Error>> {
     let (mut positions, mut triangles) = (Vec::new(), Vec::new());
     for axis in 0..3 {

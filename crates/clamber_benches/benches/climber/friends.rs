@@ -1,7 +1,7 @@
-//! What does a tick cost of climbers that are obstacles to each other?
+//! Measures a tick of climbers that are obstacles to each other.
 //!
-//! Climbers walk on level ground, 2 m apart, each in a circle of its own, as one [`ClimberGroup`]. Each is stepped with
-//! all others among its obstacles, and with the ground alone.
+//! Climbers walk on level ground, 2 m apart, each in its own circle, as one [`ClimberGroup`]. They are stepped in two
+//! ways: with all others among their obstacles, and with the ground alone.
 
 use std::error::Error;
 use std::time::Instant;
@@ -12,9 +12,10 @@ use clamber_scenes::measure::{Cells, quantile};
 use clamber_scenes::tour::RATE;
 use glam::DVec3;
 
+/// Length of a tick, seconds.
 const DT: f64 = 1.0 / RATE;
 
-/// Adds rows for some numbers of climbers.
+/// Adds rows for 2, 8, 64 and 512 climbers.
 pub(crate) fn measure(ticks: u32, cells: &mut Cells) -> Result<(), Box<dyn Error>> {
     for count in [2, 8, 64, 512] {
         let alone = tick(count, ticks, false)?;
@@ -26,7 +27,7 @@ pub(crate) fn measure(ticks: u32, cells: &mut Cells) -> Result<(), Box<dyn Error
     Ok(())
 }
 
-/// The median of a tick, for each climber, microseconds.
+/// The median time of a tick divided by the number of climbers, microseconds.
 fn tick(count: u64, ticks: u32, together: bool) -> Result<f64, Box<dyn Error>> {
     let ground = HalfSpace::below(0.0);
     let side = (count as f64).sqrt().ceil() as u64;

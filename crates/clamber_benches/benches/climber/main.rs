@@ -1,15 +1,17 @@
-//! What does a climber's tick cost, beside rapier's character controller on a mesh that does not move?
+//! Measures a climber's tick, compared with rapier's character controller on a mesh that does not move.
 //!
-//! - A giant of 6,258 vertices walks. One climber stands on it, another climbs from its foot to its head. They skin
-//!   what they touch. rapier's `KinematicCharacterController` stands on the same mesh in the giant's first pose. That
-//!   mesh is never posed again, so rapier sees no motion, and nothing is skinned for it. All take turns, tick by tick,
-//!   on one thread. Times are medians. A rule for contacts lets the climber grip everything. The one that stands
-//!   needs no rule, and is measured without and with it.
-//! - A thousand climbers are on ten giants of 10,000 vertices in a valley: of five climbers two stand, one walks, two
-//!   climb. Measured is the share of two cores that they take, and the time of as many of rapier's controllers on the
-//!   same giants as meshes that never move. None of those can climb, so they stand and walk.
-//! - Walls close in on a climber and crush it. Measured is a tick that crushes, beside a tick in which it has room.
-//! - Up to 512 climbers walk beside each other. Measured is a tick of each, with and without the others as obstacles.
+//! - A giant of 6,258 vertices walks. One climber stands on it, another one climbs from its foot to its head. Their
+//!   queries skin only the clusters that they touch. rapier's `KinematicCharacterController` stands on the same mesh in
+//!   the giant's first pose. That mesh is never posed again, so rapier sees no motion, and no vertex is skinned for it.
+//!   All take turns, tick by tick, on one thread. Times are medians. A contact rule lets the climbing climber grip
+//!   everything. The standing climber needs no rule, and is measured without and with it.
+//! - A thousand climbers are on ten giants of 10,000 vertices in a valley: of every five climbers two stand, one walks
+//!   and two climb. The bench measures the share of two cores that they take, and the time of as many of rapier's
+//!   controllers on the same giants as meshes that never move. rapier's controllers cannot climb, so they stand and
+//!   walk.
+//! - Walls close in on a climber and crush it. The bench compares ticks that crush with ticks in which it has room.
+//! - Up to 512 climbers walk side by side. The bench measures the time of a tick per climber, with and without the
+//!   others as obstacles.
 //!
 //! Prints a table and writes it to `target/measure/climber.csv`: name, value, bound, holds.
 //!
@@ -34,14 +36,16 @@ use glam::DVec3;
 
 use characters::{Character, queries, still_mesh};
 
+/// Length of a tick, seconds.
 const DT: f64 = 1.0 / RATE;
 
-/// Height of the giant in metres, and the tempo of its clips, as in the climbing tours.
+/// Height of the giant in metres, and the playback rate of its clips; the same as in the climbing tours.
 const HEIGHT: (f64, f64) = (20.0, 1.0);
 
+/// Obstacle id of the giant.
 const GIANT: ObstacleId = ObstacleId(1);
 
-/// Ticks in which a climber, and rapier's controller, must land.
+/// Number of ticks within which a climber, and rapier's controller, must land.
 const SETTLE: u32 = 600;
 
 fn main() -> ExitCode {
@@ -161,7 +165,7 @@ fn landed(stage: &mut Stage<'_>) -> Result<Climber, Box<dyn Error>> {
     Err("the climber does not land on the giant".into())
 }
 
-/// A point half a metre above the giant's skin, below the top of its bounding ball.
+/// A point half a metre above the giant's skin, straight below the top of its bounding ball.
 fn above(stage: &Stage<'_>) -> Result<DVec3, Box<dyn Error>> {
     let (middle, radius) = stage
         .surface()
@@ -172,7 +176,7 @@ fn above(stage: &Stage<'_>) -> Result<DVec3, Box<dyn Error>> {
     Ok(ray.ok_or("no skin below the giant's top")?.point + DVec3::Y * 0.5)
 }
 
-/// rapier's controller on the giant's first pose.
+/// rapier's controller on a mesh of the giant's first pose.
 struct Still {
     world: PhysicsWorld,
     character: Character,
@@ -193,7 +197,7 @@ impl Still {
         Ok(still)
     }
 
-    /// Runs a tick in which the character falls by what gravity adds in a tick; returns the microseconds.
+    /// Runs a tick of the character, which does not walk; returns the microseconds.
     fn step(&mut self) -> f64 {
         let queries = queries(&self.world);
         let start = Instant::now();

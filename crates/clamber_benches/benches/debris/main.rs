@@ -1,10 +1,10 @@
-//! What do collisions of 200 rocks with a giant's skin cost, beside the whole skin as one deformable mesh in rapier?
+//! Measures collisions of 200 rocks with a giant's skin, compared with the whole skin as one deformable mesh in rapier.
 //!
-//! Two worlds have the same rocks on the same shaking giant, and take turns. One has debris with its pieces of skin.
-//! The other has one kinematic body with all triangles, skinned by the same kernel and set each tick. A tick is posing
-//! the skin, adding it to rapier, the step, and the work after the step. A third world has the rocks without a giant:
-//! about the share of rapier's own step in the other two, although the rocks lie elsewhere. That share is taken off
-//! both for the ratio that has a bound.
+//! Two worlds have the same rocks on the same shaking giant, and take turns. One world uses clamber's debris, which
+//! adds pieces of skin near the rocks. The other has one kinematic body with all triangles, skinned by the same kernel
+//! and updated each tick. A tick consists of posing the skin, adding it to rapier, rapier's step, and the work after
+//! the step. A third world has the rocks without a giant. Its time is about the share of rapier's own step in the other
+//! two, although its rocks lie elsewhere. It is subtracted from both for the ratio that has a bound.
 //!
 //! Prints a table and writes it to `target/measure/debris.csv`: name, value, bound, holds.
 //!
@@ -22,10 +22,13 @@ use clamber_scenes::rocks::{Rocks, TICK};
 
 use whole::Whole;
 
+/// Number of rocks in each world.
 const ROCKS: usize = 200;
 
-/// Number of ticks that are not counted, in which the rocks fall on the giant, and of counted ones.
+/// Number of ticks at the start that are not counted: the rocks fall on the giant.
 const FALL: u32 = 200;
+
+/// Number of counted ticks.
 const COUNTED: u32 = 200;
 
 fn main() -> ExitCode {

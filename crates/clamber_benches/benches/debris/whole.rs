@@ -1,4 +1,4 @@
-//! The same rocks against the whole skin as one deformable rapier mesh.
+//! The same rocks against the whole skin as one deformable mesh in rapier.
 
 use std::error::Error;
 use std::time::Instant;
@@ -35,7 +35,7 @@ impl<'a> Whole<'a> {
         self.scene.play(clip);
     }
 
-    /// Runs one tick; returns the time to skin the mesh and set it, microseconds.
+    /// Runs one tick; returns the time to skin the mesh and set its vertices, microseconds.
     pub(crate) fn step(&mut self) -> Result<f64, Box<dyn Error>> {
         self.scene.pose()?;
         let start = Instant::now();

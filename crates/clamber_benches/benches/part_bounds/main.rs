@@ -1,8 +1,8 @@
-//! What does it cost to bound each joint's part in each tick, and how tight are the bounds?
+//! Measures the cost and the tightness of bounds of each joint's part, computed in each tick.
 //!
 //! Spheres and capsules are made in three ways: precomputed over all clips, refitted to skinned vertices, and derived
-//! from the palette alone. Criterion measures each method. Then prints a table and writes it to
-//! `target/measure/part_bounds.csv`. Fails if a vertex lies outside a refitted or derived bound.
+//! from the palette alone. Criterion measures each method. Then the bench prints a table and writes it to
+//! `target/measure/part_bounds.csv`. It fails if a vertex lies outside a refitted or derived bound.
 //!
 //! Run it with `cargo bench -p clamber_benches --bench part_bounds`; briefly with `-- --test`. If `CLAMBER_TEST_DATA`
 //! is set, it also measures five third-party models.
@@ -24,7 +24,7 @@ use method::{METHODS, Workspace};
 use poses::Subject;
 use report::Report;
 
-/// Sizes and times of a run.
+/// Sizes and times of a run of the bench.
 struct Effort {
     brief: bool,
     /// Numbers of vertices of the beasts.
@@ -33,10 +33,11 @@ struct Effort {
     giants: &'static [usize],
     /// Number of poses of each clip from which bounds are precomputed.
     samples: u32,
-    /// Time for the median of one method on one creature.
+    /// Time budget for the median of one method on one creature.
     budget: Duration,
 }
 
+/// The full run.
 const FULL: Effort = Effort {
     brief: false,
     beasts: &[1_000, 6_000],
@@ -45,6 +46,7 @@ const FULL: Effort = Effort {
     budget: Duration::from_millis(300),
 };
 
+/// The brief run: with `-- --test`, and outside `cargo bench`.
 const BRIEF: Effort = Effort {
     brief: true,
     beasts: &[1_000],
@@ -68,7 +70,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Measures all creatures; returns how many vertices were outside refitted and derived bounds.
+/// Measures all creatures; returns the number of vertices outside refitted and derived bounds.
 fn run(effort: &Effort) -> Result<usize, Box<dyn Error>> {
     let mut report = Report::default();
     let mut criterion = Criterion::default()
@@ -104,7 +106,7 @@ fn creatures(effort: &Effort) -> Result<Vec<Creature>, Box<dyn Error>> {
     Ok(creatures)
 }
 
-/// Lets criterion measure one tick of each method, over the poses in turn.
+/// Lets criterion measure one tick of each method, which goes through the poses in turn.
 fn measure(criterion: &mut Criterion, subject: &Subject) -> Result<(), Box<dyn Error>> {
     let mut group = criterion.benchmark_group(subject.label());
     let mut workspace = Workspace::new(subject);

@@ -13,7 +13,7 @@ use glam::Vec3;
 use crate::poses::Subject;
 use crate::precomputed::model_from_joint;
 
-/// The source of bounds.
+/// The way in which bounds are made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Source {
     Precomputed,
@@ -22,7 +22,7 @@ pub(crate) enum Source {
     PaletteInterval,
     /// The library's own bounds of parts: spheres, eight at a time in f32.
     Surface,
-    /// From the palette: capsules by hull or weight interval, whichever is smaller.
+    /// From the palette: capsules by hull or by weight interval, whichever is smaller.
     Palette,
 }
 
@@ -42,6 +42,7 @@ const fn method(source: Source, shape: Shape) -> Method {
     Method { source, shape }
 }
 
+/// All measured methods.
 pub(crate) const METHODS: [Method; 8] = [
     method(Source::Precomputed, Shape::Sphere),
     method(Source::Precomputed, Shape::Capsule),
@@ -58,7 +59,7 @@ pub(crate) struct Workspace {
     surface: SkinnedSurface,
     maps: JointMaps,
     positions: Vec<Vec3>,
-    /// The bounds of each part; `None` for a part without.
+    /// The bound of each part; `None` for a part without a bound.
     pub(crate) volumes: Vec<Option<BoundingVolume>>,
 }
 
@@ -72,7 +73,7 @@ impl Workspace {
         }
     }
 
-    /// Advances the surface by a tick, and reads its spheres.
+    /// Advances the surface by a tick, and reads its spheres of parts.
     fn ask(&mut self, palette: &Palette) {
         let advanced = self.surface.advance(palette, Similarity::IDENTITY);
         assert_eq!(advanced, Ok(()));
@@ -115,7 +116,7 @@ impl Method {
         assert_eq!(skinned, Ok(()), "{}", subject.label());
         let positions = &workspace.positions;
         if self.shape == Shape::Sphere {
-            // The thesis's method (5.2.4).
+            // The method of the thesis (section 5.2.4).
             workspace.volumes.extend(mesh.parts().iter().map(|part| {
                 let vertices = part.vertices.iter().map(|v| positions[v.index()]);
                 Sphere::around_mean(vertices).map(BoundingVolume::Sphere)

@@ -15,7 +15,8 @@ pub(crate) struct Subject {
     samples: u32,
 }
 
-/// Place of the poses of [`Subject::between`] in the interval between two samples.
+/// Position of the poses of [`Subject::between`] between two samples, as a share of the interval: half-way is farthest
+/// from both.
 const BETWEEN: f64 = 0.5;
 
 impl Subject {
@@ -47,7 +48,7 @@ impl Subject {
         self.of_all_clips(BETWEEN, 2)
     }
 
-    /// Even blends of every clip with the next clip, at another time, and with the rest pose.
+    /// Blends of every clip at equal weight, with the next clip at another time, and with the rest pose.
     pub(crate) fn blended(&self) -> Result<Vec<Palette>, RigError> {
         let rest = self.creature.skeleton.rest_pose();
         let clips = &self.creature.clips;
@@ -63,7 +64,7 @@ impl Subject {
         Ok(palettes)
     }
 
-    /// Every `step`-th sample of each clip, shifted by `offset` of a sample.
+    /// Every `step`-th sample of each clip, shifted by `offset` of a sampling interval.
     fn of_all_clips(&self, offset: f64, step: usize) -> Result<Vec<Palette>, RigError> {
         let rest = self.creature.skeleton.rest_pose();
         let mut palettes = Vec::new();

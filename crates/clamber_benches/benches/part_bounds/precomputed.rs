@@ -1,6 +1,6 @@
-//! Precomputed bounds, the method to compare with: for each part a sphere and a capsule in the space of its joint, made
-//! once, that hold its vertices in every sampled pose. A tick only moves them with the joint. In poses that were not
-//! sampled, vertices may be outside.
+//! Precomputed bounds, the baseline of the comparison: for each part a sphere and a capsule in the space of its joint,
+//! made once, that hold its vertices in every sampled pose. A tick only moves them with the joint. In poses that were
+//! not sampled, vertices may be outside.
 
 use clamber::geometry::Sphere;
 use clamber::mesh::{ColliderMesh, Part};

@@ -15,7 +15,7 @@ use crate::poses::Subject;
 /// The results of all creatures so far.
 pub(crate) struct Report {
     pub(crate) table: Table,
-    /// Number of vertices outside refitted and derived bounds, which are bugs.
+    /// Number of vertices outside refitted and derived bounds. Each one is a bug.
     pub(crate) escapes: usize,
 }
 

@@ -15,10 +15,10 @@ pub(crate) const RATE: f64 = 60.0;
 /// Distance between giants, metres.
 const APART: f64 = 31.0;
 
-/// The vertices that are skinned in a tick.
+/// Which vertices a tick skins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Skinning {
-    /// Only those that queries touch.
+    /// Only the vertices that queries touch.
     Lazy,
     /// All vertices.
     Everything,
@@ -75,7 +75,7 @@ impl Herd {
         Ok(herd)
     }
 
-    /// Poses some of the giants for a tick; the others are not touched.
+    /// Poses the giants `awake` for a tick; the others are not touched.
     pub(crate) fn pose(
         &mut self,
         tick: usize,

@@ -1,12 +1,16 @@
-//! How much does a scene pay for giants and skin that no query touches?
+//! Measures the cost of giants and skin that no query touches.
 //!
 //! Valleys have 1, 10 and 100 walking giants of 10,000 vertices, each in its own phase of the walk, and 0 to 1,000
-//! climbers on up to three of them. The climbers stand or walk, with the valley and all giants as obstacles. Measured
-//! are a tick, the same tick with everything skinned, and the share of the skin that a tick touches; a hundred giants
-//! with riders on one, and that one giant alone; a thousand riders on two cores, and on one. The variants take turns,
-//! tick by tick, in one process. Times are medians.
+//! climbers on up to three of them. The climbers stand or walk, with the valley and all giants as obstacles. The bench
+//! measures:
 //!
-//! For two cores the fastest tenths of ticks are given as well. If the host shares its cores with other machines, a
+//! - a tick, the same tick with everything skinned, and the share of the skin that a tick touches;
+//! - a hundred giants with riders on one of them, compared with that giant alone;
+//! - a thousand riders on two cores, compared with one core.
+//!
+//! The variants take turns, tick by tick, in one process. Times are medians.
+//!
+//! For two cores the table also has the fastest tenths of ticks. If the host shares its cores with other machines, a
 //! tick on both cores waits for the slower one, and its median depends on the host. The best possible ratio is
 //! therefore measured too: two scenes that share no written data, run one after the other and at once.
 //!
@@ -30,10 +34,10 @@ use clamber_scenes::{Creature, valley};
 use herd::{Herd, Skinning};
 use riders::Riders;
 
-/// Largest number of giants that are ridden.
+/// The largest number of giants that have riders.
 const FEW: usize = 3;
 
-/// Ticks that are not timed, in which climbers land.
+/// Number of ticks at the start that are not timed: climbers land in them.
 const SETTLE: usize = 20;
 
 struct Effort {
@@ -44,6 +48,7 @@ struct Effort {
     ticks: usize,
 }
 
+/// The full run.
 const FULL: Effort = Effort {
     brief: false,
     vertices: 10_000,
@@ -52,6 +57,7 @@ const FULL: Effort = Effort {
     ticks: 120,
 };
 
+/// The brief run: with `-- --test`, and outside `cargo bench`.
 const BRIEF: Effort = Effort {
     brief: true,
     vertices: 2_000,
@@ -106,7 +112,7 @@ struct Scene<'a> {
     herd: Herd,
     riders: Riders,
     world: &'a PhysicsWorld,
-    /// Microseconds of the poses of the first giants, of the poses of the other giants, and of the riders.
+    /// Microseconds of each tick: poses of the `first` giants, poses of the other giants, and the riders.
     times: [Vec<f64>; 3],
 }
 
@@ -128,7 +134,7 @@ impl<'a> Scene<'a> {
         })
     }
 
-    /// Runs one tick with `awake` giants posed. The poses of the `first` ones are timed apart.
+    /// Runs one tick with the first `awake` giants posed. The poses of the `first` ones are timed separately.
     fn tick(&mut self, tick: usize, first: usize, awake: usize) -> Result<(), Box<dyn Error>> {
         self.riders.sit(&self.herd)?;
         let before = BodyPoses::default();
@@ -155,7 +161,7 @@ impl<'a> Scene<'a> {
         Ok(())
     }
 
-    /// The median time of whole ticks.
+    /// The median time of whole ticks, microseconds.
     fn whole(&self) -> f64 {
         let [ridden, others, riders] = &self.times;
         let whole = ridden.iter().zip(others).zip(riders);
@@ -165,7 +171,7 @@ impl<'a> Scene<'a> {
         )
     }
 
-    /// The median time of one part of a tick.
+    /// The median time of one part of a tick, microseconds; `part` is an index of `times`.
     fn part(&self, part: usize) -> f64 {
         quantile(&mut self.times[part].clone(), 0.5)
     }
@@ -221,7 +227,7 @@ fn valley_of(
     Ok(())
 }
 
-/// Measures riders on one of many giants, beside the same riders on that giant alone.
+/// Measures riders on one of many giants, compared with the same riders on that giant alone.
 fn on_one(
     creature: &Creature,
     world: &PhysicsWorld,
@@ -232,7 +238,7 @@ fn on_one(
 ) -> Result<(), Box<dyn Error>> {
     let scene = |giants| Scene::new(creature, world, giants, riders, 1, Skinning::Lazy);
     let (mut many, mut asleep, mut alone) = (scene(giants)?, scene(giants)?, scene(giants)?);
-    // The giant stands at the same place as among the others, which are no obstacles here.
+    // The giant keeps its place among the others, which are removed and therefore no obstacles.
     alone.herd.giants.truncate(1);
     for tick in 0..SETTLE + ticks {
         many.tick(tick, 1, giants)?;
@@ -260,7 +266,7 @@ fn on_one(
 }
 
 /// Measures riders on all giants, on rayon's threads, with one core and with two. Also measures the best possible gain
-/// of this machine's second core: two such scenes that share no written data, at once and one after the other.
+/// of this machine's second core: two such scenes that share no written data, run at once and one after the other.
 fn on_two_cores(
     creature: &Creature,
     world: &PhysicsWorld,
@@ -285,7 +291,7 @@ fn on_two_cores(
         }
         let [one, two] = &scenes;
         same(&one.riders, &two.riders, tick)?;
-        // Alternately one after the other and at once.
+        // Even ticks run one scene after the other, odd ticks run both at once.
         let us = both(&mut apart, tick, &alone, tick % 2 == 0)?;
         if tick >= SETTLE {
             if tick % 2 == 0 {
@@ -314,7 +320,8 @@ fn on_two_cores(
     Ok(())
 }
 
-/// Runs a tick of both scenes, each on its own pool, in turn or at once; returns the microseconds.
+/// Runs a tick of both scenes, each on its own pool. Returns microseconds: the sum of the two times if they run in
+/// turn, the longer one if they run at once.
 fn both(
     scenes: &mut [Scene<'_>; 2],
     tick: usize,
@@ -357,7 +364,7 @@ fn in_parallel(
     Ok(timed?)
 }
 
-/// Fails if the states of the riders are not equal.
+/// Fails if the riders' states differ.
 fn same(one: &Riders, other: &Riders, tick: usize) -> Result<(), Box<dyn Error>> {
     if one.states() == other.states() {
         Ok(())

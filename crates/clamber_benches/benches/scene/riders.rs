@@ -13,8 +13,8 @@ use crate::herd::{Herd, RATE};
 /// Smallest Y of a seat's unit normal, so that a climber can stand there while the giant walks.
 const LEVEL: f32 = 0.85;
 
-/// Largest number of riders that a thread takes at a time. By default rayon halves a list only two or three times, and
-/// a thread waits for the last piece, a tenth of a millisecond for each dozen riders.
+/// The largest number of riders that a thread takes at a time. By default rayon halves a list only two or three times,
+/// and one thread then waits for the other's last piece: a tenth of a millisecond for each dozen riders.
 const GRAIN: usize = 16;
 
 /// Distance from its seat at which a climber is put back, metres.
@@ -31,7 +31,7 @@ struct Seat {
 }
 
 impl Riders {
-    /// `count` climbers with seats on level skin of the first `mounts` giants.
+    /// `count` climbers with seats on level skin, spread over the first `mounts` giants.
     pub(crate) fn new(herd: &Herd, count: usize, mounts: usize) -> Result<Self, Box<dyn Error>> {
         let mut rng = fastrand::Rng::with_seed(9);
         let mut seats = Vec::with_capacity(count);
@@ -110,7 +110,7 @@ impl Riders {
             .collect()
     }
 
-    /// Share of the climbers that stand.
+    /// Share of the climbers that stand, 0 to 1.
     pub(crate) fn standing(&self) -> f64 {
         let modes = self.climbers.iter().map(|climber| climber.state().mode);
         let standing = modes.filter(|mode| *mode == ClimberMode::Standing).count();

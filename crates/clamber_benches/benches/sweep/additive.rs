@@ -1,17 +1,17 @@
-//! Additive CCD of a point and a triangle, the method to compare with on single triangles (Li, Kaufman, Jiang 2021,
-//! "Codimensional Incremental Potential Contact", ACM Transactions on Graphics 40(4), section 5.3). Its minimum
-//! separation is the sphere's radius.
+//! Additive CCD of a point and a triangle, the baseline on single triangles (Li, Kaufman, Jiang 2021, "Codimensional
+//! Incremental Potential Contact", ACM Transactions on Graphics 40(4), section 5.3). Its minimum separation is the
+//! sphere's radius.
 
 use glam::DVec3;
 
-/// The search ends at this share of the first gap, and each step leaves this share of its gap, as the authors
-/// recommend.
+/// Relative gap, 0 to 1: the search ends at this share of the first gap, and each step leaves this share of the current
+/// gap. The authors recommend this value.
 pub(crate) const LEFT: f64 = 0.1;
 
-/// Largest number of steps. The method as published has no limit; without one, sliding motions would run for ever.
+/// The largest number of steps. The published method has no limit, but without one a sliding motion would not end.
 pub(crate) const MOST_STEPS: u32 = 10_000;
 
-/// The gap that counts as a contact, beyond the separation.
+/// The gap, beyond the separation, at which the search reports a contact.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum End {
     /// [`LEFT`] times the gap at the start, as published.
@@ -20,8 +20,8 @@ pub(crate) enum End {
     Tolerance(f64),
 }
 
-/// The time at which a point comes near a triangle, `None` if never, and the number of steps. `positions` are the point
-/// and the corners a, b and c at the start. At the limit of steps the current time is returned.
+/// Returns the time at which a point comes near a triangle, `None` if it does not, and the number of steps. `positions`
+/// are the point and the corners a, b and c at the start. At the limit of steps the current time is returned.
 pub(crate) fn additive(
     mut positions: [DVec3; 4],
     motions: [DVec3; 4],

@@ -22,6 +22,7 @@ pub(crate) struct Cast {
 
 /// A walking giant at two ticks.
 pub(crate) struct Field {
+    /// The giant's skin, posed for the second tick.
     surface: SkinnedSurface,
     /// Palettes at the start and at the end of the swept tick.
     palettes: [Palette; 2],
@@ -29,8 +30,10 @@ pub(crate) struct Field {
     edge: f32,
 }
 
-/// Length of a sphere's motion, and its start above the skin, in radii.
+/// Length of a sphere's motion, in radii.
 const WAY: f32 = 10.0;
+
+/// Height of a sphere's start above the skin, in radii.
 const ABOVE: f32 = 3.0;
 
 impl Field {
@@ -68,7 +71,7 @@ impl Field {
         self.compare(&casts, &name, cells)?;
         let mut times: [Vec<f64>; 5] = Default::default();
         for cast in &casts {
-            // Each runs once before it is timed, so that its data is in the caches.
+            // `time` runs each query once before it is timed, so that its data is in the caches.
             times[0].push(time(|| self.cast(cast)));
             times[1].push(time(|| self.sweep(cast)));
             times[2].push(time(|| self.parry.cast(cast)));
@@ -103,7 +106,7 @@ impl Field {
         Ok(())
     }
 
-    /// Starts a new tick, with nothing skinned or bounded yet.
+    /// Starts a new tick, in which no vertex is skinned and no bound computed yet.
     fn renew(&mut self) -> Result<(), Box<dyn Error>> {
         self.surface
             .place(&self.palettes[0], Similarity::IDENTITY)?;
@@ -127,8 +130,8 @@ impl Field {
         space.cast_capsule(&ball, [cast.motion; 2], &options)
     }
 
-    /// Seeded random casts. They start above random points of the skin, without contact, and move down to the skin in a
-    /// random direction.
+    /// Seeded random casts. They start above random points of the skin, without contact, and move down towards the skin
+    /// in a random direction.
     fn casts(&self, radius: f32, count: usize) -> Result<Vec<Cast>, Box<dyn Error>> {
         let mut rng = fastrand::Rng::with_seed(5);
         let mut casts = Vec::with_capacity(count);
@@ -153,7 +156,7 @@ impl Field {
     }
 
     /// Counts the hits of clamber and parry, and prints the largest difference where both hit. Fails if clamber misses
-    /// a hit of parry's, unless there is no skin where parry reports it.
+    /// a hit of parry's, unless parry reports it where there is no skin.
     fn compare(&self, casts: &[Cast], name: &str, cells: &mut Cells) -> Result<(), Box<dyn Error>> {
         let (mut hits, mut only_ours, mut only_theirs, mut worst) = (0, 0, 0, 0.0f64);
         let mut nothing_there = 0;
@@ -161,7 +164,8 @@ impl Field {
             match (self.cast(cast), self.parry.cast(cast)) {
                 (Some(ours), Some(theirs)) => {
                     hits += 1;
-                    // Measured along the motion. Where the skin is grazed, a small depth is a long way.
+                    // Measured along the motion: in grazing contacts a small difference in depth is a long distance
+                    // along it.
                     let off = (ours.time - theirs).abs() * f64::from(cast.motion.length());
                     worst = worst.max(off / f64::from(cast.sphere.radius));
                 }
@@ -198,7 +202,7 @@ impl Field {
     }
 }
 
-/// Microseconds of the second of two runs.
+/// Runs `run` twice; returns the microseconds of the second run.
 fn time<T>(mut run: impl FnMut() -> T) -> f64 {
     black_box(run());
     once(run)

@@ -1,9 +1,10 @@
-//! What do casts and sweeps cost, beside parry's ball cast and beside additive CCD?
+//! Measures casts and sweeps, compared with parry's ball cast and with additive CCD.
 //!
 //! Spheres with radii of one and of ten mean edge lengths start near the skin of a walking giant of a million
 //! triangles, and move by ten times their radius. parry casts the same balls against a mesh with the same positions;
-//! the time to set these is left out. On single triangles the sweeps are compared with additive CCD. Prints a table and
-//! writes it to `target/measure/sweep.csv`: name, value, bound, holds. Fails if clamber misses a hit of parry's.
+//! the time to set these positions is not measured. On single triangles the sweeps are compared with additive CCD.
+//! Prints a table and writes it to `target/measure/sweep.csv`: name, value, bound, holds. Fails if clamber misses a hit
+//! of parry's.
 //!
 //! Run it with `cargo bench -p clamber_benches --bench sweep`; briefly with `-- --test`.
 
@@ -22,7 +23,7 @@ use clamber_scenes::measure::{Bound, Cells, is_brief};
 
 use casts::Field;
 
-/// Sizes of a run.
+/// Sizes of a run of the bench.
 struct Effort {
     brief: bool,
     vertices: usize,
@@ -30,6 +31,7 @@ struct Effort {
     sheets: usize,
 }
 
+/// The full run.
 const FULL: Effort = Effort {
     brief: false,
     vertices: 500_000,
@@ -37,6 +39,7 @@ const FULL: Effort = Effort {
     sheets: 50,
 };
 
+/// The brief run: with `-- --test`, and outside `cargo bench`.
 const BRIEF: Effort = Effort {
     brief: true,
     vertices: 3_000,

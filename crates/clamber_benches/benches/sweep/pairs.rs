@@ -1,4 +1,4 @@
-//! Single triangles: clamber's sweeps, eight triangles at a time, beside additive CCD.
+//! Single triangles: clamber's sweeps, eight triangles at a time, compared with additive CCD.
 
 use std::error::Error;
 use std::sync::Arc;
@@ -13,10 +13,11 @@ use glam::{DVec3, Vec3};
 use crate::TOLERANCE;
 use crate::additive::{End, MOST_STEPS, additive};
 
-/// Radius of the sphere, metres. It stays at the origin, and is larger than the sheets that move into it or past it.
+/// Radius of the sphere, metres. The sphere stays at the origin. It is larger than the sheets that move into it or past
+/// it.
 const RADIUS: f32 = 1.0;
 
-/// A sheet has so many by so many vertices: one cluster.
+/// Number of rows of a sheet, and of vertices in a row. The 49 vertices make one cluster.
 const ROWS: usize = 7;
 
 /// Half the width of a sheet, metres.
@@ -32,7 +33,7 @@ pub(crate) fn measure(count: usize, cells: &mut Cells) -> Result<(), Box<dyn Err
             "sheets that turn and fly into the sphere",
             (0..count).map(|_| nearing(&mut rng)).collect(),
         ),
-        // The case at which additive CCD is slowest.
+        // The case in which additive CCD is slowest.
         (
             "sheets that slide by",
             (0..count / 10).map(|_| sliding(&mut rng)).collect(),
@@ -58,7 +59,7 @@ pub(crate) fn measure(count: usize, cells: &mut Cells) -> Result<(), Box<dyn Err
     Ok(())
 }
 
-/// Microseconds of clamber's sweeps for all sheets, each on its own surface.
+/// The time of clamber's sweeps for all sheets, each on its own surface, microseconds.
 fn ours(name: &str, sheets: &[Sheet]) -> Result<f64, Box<dyn Error>> {
     let surfaces = sheets.iter().map(posed).collect::<Result<Vec<_>, _>>()?;
     let ball = Capsule::ball(Vec3::ZERO, RADIUS).ok_or("no ball")?;
@@ -81,7 +82,7 @@ fn ours(name: &str, sheets: &[Sheet]) -> Result<f64, Box<dyn Error>> {
     Ok(time)
 }
 
-/// Microseconds of additive CCD for all triangles, and the share of them that reach the limit of steps.
+/// The time of additive CCD for all triangles, microseconds, and the share of triangles that reach the limit of steps.
 fn additive_of(name: &str, triangles: &[[[Vec3; 3]; 2]], end: End) -> (f64, f64) {
     let (mut found, mut capped, mut most) = (0, 0, 0);
     let time = median_us(Duration::from_millis(300), || {
@@ -104,7 +105,7 @@ fn additive_of(name: &str, triangles: &[[[Vec3; 3]; 2]], end: End) -> (f64, f64)
     (time, capped as f64 / triangles.len() as f64)
 }
 
-/// A sheet that starts two metres off the sphere, and moves to its centre while it turns.
+/// A sheet that starts two metres off the sphere and moves to the sphere's centre while it turns.
 fn nearing(rng: &mut fastrand::Rng) -> Sheet {
     let from = vector(rng).normalize_or(Vec3::X) * (RADIUS + 2.0);
     let (across, up) = from.normalize().any_orthonormal_pair();
@@ -116,7 +117,7 @@ fn nearing(rng: &mut fastrand::Rng) -> Sheet {
     [start, end]
 }
 
-/// A sheet that moves along its own plane, two tolerances away from the sphere.
+/// A sheet that slides in its own plane, at twice the tolerance from the sphere.
 fn sliding(rng: &mut fastrand::Rng) -> Sheet {
     let height = RADIUS + 2.0 * TOLERANCE as f32;
     let way = vector(rng) * 0.5;

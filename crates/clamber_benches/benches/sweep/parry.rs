@@ -12,7 +12,7 @@ use crate::casts::Cast;
 pub(crate) struct Parry(TriMesh);
 
 impl Parry {
-    /// A mesh with the surface's current pose.
+    /// A mesh with the surface's current positions.
     pub(crate) fn new(surface: &SkinnedSurface) -> Result<Self, Box<dyn Error>> {
         let mut positions = Vec::new();
         surface.skin_all(&mut positions);
@@ -21,7 +21,7 @@ impl Parry {
         Ok(Self(TriMesh::new(positions, triangles)?))
     }
 
-    /// The share of the motion at which the ball touches; `None` if it does not touch.
+    /// The time of contact as a share of the motion; `None` if the ball does not touch.
     pub(crate) fn cast(&self, cast: &Cast) -> Option<f64> {
         let options = ShapeCastOptions {
             max_time_of_impact: 1.0,

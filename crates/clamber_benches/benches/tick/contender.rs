@@ -17,13 +17,13 @@ pub(crate) trait Contender {
     fn tick(&mut self, tick: &Tick) -> usize;
 }
 
-/// clamber's surface, which skins only what queries touch.
+/// clamber's surface, which skins only the clusters that queries touch.
 pub(crate) struct Lazy {
     pub(crate) surface: SkinnedSurface,
     hits: Vec<SurfaceHit>,
 }
 
-/// clamber's surface, which skins everything and refits all bounds before it answers.
+/// clamber's surface, which skins all vertices and refits all bounds before it answers.
 pub(crate) struct Eager(pub(crate) Lazy);
 
 /// parry's triangle mesh, with its vertices set each tick.
@@ -125,7 +125,7 @@ impl Contender for Parry {
                 .shape
                 .cast_local_ray_and_get_normal(&ray, rider.reach, false);
             found += usize::from(hit.is_some());
-            // The anchor's position and velocity, without frame and stretch.
+            // The anchor's position and its motion over the tick, without frame and stretch.
             let corners = self.mesh.triangles()[rider.anchor.triangle.index()];
             let at = |positions: &[Vec3]| {
                 let weighted = corners.iter().zip(rider.anchor.barycentric);

@@ -1,4 +1,4 @@
-//! The skinning kernel beside scalar loops, with four joints a cluster, and beside copying memory.
+//! The skinning kernel with four joints per vertex, compared with scalar loops and with copying memory.
 
 use std::error::Error;
 use std::hint::black_box;
@@ -13,10 +13,10 @@ use glam::{DAffine3, DQuat, DVec3, Vec3};
 
 use clamber_scenes::measure::{Bound, Cells};
 
-/// Number of joints that move every vertex.
+/// Number of joints that influence every vertex.
 const JOINTS: usize = 4;
 
-/// Bytes that skinning one vertex reads and writes: position, weights, position.
+/// Bytes that skinning one vertex reads (position 12, weights 16) and writes (position 12).
 const BYTES: f64 = 40.0;
 
 pub(crate) fn measure(brief: bool, cells: &mut Cells) -> Result<(), Box<dyn Error>> {
@@ -73,7 +73,7 @@ impl Sheet {
         })
     }
 
-    /// Speed of clamber's kernel in million slots a second. Each copy of a vertex in a cluster is a slot.
+    /// Speed of clamber's kernel in million slots a second. A slot is one copy of a vertex in a cluster.
     fn ours(&self, level: SimdLevel, budget: Duration) -> Result<f64, Box<dyn Error>> {
         let mut numbers = Vec::new();
         let matrices = self.palette.matrices();
@@ -132,7 +132,7 @@ fn fastest_scalar(sheet: &Sheet, budget: Duration) -> f64 {
         .collect();
     let palette: Vec<[[f32; 4]; 3]> = sheet.palette.matrices().iter().map(|m| m.rows).collect();
     let mut out = vec![[0.0f32; 3]; vertices.len()];
-    // Each matrix transforms the point; the results are added with their weights.
+    // Each matrix transforms the point, and the weighted results are added.
     let points = median_us(budget, || {
         for (out, v) in out.iter_mut().zip(black_box(&vertices)) {
             let [x, y, z] = v.position;
@@ -147,7 +147,7 @@ fn fastest_scalar(sheet: &Sheet, budget: Duration) -> f64 {
         }
         black_box(&out);
     });
-    // A weighted sum of the matrices transforms the point.
+    // The weighted sum of the matrices transforms the point.
     let matrices = median_us(budget, || {
         for (out, v) in out.iter_mut().zip(black_box(&vertices)) {
             let mut blend = [[0.0; 4]; 3];
@@ -168,7 +168,7 @@ fn fastest_scalar(sheet: &Sheet, budget: Duration) -> f64 {
 }
 
 fn in_memory(sheet: &Sheet, budget: Duration, cells: &mut Cells) -> Result<(), Box<dyn Error>> {
-    // Copying moves every byte twice, in and out. It is more than any cache holds.
+    // Copying reads and writes every byte, so it counts twice. The data exceeds every cache.
     let bytes = 256e6;
     let from = vec![1u64; (bytes / 16.0) as usize];
     let mut to = vec![0u64; from.len()];

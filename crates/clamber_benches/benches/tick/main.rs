@@ -1,8 +1,8 @@
-//! What does a whole tick cost with clamber lazily, clamber eagerly, and parry's refitted mesh?
+//! Measures a whole tick with clamber lazily, clamber eagerly, and parry's refitted mesh.
 //!
-//! A giant of 3,000 to 500,000 vertices walks. Riders on its skin each ask for two overlaps, a ray and an anchor's
+//! A giant of 3,000 to 500,000 vertices walks. Each rider on its skin asks for two overlaps, a ray and an anchor's
 //! motion. All contenders answer the same ticks in turn, on one thread. Prints a table and writes it to
-//! `target/measure/tick.csv`: name, value, bound, holds. Fails if clamber's numbers of hits differ between lazy and
+//! `target/measure/tick.csv`: name, value, bound, holds. Fails if clamber's number of hits differs between lazy and
 //! eager.
 //!
 //! Run it with `cargo bench -p clamber_benches --bench tick`; briefly with `-- --test`.
@@ -24,7 +24,7 @@ use contender::{Contender, Eager, Lazy, Parry};
 use glam::Vec3;
 use timing::{Lap, race};
 
-/// Sizes of a run.
+/// Sizes of a run of the bench.
 struct Effort {
     brief: bool,
     small: usize,
@@ -34,6 +34,7 @@ struct Effort {
     riders: usize,
 }
 
+/// The full run.
 const FULL: Effort = Effort {
     brief: false,
     small: 3_000,
@@ -43,6 +44,7 @@ const FULL: Effort = Effort {
     riders: 100,
 };
 
+/// The brief run: with `-- --test`, and outside `cargo bench`.
 const BRIEF: Effort = Effort {
     brief: true,
     small: 2_000,
@@ -118,7 +120,7 @@ fn run(effort: &Effort) -> Result<(), Box<dyn Error>> {
     cells.finish("tick", effort.brief)
 }
 
-/// All contenders.
+/// All contenders with their own data.
 struct Field {
     lazy: Lazy,
     eager: Eager,
@@ -134,7 +136,7 @@ impl Field {
         })
     }
 
-    /// The laps of clamber lazily, clamber eagerly, and parry.
+    /// Races clamber lazily, clamber eagerly and parry; returns their laps in this order.
     fn race(
         &mut self,
         workload: &Workload,
@@ -199,6 +201,7 @@ fn nothing_near(workload: &Workload, cells: &mut Cells) -> Result<(), Box<dyn Er
     let ball = Capsule::ball(place, 1.0).ok_or("no ball")?;
     let ray = Ray::new(place, Vec3::X).ok_or("no direction")?;
     let mut hits = Vec::new();
+    /// Number of repetitions in a sample: one repetition is too short to time.
     const TIMES: u32 = 1_000;
     let far = median_us(Duration::from_millis(50), || {
         for _ in 0..TIMES {
@@ -222,7 +225,7 @@ fn nothing_near(workload: &Workload, cells: &mut Cells) -> Result<(), Box<dyn Er
     Ok(())
 }
 
-/// Adds the medians of a race.
+/// Adds the median of each contender of a race, and prints the quartiles.
 fn laps_of(cells: &mut Cells, name: &str, laps: &[Lap]) {
     for (lap, who) in laps.iter().zip(["lazy", "eager", "parry"]) {
         let [low, high] = lap.quartiles_us;

@@ -1,4 +1,4 @@
-//! Times whole ticks of all contenders in turn, so that all see the machine in the same state.
+//! Times whole ticks of all contenders in turn, so that all run under the same conditions of the machine.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -23,8 +23,8 @@ pub(crate) fn race(
             if caches == Caches::Cold {
                 stream.run();
             } else {
-                // Two ticks that are not counted bring back what the others evicted. Two, since every other tick has a
-                // cache of its own.
+                // Two ticks that are not counted bring back the data that the others evicted. It takes two, since every
+                // other tick has its own cache.
                 black_box(contender.tick(tick));
                 black_box(contender.tick(tick));
             }
@@ -46,7 +46,7 @@ pub(crate) fn race(
     .collect()
 }
 
-/// A contender's result: times of a tick, and its hits in all ticks.
+/// A contender's result: quantiles of the time of a tick, and the number of hits in all ticks.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lap {
     pub(crate) median_us: f64,

@@ -1,4 +1,4 @@
-//! What carries a climber moves, and all that a body remembers in world space moves along.
+//! The rigid motion of a climber's support: all that a body remembers in world space moves with it.
 
 use clamber_world::{Attachment, Obstacle, ObstacleId};
 use glam::{DQuat, DVec3};
@@ -14,7 +14,7 @@ pub(crate) struct Carry {
 }
 
 impl Carry {
-    /// The motion of a material point; `None` if it is gone.
+    /// The motion of a material point; `None` if the material is gone.
     pub(crate) fn by(
         carrier: &Attachment,
         obstacles: &[(ObstacleId, &dyn Obstacle)],
@@ -30,7 +30,7 @@ impl Carry {
         })
     }
 
-    /// Straight motion.
+    /// A translation.
     pub(crate) fn along(way: DVec3) -> Self {
         Self {
             from: DVec3::ZERO,
@@ -59,5 +59,6 @@ impl Carry {
     }
 }
 
-/// How far a material point may be from where it was left, metres; see [`Attachment::follow`].
+/// Largest distance between a stored material point and the obstacle's report of its previous position, metres; see
+/// [`Attachment::follow`]. A larger distance ends the hold.
 pub(crate) const SLACK: f64 = 0.05;

@@ -1,8 +1,9 @@
-//! When hands and feet move on while the body holds on: a clock that turns with the way, and rules that keep enough of
-//! them on their holds.
+//! Schedules the steps of hands and feet while the body holds on: a clock that runs with the climbed distance, and
+//! rules that keep enough limbs on their holds.
 //!
-//! One hand or foot at a time at low speed, so that three hold; a hand and the opposite foot when it is faster. LEMUR
-//! IIb climbs with stances of three and four holds (Bretl 2006); each step is at most 0.65 m and takes 0.12 to 0.3 s.
+//! Below [`FAST`], one hand or foot moves at a time, so that three hold. Above it, a hand and the opposite foot move
+//! together. LEMUR IIb climbs with stances of three and four holds (Bretl 2006). A step is at most 0.65 m long and
+//! takes 0.12 to 0.3 s.
 
 use glam::DVec3;
 
@@ -15,94 +16,119 @@ use super::limb::{Doing, LimbMemory};
 use super::root::Root;
 use crate::Extremity;
 
-/// Speed from which a hand and a foot move together, metres a second.
+/// Speed from which a hand and the opposite foot move together, metres a second.
 const FAST: f64 = 0.8;
 
-/// Length of a step: at rest, more of it per speed, and its bounds, metres.
+/// Length of a limb's step from hold to hold at low speed, metres. The body climbs this far in one cycle of the clock.
 const STEP: f64 = 0.35;
+
+/// Growth of a step's length with the speed, metres per metre a second.
 const STEP_PER_SPEED: f64 = 0.2;
+
+/// Bounds of a step's length, metres.
 const STEPS: [f64; 2] = [0.3, 0.65];
 
-/// Arms for which that is, metres.
+/// Length of the arms for which [`STEP`] and [`STEPS`] are given, metres. Shorter arms make proportionally shorter
+/// steps.
 const ARM: f64 = 0.537;
 
-/// Share of the time of a step in which the limb is on its way, one at a time and two together; bounds of that time,
-/// seconds.
+/// Duration of a step as a share of the limb's cycle: below [`FAST`], and from there on.
 const SHARE: [f64; 2] = [0.24, 0.4];
+
+/// Bounds of a step's duration, seconds.
 const TIMES: [f64; 2] = [0.12, 0.30];
 
-/// Times of a step of somebody who is still, of a hand that catches, and of a foot that follows, seconds.
+/// Duration of a step while the climber is still, seconds.
 const STILL: f64 = 0.22;
+
+/// Duration of a hand's step to its first hold, or from a hold that is out of reach, seconds.
 const CATCH: f64 = 0.14;
+
+/// Duration of a foot's step to its first hold, seconds.
 const FOLLOW: f64 = 0.16;
 
-/// Largest acceleration of a hand that catches, metres a second squared, and the peak of a step of 1 m in 1 s.
+/// Largest acceleration of a hand or foot in a step that the clock does not time, metres a second squared. Long steps
+/// take longer for it.
 const FORCE: f64 = 50.0;
+
+/// Peak acceleration of a step of 1 m in 1 s, metres a second squared: the path of
+/// [`Swing::place`](super::limb::Swing::place), from rest.
 const PEAK: f64 = 5.77;
 
-/// Times of a step of a limb that is out of reach: a short one, and the most for a long one, seconds.
+/// Longest duration of an urgent step, seconds; see [`URGENT`].
 const HURRIES: f64 = 0.14;
+
+/// Duration to which a long urgent step may grow for [`FORCE`], seconds.
 const LATE: f64 = 0.2;
 
-/// Slower than this is still, metres a second; after this time, seconds, limbs that are farther than this from where
-/// they belong, metres, are put there.
+/// Speed below which the climber counts as still, metres a second.
 const SLOW: f64 = 0.05;
+
+/// Time for which the climber is still before limbs that are out of place move, seconds.
 const RESTS: f64 = 0.2;
+
+/// Distance from its goal at which the limb of a still climber is out of place, metres.
 const TIDY: f64 = 0.14;
 
-/// The most of a limb's length with which it takes a hold.
+/// Stretch up to which a limb takes a hold without a displacement of the body; see [`Schedule::stretch`].
 const TAKES: f64 = 0.93;
 
-/// A limb that is stretched more than this may move although another one does.
+/// Stretch above which a limb may move although another one is off its hold, unless both are hands.
 const URGENT: f64 = 1.4;
 
-/// A limb that is stretched more than this has to move on.
+/// Stretch above which a limb has to move on.
 const FAR: f64 = 1.12;
 
-/// A limb on its way to something that is farther than this looks for another place.
+/// Stretch above which a limb gives up the hold that it is on its way to.
 const LOST: f64 = 1.4;
 
-/// The body leans towards a place that is farther by up to this share of the limb's length.
+/// Stretch beyond [`TAKES`] up to which a limb takes a hold all the same; the body then moves towards the hold.
 const LEANS: f64 = 0.35;
 
-/// How often a place is looked for, and how often of these nearer to the shoulder; and how far beside what carries the
-/// climber the last ones are, metres.
+/// Number of tries to find a hold for a step.
 const TRIES: usize = 8;
+
+/// Number of first tries that stay at the goal or move from it back along the skin, towards the shoulder. Later tries
+/// move towards the climber's support.
 const SHIFTS: usize = 3;
+
+/// Distance beside the climber's support to which the later tries move, metres.
 const BESIDE: f64 = 0.1;
 
-/// How far from a lost hold another one is taken without a step, metres.
+/// Distance within which a lost hold is replaced by another one without a step, metres.
 const SLIPS: f64 = 0.06;
 
-/// For how long after it took hold everything may move at once, seconds.
+/// Time after the climber took hold in which all limbs may move at once, seconds.
 const ENTERS: f64 = 0.35;
 
-/// When limbs step, as shares of the clock: one at a time, and in pairs. Left hand, right hand, left foot, right foot.
+/// Phases of the clock at which limbs step one at a time, 0 to 1, in the order of [`Extremity::ALL`].
 const ALONE: [f64; 4] = [0.5, 0.0, 0.25, 0.75];
+
+/// Phases of the clock at which limbs step in pairs, 0 to 1, in the order of [`Extremity::ALL`].
 const PAIRS: [f64; 4] = [0.5, 0.0, 0.0, 0.5];
 
-/// Memory of climbing.
+/// Memory of climbing: the clock in cycles, and the seconds for which the climber has been still.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Climb {
     clock: f64,
     still: f64,
 }
 
-/// What is asked of the schedule in one frame.
+/// Input of the schedule in one frame.
 pub(crate) struct Schedule<'a, 'c> {
     pub(crate) context: &'a Context<'c>,
     pub(crate) goals: [Option<Goal>; 4],
-    /// Where shoulders and hips are.
+    /// Positions of shoulders and hips in world space.
     pub(crate) shoulders: [DVec3; 4],
-    /// Where the clip has hands and feet.
+    /// Root of the model, for places of the clips' pose.
     pub(crate) root: &'a Root,
-    /// How fast it climbs, relative to what it holds.
+    /// Climbing velocity relative to the support, metres a second.
     pub(crate) motion: DVec3,
-    /// The material point that carries the climber.
+    /// The material point that carries the climber, in world space.
     pub(crate) held: DVec3,
-    /// Seconds since it took hold.
+    /// Seconds since the climber took hold.
     pub(crate) since: f64,
-    /// It hangs by its hands: the body follows them, as far as they reach.
+    /// True if the body hangs by its hands. Stretched limbs do not move on then: the body follows the hands.
     pub(crate) hangs: bool,
 }
 
@@ -118,7 +144,7 @@ impl Climb {
             schedule.follow(extremity, &mut limbs[extremity.index()], plants);
         }
         let size = context.size();
-        // Along what is held; a body of another size moves faster by the root of its size.
+        // Speed of a body of reference size: speeds grow with the square root of the size.
         let speed = schedule.motion.length() / size.sqrt();
         let is_fast = speed >= FAST;
         // Short arms make short steps.
@@ -131,7 +157,7 @@ impl Climb {
             0.0
         };
         if is_still {
-            // The first limb steps when the body sets off.
+            // The limbs with phase 0 step as soon as the climber sets off.
             self.clock = -f64::MIN_POSITIVE;
         }
         let was = self.clock;
@@ -152,7 +178,8 @@ impl Climb {
             (share * cycle).clamp(TIMES[0], longest.max(TIMES[0]))
         } * size.sqrt();
         let way = schedule.motion.normalize_or_zero();
-        // At its landing, a hold is half of the way of its stance ahead of where it belongs then.
+        // When a hand or foot lands, its hold is half of the stance's travel ahead of the goal, so that the stance is
+        // centred on the goal.
         let swung = schedule.motion.length() * time;
         let ahead = way * (swung + 0.5 * (length * size - swung).max(0.0));
         for (index, limb) in limbs.iter_mut().enumerate() {
@@ -172,7 +199,7 @@ impl Climb {
             let is_untidy = self.still > RESTS && away.length() > TIDY * size;
             let is_far = !schedule.hangs && schedule.stretch(index, hold) > FAR;
             if is_due && !limb.waits {
-                // Its turn came within this frame.
+                // The limb's turn came within this frame.
                 let past = (self.clock - offsets[index]).rem_euclid(1.0);
                 limb.late = past * length * size.sqrt() / speed;
             }
@@ -205,7 +232,7 @@ impl Climb {
 }
 
 impl Schedule<'_, '_> {
-    /// Moves on with the skin; ends steps; lets go of what is gone, or of what is no goal.
+    /// Moves a hold with its material. Ends a step that is done. Lets go of lost holds, and of limbs without a goal.
     fn follow(&self, extremity: Extremity, limb: &mut LimbMemory, plants: &mut Vec<Plant>) {
         let context = self.context;
         let clip = context.clip_in_world(self.root, extremity);
@@ -245,7 +272,7 @@ impl Schedule<'_, '_> {
         }
     }
 
-    /// What is held instead where skin is gone, right beside it.
+    /// A hold right beside a lost one, with the same rotation.
     fn beside(&self, lost: &Hold) -> Option<Hold> {
         let context = self.context;
         let found = context
@@ -260,13 +287,14 @@ impl Schedule<'_, '_> {
         ))
     }
 
-    /// Distance of a hold's wrist or ankle from the shoulder or hip, as a share of the limb.
+    /// Stretch: distance of a hold's wrist or ankle from the shoulder or hip, as a share of the limb's length.
     fn stretch(&self, index: usize, hold: &Hold) -> f64 {
         let length = self.context.shape(Extremity::ALL[index]).length;
         hold.place().position.distance(self.shoulders[index]) / length
     }
 
-    /// True if enough of the others hold: never both hands off, and never fewer than two.
+    /// True if a limb may leave its hold: all other limbs with a goal hold, or only one does not and both may be off
+    /// together. Two hands are never off together, and a hand stays on its hold while the other one has no goal.
     fn may_move(
         &self,
         index: usize,
@@ -279,7 +307,7 @@ impl Schedule<'_, '_> {
         }
         let is_hand = Extremity::ALL[index].is_hand();
         if is_hand && self.goals[1 - index].is_none() {
-            // The other hand does something else.
+            // The other hand is busy with an act.
             return false;
         }
         let mut off = (0..4).filter(|&other| {
@@ -295,14 +323,14 @@ impl Schedule<'_, '_> {
         }
     }
 
-    /// Takes a limb from a hold that is out of reach, to another one.
+    /// Takes a limb from a hold that is out of reach and starts a step to another one.
     pub(crate) fn replace(&self, index: usize, limbs: &mut [LimbMemory; 4]) {
         let clip = self.context.clip_in_world(self.root, Extremity::ALL[index]);
         limbs[index].let_go(&clip);
         self.start(index, DVec3::ZERO, CATCH, limbs);
     }
 
-    /// Begins a step of a limb towards its goal, or nearer if that is too far.
+    /// Starts a step of a limb towards its goal, or to a nearer hold if the goal is too far.
     fn start(&self, index: usize, ahead: DVec3, time: f64, limbs: &mut [LimbMemory; 4]) {
         let (context, extremity) = (self.context, Extremity::ALL[index]);
         let Some(goal) = self.goals[index] else {
@@ -325,7 +353,7 @@ impl Schedule<'_, '_> {
         } else {
             let way = hold.place().position.distance(limb.shown.position);
             let soft = (PEAK * way / FORCE).sqrt();
-            // A step of somebody who climbs is timed; all others take the time that they need.
+            // The clock times the steps of a moving climber. Other steps take at least the time that `FORCE` asks for.
             let time = if ahead == DVec3::ZERO {
                 time.max(soft)
             } else if time <= HURRIES {
@@ -338,8 +366,8 @@ impl Schedule<'_, '_> {
         }
     }
 
-    /// A place to hold near a goal: nearer to the shoulder if that is too far, and nearer to what carries the climber
-    /// if there is nothing to hold.
+    /// A hold near a goal, or near the shoulder or the climber's support where the goal is out of reach or without a
+    /// surface.
     fn choose(&self, extremity: Extremity, goal: &Goal, time: f64) -> Option<Hold> {
         let length = self.context.shape(extremity).length;
         let shoulder = self.shoulders[extremity.index()] + self.motion * time;
@@ -356,7 +384,7 @@ impl Schedule<'_, '_> {
                     best = Some((beyond, hold));
                 }
                 if attempt + 1 < SHIFTS {
-                    // Back along the skin, by what is too far.
+                    // Moves the goal back along the skin by the excess of the stretch.
                     let along = reach - goal.out * reach.dot(goal.out);
                     let back = beyond * length * reach.length() / along.length().max(0.3 * length);
                     goal.point -= along.normalize_or_zero() * back.min(length);
@@ -371,7 +399,7 @@ impl Schedule<'_, '_> {
         {
             return Some(hold);
         }
-        // Whatever is near.
+        // Takes any surface near the shoulder.
         goal.point = shoulder - goal.out * (0.4 * length);
         let hold = goal.near(self.context, extremity, 1.1 * length)?;
         let beyond = hold.place().position.distance(shoulder) / length - TAKES;

@@ -7,18 +7,18 @@ use super::root::Root;
 use crate::figure::{LimbShape, Place};
 use crate::{Extremity, Figure};
 
-/// What all parts of a body read in one frame.
+/// Data that all parts of a body read in one frame.
 pub(crate) struct Context<'a> {
     pub(crate) figure: &'a Figure,
     pub(crate) state: &'a ClimberState,
     pub(crate) around: Surroundings<'a>,
     pub(crate) up: DVec3,
-    /// Velocity relative to what carries it.
+    /// Velocity of the climber relative to its support, along the skin on a wall.
     pub(crate) motion: DVec3,
-    /// True in the first frame, and after a teleport: everything is at its place at once, and nothing is told.
+    /// True in the first frame and after a teleport: all limbs are in place at once, and no plants are reported.
     pub(crate) is_fresh: bool,
     pub(crate) dt: f64,
-    /// Where the clip has hands and feet, in model space, metres.
+    /// Places of hands and feet in the clips' pose, metres in model space.
     pub(crate) clip: [Place; 4],
 }
 
@@ -27,12 +27,12 @@ impl Context<'_> {
         self.figure.limb(extremity)
     }
 
-    /// Size of the body relative to that for which lengths in this crate are given.
+    /// Size of the body relative to the one for which this crate's lengths are given, by the legs' lengths.
     pub(crate) fn size(&self) -> f64 {
         self.figure.leg_length() / super::walk::LEG
     }
 
-    /// Where the clip has a hand or foot, in the world.
+    /// The place of a hand or foot in the clips' pose, in world space.
     pub(crate) fn clip_in_world(&self, root: &Root, extremity: Extremity) -> Place {
         let clip = self.clip[extremity.index()];
         Place {
@@ -41,7 +41,7 @@ impl Context<'_> {
         }
     }
 
-    /// Tells that a hand or foot came down.
+    /// Reports that a hand or foot came down, unless this frame is fresh.
     pub(crate) fn tell(
         &self,
         plants: &mut Vec<Plant>,

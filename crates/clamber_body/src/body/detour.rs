@@ -1,4 +1,4 @@
-//! Hands and feet on their way stay out of what they move along.
+//! Keeps hands and feet out of obstacles while they are on their way.
 
 use glam::DVec3;
 
@@ -8,21 +8,23 @@ use super::hold::Hold;
 use super::limb::Swing;
 use crate::figure::Place;
 
-/// How deep in something a hand or foot is still led out of it, metres.
+/// Largest depth inside an obstacle from which a hand or foot is led out, metres.
 const THROUGH: f64 = 0.15;
 
-/// How fast a detour changes where the skin does not make it: a way that begins deep in something, or leads through it,
-/// metres a second.
+/// Speed at which a detour changes beyond the rate at which the point sinks in, metres a second. It limits detours for
+/// paths that begin deep inside an obstacle or lead through one.
 const CHANGES: f64 = 4.0;
 
-/// The last share of a step, in which the detour ends.
+/// Last share of a step, over which the detour fades out.
 const LANDS: f64 = 0.2;
 
-/// How far a step goes around, away from the skin, and how far from the middle of its way that is looked for, metres.
+/// Displacement of the middle of a step's path away from the skin, metres.
 const LIFT: f64 = 0.05;
+
+/// Distance from the middle of a step's path within which obstacles are looked for, metres.
 const AROUND: f64 = 0.4;
 
-/// To where and how far a step goes around in the middle of its way: out of what it would lead through.
+/// Displacement of the middle of a step's path, away from the skin and out of an obstacle that the path would cross.
 pub(crate) fn bow(context: &Context<'_>, from: &Place, to: &Hold) -> DVec3 {
     let size = context.size();
     let bow = to.normal() * (LIFT * size);
@@ -39,11 +41,11 @@ pub(crate) fn bow(context: &Context<'_>, from: &Place, to: &Hold) -> DVec3 {
     }
 }
 
-/// How far a hand or foot is led aside.
+/// Displacement that leads a hand or foot out of an obstacle.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Detour {
     way: DVec3,
-    /// How deep it would be in something without that, metres; `None` if nothing was near.
+    /// Depth inside an obstacle without the displacement, metres; negative outside. `None` if no surface was near.
     depth: Option<f64>,
 }
 
@@ -52,8 +54,8 @@ impl Detour {
         self.way = carry.vector(self.way);
     }
 
-    /// Leads a point that comes to be in something back to its surface. The detour grows as fast as the point would
-    /// sink in; if it is deep already, or comes out on another side, by [`CHANGES`].
+    /// Leads a point inside an obstacle back to the surface. The displacement grows as fast as the point sinks in. It
+    /// changes by [`CHANGES`] if the point is deep already or comes out on another side.
     pub(crate) fn step(&mut self, context: &Context<'_>, touching: DVec3) {
         let size = context.size();
         let near = context.around.nearest(touching, THROUGH * size);
@@ -71,7 +73,7 @@ impl Detour {
         self.depth = depth.map(|(depth, _)| depth);
     }
 
-    /// Leads a hand that is free; `None` if it is in nothing's way.
+    /// Leads a free hand; `None` without a displacement.
     pub(crate) fn lead_free(&self, place: &Place) -> Option<Place> {
         (self.way != DVec3::ZERO).then(|| Place {
             position: place.position + self.way,
@@ -79,7 +81,7 @@ impl Detour {
         })
     }
 
-    /// Where a hand or foot is on its way.
+    /// The place of a hand or foot on its way, with the displacement.
     pub(crate) fn lead(&self, swing: &Swing) -> Place {
         let mut place = swing.place();
         let left = 1.0 - (swing.time / swing.duration).clamp(0.0, 1.0);

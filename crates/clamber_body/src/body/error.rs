@@ -2,7 +2,7 @@ use clamber_animation::AnimationError;
 use clamber_animation::ik::IkError;
 use thiserror::Error;
 
-/// Why a body was not updated. It is as it was.
+/// Why [`Body::update`](crate::Body::update) failed. The body keeps its place.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum BodyError {
@@ -20,7 +20,7 @@ pub enum BodyError {
         /// Joints of the figure.
         figure: usize,
     },
-    /// A layer names what the figure does not have.
+    /// A layer names a clip or a mask that the figure does not have.
     #[error(transparent)]
     Animation(#[from] AnimationError),
     /// A limb cannot be posed, such as one that a clip scales to nothing.

@@ -3,21 +3,21 @@ use glam::DVec3;
 
 use crate::Extremity;
 
-/// A hand or foot came down on something: for sounds, dust and prints.
+/// A hand or foot came down on an obstacle: for sounds, dust and prints.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Plant {
     /// The hand or foot.
     pub extremity: Extremity,
-    /// What it came down on.
+    /// The obstacle that it came down on.
     pub obstacle: ObstacleId,
-    /// Where, in world space.
+    /// The touched point, in world space.
     pub point: DVec3,
-    /// Unit normal of what it came down on, in world space.
+    /// Unit normal of the surface there, in world space.
     pub normal: DVec3,
-    /// Tag of what it came down on.
+    /// Tag of the surface there.
     pub tag: SurfaceTag,
-    /// How fast the hand or foot was on its way there, relative to what it came down on, metres a second: 1 to 3 for
+    /// Recent top speed of the hand or foot on its way, relative to the climber's support, metres a second: 1 to 3 for
     /// steps, more after falls.
     pub speed: f64,
 }

@@ -1,4 +1,4 @@
-//! Feet of somebody who stands or walks: they stay where they came down until it is their turn to step.
+//! Feet of a standing or walking body: each stays where it came down until it is its turn to step.
 
 use clamber_animation::Spring;
 use clamber_surface::geometry::rotation_from_axis_angle;
@@ -15,50 +15,61 @@ use super::walk::Walk;
 use crate::figure::{LimbShape, Place};
 use crate::{Extremity, Side};
 
-/// Distance from where it should be at which a foot leaves its place, metres, and angle, radians (Unreal's foot
-/// placement: 0.35 m, 45°); and the same for somebody who stands.
+/// Distance, metres, and angle, radians, from its place in the clips' pose at which a foot leaves the ground (Unreal's
+/// foot placement: 0.35 m, 45°).
 const UNPLANT: (f64, f64) = (0.35, 0.785);
+
+/// The same distance and angle for a standing body with the other foot on the ground.
 const REPLANT: (f64, f64) = (0.13, 0.4);
 
-/// A foot comes down from at most this height without a step of its own, metres.
+/// Height up to which a foot is planted without a step down, metres.
 const LOW: f64 = 0.006;
 
-/// Times of steps that the gait does not ask for, seconds: to another place, and straight down.
+/// Duration of a step to another place that the gait does not ask for, seconds.
 const STEP: f64 = 0.26;
+
+/// Duration of a step straight down from [`HIGH`], seconds. Lower steps take proportionally less, at least a fifth.
 const DOWN: f64 = 0.12;
 
-/// Height from which it takes all of the time straight down, metres.
+/// Height from which a step straight down takes all of [`DOWN`], metres.
 const HIGH: f64 = 0.08;
 
-/// How high such a step goes, metres.
+/// Height of the path of a step to another place, metres.
 const LIFT: f64 = 0.06;
 
-/// Time for half of a change of the ground's height below a foot in the air, seconds: Unreal's floor spring.
+/// Half time of the spring on the ground's height below a foot in the air, seconds: Unreal's floor spring.
 const FLOOR: f64 = 0.05;
 
-/// Steepest ground that soles lie flat on, as the cosine: 50°.
+/// Cosine of the steepest slope that a foot stands on: 50°.
 const STEEP: f64 = 0.64;
 
-/// Slopes on which feet do not roll any more, and up to which they roll as in the clip, as cosines: 33° and 8°.
+/// Cosines of the slopes at which feet stop rolling, 33°, and up to which they roll as in the clip, 8°. Between them
+/// the roll fades.
 const ROLLS: [f64; 2] = [0.84, 0.99];
 
-/// How far a heel is lifted for a leg that is too short, radians, and how often that is halved to find how far.
+/// Largest angle by which a heel is lifted for a leg that is too short, radians.
 const HEEL_UP: f64 = 0.9;
+
+/// Number of bisections that find the angle of a lifted heel.
 const HALVINGS: usize = 12;
 
-/// Who stands has a foot on the ground if the clip's sole is at most so high, metres, and its top faces up, as a
-/// cosine.
+/// Height of the clip's sole up to which a foot of a standing body is on the ground, metres.
 const DOWN_TO: f64 = 0.15;
+
+/// Least cosine of the tilt of the clip's foot at which a foot of a standing body is on the ground.
 const LEVEL: f64 = 0.8;
 
-/// How fast a heel is lifted at most, radians a second.
+/// Largest speed at which a heel is lifted or lowered, radians a second.
 const HEEL_SPEED: f64 = 8.0;
 
-/// A foot that is out of reach by more than this share of the leg leaves its place early.
+/// Distance of the ankle from the hip, with the heel lifted, beyond which a foot leaves its place early, as a share of
+/// the leg's length.
 const EARLY: f64 = 1.0;
 
-/// Where the ground is looked for below a foot, metres.
+/// Height above the model's origin from which the ground below a foot is looked for, metres.
 const ABOVE: f64 = 0.6;
+
+/// Depth below the model's origin down to which the ground below a foot is looked for, metres.
 const BELOW: f64 = 0.9;
 
 pub(crate) fn step(
@@ -89,7 +100,7 @@ pub(crate) fn step(
     }
 }
 
-/// Where a foot is, after [`step`].
+/// The place of a foot, after [`step`].
 pub(crate) fn place(context: &Context<'_>, stand: &Root, limb: &LimbMemory, side: Side) -> Place {
     let extremity = Extremity::Foot(side);
     let clip = context.clip_in_world(stand, extremity);
@@ -100,7 +111,7 @@ pub(crate) fn place(context: &Context<'_>, stand: &Root, limb: &LimbMemory, side
     }
 }
 
-/// A foot on its hold, with its heel up by an angle beyond its clip's, radians.
+/// The place of a planted foot. `heel` is the angle of the heel's lift beyond the clip's, radians.
 fn on_hold(
     context: &Context<'_>,
     limb: &LimbMemory,
@@ -109,7 +120,7 @@ fn on_hold(
     heel: f64,
 ) -> Place {
     let pitch = pitch(context, extremity, hold);
-    // A heel that is lifted takes the toes' place on the ground.
+    // Lifting the heel lowers the toes that the clip raises.
     let pitch = if heel > 0.0 {
         pitch.min(pitch * (1.0 - heel / HEEL_UP)) - heel
     } else {
@@ -124,10 +135,10 @@ struct Foot<'a, 'c> {
     stand: &'a Root,
     walk: &'a Walk,
     side: Side,
-    /// Where its leg begins.
+    /// The leg's upper joint in world space.
     hip: DVec3,
     shape: &'a LimbShape,
-    /// Where the clip has it, on level ground.
+    /// The foot's place in the clips' pose, on level ground, in world space.
     clip: Place,
     memory: LimbMemory,
 }
@@ -181,14 +192,14 @@ impl Foot<'_, '_> {
         }
     }
 
-    /// True if the clip has the foot on the ground: not while it gets up, or falls down.
+    /// True if the clips' pose has the foot on the ground. False while the body gets up or falls down.
     fn is_down(&self) -> bool {
         let clip = &self.context.clip[Extremity::Foot(self.side).index()];
         let height = clip.point(self.shape.contact).y / self.context.size();
         self.walk.is_going() || height < DOWN_TO && (clip.rotation * DVec3::Y).y > LEVEL
     }
 
-    /// Moves on with what it stands on, or steps to.
+    /// Moves the hold with its material; lifts the foot if the material is gone.
     fn follow(&mut self) {
         let around = &self.context.around;
         let is_there = match &mut self.memory.doing {
@@ -206,8 +217,8 @@ impl Foot<'_, '_> {
         over_ground(self.context, &self.clip, &self.memory, extremity)
     }
 
-    /// Somebody who walks lifts the heel of a foot that stays behind before the leg is too short; down stairs, toes
-    /// come first.
+    /// Lifts the heel of a walking body's foot before the leg is too short: for a foot behind the hip, and on level
+    /// ground also for one ahead, so that toes come first down stairs.
     fn lift_heel(&mut self) {
         let extremity = Extremity::Foot(self.side);
         let mut wanted = 0.0;
@@ -236,7 +247,7 @@ impl Foot<'_, '_> {
         self.memory.heel += (wanted - self.memory.heel).clamp(-most, most);
     }
 
-    /// Leaves the ground, and goes on as the clip does.
+    /// Takes the foot off the ground, back to the clips' pose.
     fn lift(&mut self) {
         let hold = match &self.memory.doing {
             Doing::Planted(hold) => Some(*hold),
@@ -251,7 +262,7 @@ impl Foot<'_, '_> {
         self.memory.let_go(&target);
     }
 
-    /// How far the ground under the foot is from where the clip has it, along the ground, and the angle about up.
+    /// Distance of the foot from its place in the clips' pose along the ground, metres, and angle about up, radians.
     fn away(&self, hold: &Hold) -> (f64, f64) {
         let up = self.context.up;
         let way = self.clip.point(self.shape.contact) - hold.place().point(self.shape.contact);
@@ -261,13 +272,14 @@ impl Foot<'_, '_> {
         (level(way).length(), angle)
     }
 
-    /// True if the body has walked away from it, so that even on its toes it does not reach.
+    /// True if the foot is behind the hip and out of the leg's reach even on its toes.
     fn is_left_behind(&self, hold: &Hold) -> bool {
         let toes = rolled(hold, self.shape, -HEEL_UP).position - self.hip;
         toes.dot(self.context.motion) < 0.0 && toes.length() > EARLY * self.shape.length
     }
 
-    /// Watches the ground below and where it will come down, so that it goes over what is in its way.
+    /// Adapts the foot's height to the ground below it or at its next landing, whichever is higher, so that it passes
+    /// over obstacles.
     fn look_ahead(&mut self, air: Option<(f64, f64)>) {
         let up = self.context.up;
         let height = |point: DVec3| {
@@ -309,7 +321,7 @@ impl Foot<'_, '_> {
         (found.contact.normal.dot(up) > STEEP).then_some(found)
     }
 
-    /// The ground below the part of a place that comes down first.
+    /// A hold on the ground below the heel or the ball of a place, whichever comes down first.
     fn find(&self, place: &Place) -> Option<Hold> {
         let along = place.rotation * DVec3::X;
         let touching = if along.dot(self.memory.tilt.value) > 0.0 {
@@ -334,7 +346,7 @@ impl Foot<'_, '_> {
         } else if height < LOW * size {
             let pitch = pitch(self.context, Extremity::Foot(self.side), &hold);
             let now = rolled(&hold, self.shape, pitch);
-            // It has come down on the ground below it: only its height and its turn differ.
+            // The foot is straight above its hold, so only its height and its rotation differ.
             let raised = Place {
                 position: now.position + self.context.up * height.max(0.0),
                 rotation: shown.rotation,
@@ -362,7 +374,7 @@ fn opposite(side: Side) -> Side {
     }
 }
 
-/// A place on level ground, taken to the height and the slope of the ground below it.
+/// A place on level ground, moved to the height and the slope of the ground below it.
 fn over_ground(
     context: &Context<'_>,
     clip: &Place,
@@ -376,8 +388,7 @@ fn over_ground(
     Place::with_point_at(sole, contact, rotation)
 }
 
-/// How far the toes are above the heel, radians: as in the clip on level ground, and not at all on steep slopes, where
-/// feet go flat.
+/// Angle of the toes above the heel, radians: the clip's on level ground, 0 on steep slopes, where feet are flat.
 fn pitch(context: &Context<'_>, extremity: Extremity, hold: &Hold) -> f64 {
     let clip = &context.clip[extremity.index()];
     let pitch = libm::asin((clip.rotation * DVec3::X).y.clamp(-1.0, 1.0));
@@ -386,10 +397,10 @@ fn pitch(context: &Context<'_>, extremity: Extremity, hold: &Hold) -> f64 {
     pitch * ((upright - steep) / (level - steep)).clamp(0.0, 1.0)
 }
 
-/// A foot on its hold that rolls over its heel or its ball.
+/// The place of a foot on its hold, rolled over its heel if `pitch` is positive, else over its ball.
 fn rolled(hold: &Hold, shape: &LimbShape, pitch: f64) -> Place {
     let flat = hold.place();
-    // Z is to the right: a positive turn raises the toes.
+    // Z points to the right, so a positive turn raises the toes.
     let turn: DQuat = rotation_from_axis_angle(DVec3::Z, pitch);
     let rotation = flat.rotation * turn;
     let pivot = if pitch > 0.0 { shape.heel } else { shape.ball };

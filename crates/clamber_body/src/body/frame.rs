@@ -4,24 +4,24 @@ use glam::DVec3;
 
 use crate::BodyError;
 
-/// What a body has to know of its climber and of the world in one drawn frame.
+/// The climber and the world in one drawn frame, as a body needs them.
 ///
-/// All of it as it is drawn: a game that draws between two ticks passes a state with the position that it draws, and
-/// obstacles that are posed as they are drawn.
+/// All fields are as drawn: a game that draws between two ticks passes a state with the drawn position, and obstacles
+/// in their drawn poses.
 #[derive(Clone, Copy)]
 pub struct BodyFrame<'a> {
     /// The climber's state.
     pub state: &'a ClimberState,
     /// The climber's configuration.
     pub config: &'a ClimberConfig,
-    /// What hands and feet can touch; the same as in the climber's step.
+    /// Obstacles that hands and feet can touch; the same as in the climber's step.
     pub obstacles: &'a [(ObstacleId, &'a dyn Obstacle)],
-    /// Where the eyes look, in world space; `None` for straight ahead.
+    /// The point that the eyes look at, in world space; `None` for straight ahead.
     pub look_at: Option<DVec3>,
 }
 
 impl<'a> BodyFrame<'a> {
-    /// The frame of a climber that is drawn as its last step left it.
+    /// The frame of a climber that is drawn in the state after its last step.
     pub fn new(climber: &'a Climber, obstacles: &'a [(ObstacleId, &'a dyn Obstacle)]) -> Self {
         Self {
             state: climber.state(),

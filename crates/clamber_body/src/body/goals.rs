@@ -1,4 +1,4 @@
-//! Where hands and feet belong while the body holds on: on walls, below ledges, above the head.
+//! Goals of hands and feet while the body holds on: on walls, at ledges, and overhead.
 
 use glam::DVec3;
 
@@ -8,39 +8,48 @@ use super::root::Root;
 use super::stance::Stance;
 use crate::Extremity;
 
-/// How far before and behind a wall a place to hold is looked for, and how far around where there is none, metres.
+/// Distance outside a wall's goal at which the ray for a hold begins, metres.
 const BEFORE: f64 = 0.35;
+
+/// Distance behind a wall's goal at which the ray for a hold ends, metres.
 const BEHIND: f64 = 0.5;
+
+/// Distance from a wall's goal within which a hold is looked for if the ray finds none, metres. Half of it at an edge.
 const AROUND: f64 = 0.4;
 
-/// How far above and below a ledge's edge.
+/// Height above a ledge's edge at which the ray for a hold begins, metres.
 const OVER: f64 = 0.3;
+
+/// Depth below a ledge's edge at which the ray for a hold ends, metres.
 const UNDER: f64 = 0.4;
 
-/// A hand is looked for around what it hangs from within this distance, metres.
+/// Distance from an overhead goal within which a hold is looked for, metres.
 const NEAR: f64 = 0.35;
 
-/// Least cosine between the skin's normal and the way from which it is looked for.
+/// Least cosine between the normal at a ray's hit and the goal's outward direction.
 const FACES: f64 = 0.1;
 
-/// How fingers lean inward, and how far toes point up where feet stand on a wall.
+/// Tangent of the angle by which fingers lean towards the middle of the body.
 const INWARD: f64 = 0.18;
+
+/// Sine of the angle by which toes point up on a wall.
 const TOES_UP: f64 = 0.28;
 
-/// The toes' tips before the ball of the foot, as a multiple of its distance from the ankle.
+/// Distance of the toes' tips ahead of the ankle, as a multiple of the ball's distance.
 const TIP: f64 = 1.3;
 
-/// Where a hand or foot belongs.
+/// The desired place of a hand or foot.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Goal {
-    /// In the world.
+    /// The point to hold, in world space.
     pub(crate) point: DVec3,
-    /// Unit vector out of what is held.
+    /// Unit vector out of the held surface.
     pub(crate) out: DVec3,
-    /// Where the head points, and where the body faces.
+    /// Direction of the head.
     above: DVec3,
+    /// Direction that the body faces.
     ahead: DVec3,
-    /// The body's left or right, as the hand or foot is.
+    /// The body's left for a left hand or foot, its right for a right one.
     pub(crate) aside: DVec3,
     kind: Kind,
 }
@@ -52,7 +61,7 @@ enum Kind {
     Overhead,
 }
 
-/// The goals of hands and feet; `None` for those that are free.
+/// The goals of hands and feet; `None` for free ones.
 pub(crate) fn goals(context: &Context<'_>, stance: Stance, root: &Root) -> [Option<Goal>; 4] {
     let figure = context.figure;
     let postures = figure.postures();
@@ -122,11 +131,11 @@ pub(crate) fn goals(context: &Context<'_>, stance: Stance, root: &Root) -> [Opti
     }
 }
 
-/// Progress of a pull-up at which hands leave the edge: the hero's clip has them down at the hips then.
+/// Progress of a pull-up at which hands leave the edge. In the hero's clip the hands are down at the hips then.
 const HANDS_LEAVE: f64 = 0.6;
 
 impl Goal {
-    /// The same goal elsewhere.
+    /// The goal, displaced.
     pub(crate) fn moved(self, way: DVec3) -> Self {
         Self {
             point: self.point + way,
@@ -134,7 +143,7 @@ impl Goal {
         }
     }
 
-    /// The place nearest to the goal that can be held. Feet on walls that are not there find none.
+    /// The hold nearest to the goal. `None` if no surface is near, as for feet below a ledge without a wall.
     pub(crate) fn find(&self, context: &Context<'_>, extremity: Extremity) -> Option<Hold> {
         let size = context.size();
         let around = &context.around;
@@ -154,13 +163,13 @@ impl Goal {
         };
         let found = ahead.or_else(|| {
             let found = around.nearest(self.point, radius)?;
-            // What is nearest from within a wall would be its back.
+            // From inside a wall, the nearest surface may be the wall's back.
             (found.contact.normal.dot(self.out) > -0.5).then_some(found)
         })?;
         Some(self.hold(context, extremity, &found))
     }
 
-    /// Whatever is nearest to the goal, within a distance.
+    /// The hold on the surface nearest to the goal, within a distance.
     pub(crate) fn near(
         &self,
         context: &Context<'_>,

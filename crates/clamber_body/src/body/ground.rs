@@ -1,42 +1,51 @@
-//! How high the ground is below somebody who walks: smooth over steps, and without lag.
+//! Height of the ground below a walking body: smooth over steps, without lag on slopes.
 
 use clamber_animation::Spring;
 use glam::DVec3;
 
 use super::hold::Surroundings;
 
-/// Where the ground is looked for, as shares of the leg: from above the feet to below (Unreal's foot placement: 0.75 m
-/// and 1 m), and half of the way over which it is averaged.
+/// Height above the body's lowest point at which rays to the ground begin, as a share of the leg's length (Unreal's
+/// foot placement: 0.75 m).
 const ABOVE: f64 = 0.9;
+
+/// Depth below the body's lowest point at which rays to the ground end, as a share of the leg's length (Unreal's foot
+/// placement: 1 m).
 const BELOW: f64 = 1.2;
+
+/// Half of the distance over which the height is averaged, as a share of the leg's length.
 const HALF_WINDOW: f64 = 0.36;
 
-/// Points at which the ground is looked for, each way.
+/// Number of rays to the ground ahead, and as many behind.
 const POINTS: i32 = 3;
 
-/// How much higher or lower than below the feet the ground counts, as a share of the leg and of the distance.
+/// Difference in height from the ground in the middle up to which a ray's hit counts as ground, as a share of the leg's
+/// length.
 const STEP: f64 = 0.3;
+
+/// Growth of that difference with the ray's distance from the middle, metres per metre.
 const SLOPE: f64 = 1.4;
 
-/// Time for half of the way to the ground's height, seconds: Unreal's spring of the pelvis. It does not lag on slopes,
-/// since it follows with the slope's own speed.
+/// Half time of the shown height's way to the ground's height, seconds: Unreal's pelvis spring. On slopes the height
+/// does not lag, since it also moves at the slope's rate.
 const SETTLE: f64 = 0.09;
 
 /// The ground below the feet.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Ground {
-    /// Height that is shown, along up, less the height that was found.
+    /// Shown height less the found height, metres along up.
     error: Spring<f64>,
-    /// The height that was found, and how it changes, metres and metres a second.
+    /// The found height along up, metres.
     found: f64,
+    /// Rate of change of the found height, metres a second.
     rate: f64,
 }
 
-/// What is looked for in one frame.
+/// Input of the search for the ground in one frame.
 pub(crate) struct Look<'a> {
     pub(crate) around: &'a Surroundings<'a>,
     pub(crate) up: DVec3,
-    /// The lowest point of the body's ball.
+    /// The lowest point of the climber's ball.
     pub(crate) bottom: DVec3,
     /// Level velocity relative to the ground.
     pub(crate) velocity: DVec3,
@@ -52,7 +61,7 @@ impl Look<'_> {
         Some(found.contact.point.dot(self.up))
     }
 
-    /// The ground's height and how fast it changes.
+    /// The ground's mean height along up, metres, and its rate of change, metres a second.
     fn find(&self) -> (f64, f64) {
         let bottom = self.bottom.dot(self.up);
         let middle = self.height_at(DVec3::ZERO);
@@ -70,7 +79,7 @@ impl Look<'_> {
             for point in 1..=POINTS {
                 let far = HALF_WINDOW * self.leg * f64::from(point) / f64::from(POINTS);
                 let height = self.height_at(ahead * (far * f64::from(side)));
-                // Walls, and holes beside the way, are no ground.
+                // Walls, and holes beside the path, do not count as ground.
                 let most = STEP * self.leg + SLOPE * far;
                 let height = height.filter(|height| (height - middle).abs() < most);
                 last = height.unwrap_or(last);
@@ -86,7 +95,7 @@ impl Look<'_> {
 }
 
 impl Ground {
-    /// Starts at what is found.
+    /// Starts with the shown height at the found height.
     pub(crate) fn at(look: &Look<'_>) -> Self {
         let (found, rate) = look.find();
         Self {
@@ -96,7 +105,7 @@ impl Ground {
         }
     }
 
-    /// `carried` is how far the ground moved along up.
+    /// Advances the shown height by `dt` seconds. `carried` is how far the climber's support moved along up, metres.
     pub(crate) fn step(&mut self, look: &Look<'_>, carried: f64, dt: f64) {
         let (found, rate) = look.find();
         let expected = self.found + carried + 0.5 * (self.rate + rate) * dt;
@@ -106,7 +115,7 @@ impl Ground {
         self.rate = rate;
     }
 
-    /// The ground's rise per metre of the way.
+    /// The ground's rise per metre of way, at a speed in metres a second.
     pub(crate) fn slope(&self, speed: f64) -> f64 {
         if speed > 0.1 { self.rate / speed } else { 0.0 }
     }

@@ -1,4 +1,4 @@
-//! Where a hand or foot holds or stands, and how such a place is found.
+//! The material points that hands and feet hold or stand on, and the queries that find them.
 
 use clamber_world::{Attachment, Contact, Obstacle, ObstacleId, SurfaceTag};
 use glam::{DQuat, DVec3};
@@ -6,14 +6,14 @@ use glam::{DQuat, DVec3};
 use super::carry::SLACK;
 use crate::figure::{Place, turned};
 
-/// What a body can touch.
+/// The obstacles that a body can touch.
 #[derive(Clone, Copy)]
 pub(crate) struct Surroundings<'a> {
     pub(crate) obstacles: &'a [(ObstacleId, &'a dyn Obstacle)],
     pub(crate) dt: f64,
 }
 
-/// A contact, and whose it is.
+/// A contact with its obstacle.
 #[derive(Clone, Copy)]
 pub(crate) struct Found<'a> {
     pub(crate) id: ObstacleId,
@@ -27,7 +27,8 @@ impl<'a> Surroundings<'a> {
         found.map(|(_, obstacle)| *obstacle)
     }
 
-    /// The first contact of a ray; `direction` is a unit vector. What begins inside of something finds nothing there.
+    /// The first contact of a ray; `direction` is a unit vector. A ray that begins inside an obstacle does not hit that
+    /// obstacle.
     pub(crate) fn cast(&self, from: DVec3, direction: DVec3, length: f64) -> Option<Found<'a>> {
         let hits = self.obstacles.iter().filter_map(|&(id, obstacle)| {
             let contact = obstacle.cast_ray(from, direction, length)?;
@@ -41,7 +42,7 @@ impl<'a> Surroundings<'a> {
         hits.min_by(|a, b| by_distance(a, b))
     }
 
-    /// The nearest contact within a distance.
+    /// The nearest contact within `reach` metres.
     pub(crate) fn nearest(&self, point: DVec3, reach: f64) -> Option<Found<'a>> {
         let hits = self.obstacles.iter().filter_map(|&(id, obstacle)| {
             let contact = obstacle.closest_point(point, reach)?;
@@ -55,28 +56,28 @@ impl<'a> Surroundings<'a> {
     }
 }
 
-/// The nearer one; at equal distances that with the smaller id.
+/// Orders by distance, then by id.
 fn by_distance(a: &Found<'_>, b: &Found<'_>) -> core::cmp::Ordering {
     let distances = a.contact.distance.total_cmp(&b.contact.distance);
     distances.then(a.id.cmp(&b.id))
 }
 
-/// A material point that a hand or foot is on, and how it lies there.
+/// A material point that a hand or foot is on, and its rotation there.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Hold {
     pub(crate) attachment: Attachment,
     pub(crate) tag: SurfaceTag,
-    /// Of the skin, in the frame of the material.
+    /// Normal of the skin, in the material's frame.
     normal: DVec3,
-    /// How the hand or foot is turned there, in the frame of the material.
+    /// Rotation of the hand or foot, in the material's frame.
     turn: DQuat,
-    /// The point of the hand or foot that touches, as [`Place`] is turned.
+    /// The point of the hand or foot that touches, in the axes of [`Place`].
     pub(crate) touching: DVec3,
 }
 
 impl Hold {
-    /// On a contact, turned to directions in world space: where fingers or toes point, and where the back of the hand
-    /// or foot faces.
+    /// A hold on a contact. In world space, the fingers or toes point along `along`, and the back of the hand or the
+    /// top of the foot faces `outward`.
     pub(crate) fn new(found: &Found<'_>, along: DVec3, outward: DVec3, touching: DVec3) -> Self {
         let Found {
             id,
@@ -94,7 +95,7 @@ impl Hold {
         }
     }
 
-    /// Moves on with the material. False if it is gone.
+    /// Moves the hold with its material. False if the material is gone.
     pub(crate) fn follow(&mut self, around: &Surroundings<'_>) -> bool {
         let dt = around.dt.max(f64::MIN_POSITIVE);
         let obstacle = around.get(self.attachment.obstacle);
@@ -113,7 +114,7 @@ impl Hold {
         self.attachment.frame * self.turn
     }
 
-    /// Where the hand or foot is.
+    /// The place of the hand or foot on the hold.
     pub(crate) fn place(&self) -> Place {
         Place::with_point_at(self.point(), self.touching, self.rotation())
     }

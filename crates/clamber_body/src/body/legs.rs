@@ -1,21 +1,25 @@
-//! Legs that swing below hips: a second pendulum below the climber's own.
+//! Legs that swing below the hips: a second pendulum below the climber's own.
 
 use glam::{DQuat, DVec3};
 
 use super::stance::arc;
 
-/// Length of the pendulum as a share of the leg, and how fast its swing dies, per second.
+/// Length of the pendulum, as a share of the leg's length.
 const LENGTH: f64 = 0.6;
+
+/// Rate at which the swing decays, per second.
 const DAMPING: f64 = 2.5;
 
 /// Longest step of the integrator, seconds.
 const STEP: f64 = 1.0 / 240.0;
+
+/// Most steps of the integrator in one frame. Longer frames take longer steps.
 const MOST_STEPS: f64 = 64.0;
 
-/// How far legs swing from the line of the trunk, as the cosine of 60°.
+/// Cosine of the largest angle between the legs and the trunk's axis: 60°.
 const LIMIT: f64 = 0.5;
 
-/// The end of the pendulum in world space, and how fast it moves.
+/// The end of the pendulum, its velocity, and the hips from which it hangs, in world space.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Legs {
     end: DVec3,
@@ -32,7 +36,7 @@ impl Legs {
         }
     }
 
-    /// Lets them swing while the hips move to `hips`. `down` is along the trunk.
+    /// Lets the legs swing while the hips move to `hips`. `down` points along the trunk, away from the head.
     pub(crate) fn step(&mut self, hips: DVec3, down: DVec3, gravity: DVec3, leg: f64, dt: f64) {
         let length = LENGTH * leg;
         let steps = (dt / STEP).ceil().clamp(1.0, MOST_STEPS);
@@ -53,7 +57,7 @@ impl Legs {
         self.hips = hips;
     }
 
-    /// The turn of the legs against the trunk.
+    /// The legs' rotation relative to the trunk.
     pub(crate) fn turn(&self, down: DVec3) -> DQuat {
         arc(down, (self.end - self.hips).normalize_or(down))
     }

@@ -1,4 +1,4 @@
-//! What a body remembers of a hand or a foot.
+//! The state of a hand or foot that a body remembers.
 
 use clamber_animation::Spring;
 use clamber_animation::ik::PoleMemory;
@@ -10,45 +10,49 @@ use super::detour::Detour;
 use super::hold::Hold;
 use crate::figure::Place;
 
-/// How long an extremity that was let go takes for half of the way back to its clip at least, seconds.
+/// Least half time of the way back to the clips' pose for a hand or foot that let go, seconds.
 const LET_GO: f64 = 0.07;
 
-/// The fastest that a hand or foot still is when it turns to something else, metres a second.
+/// Speed to which a hand's or foot's velocity is limited when a step begins, metres a second.
 const FASTEST: f64 = 6.0;
 
-/// The fastest turn of a hand or foot that goes on when it turns to something else, radians a second.
+/// Limit of the remembered angular velocity of a hand or foot, radians a second.
 const SPINS: f64 = 20.0;
 
-/// Over which time the speed of an extremity is remembered, seconds.
+/// Time constant with which the remembered speed of a hand or foot decays, seconds.
 const PACE: f64 = 0.06;
 
-/// What a hand or foot does.
+/// The current action of a hand or foot.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) enum Doing {
-    /// As its clip.
+    /// Follows the clips' pose.
     #[default]
     Free,
-    /// Is on something.
+    /// Is on a hold.
     Planted(Hold),
-    /// Is on its way to something.
+    /// Is on its way to a hold.
     Swinging(Swing),
 }
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Swing {
+    /// The place where the step began.
     pub(crate) from: Place,
-    /// How fast it was then, relative to what carries the body.
+    /// Velocity at the step's beginning, relative to the climber's support.
     velocity: DVec3,
+    /// The hold that the step leads to.
     pub(crate) to: Hold,
+    /// Seconds since the step's beginning.
     pub(crate) time: f64,
+    /// Seconds of the whole step.
     pub(crate) duration: f64,
-    /// How far and to where it goes around in the middle of its way.
+    /// Displacement of the path's middle, around obstacles.
     bow: DVec3,
 }
 
 impl Swing {
-    /// Where it is: on the quintic that begins with its velocity and ends at rest, both without acceleration (Flash and
-    /// Hogan 1985, "The coordination of arm movements").
+    /// The place at the current time: on the quintic that begins with the initial velocity and ends at rest, both
+    /// without acceleration (Flash and Hogan 1985, "The coordination of arm movements").
     pub(crate) fn place(&self) -> Place {
         let t = (self.time / self.duration).clamp(0.0, 1.0);
         let share = t * t * t * (10.0 + t * (6.0 * t - 15.0));
@@ -65,34 +69,36 @@ impl Swing {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LimbMemory {
     pub(crate) doing: Doing,
-    /// Where it was shown, in world space, and how fast relative to what carries the body.
+    /// The shown place, in world space.
     pub(crate) shown: Place,
+    /// Velocity of the shown place, relative to the climber's support.
     pub(crate) velocity: DVec3,
-    /// How fast it turned relative to the same, radians a second.
+    /// Angular velocity of the shown place, relative to the support, radians a second.
     spin: DVec3,
-    /// How fast the body moved, relative to the same.
+    /// Velocity of the body, relative to the support.
     pub(crate) carried: DVec3,
-    /// How fast it was lately.
+    /// Recent top speed, relative to the support, metres a second; it decays over [`PACE`].
     pub(crate) pace: f64,
-    /// Of its way around things.
+    /// Displacement of the path around obstacles.
     pub(crate) detour: Detour,
-    /// Difference from its clip after it was let go.
+    /// Difference from the target place after the hand or foot let go; it decays.
     offset: Spring<DVec3>,
+    /// The same for the rotation, as a rotation vector.
     turn: Spring<DVec3>,
-    /// Time for half of it, seconds.
+    /// Half time of `offset` and `turn`, seconds.
     half: f64,
     pub(crate) pole: PoleMemory,
-    /// Height of the ground below a foot that steps, above the root.
+    /// Height of the ground below a foot in the air, above the root, metres.
     pub(crate) ground: Spring<f64>,
     /// Normal of that ground.
     pub(crate) tilt: Spring<DVec3>,
     /// Length of this frame, seconds.
     frame: f64,
-    /// How far a heel is lifted because its leg is too short, radians.
+    /// Lift of the heel for a leg that is too short, radians.
     pub(crate) heel: f64,
-    /// It should move to another place or, for a foot that left the ground early, come down, and waits for its turn.
+    /// True if the hand or foot waits for its turn to step, or a foot that left the ground early waits to come down.
     pub(crate) waits: bool,
-    /// Seconds since its turn came, if that was in this frame; the whole frame otherwise.
+    /// Seconds since the limb's turn came, if it came in this frame; otherwise the whole frame.
     pub(crate) late: f64,
 }
 
@@ -119,7 +125,7 @@ impl LimbMemory {
         }
     }
 
-    /// `carried` is the body's own velocity before.
+    /// Moves the memory with the climber's support. `carried` is the body's velocity in the last frame.
     pub(crate) fn carry(&mut self, carry: &Carry, carried: DVec3) {
         self.carried = carry.vector(carried);
         self.shown = carry.place(&self.shown);
@@ -152,7 +158,7 @@ impl LimbMemory {
         matches!(self.doing, Doing::Swinging(_))
     }
 
-    /// Starts towards a hold from where it is; `bow` is how far and to where it goes around in the middle of its way.
+    /// Starts a step to a hold from the shown place. `bow` displaces the middle of the path.
     pub(crate) fn swing_to(&mut self, to: Hold, duration: f64, bow: DVec3) {
         self.waits = false;
         self.detour = Detour::default();
@@ -160,21 +166,21 @@ impl LimbMemory {
             from: self.shown,
             velocity: self.velocity.clamp_length_max(FASTEST),
             to,
-            // It was shown before this frame.
+            // The last frame showed this place, so the step's time starts within this frame.
             time: self.late.min(self.frame),
             duration,
             bow,
         });
     }
 
-    /// Lets go, and keeps on moving as it does; `clip` is where its clip has it.
+    /// Lets go, and moves on at the current velocity. `clip` is the place in the clips' pose, to which it returns.
     pub(crate) fn let_go(&mut self, clip: &Place) {
         self.doing = Doing::Free;
         self.waits = false;
         self.keep(clip);
     }
 
-    /// Begins a difference from `target` so that the next place continues the last.
+    /// Sets the difference from `target` so that the motion continues.
     pub(crate) fn keep(&mut self, target: &Place) {
         let expected = self.shown.position + self.velocity * self.frame;
         self.offset.value = expected - target.position;
@@ -185,20 +191,20 @@ impl LimbMemory {
         self.turn.velocity = self.spin;
     }
 
-    /// Comes down where it is now, and is at rest: what is left is the difference to `target`.
+    /// Stops at `now`, at rest, with the difference from there to `target`.
     pub(crate) fn stop(&mut self, now: &Place, target: &Place) {
         self.half = LET_GO;
         self.offset = Spring::at(now.position - target.position);
         self.turn = Spring::at(rotation_vector(now.rotation * target.rotation.conjugate()));
     }
 
-    /// Ends the difference: it is where it should be.
+    /// Ends the difference: the target is reached at once.
     pub(crate) fn settle(&mut self) {
         self.offset = Spring::default();
         self.turn = Spring::default();
     }
 
-    /// A target with what is left of the difference.
+    /// The target with the difference added.
     pub(crate) fn kept(&self, target: &Place) -> Place {
         Place {
             position: target.position + self.offset.value,
@@ -206,13 +212,13 @@ impl LimbMemory {
         }
     }
 
-    /// [`LimbMemory::kept`], turned about a point of the hand or foot, at `pivot` from its joint.
+    /// [`LimbMemory::kept`], turned about the point at `pivot` from the joint.
     pub(crate) fn kept_about(&self, target: &Place, pivot: DVec3) -> Place {
         let rotation = (turn_by(self.turn.value) * target.rotation).normalize();
         Place::with_point_at(target.point(pivot) + self.offset.value, pivot, rotation)
     }
 
-    /// How far it still is from its target, metres.
+    /// Length of the difference, metres.
     pub(crate) fn kept_distance(&self) -> f64 {
         self.offset.value.length()
     }
@@ -227,7 +233,7 @@ impl LimbMemory {
         }
     }
 
-    /// Remembers where it is shown.
+    /// Stores the shown place, and its velocities over the frame.
     pub(crate) fn show(&mut self, place: Place, dt: f64) {
         if dt > 0.0 {
             self.velocity = (place.position - self.shown.position) / dt;
@@ -239,8 +245,8 @@ impl LimbMemory {
     }
 }
 
-/// Time for half of a way for which a critically damped spring does not start with more than 144 metres a second
-/// squared: 4 cm a sixtieth beyond the last one.
+/// Half time for which a critically damped spring starts over a distance `way`, metres, with 144 m/s². At 60 Hz, a
+/// frame's displacement then exceeds the last one's by at most 4 cm.
 pub(crate) fn soft_half(way: f64) -> f64 {
     0.14 * way.sqrt()
 }

@@ -12,37 +12,39 @@ use super::root::Root;
 use super::stance::Stance;
 use super::walk::Walk;
 
-/// All that a body remembers from frame to frame, but for its clips. In world space; what carries the climber moves it.
+/// Everything that a body remembers from frame to frame, except its clips. Lengths are metres in world space. The
+/// memory moves with the climber's support, the carrier.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Memory {
     pub(crate) carrier: Option<Attachment>,
     /// The climber's position.
     pub(crate) position: DVec3,
     pub(crate) stance: Stance,
-    /// Seconds since hands took hold.
+    /// Seconds since the hands took hold.
     pub(crate) held: f64,
-    /// Seconds without ground.
+    /// Seconds since the climber left the ground in a step down; 0 otherwise.
     pub(crate) in_air: f64,
-    /// Where the model was shown, and how fast it moved relative to the carrier.
+    /// The model's shown place.
     pub(crate) root: Root,
+    /// Velocity of the shown place, relative to the carrier.
     pub(crate) velocity: DVec3,
     /// Velocity of the carrier.
     pub(crate) base: DVec3,
     pub(crate) turn: RotationSpring,
-    /// Difference from the stance's own place.
+    /// Displacement of the model from its stance's own place; it decays.
     pub(crate) offset: Spring<DVec3>,
-    /// Time for half of it, seconds.
+    /// Half time of `offset`, seconds.
     pub(crate) offset_half: f64,
     pub(crate) ground: Ground,
-    /// How far the pelvis is down for the feet.
+    /// Depth of the pelvis below its height in the clips' pose, for the feet.
     pub(crate) drop: f64,
-    /// How far the body is pulled by hands and feet that hold.
+    /// Displacement of the body towards the holds of its hands and feet.
     pub(crate) pull: Spring<DVec3>,
-    /// Velocity along the ground that the body has settled to: it leans into the difference.
+    /// Low-pass filtered level velocity. The body leans into the difference from the current one.
     pub(crate) slow: Spring<DVec3>,
-    /// Velocity of the climber relative to the carrier.
+    /// Velocity of the climber relative to the carrier; on a wall, its part along the skin.
     pub(crate) motion: DVec3,
-    /// The same, and not only along what it stands on or holds.
+    /// Velocity of the climber relative to the carrier, in all directions.
     pub(crate) full_motion: DVec3,
     pub(crate) walk: Walk,
     pub(crate) climb: Climb,

@@ -1,4 +1,4 @@
-//! The body of a climber, frame by frame.
+//! The body of a climber, updated in each drawn frame.
 
 mod carry;
 mod climb;
@@ -39,10 +39,10 @@ use play::Player;
 use crate::figure::Place;
 use crate::{Extremity, Figure, Side};
 
-/// The body of one climber: it is posed in every drawn frame, from what the climber does and what it touches.
+/// The body of one climber. In each drawn frame it is posed from the climber's state and the obstacles around it.
 ///
-/// It is for the eye alone. It belongs to no saved state; a body that is made anew, or whose climber was teleported, is
-/// in place at once. It remembers where hands and feet are, so give each climber one of its own.
+/// A body is for display alone and is not part of saved states. A new body, or one whose climber was teleported, is in
+/// place at once. It remembers where hands and feet are, so each climber needs a body of its own.
 #[derive(Clone, Debug)]
 pub struct Body {
     pose: Pose,
@@ -51,11 +51,11 @@ pub struct Body {
     plants: Vec<Plant>,
 }
 
-/// Plants in one frame for which memory is kept.
+/// Number of plants for which a new body reserves memory, so that steady frames do not allocate.
 const PLANTS: usize = 8;
 
 impl Body {
-    /// A body of a figure. It has no place until its first [`Body::update`].
+    /// A body of a figure. It has no place until the first [`Body::update`].
     pub fn new(figure: &Figure) -> Self {
         Self {
             pose: figure.animations().rest().clone(),
@@ -65,12 +65,13 @@ impl Body {
         }
     }
 
-    /// Poses the body, `dt` seconds after the last frame. Any frame rate is right. Allocates only where the climber
-    /// begins something else.
+    /// Poses the body, `dt` seconds after the last frame, at any frame rate. It allocates only in frames in which the
+    /// climber begins another motion.
     ///
     /// # Errors
-    /// [`BodyError`] for numbers that are not finite, another figure's body, or limbs that cannot be posed, such as those
-    /// that a clip scales to nothing. The body is where it was; in the last case its pose is the clips' own.
+    /// [`BodyError`] for numbers that are not finite, a body of another figure, or limbs that cannot be posed, such as
+    /// those that a clip scales to nothing. The body keeps its place. If a limb cannot be posed, the clips' pose
+    /// remains, with some limbs bent already.
     pub fn update(
         &mut self,
         figure: &Figure,
@@ -99,7 +100,7 @@ impl Body {
         &self.pose
     }
 
-    /// Where the model stands. The identity before the first update.
+    /// Position, rotation and scale of the model in the world. The identity before the first update.
     pub fn world_from_model(&self) -> Similarity {
         self.memory
             .map_or(Similarity::IDENTITY, |memory| memory.similarity())
@@ -110,21 +111,21 @@ impl Body {
         &self.plants
     }
 
-    /// Markers and ends that clips came past in the last update, such as `loose` of an act that looses an arrow. An act
-    /// is the last layer; the clips' names and markers are in [`Figure::animations`].
+    /// Markers and ends that clips passed in the last update, such as the marker `loose` of an act that looses an
+    /// arrow. The act is the last layer; names and markers of the clips are in [`Figure::animations`].
     pub fn events(&self) -> &[AnimationEvent] {
         self.player.events()
     }
 
-    /// What a hand or foot is on; `None` if it is in the air, on its way, or free: hands
-    /// arrive 0.2 to 0.3 seconds after the climber has grabbed.
+    /// The material point that a hand or foot is on. `None` if the hand or foot is in the air, on its way, or free.
+    /// Hands arrive 0.2 to 0.3 seconds after the climber has grabbed.
     pub fn hold(&self, extremity: Extremity) -> Option<&Attachment> {
         let limb = &self.memory.as_ref()?.limbs[extremity.index()];
         limb.hold().map(|hold| &hold.attachment)
     }
 
-    /// Where the part of a hand or foot is that touches what it is on, in world space: the middle of the palm, or the
-    /// sole. `None` before the first update.
+    /// The point of a hand or foot that touches its hold, in world space: the middle of the palm, or the sole. `None`
+    /// before the first update.
     pub fn touching_point(&self, figure: &Figure, extremity: Extremity) -> Option<DVec3> {
         let memory = self.memory.as_ref()?;
         let limb = &memory.limbs[extremity.index()];
@@ -134,7 +135,7 @@ impl Body {
         Some(memory.root.point(place.point(touching)))
     }
 
-    /// The heel and the ball of a foot on its sole, in world space. `None` before the first update.
+    /// The heel and the ball of a foot, both on the sole, in world space. `None` before the first update.
     pub fn sole(&self, figure: &Figure, side: Side) -> Option<[DVec3; 2]> {
         let root = self.memory.as_ref()?.root;
         let shape = figure.limb(Extremity::Foot(side));
@@ -142,17 +143,18 @@ impl Body {
         Some([shape.heel, shape.ball].map(|point| root.point(place.point(point))))
     }
 
-    /// Forgets all places, as after a teleport: the next update puts the body in place at once, and tells nothing.
+    /// Forgets all places, as after a teleport. The next update puts the body in place at once and reports no plants.
     pub fn reset(&mut self) {
         self.memory = None;
         self.player.restart();
     }
 
-    /// Plays a clip over the body's own, within `fade` seconds: a weapon that is raised, a gesture. `None` ends it.
+    /// Plays a clip over the body's own, such as a raised weapon or a gesture, faded in within `fade` seconds. `None`
+    /// ends the act, faded out in the same way.
     ///
     /// # Errors
-    /// [`AnimationError`] for a clip or mask that the figure does not have, or numbers that are out of range. Nothing is
-    /// changed then.
+    /// [`AnimationError`] for a clip or mask that the figure does not have, or numbers that are out of range. The body
+    /// does not change then.
     pub fn set_act(
         &mut self,
         figure: &Figure,
@@ -165,7 +167,7 @@ impl Body {
         self.player.set_act(figure, act, fade)
     }
 
-    /// The layer of the act that is played, to drive its time; `None` if there is none.
+    /// The layer of the current act, to set its time; `None` without an act.
     pub fn act_mut(&mut self) -> Option<&mut Layer> {
         self.player.act_mut()
     }

@@ -1,4 +1,4 @@
-//! Which clips are played for what the climber does.
+//! Chooses and plays the clips for the climber's state.
 
 use clamber_animation::{AnimationError, AnimationEvent, Animator, Layer, PoseBuffers};
 use clamber_climber::ClimberState;
@@ -9,26 +9,26 @@ use super::walk::Walk;
 use crate::figure::STRIDES;
 use crate::{BodyClip, Figure};
 
-/// Length of a fade between clips, seconds.
+/// Length of a fade between the body's own clips, seconds.
 const FADE: f64 = 0.22;
 
-/// The marker of the time at which a jump leaves the ground.
+/// Name of the marker at which a jump leaves the ground.
 const TAKE_OFF: &str = "take_off";
 
-/// The lowest layers.
+/// The layers below an act.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Base {
-    /// Standing and all that goes, mixed.
+    /// Standing and locomotion, mixed.
     Walk,
     Loop(BodyClip),
     Once(BodyClip),
-    /// At the time that the pull-up says.
+    /// The pull-up, at the time that its progress gives.
     Mantle,
 }
 
-/// A clip over the body's own, for weapons and gestures.
+/// A clip over the body's own clips, for weapons and gestures.
 ///
-/// [`Layer::once`] plays it once, [`Layer::new`] again and again:
+/// [`Layer::once`] plays the clip once, [`Layer::new`] in a loop:
 ///
 /// ```
 /// use clamber_animation::Layer;
@@ -44,12 +44,12 @@ enum Base {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Act {
-    /// The clip, how it is mixed in, and for which joints; [`Figure::upper_body`](crate::Figure::upper_body) is a mask
-    /// of the joints above the hips.
+    /// The clip, how it is blended in, and its mask of joints. [`Figure::upper_body`](crate::Figure::upper_body) is a
+    /// mask of the joints above the hips.
     pub layer: Layer,
-    /// Which hands follow the clip, left and right. They are not kept out of walls. While the climber holds on, a hand
-    /// leaves its hold once the other one holds, and that one stays as long as it reaches: climb at most 0.3 m/s
-    /// meanwhile, or it has to move.
+    /// True for each hand, left and right, that follows the clip. Such a hand is not kept out of walls. While the
+    /// climber holds on, the hand leaves its hold once the other hand holds. The other hand keeps its hold as long as
+    /// it reaches: climb at most 0.3 m/s meanwhile, or that hand has to move.
     pub hands: [bool; 2],
 }
 
@@ -75,7 +75,7 @@ impl Player {
         }
     }
 
-    /// Forgets what it played, so that the next frame begins without a fade.
+    /// Forgets the current clips, so that the next frame begins without a fade.
     pub(crate) fn restart(&mut self) {
         self.base = None;
     }
@@ -89,7 +89,7 @@ impl Player {
         self.animator.layers_mut().last_mut()
     }
 
-    /// The hands that follow a clip instead of holding.
+    /// True for each hand, left and right, that follows an act instead of holding.
     pub(crate) fn busy_hands(&self) -> [bool; 2] {
         self.act.unwrap_or_default()
     }
@@ -111,7 +111,7 @@ impl Player {
         Ok(())
     }
 
-    /// Lets `dt` seconds pass, and writes the clips' pose.
+    /// Advances the clips by `dt` seconds and writes their pose. `before` is the last frame's stance.
     pub(crate) fn step(
         &mut self,
         figure: &Figure,
@@ -125,7 +125,7 @@ impl Player {
         let stands = stance == Stance::Upright;
         self.gets_up = stands && (self.gets_up || lay) && walk.going < 0.3;
         let base = self.base_of(state, stance);
-        // Who crouches or is crushed gets up otherwise.
+        // A body that crouches or is crushed while it gets up does not lie down again to get up.
         self.gets_up &= matches!(base, Base::Once(BodyClip::GetUp));
         self.change_to(figure, base)?;
         self.animator
@@ -209,7 +209,8 @@ impl Player {
     }
 }
 
-/// Where a clip that is played once begins: a jump when the feet leave the ground, since they have.
+/// Time at which a clip that is played once begins, seconds. A jump begins at its take-off, since the feet have left
+/// the ground already.
 fn start_of(figure: &Figure, base: Base) -> f64 {
     let Base::Once(BodyClip::Jump) = base else {
         return 0.0;
@@ -220,7 +221,7 @@ fn start_of(figure: &Figure, base: Base) -> f64 {
     off.map_or(0.0, |marker| marker.time)
 }
 
-/// Weights and times of the clips of walking, from before this frame on.
+/// Sets weights and times of the locomotion clips. The times are those at the frame's beginning.
 fn drive(
     layers: &mut [Layer],
     figure: &Figure,
@@ -238,7 +239,7 @@ fn drive(
         let duration = figure.animations().clip(layer.clip)?.duration();
         let wanted = walk.going * walk.shares[index];
         sum += wanted;
-        // Each layer is mixed over all below it.
+        // The mixer blends each layer over all layers below it.
         layer.weight = if wanted > 1e-6 {
             (wanted / sum).min(1.0)
         } else {

@@ -1,48 +1,58 @@
-//! Moves the body so that limbs reach what they hold: first the holds, then the body, then inverse kinematics.
+//! Moves the body so that limbs reach their holds. The holds come first, then the body, then inverse kinematics.
 
 use clamber_animation::damp;
 use glam::DVec3;
 
-/// Share of a limb's length at which it counts as stretched: arms keep from snapping straight (soft reach begins
-/// there), legs stand nearly straight.
+/// Share of an arm's length that the body keeps within. It is below 1 to keep elbows from snapping straight: soft reach
+/// begins there.
 pub(crate) const ARM: f64 = 0.97;
+
+/// Share of a leg's length that the body keeps within: standing legs are nearly straight.
 pub(crate) const LEG: f64 = 0.992;
 
-/// Share of the leg's length at which a foot is let go: hands must not slip, toes may stay back a little.
+/// Share of the leg's length beyond which a foot is let go. It is above 1: hands must not slip, but toes may stay back
+/// a little.
 const FEET: f64 = 1.03;
 
-/// Rounds of moving the body to one limb after the other.
+/// Number of rounds in which the body moves to one limb after the other.
 const ROUNDS: usize = 8;
 
-/// How far the body moves for its limbs, metres.
+/// Largest displacement of the body for its limbs, metres.
 const MOST: f64 = 0.8;
 
-/// Nearer than this share of their length, limbs push the body away.
+/// Share of a limb's length below which the limb pushes the body away.
 const NEAR: f64 = 0.25;
 
-/// How far and how fast the pelvis goes down for its feet, metres and metres a second, and the time for half of the way
-/// up again, seconds (Unreal's foot placement: 0.5 m, and 0.09 s).
+/// Largest depth of the pelvis for the feet, metres (Unreal's foot placement: 0.5 m).
 const DEEPEST: f64 = 0.5;
+
+/// Largest speed at which the pelvis goes down, metres a second.
 const SINKS: f64 = 1.2;
+
+/// Half time of the pelvis's way up again, seconds (Unreal's foot placement: 0.09 s).
 const RISES: f64 = 0.09;
 
-/// The same for who walks: from step to step it stays down.
+/// [`DEEPEST`] while the body walks, metres.
 const DEEPEST_WALKING: f64 = 0.18;
+
+/// [`RISES`] while the body walks, seconds: so long that the pelvis stays down from step to step.
 const STEADY: f64 = 2.0;
+
+/// [`SINKS`] while the body walks, metres a second.
 const SINKS_WALKING: f64 = 0.8;
 
-/// A limb's root in the world, where its end should be, and how long it may get.
+/// The root of a limb in world space, the place of its end, and the largest distance between them.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Tie {
     pub(crate) root: DVec3,
     pub(crate) end: DVec3,
     pub(crate) reach: f64,
-    /// Of the straight limb.
+    /// Length of the straight limb, metres.
     pub(crate) length: f64,
 }
 
-/// The displacement of the body by which all ties are within reach, if that is not too far: from `from` onto one ball
-/// after the other.
+/// The displacement of the body, from `from` on, by which all limbs are within reach, at most [`MOST`]. It projects
+/// onto the allowed distances of one limb after the other.
 pub(crate) fn pulled(from: DVec3, ties: &[Option<Tie>; 4], size: f64) -> DVec3 {
     let mut moved = from;
     for _ in 0..ROUNDS {
@@ -56,7 +66,7 @@ pub(crate) fn pulled(from: DVec3, ties: &[Option<Tie>; 4], size: f64) -> DVec3 {
     moved.clamp_length_max(MOST * size)
 }
 
-/// The limb that is farthest out of reach after the body moved; `None` if all reach.
+/// The limb that is farthest out of reach after the body moved; `None` if all limbs reach.
 pub(crate) fn out_of_reach(ties: &[Option<Tie>; 4], moved: DVec3) -> Option<usize> {
     let beyond = ties.iter().enumerate().filter_map(|(index, tie)| {
         let tie = tie.as_ref()?;
@@ -68,8 +78,8 @@ pub(crate) fn out_of_reach(ties: &[Option<Tie>; 4], moved: DVec3) -> Option<usiz
     worst.map(|(index, _)| index)
 }
 
-/// How far the pelvis has to go down for its feet: the hip above each foot meets the ball about the ankle (Johansen
-/// 2009, "Automated semi-procedural animation for character locomotion", 7.4.2).
+/// Depth to which the pelvis has to go down for its feet, metres: each hip comes straight down onto the sphere of the
+/// leg's reach about the ankle (Johansen 2009, "Automated semi-procedural animation for character locomotion", 7.4.2).
 pub(crate) fn needed_drop(ties: &[Option<Tie>; 2], up: DVec3) -> f64 {
     let drops = ties.iter().flatten().filter_map(|tie| {
         let way = tie.root - tie.end;
@@ -81,7 +91,7 @@ pub(crate) fn needed_drop(ties: &[Option<Tie>; 2], up: DVec3) -> f64 {
     drops.fold(0.0, f64::max)
 }
 
-/// The pelvis's way down after another `dt` seconds. Who walks keeps the pelvis steady.
+/// The pelvis's depth after another `dt` seconds. While the body walks, the pelvis is kept steady.
 pub(crate) fn dropped(drop: f64, needed: f64, walks: bool, size: f64, dt: f64) -> f64 {
     let deepest = if walks { DEEPEST_WALKING } else { DEEPEST };
     let needed = needed.min(deepest * size);

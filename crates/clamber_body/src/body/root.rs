@@ -1,6 +1,6 @@
 use glam::{DMat3, DQuat, DVec3};
 
-/// Where the model stands in the world: its origin is between the feet. Lengths are metres.
+/// The model's place in the world. Its origin is between the feet. Lengths are metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Root {
     pub(crate) position: DVec3,
@@ -16,14 +16,14 @@ impl Root {
         self.rotation.conjugate() * (world - self.position)
     }
 
-    /// The root that takes a point of the model to one of the world.
+    /// The root that takes the point `model` of the model to the point `world`.
     pub(crate) fn with_point_at(model: DVec3, world: DVec3, rotation: DQuat) -> Self {
         let position = world - rotation * model;
         Self { position, rotation }
     }
 }
 
-/// The rotation that takes a figure's `facing`, and Y, to directions in the world: the second exactly.
+/// The rotation that takes Y exactly to `above`, and a figure's `facing` as near as possible to `ahead`.
 pub(crate) fn facing_to(facing: DVec3, ahead: DVec3, above: DVec3) -> DQuat {
     let above = above.normalize_or(DVec3::Y);
     let ahead = (ahead - above * ahead.dot(above)).normalize_or(above.any_orthonormal_vector());

@@ -1,4 +1,4 @@
-//! From where hands and feet should be to the pose of the joints.
+//! Solves a limb's joints for the desired place of its hand or foot.
 
 use clamber_animation::ik::{IkError, Reach, TwoBoneGoal, aim};
 use clamber_animation::{ik::PoleMemory, joint_in_model};
@@ -9,16 +9,16 @@ use super::root::Root;
 use crate::figure::{LimbShape, Place};
 use crate::{Figure, LimbEnd};
 
-/// How a limb is solved.
+/// The goal of a limb.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Wanted {
-    /// Where hand or foot should be, in the world.
+    /// Desired place of the hand or foot, in world space.
     pub(crate) place: Place,
-    /// Share of the limb from which it is reached softly.
+    /// Share of the limb's length from which a far place is approached softly; 1 for never.
     pub(crate) soft: f64,
 }
 
-/// Turns a limb's joints, and its hand or foot. Returns where it got.
+/// Turns the joints of a limb, and its hand or foot. Returns the reached place.
 pub(crate) fn limb(
     figure: &Figure,
     pose: &mut Pose,
@@ -48,7 +48,7 @@ pub(crate) fn limb(
     if let Some(joint) = shape.end.joint() {
         let turn = root.rotation.conjugate() * wanted.place.rotation;
         let directions = [turn * DVec3::Y, turn * DVec3::X];
-        // A hand below joints that scale unevenly keeps its clip's turn.
+        // A hand below joints with uneven scale keeps the rotation of the clips' pose.
         match aim(skeleton, pose, joint, shape.aim_axes(), directions) {
             Ok(()) | Err(IkError::Sheared(_) | IkError::NotInvertible(_)) => {}
             Err(error) => return Err(error),

@@ -1,4 +1,4 @@
-//! What a climber's mode means for its body: how the model stands in the world.
+//! Maps a climber's mode to its body's stance, and the stance to the model's place in the world.
 
 use clamber_climber::{ClimberConfig, ClimberMode, ClimberState};
 use glam::{DQuat, DVec3};
@@ -6,7 +6,7 @@ use glam::{DQuat, DVec3};
 use super::root::Root;
 use crate::Figure;
 
-/// Kinds of posture. Within one, the model moves without a break; between two, differences fade.
+/// The kind of a body's posture. Within one stance the model moves continuously. Between two, the difference decays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Stance {
     /// On its feet.
@@ -17,7 +17,7 @@ pub(crate) enum Stance {
     Tumble,
     /// Knocked over, at rest.
     Lie,
-    /// Holds on with hands and feet.
+    /// Holds on to a wall with hands and feet.
     Wall,
     /// Hangs by its hands.
     Hang,
@@ -25,10 +25,10 @@ pub(crate) enum Stance {
     Ledge,
 }
 
-/// How far below the ball's centre the hips hang, as a share of the leg.
+/// Height of the ball's centre above the hips while hanging, as a share of the leg's length.
 const BELOW: f64 = 0.13;
 
-/// Height of the ball's centre above the hips on a wall, as a share of the leg.
+/// Height of the ball's centre above the hips on a wall, as a share of the leg's length.
 const WAIST: f64 = 0.16;
 
 impl Stance {
@@ -46,12 +46,13 @@ impl Stance {
         }
     }
 
-    /// True if hands hold what carries the climber.
+    /// True if the hands hold the climber's support.
     pub(crate) fn is_held(self) -> bool {
         matches!(self, Self::Wall | Self::Hang | Self::Ledge)
     }
 
-    /// Where the front of the body faces, and where its head is, in world space.
+    /// Directions that the front and the head of the body face, in world space. The second one need not be a unit
+    /// vector.
     pub(crate) fn directions(self, state: &ClimberState, up: DVec3) -> [DVec3; 2] {
         let support = state.support.as_ref();
         match (self, support) {
@@ -61,14 +62,15 @@ impl Stance {
             }
             (Self::Hang, Some(support)) => {
                 let arm = support.attachment.point - state.position;
-                // Half upright: arms give way before the trunk does.
+                // The trunk is halfway between the arms' direction and upright: arms give way before the trunk does.
                 [state.heading, arm.normalize_or(up) + up]
             }
             _ => [state.heading, up],
         }
     }
 
-    /// Where the model stands, turned by `rotation`. `ground` is the height of the ground along up, for who stands.
+    /// The model's root when it is turned by `rotation`. `ground` is the ground's height along up; only an upright body
+    /// needs it.
     pub(crate) fn root(
         self,
         figure: &Figure,
@@ -93,7 +95,7 @@ impl Stance {
             (Self::Wall, Some(support)) => {
                 let normal = support.normal_in_world();
                 let away = (state.position - support.attachment.point).dot(normal);
-                // By the ball's centre, so that around corners it turns and does not jump.
+                // The waist is at the ball's centre, so that the body turns around corners without a jump.
                 let far = postures.wall[0].dot(ahead) - away;
                 let waist = DVec3::Y * (postures.wall_hips.y + WAIST * leg) + ahead * far;
                 Root::with_point_at(waist, state.position, rotation)
@@ -110,12 +112,14 @@ impl Stance {
                 let out = config.body.radius * HANDS_AHEAD;
                 let place = edge - state.heading * out - up * ledge.drop;
                 let way = state.position - place;
-                // By the ball's centre: hands go from hold to hold, and around a corner the body turns.
+                // The edge turns with the model about the ball's place: around a corner the hands go from hold to hold,
+                // but the body turns.
                 let front = rotation * ahead;
                 let front = (front - up * front.dot(up)).normalize_or(state.heading);
                 let edge = place + front * out + up * ledge.drop;
                 let hangs = Root::with_point_at(postures.edge, edge, rotation).position;
-                // From hanging to standing on top, the model goes as far as from below the edge onto it.
+                // The model moves from hanging below the edge to standing on it, while the ball makes its own,
+                // different way.
                 let stands = edge + up * config.body.margin;
                 let rises = ledge.drop + config.body.radius + config.body.margin;
                 let whole = stands - hangs;
@@ -136,12 +140,12 @@ impl Stance {
     }
 }
 
-/// A body that is off its place below a ledge by up to this share of the ball's radius moves with the ball: hands that
-/// go on to the next hold, over a step, do not move it.
+/// Distance from its place below a ledge up to which the model moves exactly as the ball, as a share of the ball's
+/// radius. Within it, the model does not move when the hands change to a hold at another height.
 const NEAR: f64 = 0.5;
 
-/// How far the model has gone when the ball has gone `way`: as far at first, and the `whole` way of the model where the
-/// ball has gone its own.
+/// Displacement of the model when the ball has moved by `way`: the same up to `near`, then linearly growing to `whole`,
+/// where the ball has moved by `ball`.
 fn gone(way: f64, [ball, whole]: [f64; 2], near: f64) -> f64 {
     let near = near.min(ball);
     if way <= near {
@@ -150,8 +154,8 @@ fn gone(way: f64, [ball, whole]: [f64; 2], near: f64) -> f64 {
     near + (way - near) * (whole - near) / (ball - near).max(1e-6)
 }
 
-/// Distance of a ledge's contact ahead of the ball's centre, as a share of its radius: what
-/// `LedgeProbe::hands_ahead` of `clamber_mover` says.
+/// Distance of a ledge's contact ahead of the ball's centre, as a share of the ball's radius. It must equal
+/// `LedgeProbe::hands_ahead` of `clamber_mover`.
 const HANDS_AHEAD: f64 = 1.4;
 
 /// The smallest rotation from one unit vector to another.

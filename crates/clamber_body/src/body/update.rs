@@ -1,4 +1,4 @@
-//! One frame of a body: what carries it, how it stands, where hands and feet are, and the pose that follows.
+//! One frame of a body: the support's motion, the stance, the places of hands and feet, and the final pose.
 
 use clamber_animation::{RotationSpring, Spring, damp, joint_in_model};
 use clamber_climber::ClimberMode;
@@ -26,56 +26,65 @@ use super::{feet, goals};
 use crate::figure::Place;
 use crate::{BodyError, Extremity, Figure};
 
-/// Times for half of a turn of the body, and of a difference between two stances, seconds.
+/// Half time of the body's turn to its stance's rotation, seconds.
 const TURN: f64 = 0.11;
 
-/// The same on a wall, where hands and feet have to follow around corners.
+/// [`TURN`] on a wall and while hanging, seconds: longer, since hands and feet have to follow around corners.
 const TURN_ON_WALL: f64 = 0.22;
 
+/// Least half time in which a displacement between two stances decays, seconds.
 const OFFSET: f64 = 0.09;
 
-/// The same per change of speed, seconds for a metre a second.
+/// Growth of that half time with the displacement's initial speed, seconds per metre a second.
 const OFFSET_PER_SPEED: f64 = 0.0233;
 
-/// The fastest difference between two stances that is kept, metres a second: a body that lands from higher goes down as
-/// far.
+/// Limit of a new displacement's speed, metres a second: a body that lands faster does not go deeper.
 const FASTEST: f64 = 9.0;
 
-/// Time over which a change of velocity is leaned into, seconds; the lean per change, radians for a metre a second, and
-/// the most of it.
+/// Half time of the low-pass filter on the velocity that a body leans by, seconds.
 const LEANS: f64 = 0.18;
+
+/// Lean per change of velocity, radians per metre a second.
 const LEAN: f64 = 0.05;
+
+/// Largest lean, radians.
 const MOST_LEAN: f64 = 0.16;
 
-/// A climber that is farther from where it was expected than this share of the leg, and this many times its way, was
-/// teleported.
+/// A climber was teleported if it is farther from its expected position than this share of the leg's length plus the
+/// distance by [`WAYS`].
 const TELEPORT: f64 = 1.0;
+
+/// This many times the distance at the last and the current speed together is added to [`TELEPORT`].
 const WAYS: f64 = 3.0;
 
-/// How fast a tumbling body rolls at most, radians a second.
+/// Largest speed at which a tumbling body rolls, radians a second.
 const ROLLS: f64 = 8.0;
 
-/// Time for half of a change of that, seconds.
+/// Half time of a change of that speed, seconds.
 const ROLL_TIME: f64 = 0.1;
 
-/// Time for half of a change of the gaze's weight, seconds.
+/// Half time of a change of the gaze's weight, seconds.
 const GAZE: f64 = 0.15;
 
-/// Time for half of the body's way to where all limbs reach, seconds.
+/// Half time of the body's displacement to where all limbs reach, seconds.
 const PULLS: f64 = 0.06;
 
-/// Least cosine between up and the normal of skin that counts as level.
+/// Least cosine between up and the normal of level skin.
 const FLAT: f64 = 0.94;
 
-/// Depth of what is stepped down from, as a share of the leg, and how long that takes at most, seconds.
+/// Largest depth of a step down, as a share of the leg's length.
 const STEP_DOWN: f64 = 0.5;
+
+/// Longest time for which a body counts as standing during a step down, seconds.
 const STEP_DOWN_TIME: f64 = 0.3;
 
-/// Softness of limbs on their way, and how far from its clip a limb is reached like that, metres.
+/// Share of a limb's length over which a limb on its way slows down near its full stretch.
 const SOFT: f64 = 0.03;
+
+/// Distance from the clips' pose at which a free limb has all of [`SOFT`], metres.
 const SOFT_WITHIN: f64 = 0.05;
 
-/// A free limb within this distance of its clip is left to it, metres.
+/// Distance from the clips' pose within which a free limb follows the clips without inverse kinematics, metres.
 const AT_CLIP: f64 = 1e-3;
 
 pub(crate) struct Update<'a> {
@@ -84,10 +93,10 @@ pub(crate) struct Update<'a> {
     dt: f64,
     up: DVec3,
     stance: Stance,
-    /// Seconds without ground, while it stands all the same.
+    /// Seconds since the climber left the ground in a step down; 0 otherwise.
     in_air: f64,
     carry: Carry,
-    /// Of the last frame; `None` in the first, and after a teleport.
+    /// The memory of the last frame; `None` in the first frame and after a teleport.
     memory: Option<Memory>,
 }
 
@@ -124,7 +133,7 @@ impl<'a> Update<'a> {
         update
     }
 
-    /// Who steps down from something low is not in the air yet.
+    /// Keeps a body upright that steps down from a low edge, although the climber falls.
     fn step_down(&mut self) {
         let state = self.frame.state;
         let Some(memory) = &self.memory else {
@@ -194,7 +203,7 @@ impl<'a> Update<'a> {
         let mut goals = goals::goals(&context, self.stance, &target);
         let busy = player.busy_hands();
         for hand in 0..2 {
-            // A hand leaves its hold for an act when the other one holds.
+            // For an act, a hand leaves its hold only when the other hand holds.
             let other_holds = busy[1 - hand] || limbs[1 - hand].is_planted();
             goals[hand] =
                 goals[hand].filter(|_| !busy[hand] || !other_holds && limbs[hand].is_planted());
@@ -290,8 +299,8 @@ impl<'a> Update<'a> {
         Ok(memory)
     }
 
-    /// Bends limbs to where they have to be. Those that are free follow their clip; legs that hang are turned by
-    /// `swung` about their hips.
+    /// Bends the limbs towards their places. Free limbs follow the clips. Hanging legs are turned by `swung` about
+    /// their hips.
     fn pose_limbs(
         &self,
         context: &Context<'_>,
@@ -323,7 +332,7 @@ impl<'a> Update<'a> {
             } else {
                 let soft = match limb.doing {
                     Doing::Planted(_) => 1.0,
-                    // By degrees, since a limb may begin straight.
+                    // The softness grows gradually, since a limb may be straight when its step begins.
                     Doing::Swinging(swing) => {
                         1.0 - SOFT * (2.0 * swing.time / swing.duration).min(1.0)
                     }
@@ -343,7 +352,7 @@ impl<'a> Update<'a> {
         Ok(())
     }
 
-    /// The climber's velocity relative to what carries it, along the ground or the skin.
+    /// The climber's velocity relative to its support; on a wall, its part along the skin.
     fn motion(&self) -> DVec3 {
         let state = self.frame.state;
         let motion = state.velocity - state.base_velocity;
@@ -356,7 +365,8 @@ impl<'a> Update<'a> {
         }
     }
 
-    /// How fast it climbs along what it holds: hands that hang stay.
+    /// The climbing velocity along the held wall or ledge. 0 while hanging or pulling up: the hands stay on their
+    /// holds.
     fn climbing(&self, motion: DVec3) -> DVec3 {
         let state = self.frame.state;
         let aside = self.up.cross(state.heading);
@@ -371,7 +381,7 @@ impl<'a> Update<'a> {
         vector - self.up * vector.dot(self.up)
     }
 
-    /// How the body is turned, and the velocity that it has settled to.
+    /// The body's rotation, and the low-pass filtered level velocity.
     fn turned(&self, motion: DVec3) -> (RotationSpring, Spring<DVec3>) {
         let state = self.frame.state;
         let facing = self.figure.humanoid().facing;
@@ -398,7 +408,7 @@ impl<'a> Update<'a> {
             });
         }
         if self.stance == Stance::Tumble {
-            // Over, in the direction of motion.
+            // The body rolls over in the direction of motion.
             let rate = (level.length() / self.frame.config.body.radius).min(ROLLS);
             let wanted = self.up.cross(level).normalize_or_zero() * rate;
             let roll = damp(turn.velocity, wanted, ROLL_TIME, self.dt);
@@ -418,7 +428,7 @@ impl<'a> Update<'a> {
         (turn, slow)
     }
 
-    /// On level skin, where no way is up, the head stays where it came.
+    /// Direction of the head on level skin, where no direction along the skin points up: as in the last frame.
     fn crawls(&self) -> Option<DVec3> {
         let support = self.frame.state.support.as_ref()?;
         let normal = support.normal_in_world();
@@ -447,7 +457,7 @@ impl<'a> Update<'a> {
             }
             None => {
                 let mut walk = Walk::standing(self.figure);
-                // Long enough for every mix.
+                // After 10 s all mixes have settled.
                 walk.step(self.figure, level, directions, 0.0, 10.0);
                 walk.phase = 0.0;
                 walk
@@ -506,8 +516,8 @@ impl<'a> Update<'a> {
         }
     }
 
-    /// What is left of the difference between where the model is shown and where its stance has it; `None` where the
-    /// stance is new.
+    /// The rest of the displacement between the model's shown place and its stance's place; `None` in a new stance and
+    /// in the first frame.
     fn kept_offset(&self) -> Option<Spring<DVec3>> {
         let memory = self.memory.filter(|memory| memory.stance == self.stance)?;
         let mut offset = memory.offset;
@@ -515,7 +525,7 @@ impl<'a> Update<'a> {
         offset.velocity = self.carry.vector(offset.velocity);
         let state = self.frame.state;
         let motion = state.velocity - state.base_velocity;
-        // The body takes up changes of speed softly, but for those by gravity.
+        // The model lags behind changes of the climber's velocity, except those by gravity.
         let falls = matches!(self.stance, Stance::Air | Stance::Tumble);
         let gravity = if falls {
             self.frame.config.gravity
@@ -526,7 +536,7 @@ impl<'a> Update<'a> {
         let change = expected - motion;
         if self.stance == Stance::Upright {
             offset.velocity += self.level(change);
-            // A step up or a push moves the climber at once, and the body after it.
+            // A step up or a push displaces the climber at once. The model follows softly.
             let expected = self.carry.point(memory.position) + self.level(motion) * self.dt;
             offset.value += self.level(expected - state.position);
         } else {
@@ -536,12 +546,12 @@ impl<'a> Update<'a> {
         Some(offset)
     }
 
-    /// That difference in a new stance, so that the model goes on as it did.
+    /// The displacement at the start of a stance. It lets the model's motion continue.
     fn new_offset(&self, target: &Root, motion: DVec3) -> Spring<DVec3> {
         let Some(memory) = &self.memory else {
             return Spring::default();
         };
-        // It goes on as it did, and comes to rest at its new place.
+        // The model keeps its velocity at first, and the spring brings it to rest at its new place.
         let velocity =
             self.carry.vector(memory.velocity) + memory.base - self.frame.state.base_velocity;
         let expected = self.carry.point(memory.root.position) + velocity * self.dt;
@@ -551,8 +561,8 @@ impl<'a> Update<'a> {
         }
     }
 
-    /// Time for half of a difference between two stances: longer after a hard change of speed, so that the body gives
-    /// way softly.
+    /// Half time of the displacement, seconds. It is longer after a hard change of velocity, so that the body gives way
+    /// softly.
     fn offset_half(&self, offset: &Spring<DVec3>) -> f64 {
         match &self.memory {
             Some(memory) if memory.stance == self.stance => memory.offset_half,
@@ -575,7 +585,7 @@ impl<'a> Update<'a> {
         limbs
     }
 
-    /// Takes hands and feet from what another stance had them on.
+    /// Takes hands and feet off the holds of another stance.
     fn leave(&self, context: &Context<'_>, [root, stand]: [&Root; 2], limbs: &mut [LimbMemory; 4]) {
         let Some(memory) = &self.memory else {
             return;
@@ -605,8 +615,9 @@ impl<'a> Update<'a> {
         }
     }
 
-    /// The way of the body by which hands and feet reach what they hold. What cannot be reached is let go: limbs on
-    /// their way first, then feet, and the last hand never, unless all of the way does not suffice.
+    /// The displacement of the body by which hands and feet reach their holds. While limbs are out of reach, the one
+    /// that is farthest out of reach is let go. The last hand stays longer: limbs on their way are let go before it,
+    /// then feet.
     fn pull(
         &self,
         context: &Context<'_>,
@@ -618,7 +629,7 @@ impl<'a> Update<'a> {
         let size = context.size();
         let mut ties = self.ties(ends, &schedule.shoulders);
         let mut wanted = DVec3::ZERO;
-        // Each limb is dropped at most once while it is on its way, and once from its hold.
+        // Each limb is let go at most twice: once on its way, and once from its hold.
         for _ in 0..2 * Extremity::ALL.len() {
             wanted = reach::pulled(DVec3::ZERO, &ties, size);
             let Some(worst) = reach::out_of_reach(&ties, wanted) else {
@@ -642,7 +653,8 @@ impl<'a> Update<'a> {
         if context.is_fresh {
             return Spring::at(wanted);
         }
-        // Softly, since limbs come and go; but what holds, holds. In a new stance, its offset has what was left.
+        // The pull changes softly, since limbs come and go, but planted limbs stay within reach in each frame. In a new
+        // stance the pull starts at 0: the displacement between the stances contains the rest of it.
         let kept = self.memory.filter(|memory| memory.stance == self.stance);
         let mut pull = kept.map_or(Spring::default(), |memory| memory.pull);
         pull.value = self.carry.vector(pull.value);
@@ -655,7 +667,7 @@ impl<'a> Update<'a> {
         pull
     }
 
-    /// Where hands and feet have to be, whatever the body does.
+    /// The places of hands and feet that do not move with the body. `None` for limbs that follow the clips.
     fn ends(
         &self,
         context: &Context<'_>,
@@ -675,7 +687,7 @@ impl<'a> Update<'a> {
         })
     }
 
-    /// Where a hand goes that has nothing to hold, and would be in what the body holds on to.
+    /// The place of a hand without a hold that is led out of an obstacle. `None` if the hand needs no displacement.
     fn free_hand(
         &self,
         context: &Context<'_>,
@@ -693,7 +705,7 @@ impl<'a> Update<'a> {
         limb.detour.lead_free(&place)
     }
 
-    /// What the body has to stay near to.
+    /// The limbs that the body has to stay within reach of.
     fn ties(&self, ends: &[Option<Place>; 4], shoulders: &[DVec3; 4]) -> [Option<Tie>; 4] {
         Extremity::ALL.map(|extremity| {
             let index = extremity.index();
@@ -713,7 +725,7 @@ impl<'a> Update<'a> {
         })
     }
 
-    /// Where shoulders and hips are in the clip's pose.
+    /// Positions of shoulders and hips in the clips' pose, in world space.
     fn shoulders(&self, pose: &Pose, root: &Root) -> [DVec3; 4] {
         Extremity::ALL.map(|extremity| {
             let joint = self.figure.limb(extremity).upper;
@@ -748,7 +760,7 @@ impl<'a> Update<'a> {
         }
     }
 
-    /// Turns the head to what it looks at.
+    /// Turns the head and the neck to the point that the climber looks at.
     fn look(&self, pose: &mut Pose, memory: &mut Memory) -> Result<(), BodyError> {
         let goal = if self.frame.look_at.is_some() {
             1.0

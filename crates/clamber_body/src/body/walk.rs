@@ -1,4 +1,4 @@
-//! Which clips of walking are mixed, and where in its cycle the body is.
+//! Mixes the locomotion clips and advances the gait's cycle.
 
 use clamber_animation::damp;
 use glam::DVec3;
@@ -6,25 +6,27 @@ use glam::DVec3;
 use crate::Figure;
 use crate::figure::Stride;
 
-/// Time for half of a change between clips, seconds.
+/// Half time of a change between clips, seconds.
 const MIX: f64 = 0.08;
 
-/// Share of a walk's speed at which all of the walk is shown; below it, steps get shorter.
+/// Share of the walk clip's speed from which the walk is shown at full weight. Below it, steps get shorter.
 const FULL: f64 = 0.7;
 
-/// How much shorter steps are on a slope, per rise.
+/// Factor in the limit `1 / (1 + SHORTER * slope)` of the walk's weight and of its steps; the slope is the rise per
+/// metre.
 const SHORTER: f64 = 1.8;
 
-/// Leg for which clips are made, metres: speeds change with the square root of its length (Froude).
+/// Length of the leg for which the clips are made, metres. Speeds change with the square root of the leg's length
+/// (Froude).
 pub(crate) const LEG: f64 = 0.831;
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Walk {
-    /// Shares of the clips of [`STRIDES`](crate::figure::STRIDES), of the part that is not idle; they sum to 1.
+    /// Weights of the locomotion clips, in the order of [`STRIDES`](crate::figure::STRIDES). They sum to 1.
     pub(crate) shares: [f64; 5],
-    /// 0 stands, 1 walks.
+    /// Weight of locomotion against standing, from 0 (stands) to 1 (walks).
     pub(crate) going: f64,
-    /// Share of the cycle; at 0 the left foot comes down.
+    /// Phase of the cycle, 0 to 1; the left foot comes down at 0.
     pub(crate) phase: f64,
     /// Cycles a second.
     pub(crate) rate: f64,
@@ -43,7 +45,8 @@ impl Walk {
         }
     }
 
-    /// `velocity` is relative to the ground; `ahead` and `left` are the body's.
+    /// Advances the cycle by `dt` seconds. `velocity` is relative to the ground; `ahead` and `left` are directions of
+    /// the body.
     pub(crate) fn step(
         &mut self,
         figure: &Figure,
@@ -75,12 +78,12 @@ impl Walk {
                 *share = damp(*share, wanted / sum.max(1e-9), MIX, dt);
             }
         }
-        // Shorter steps on slopes and stairs, so that legs reach.
+        // Steps are shorter on slopes and stairs, so that legs reach.
         let most = 1.0 / (1.0 + SHORTER * slope.abs());
         let wanted = goes.sqrt().min(most);
         self.going = damp(self.going, wanted, MIX, dt);
         self.stride = figure.gait().mixed(&self.shares);
-        // Shorter steps where only a part of the walk is shown.
+        // Steps are shorter where only a part of the walk is shown.
         let length = self.stride.length * wanted.max(0.3);
         self.rate = if speed > 0.02 {
             speed / length.max(1e-6)
@@ -90,7 +93,7 @@ impl Walk {
         self.phase = (self.phase + self.rate * dt).rem_euclid(1.0);
     }
 
-    /// True if feet follow the cycle.
+    /// True if feet follow the cycle of the gait.
     pub(crate) fn is_going(&self) -> bool {
         self.going > 0.35 && self.rate > 0.0
     }

@@ -1,14 +1,14 @@
-//! Which clip is what: by the names that the project's own hero uses.
+//! The clips of a figure, found by the names that the project's hero uses.
 
 use clamber_animation::{AnimationSet, ClipId};
 
-/// What a body's clip shows. [`BodyClip::name`] is the name under which [`Figure::new`](crate::Figure::new) looks for
-/// it.
+/// A motion of a body. [`Figure::new`](crate::Figure::new) looks for its clip under [`BodyClip::name`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum BodyClip {
-    /// Stands still. The one clip that a figure needs.
+    /// Stands still. A figure needs no other clip than this one.
     Idle,
-    /// Walks ahead. This and the next four start when the left foot comes down, and are loops.
+    /// Walks ahead. The clips from this one to [`BodyClip::StrafeRight`] are loops that start when the left foot comes
+    /// down.
     Walk,
     /// Runs ahead.
     Run,
@@ -22,15 +22,15 @@ pub enum BodyClip {
     Jump,
     /// Falls.
     Fall,
-    /// Knocked over, in the air.
+    /// Is knocked over, and moves through the air.
     Tumble,
     /// Lies on the ground.
     Lie,
-    /// From lying to standing.
+    /// Gets up from lying to standing.
     GetUp,
     /// Falls down dead.
     Die,
-    /// Has too little room.
+    /// Is crushed: obstacles leave too little room.
     Crushed,
     /// Stands under a low ceiling.
     Crouch,
@@ -40,12 +40,12 @@ pub enum BodyClip {
     Hang,
     /// Hangs from a ledge.
     Ledge,
-    /// From the ledge to standing on it.
+    /// Pulls itself up from the ledge, to standing on it.
     Mantle,
 }
 
 impl BodyClip {
-    /// All of them.
+    /// All motions, in the order of the variants.
     pub const ALL: [Self; 18] = [
         Self::Idle,
         Self::Walk,
@@ -91,7 +91,7 @@ impl BodyClip {
         }
     }
 
-    /// What is played where the clip is missing.
+    /// The motion that replaces this one where its clip is missing.
     const fn instead(self) -> Self {
         match self {
             Self::Run | Self::WalkBack | Self::StrafeLeft | Self::StrafeRight => Self::Walk,
@@ -114,14 +114,14 @@ pub(crate) struct Clips {
 }
 
 impl Clips {
-    /// `None` without a clip to stand in.
+    /// `None` without a clip named `idle`.
     pub(crate) fn find(set: &AnimationSet) -> Option<Self> {
         let found = BodyClip::ALL.map(|clip| set.find(clip.name()));
         let idle = found[BodyClip::Idle as usize]?;
         Some(Self { found, idle })
     }
 
-    /// The clip, or what is played in its place.
+    /// The clip of a motion, or of the motion that replaces it.
     pub(crate) fn get(&self, clip: BodyClip) -> ClipId {
         let mut next = clip;
         while next != BodyClip::Idle {

@@ -10,7 +10,7 @@ pub enum Extremity {
 }
 
 impl Extremity {
-    /// Left hand, right hand, left foot, right foot.
+    /// All four: left hand, right hand, left foot, right foot.
     pub const ALL: [Self; 4] = [
         Self::Hand(Side::Left),
         Self::Hand(Side::Right),
@@ -18,7 +18,7 @@ impl Extremity {
         Self::Foot(Side::Right),
     ];
 
-    /// Its place in [`Extremity::ALL`].
+    /// The index in [`Extremity::ALL`].
     pub const fn index(self) -> usize {
         match self {
             Self::Hand(side) => side as usize,

@@ -1,4 +1,4 @@
-//! When feet stand in the clips of walking, and how far a step goes: measured once from the clips.
+//! Measures from the locomotion clips, once, when each foot is on the ground and how far a cycle goes.
 
 use clamber_animation::{AnimationError, AnimationSet};
 use clamber_surface::rig::{Playback, Pose, Skeleton};
@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::{BodyClip, Clips, Extremity, LimbShape};
 use crate::Side;
 
-/// The clips of walking, in the order of their weights.
+/// The locomotion clips, in the order of their weights.
 pub(crate) const STRIDES: [BodyClip; 5] = [
     BodyClip::Walk,
     BodyClip::Run,
@@ -16,32 +16,40 @@ pub(crate) const STRIDES: [BodyClip; 5] = [
     BodyClip::StrafeRight,
 ];
 
-/// Phases of a clip at which feet are looked at.
+/// Number of phases at which a clip is sampled. Phases of contact are exact to one sample.
 const SAMPLES: usize = 96;
 
-/// A foot stands while its sole is at most this high above its lowest, as a share of the leg, and is slower than this
-/// over ground, as a share of the gait's speed: Unreal's foot placement has 0.6 m/s for a walk.
+/// Height of a sole above its lowest point, as a share of the leg's length, below which a foot can be on the ground.
 const LOW: f64 = 0.04;
+
+/// Level speed of a sole over ground, as a share of the gait's speed, below which a foot can be on the ground. Unreal's
+/// foot placement has 0.6 m/s for a walk.
 const SLOW: f64 = 0.45;
 
-/// A stride where clips do not tell one: as a share of the leg, and when feet come down and leave the ground.
+/// Length of a cycle, and of the way in a second, as a share of the leg's length, for a clip without a ground speed.
 const STRIDE: f64 = 1.6;
+
+/// Phases at which the left and the right foot come down, as shares of a cycle, where the clip does not tell.
 const DOWN: [f64; 2] = [0.0, 0.5];
+
+/// Phases at which the left and the right foot leave the ground, as shares of a cycle, where the clip does not tell.
 const UP: [f64; 2] = [0.6, 0.1];
 
-/// One cycle of a gait: each foot steps once. Phases are shares of the cycle; at 0 the left foot comes down.
+/// One cycle of a gait, in which each foot steps once. Phases are shares of the cycle; the left foot comes down at
+/// phase 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Stride {
     /// Metres per cycle.
     pub(crate) length: f64,
-    /// Metres a second for which the clip was made.
+    /// Speed for which the clip was made, metres a second.
     pub(crate) speed: f64,
-    /// When each foot comes down, and when it leaves the ground.
+    /// Phases at which the left and the right foot come down.
     pub(crate) down: [f64; 2],
+    /// Phases at which the left and the right foot leave the ground.
     pub(crate) up: [f64; 2],
-    /// Where the sole of each foot is when it comes down, metres in model space.
+    /// Positions of the left and the right sole when the foot comes down, metres in model space.
     pub(crate) landing: [DVec3; 2],
-    /// Phase 0, as a share of the clip.
+    /// Start of phase 0, as a share of the clip's length.
     pub(crate) start: f64,
 }
 
@@ -93,7 +101,7 @@ impl Gait {
         &self.strides
     }
 
-    /// The stride of clips that are mixed; the shares sum to 1.
+    /// The stride of a mix of clips; the shares sum to 1.
     pub(crate) fn mixed(&self, shares: &[f64; STRIDES.len()]) -> Stride {
         let mut mixed = Stride {
             length: 0.0,
@@ -126,8 +134,8 @@ impl Gait {
 }
 
 impl Stride {
-    /// Whether a foot stands at a phase; if not, how much of its step is done, 0 to 1, and how much of the cycle is
-    /// left.
+    /// Progress of a foot's step at a phase, 0 to 1, and the share of the cycle until the foot comes down. `None` while
+    /// the foot is on the ground.
     pub(crate) fn step(&self, side: Side, phase: f64) -> Option<(f64, f64)> {
         let (down, up) = (self.down[side.index()], self.up[side.index()]);
         let air = (down - up).rem_euclid(1.0);
@@ -177,7 +185,7 @@ fn measure(
     stride
 }
 
-/// The longest run of true in a circle: where it starts, and how long it is. `None` if all are the same.
+/// The first index and the length of the longest run of `true` in a circle. `None` if all values are equal.
 fn longest(circle: &[bool; SAMPLES]) -> Option<(usize, usize)> {
     let starts = (0..SAMPLES).filter(|&k| circle[k] && !circle[(k + SAMPLES - 1) % SAMPLES]);
     let run = |start: usize| {

@@ -1,4 +1,4 @@
-//! Where the palm of a hand and the sole of a foot are, measured in the bind pose.
+//! Positions of the palm of a hand and the sole of a foot relative to their joints, measured in the bind pose.
 
 use clamber_animation::ik::TwoBone;
 use clamber_animation::joint_in_model;
@@ -7,19 +7,30 @@ use glam::{DAffine3, DMat3, DQuat, DVec3};
 
 use crate::{Humanoid, Limb, LimbEnd, Side};
 
-/// The palm's middle, as a share of the forearm from the wrist; how far its skin is from the bone; the same for the
-/// ankle above the sole, the heel behind and the ball before it, as shares of the leg. The hero's, rounded.
+/// Distance of the palm's middle from the wrist along the hand, as a share of the forearm's length. The value is the
+/// hero's, rounded.
 const PALM: f64 = 0.34;
+
+/// Distance of the palm's skin from the hand's bone, as a share of the forearm's length. The value is the hero's,
+/// rounded.
 const PALM_SKIN: f64 = 0.12;
+
+/// Height of the ankle above the sole, as a share of the leg's length. The value is the hero's, rounded.
 const ANKLE: f64 = 0.09;
+
+/// Distance of the heel behind the ankle, as a share of the leg's length. The value is the hero's, rounded.
 const HEEL: f64 = 0.055;
+
+/// Distance of the ball of the foot ahead of the ankle, as a share of the leg's length, for skeletons without toes. The
+/// value is the hero's, rounded.
 const BALL: f64 = 0.16;
 
-/// Angles between the bones below which elbows and knees do not fold, radians: 20° and 25°.
+/// Least angles between the two bones of an arm and of a leg, radians: 20° and 25°. Elbows and knees do not fold
+/// further.
 const LEAST: [f64; 2] = [0.35, 0.44];
 
-/// A hand or foot in space: where its joint is, and how it is turned. The turn takes X to where fingers or toes point,
-/// and Y to where the back of the hand or the top of the foot faces, which is away from what it touches.
+/// Position of a hand's or foot's joint, and its rotation. The rotation takes X to the direction of the fingers or
+/// toes, and Y to the outward direction of the back of the hand or the top of the foot, away from the touched surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Place {
     pub(crate) position: DVec3,
@@ -31,14 +42,14 @@ impl Place {
         self.position + self.rotation * offset
     }
 
-    /// The place whose point at `offset` is at `point`.
+    /// The place at which the point at `offset` from the joint is at `point`.
     pub(crate) fn with_point_at(point: DVec3, offset: DVec3, rotation: DQuat) -> Self {
         let position = point - rotation * offset;
         Self { position, rotation }
     }
 }
 
-/// What a body has to know of a limb, in metres.
+/// Measures of an arm or a leg. Lengths are metres.
 #[derive(Clone, Debug)]
 pub(crate) struct LimbShape {
     pub(crate) ik: TwoBone,
@@ -47,17 +58,19 @@ pub(crate) struct LimbShape {
     pub(crate) end: LimbEnd,
     /// Length of the straight limb.
     pub(crate) length: f64,
-    /// In the end joint's own space: where fingers or toes point, and away from what it touches.
+    /// Directions in the end joint's own space: along the fingers or toes, and away from the touched surface.
     axes: [DVec3; 2],
-    /// From the end joint to what touches: the middle of the palm, or the sole below the ankle. As [`Place`] is turned.
+    /// From the end joint to the point that touches, in the axes of [`Place`]: the middle of the palm, or the sole
+    /// below the ankle.
     pub(crate) contact: DVec3,
-    /// From the end joint to the ball of the foot and the heel, on the sole. The palm twice for hands.
+    /// From the end joint to the ball of the foot on the sole, in the axes of [`Place`]. For a hand, the palm.
     pub(crate) ball: DVec3,
+    /// From the end joint to the heel on the sole, in the axes of [`Place`]. For a hand, the palm.
     pub(crate) heel: DVec3,
 }
 
 impl LimbShape {
-    /// `bound` are all joints in model space in the bind pose, `scale` the metres per model unit.
+    /// `bound` holds all joints in model space in the bind pose. `scale` is the length of a model unit in metres.
     pub(crate) fn new(
         skeleton: &Skeleton,
         humanoid: &Humanoid,
@@ -77,7 +90,7 @@ impl LimbShape {
             let along = (tip - elbow).normalize_or(DVec3::NEG_Y);
             let palm = palm(skeleton, humanoid, bound, (limb, side), tip, along);
             let center = DVec3::new(PALM * lower, -PALM_SKIN * lower, 0.0);
-            // A hand without a joint cannot be turned: its end is what touches.
+            // A hand without a joint cannot be turned, so its end itself is the point that touches.
             let center = if joint.is_some() { center } else { DVec3::ZERO };
             (along, -palm, center, center, center)
         } else {
@@ -107,13 +120,13 @@ impl LimbShape {
         }
     }
 
-    /// The axes of [`Place`] in the end joint's own space, for [`aim`](clamber_animation::ik::aim): the second one
-    /// first, since palms and soles lie on what they touch.
+    /// The axes of [`Place`] in the end joint's own space, for [`aim`](clamber_animation::ik::aim). The outward one
+    /// comes first and is met exactly, since palms and soles lie on the touched surface.
     pub(crate) fn aim_axes(&self) -> [DVec3; 2] {
         [self.axes[1], self.axes[0]]
     }
 
-    /// Where the limb ends in a pose, in metres in the space of the model.
+    /// The place of the limb's end in a pose, metres in model space.
     pub(crate) fn place(&self, skeleton: &Skeleton, pose: &Pose, scale: f64) -> Option<Place> {
         let lower = || joint_in_model(skeleton, pose, self.lower);
         let (model, tip) = match self.end {
@@ -138,14 +151,15 @@ impl LimbShape {
     }
 }
 
-/// The rotation that takes Y to a vector, and X as near to another one as that allows.
+/// The rotation that takes Y to `outward`, and X as near to `along` as possible.
 pub(crate) fn turned(along: DVec3, outward: DVec3) -> DQuat {
     let y = outward.normalize_or(DVec3::Y);
     let x = (along - y * along.dot(y)).normalize_or(y.any_orthonormal_vector());
     DQuat::from_mat3(&DMat3::from_cols(x, y, x.cross(y)))
 }
 
-/// The ankle's height above the sole. A model stands at a height of 0, unless that is nowhere near its feet.
+/// Height of the ankle above the sole. The sole is at a height of 0 in model space, unless the ankle's height is
+/// unlikely for a leg of this length; then the hero's share applies.
 pub(crate) fn sole_height(ankle: f64, leg: f64) -> f64 {
     if (0.03 * leg..=0.25 * leg).contains(&ankle) {
         ankle
@@ -154,7 +168,8 @@ pub(crate) fn sole_height(ankle: f64, leg: f64) -> f64 {
     }
 }
 
-/// Where the palm faces in the bind pose. The thumb tells; without one, hands at rest face the ground or the body.
+/// Direction that the palm faces in the bind pose. The thumb's side decides it. Without a thumb, the palm faces the
+/// ground and a little the body.
 fn palm(
     skeleton: &Skeleton,
     humanoid: &Humanoid,

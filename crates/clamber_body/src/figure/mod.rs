@@ -1,4 +1,4 @@
-//! What bodies of one kind share: skeleton, clips, and measures taken from them.
+//! A figure: the data that all bodies of one kind share.
 
 mod clips;
 mod error;
@@ -24,10 +24,10 @@ pub(crate) use posture::Postures;
 use crate::humanoid::reference;
 use crate::{Humanoid, Side};
 
-/// What all [bodies](crate::Body) of one kind share: the skeleton, which joint is what, and the clips.
+/// The data that all [bodies](crate::Body) of one kind share: the skeleton, the roles of its joints, and the clips.
 ///
-/// Clips are found by name; [`BodyClip`] lists the names. A file without clips gets those of another figure by
-/// [`Retarget`](crate::Retarget).
+/// Clips are found by name; [`BodyClip`] lists the names. For a file without clips, [`Retarget`](crate::Retarget)
+/// converts the clips of another figure.
 #[derive(Clone, Debug)]
 pub struct Figure {
     skeleton: Skeleton,
@@ -35,7 +35,7 @@ pub struct Figure {
     set: AnimationSet,
     clips: Clips,
     scale: f64,
-    /// Left hand, right hand, left foot, right foot.
+    /// In the order of [`Extremity::ALL`].
     limbs: [LimbShape; 4],
     look: LookAt,
     gait: Gait,
@@ -43,15 +43,15 @@ pub struct Figure {
     upper_body: MaskId,
 }
 
-/// How much of a gaze's turn the joints of the neck take, each of what is left.
+/// Share of the gaze's remaining turn that each joint of the neck takes. The last joint of the chain takes the rest.
 const NECK: f64 = 0.4;
 
 impl Figure {
-    /// A figure from a skeleton, its humanoid and clips, whose model units are metres.
+    /// A figure from a skeleton, its humanoid and its clips, with metres as model units.
     ///
     /// # Errors
-    /// [`FigureError::NoIdle`] if no clip is called `idle`, [`FigureError::Animation`] and [`FigureError::Rig`] if the
-    /// clips or the humanoid are another skeleton's, [`FigureError::Ik`] for a head that cannot be turned.
+    /// [`FigureError::NoIdle`] if no clip is called `idle`, [`FigureError::Animation`] or [`FigureError::Rig`] if the
+    /// clips or the humanoid belong to another skeleton, [`FigureError::Ik`] if the head cannot be turned.
     pub fn new(
         skeleton: Skeleton,
         humanoid: Humanoid,
@@ -60,11 +60,11 @@ impl Figure {
         Self::with_scale(skeleton, humanoid, clips, 1.0)
     }
 
-    /// [`Figure::new`] at another size: `scale` is how many metres a unit of the model is. Steps are timed as for something
-    /// of this size.
+    /// [`Figure::new`] at another size: `scale` is the length of a model unit in metres. Clips play at the rate that
+    /// suits a body of the resulting size.
     ///
     /// # Errors
-    /// As [`Figure::new`], and [`FigureError::Scale`] if the scale is not finite and more than 0.
+    /// As [`Figure::new`], and [`FigureError::Scale`] if the scale is not a finite number above 0.
     pub fn with_scale(
         skeleton: Skeleton,
         humanoid: Humanoid,
@@ -121,27 +121,27 @@ impl Figure {
         &self.skeleton
     }
 
-    /// Which joint is what.
+    /// The roles of the skeleton's joints.
     pub fn humanoid(&self) -> &Humanoid {
         &self.humanoid
     }
 
-    /// The clips, and masks for layers.
+    /// The clips, and the masks for layers.
     pub fn animations(&self) -> &AnimationSet {
         &self.set
     }
 
-    /// Metres per unit of the model.
+    /// Length of a model unit, metres.
     pub fn scale(&self) -> f64 {
         self.scale
     }
 
-    /// True if a clip was found under its name; for the others, the nearest one is played.
+    /// True if the clip was found under its name. Otherwise another motion's clip replaces it.
     pub fn has(&self, clip: BodyClip) -> bool {
         self.clips.has(clip)
     }
 
-    /// The mask of the joints above the hips, for layers that are added to [`Figure::animations`].
+    /// The mask of the joints above the hips, in [`Figure::animations`], for layers that move the upper body alone.
     pub fn upper_body(&self) -> MaskId {
         self.upper_body
     }

@@ -1,4 +1,4 @@
-//! Where hands and feet are on walls and ledges: measured once from the clips.
+//! Measures from the clips, once, where hands and feet touch walls and ledges.
 
 use clamber_animation::{AnimationError, AnimationSet, joint_in_model};
 use clamber_surface::rig::{Playback, Pose, Skeleton};
@@ -7,34 +7,50 @@ use glam::DVec3;
 use super::{BodyClip, Clips, LimbShape};
 use crate::Humanoid;
 
-/// The hero's own measures, as shares of the leg: hips; hands and feet on a wall; its distance; a ledge's edge; hands
-/// above.
+/// Height of the hips while standing, as a share of the leg's length. The value is the hero's, for a clip in which the
+/// hips' joint is not found.
 const HIPS: f64 = 0.97;
+
+/// Hands on a wall: distance from the middle and height, as shares of the leg's length. The value is the hero's, for a
+/// figure without the clip `climb`.
 const HANDS: [f64; 2] = [0.31, 1.64];
+
+/// Feet on a wall: distance from the middle and height, as shares of the leg's length. The value is the hero's, for a
+/// figure without the clip `climb` or `ledge`.
 const FEET: [f64; 2] = [0.13, 0.23];
+
+/// Distance of the wall ahead of the model's origin, as a share of the leg's length. The value is the hero's, for a
+/// figure without the clip `climb`.
 const WALL: f64 = 0.54;
+
+/// Edge of a ledge: height and distance ahead of the model's origin, as shares of the leg's length. The value is the
+/// hero's, for a figure without the clip `ledge`.
 const EDGE: [f64; 2] = [1.94, 0.43];
+
+/// Height of the point that is held while hanging, as a share of the leg's length. The value is the hero's, for a
+/// figure without the clip `hang`.
 const ABOVE: f64 = 2.39;
 
-/// In model space, metres: what the clips of climbing are made for.
+/// The points for which the climbing clips are made, metres in model space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Postures {
-    /// Where hands and feet touch the wall.
+    /// Points of a wall that hands and feet touch, in the order of [`Extremity::ALL`](crate::Extremity::ALL).
     pub(crate) wall: [DVec3; 4],
-    /// The hips before the wall.
+    /// The hips while climbing a wall.
     pub(crate) wall_hips: DVec3,
-    /// The edge of a ledge, between the hands.
+    /// The edge of a ledge, midway between the hands.
     pub(crate) edge: DVec3,
     /// Half of the distance between the hands on a ledge.
     pub(crate) edge_width: f64,
-    /// Where feet touch the wall below a ledge.
+    /// Points of the wall below a ledge that the feet touch.
     pub(crate) edge_feet: [DVec3; 2],
-    /// What is held while hanging, between the hands.
+    /// The point that is held while hanging, midway between the hands.
     pub(crate) above: DVec3,
     /// Half of the distance between hands that hang.
     pub(crate) above_width: f64,
-    /// The hips while hanging, and while tumbling.
+    /// The hips while hanging.
     pub(crate) hang_hips: DVec3,
+    /// The hips while tumbling.
     pub(crate) tumble_hips: DVec3,
     /// The hips while standing.
     pub(crate) hips: DVec3,
@@ -59,7 +75,7 @@ impl Postures {
             clip.sample_into(0.0, Playback::Clamp, &mut pose)?;
             let touch = |index: usize| {
                 let place = limbs[index].place(skeleton, &pose, scale)?;
-                // Feet stand on walls with their balls.
+                // Feet touch walls with their balls.
                 Some(place.point(limbs[index].ball))
             };
             let hips = joint_in_model(skeleton, &pose, humanoid.hips);
@@ -91,7 +107,8 @@ impl Postures {
         };
         if clips.has(BodyClip::Climb) {
             let (touches, hips) = sampled(BodyClip::Climb)?;
-            // One wall for all: where the palms are. Both sides at the same height.
+            // All four points lie on one plane, at the palms' distance. Left and right are symmetric: each pair has its
+            // mean height and its mean distance from the middle.
             let far = 0.5 * (touches[0] + touches[1]).dot(ahead);
             postures.wall = core::array::from_fn(|index| {
                 let pair = [touches[index & !1], touches[index | 1]];

@@ -1,4 +1,4 @@
-//! A body from named joints: what hangs where, and limbs that can be bent.
+//! Builds a body from named joints: checks the hierarchy and prepares the limbs' inverse kinematics.
 
 use clamber_animation::ik::{IkError, TwoBone};
 use clamber_surface::rig::{JointId, Skeleton};
@@ -8,7 +8,7 @@ use super::names::words;
 use super::{HumanJoint, Humanoid, Limb, LimbEnd, Side, reference};
 use crate::HumanoidError;
 
-/// The joints of a body.
+/// The joints of a body before they are checked.
 pub(super) struct Named {
     pub(super) hips: JointId,
     pub(super) chest: Option<JointId>,
@@ -30,19 +30,20 @@ pub(super) enum NamedEnd {
     Between(Vec<JointId>),
 }
 
-/// Words in the names of fingers.
+/// Words that mark a joint below the forearm as a finger.
 const FINGERS: [&str; 8] = [
     "finger", "fingers", "index", "little", "middle", "pinky", "ring", "thumb",
 ];
 
 impl Humanoid {
-    /// A body from joints that are named by hand. Hips, head, upper and lower arms and legs, hands and feet are needed;
-    /// shoulders, chest, neck and toes are not.
+    /// A body from a list of joints. It needs hips, head, upper and lower arms and legs, hands and feet. Shoulders,
+    /// chest, neck and toes are optional.
     ///
     /// # Errors
-    /// [`HumanoidError::Missing`] with all that is missing, [`HumanoidError::NoJoint`], [`HumanoidError::Twice`],
-    /// [`HumanoidError::NotBelow`] if a limb, the chest or the head does not hang where it should,
-    /// [`HumanoidError::NoFacing`], and [`HumanoidError::Limb`] if a limb cannot be bent, such as one without length.
+    /// [`HumanoidError::Missing`] with all missing joints, [`HumanoidError::NoJoint`], [`HumanoidError::Twice`],
+    /// [`HumanoidError::NotBelow`] if a limb, the chest or the head has the wrong ancestor,
+    /// [`HumanoidError::NoFacing`], and [`HumanoidError::Limb`] if inverse kinematics refuse a limb, such as one
+    /// without length.
     pub fn from_joints(
         skeleton: &Skeleton,
         joints: &[(HumanJoint, JointId)],
@@ -194,7 +195,7 @@ impl Named {
         })
     }
 
-    /// The joints between hips and head, from below.
+    /// The joints between hips and head, without both, from below.
     fn path(&self, skeleton: &Skeleton) -> Vec<JointId> {
         let parent = |joint: &JointId| skeleton.joints()[joint.index()].parent;
         let above = core::iter::successors(parent(&self.head), parent);
@@ -235,7 +236,7 @@ impl Bound<'_> {
                 TwoBone::to_point(self.skeleton, [upper, lower], point, bends)
             }
         };
-        // An arm that is stretched out in front bends downwards.
+        // `bends` lies along an arm that is stretched out in front; such an arm bends downwards.
         let ik = match ik(bends) {
             Err(IkError::BadSetUp(_)) => ik(DVec3::NEG_Y),
             other => other,
@@ -271,7 +272,7 @@ impl Bound<'_> {
         self.model(joint).inverse().transform_point3(point)
     }
 
-    /// The chains of joints below a forearm that are named like fingers.
+    /// The chains of joints below a forearm whose names contain a word of [`FINGERS`].
     fn fingers(&self, lower: JointId) -> Vec<Vec<JointId>> {
         let is_finger = |joint: &JointId| {
             let words = words(&self.skeleton.joints()[joint.index()].name);

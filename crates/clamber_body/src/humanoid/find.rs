@@ -1,4 +1,4 @@
-//! Finds the joints of a body by their names, and by how they hang together.
+//! Finds the joints of a body by their names and their hierarchy.
 
 use clamber_surface::rig::{JointId, Skeleton};
 
@@ -8,11 +8,11 @@ use super::{HumanJoint, Humanoid, Side};
 use crate::HumanoidError;
 
 impl Humanoid {
-    /// Finds the body in a skeleton by the names of joints. The hips are where legs and spine meet, whatever their
-    /// name; the chest is where the arms meet.
+    /// Finds the body in a skeleton by the joints' names. Two joints are found by the hierarchy alone: the hips, where
+    /// legs and spine meet, and the chest, where the arms meet.
     ///
     /// # Errors
-    /// [`HumanoidError::Missing`] with all that was not found, and the errors of [`Humanoid::from_joints`].
+    /// [`HumanoidError::Missing`] with all missing joints, and the errors of [`Humanoid::from_joints`].
     pub fn find(skeleton: &Skeleton) -> Result<Self, HumanoidError> {
         Search::new(skeleton).named()?.build(skeleton)
     }
@@ -20,7 +20,7 @@ impl Humanoid {
 
 struct Search<'a> {
     skeleton: &'a Skeleton,
-    /// Joints with a meaning, by depth.
+    /// Joints whose names have a meaning, by rank, then by depth.
     joints: Vec<(JointId, Meaning)>,
 }
 
@@ -34,7 +34,7 @@ impl<'a> Search<'a> {
         Self { skeleton, joints }
     }
 
-    /// All joints that mean a part, the best first: those that deform, and those nearest to the root.
+    /// All joints with a meaning, the best first: deforming joints, then those nearest to the root.
     fn all(&self, part: Part, side: Option<Side>) -> impl Iterator<Item = JointId> {
         let is_it = move |meaning: &Meaning| meaning.part == part && meaning.side == side;
         let found = self
@@ -150,7 +150,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// A hand of several palms, one for each finger.
+    /// The hand of a skeleton that has palm joints instead, one for each finger.
     fn palms(&self, side: Side) -> Option<NamedEnd> {
         let palms: Vec<JointId> = self.all(Part::Palm, Some(side)).collect();
         match palms.as_slice() {
@@ -160,7 +160,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The head; where none has its name, the topmost joint of the neck or spine that carries no arm.
+    /// The joint named head. Without one, the topmost joint of neck or spine that carries no arm.
     fn head(&self, arms: &[Option<NamedLimb>; 2]) -> Option<JointId> {
         let carries = |joint: JointId| {
             let uppers = arms.iter().flatten().map(|arm| arm.upper);
@@ -177,7 +177,7 @@ impl<'a> Search<'a> {
     }
 }
 
-/// How many joints are above one.
+/// Number of joints from the root to a joint, both included.
 fn depth(skeleton: &Skeleton, joint: JointId) -> usize {
     let parent = |joint: &JointId| skeleton.joints()[joint.index()].parent;
     core::iter::successors(Some(joint), parent).count()

@@ -1,11 +1,11 @@
 use std::fmt;
 
-/// The body's own left or right.
+/// A side of the body, as the body itself sees it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Side {
-    /// Its left.
+    /// The body's left.
     Left,
-    /// Its right.
+    /// The body's right.
     Right,
 }
 
@@ -19,10 +19,10 @@ impl Side {
     }
 }
 
-/// A joint of a human body, by VRM's names (VRMC_vrm-1.0, humanoid).
+/// A joint of a human body, named as in VRM (VRMC_vrm-1.0, humanoid).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum HumanJoint {
-    /// Carries the spine and both legs.
+    /// The joint that carries the spine and both legs.
     Hips,
     /// The last joint of the spine: it carries both arms.
     Chest,

@@ -11,10 +11,10 @@ use glam::DVec3;
 pub use joint::{HumanJoint, Side};
 pub(crate) use reference::reference;
 
-/// A human body in a skeleton: which joint is what, and limbs that can be posed.
+/// A human body in a skeleton: the role of each joint, and limbs with their inverse kinematics.
 ///
-/// [`Humanoid::find`] knows the names that Mixamo, Rigify, Quaternius, KayKit, VRM, Unreal and Godot use, and numbered
-/// chains such as `leg_joint_L_1`. For any other, [`Humanoid::from_joints`] takes a list.
+/// [`Humanoid::find`] knows the names of Mixamo, Rigify, Quaternius, KayKit, VRM, Unreal and Godot, and numbered chains
+/// such as `leg_joint_L_1`. For other skeletons, [`Humanoid::from_joints`] takes a list of joints.
 ///
 /// ```
 /// use clamber_body::{Humanoid, Side};
@@ -41,11 +41,11 @@ pub(crate) use reference::reference;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Humanoid {
-    /// Carries the spine and both legs.
+    /// The joint that carries the spine and both legs.
     pub hips: JointId,
-    /// From above the hips to the joint that carries both arms, the chest.
+    /// The joints above the hips, up to the chest, which carries both arms. Empty if the hips carry the arms.
     pub spine: Vec<JointId>,
-    /// From above the chest to below the head; may be empty.
+    /// The joints between the chest and the head; may be empty.
     pub neck: Vec<JointId>,
     /// The head.
     pub head: JointId,
@@ -53,7 +53,7 @@ pub struct Humanoid {
     pub arms: [Limb; 2],
     /// The left and the right leg.
     pub legs: [Limb; 2],
-    /// Where the body faces in its bind pose: a level unit vector in model space. +Z for most files.
+    /// Direction that the body faces in its bind pose: a level unit vector in model space. +Z in most files.
     pub facing: DVec3,
 }
 
@@ -73,21 +73,21 @@ pub struct Limb {
     pub toes: Option<JointId>,
     /// Chains of joints below the hand, one per finger, each from the palm outward. Empty for legs.
     pub fingers: Vec<Vec<JointId>>,
-    /// Brings the end to a target.
+    /// Inverse kinematics that bring the end to a target.
     pub ik: TwoBone,
     /// Lengths of the upper and the lower bone in the bind pose, in model units.
     pub lengths: [f64; 2],
 }
 
-/// Where a limb ends.
+/// The hand or foot at the end of a limb.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LimbEnd {
-    /// At a joint below the lower bone: it moves along.
+    /// A joint below the lower bone; it moves with the bone.
     Joint(JointId),
-    /// At a joint that stands beside the limb, as in files with baked controls. Whoever poses the limb has to move it
-    /// to this point in the space of the lower bone.
+    /// A joint that does not hang from the limb, as in files with baked controls. Code that poses the limb has to move
+    /// this joint to the given point in the space of the lower bone.
     Beside(JointId, DVec3),
-    /// At a point in the space of the lower bone, between several joints: a hand that consists of fingers.
+    /// A point in the space of the lower bone, between several joints: a hand that consists of fingers alone.
     Point(DVec3),
 }
 
@@ -109,7 +109,7 @@ impl Limb {
 }
 
 impl Humanoid {
-    /// The joint that carries both arms: the last of the spine, or the hips.
+    /// The joint that carries both arms: the last joint of the spine, or the hips.
     pub fn chest(&self) -> JointId {
         self.spine.last().copied().unwrap_or(self.hips)
     }
@@ -124,14 +124,14 @@ impl Humanoid {
         &self.legs[side.index()]
     }
 
-    /// What a joint is; `None` if it is not one of the body's named joints.
+    /// The role of a joint; `None` if it is not one of the body's named joints.
     pub fn role(&self, joint: JointId) -> Option<HumanJoint> {
         self.joints()
             .into_iter()
             .find_map(|(role, found)| (found == joint).then_some(role))
     }
 
-    /// The joints that were found, from the hips outward.
+    /// The named joints of this body with their roles, from the hips outward.
     pub fn joints(&self) -> Vec<(HumanJoint, JointId)> {
         let mut all = vec![(HumanJoint::Hips, self.hips)];
         if !self.spine.is_empty() {

@@ -1,21 +1,21 @@
-//! What the name of a joint says.
+//! Reads the body part, the side and the rank from a joint's name.
 
 use super::Side;
 
-/// What part of a body a name means.
+/// A body part that a joint's name can mean.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Part {
     Shoulder,
     UpperArm,
     LowerArm,
-    /// `arm`: an upper arm where there is a forearm, or one of a numbered chain.
+    /// `arm` alone: the upper arm if there is a forearm, or a link of a numbered chain.
     Arm,
     Hand,
     Wrist,
     Palm,
     UpperLeg,
     LowerLeg,
-    /// `leg`: a shin where there is a thigh, or one of a numbered chain.
+    /// `leg` alone: the shin if there is a thigh, or a link of a numbered chain.
     Leg,
     Foot,
     Toes,
@@ -24,16 +24,17 @@ pub(super) enum Part {
     Spine,
 }
 
-/// A joint's name, taken apart.
+/// The meaning of a joint's name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Meaning {
     pub(super) part: Part,
     pub(super) side: Option<Side>,
-    /// Lower is better: a deforming joint before a plain one, and that before one that only steers it.
+    /// Order of preference, lower is better: 0 for a deforming joint (`def`), 1 for a plain one, 2 for one that only
+    /// steers a joint (`org`).
     pub(super) rank: u8,
 }
 
-/// Words of which a name may have any number without meaning anything.
+/// Words that are ignored in names.
 const NOISE: [&str; 18] = [
     "armature",
     "b",
@@ -55,14 +56,14 @@ const NOISE: [&str; 18] = [
     "valve",
 ];
 
-/// Words of joints that are no part of the body: they twist, steer or hold something.
+/// Words that exclude a joint from the body: such joints twist, steer or hold something.
 const OTHERS: [&str; 22] = [
     "control", "ctrl", "end", "fk", "helper", "ik", "item", "mch", "nub", "orient", "parent",
     "pole", "roll", "slot", "socket", "target", "tip", "tracker", "tweak", "twist", "vis",
     "weapon",
 ];
 
-/// What the rest of a name may be, without spaces.
+/// Each part with the names that mean it. A name is compared without ignored words, sides, digits and separators.
 const PARTS: [(Part, &[&str]); 15] = [
     (
         Part::Shoulder,
@@ -105,9 +106,9 @@ const PARTS: [(Part, &[&str]); 15] = [
 ];
 
 impl Meaning {
-    /// What a name means; `None` for joints that are no part of a body.
+    /// The meaning of a name; `None` if the joint is not part of a body.
     pub(super) fn of(name: &str) -> Option<Self> {
-        // Without the name of an armature or a namespace.
+        // Drops the name of an armature or a namespace.
         let name = name.rsplit([':', '|']).next().unwrap_or(name);
         let words = words(name);
         if words.iter().any(|word| OTHERS.contains(&word.as_str())) {
@@ -134,7 +135,8 @@ impl Meaning {
     }
 }
 
-/// A name's words in lower case: parted at all that is no letter, and where a capital follows. Numbers are left out.
+/// Splits a name into lower-case words: at each character that is no letter, and before a capital that follows a
+/// lower-case letter. Digits are left out.
 pub(super) fn words(name: &str) -> Vec<String> {
     let mut words = Vec::new();
     let mut word = String::new();

@@ -1,23 +1,25 @@
-//! The posture in which a body is measured, and from which clips are carried over.
+//! The bind pose in model space: bodies are measured in it, and clips are carried over relative to it.
 
 use clamber_surface::geometry::Affine;
 use clamber_surface::rig::{JointId, Skeleton};
 use glam::{DAffine3, DVec3};
 
-/// How upright a bind pose must be, as the cosine of its angle to Y, and how much larger or smaller than the rest pose
-/// it may be: 45°, and a factor of 2.
+/// Least cosine of the angle between the trunk (hips to head) and Y in an upright bind pose: about 45°.
 const UPRIGHT: f64 = 0.7;
+
+/// Largest ratio of the trunk's lengths in the bind pose and at rest, either way. A larger ratio means other units.
 const SIZE: f64 = 2.0;
 
-/// All joints in model space in the bind pose, in which the artist has laid the skeleton into the mesh: usually a T or
-/// an A. Nodes at rest may be in any pose of a clip.
+/// All joints in model space in the bind pose: the pose in which the artist has fitted the skeleton to the mesh,
+/// usually a T-pose or an A-pose. The nodes at rest may be in any pose of a clip.
 ///
-/// A joint that skins nothing has no bind pose; it hangs from its parent as at rest. Meshes may have other units and
-/// axes than the model: those of a node above the hips, such as an armature that is rotated and scaled. If no such node
-/// makes the bind pose stand upright at the size of the rest pose, it is the rest pose.
+/// A joint that skins nothing has no bind pose; it hangs from its parent as at rest. The mesh may have other units and
+/// axes than the model, namely the space of a node above the hips that skins nothing, such as a rotated and scaled
+/// armature. If none of these nodes makes the bind pose upright and about as large as the rest pose, the function
+/// returns the rest pose.
 ///
-/// The mesh may also stand elsewhere than the skeleton: the posture is moved so that it has its hips above or below
-/// those of the rest pose, and its lower foot as high as the lower foot there.
+/// The mesh may also stand elsewhere than the skeleton. So the bind pose is shifted: its hips get the X and Z, and its
+/// lower foot the height, that they have at rest.
 pub(crate) fn reference(
     skeleton: &Skeleton,
     hips: JointId,
@@ -57,7 +59,7 @@ pub(crate) fn reference(
         };
         let shift = place(&rest) - place(&bound);
         for (joint, model) in bound.iter_mut().enumerate() {
-            // What stands above all skinned joints is the armature, at rest.
+            // A joint without a skinned joint at or above it belongs to the armature, and stays as at rest.
             let mut up = core::iter::successors(Some(JointId(joint as u32)), parent);
             if up.any(|joint| is_skinned(skeleton, joint)) {
                 model.translation += shift;
@@ -72,7 +74,8 @@ fn is_skinned(skeleton: &Skeleton, joint: JointId) -> bool {
     skeleton.joints()[joint.index()].inverse_bind != Affine::IDENTITY
 }
 
-/// Finds a joint in the bind pose, and before it its parents. A loop, since files may have chains of any length.
+/// Finds the bind pose of a joint, and of its ancestors before it. It is a loop, since a file may have a chain of any
+/// length.
 fn bind(
     skeleton: &Skeleton,
     joint: JointId,

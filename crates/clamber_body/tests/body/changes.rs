@@ -11,11 +11,12 @@ use glam::{DQuat, DVec3};
 use crate::figures;
 use crate::play::play;
 
-/// Frames after a change of mode in which joints and hands are looked at.
+/// Number of frames after a change of mode that are checked. The half keeps rounding of times from deciding about a
+/// frame.
 const FRAMES: f64 = 2.5;
 
-/// A change of the climber's own speed within a tick that no body takes up without folding, metres a second: a landing
-/// from a fall of half a metre.
+/// Change of the climber's own speed within a tick above which a change of mode is not checked, metres a second: no
+/// body takes it up without folding. It equals a landing from a fall of half a metre.
 const HARD: f64 = 3.2;
 
 fn angle(q: DQuat) -> f64 {
@@ -29,12 +30,12 @@ fn rotations(body: &Body) -> Vec<DQuat> {
         .collect()
 }
 
-/// How far frames are from what the two before them lead to, at changes of mode.
+/// Largest differences of frames from the continued motion of the two frames before, at changes of mode.
 #[derive(Debug, Default)]
 struct Jumps {
-    /// Of any joint, degrees, and where.
+    /// Difference of a joint's rotation, degrees, with its joint, change and time.
     joint: (f64, String),
-    /// Of a hand relative to what carries the climber, metres, and where.
+    /// Difference of a hand's position relative to the climber's support, metres, with its hand, change and time.
     hand: (f64, String),
     changes: BTreeSet<String>,
 }
@@ -60,7 +61,7 @@ fn jumps(scene: &Scene, figure: &Figure, rate: f64) -> Jumps {
                 seen.changes.insert(name.clone());
             }
         }
-        // What carries it moves it along.
+        // The support moves the body.
         let support = state.support.map(|support| support.attachment);
         let carried = support.and_then(|at| {
             let surface = &stage.surfaces[at.obstacle.0 as usize];
@@ -111,7 +112,7 @@ fn scenes() -> Vec<Scene> {
     ]
 }
 
-/// Scene B24: whatever begins, the body goes on as it did.
+/// Scene B24: the body's motion is continuous at each change of mode.
 #[test]
 fn nothing_jumps_when_the_mode_changes() {
     let mut changes = BTreeSet::new();
@@ -119,8 +120,8 @@ fn nothing_jumps_when_the_mode_changes() {
         for scene in scenes() {
             let seen = jumps(&scene, &figure, 60.0);
             let what = format!("{name}, {}", scene.name);
-            // 10 degrees are asked for, and shown as missed: arms that hang straight take 14 to bend to a wall, and the
-            // short legs of one figure 18 to let go in mid-step.
+            // The target is 10 degrees, and is shown as missed: hanging straight arms take 14 to bend to a wall, and
+            // one figure's short legs take 18 to let go in mid-step.
             let most = if name == "CesiumMan" { 18.5 } else { 14.0 };
             assert!(
                 seen.joint.0 <= most,
@@ -140,7 +141,8 @@ fn nothing_jumps_when_the_mode_changes() {
     assert!(changes.len() >= 9, "{changes:?}");
 }
 
-/// Who was knocked over, and crouched while it got up, stands up from there: it does not lie down to get up again.
+/// A body that was knocked over and crouches while it gets up then stands up from the crouch. It does not lie down to
+/// get up again.
 #[test]
 fn who_crouched_while_it_got_up_gets_up_once() {
     for (name, figure) in figures::all() {
@@ -179,7 +181,7 @@ fn who_crouched_while_it_got_up_gets_up_once() {
     }
 }
 
-/// A climber that is put elsewhere, and a creature that is: the body is there at once, and tells no steps.
+/// After a teleport of the climber the body is in place at once and reports no plants.
 #[test]
 fn teleports_are_quiet() {
     let figure = figures::hero();

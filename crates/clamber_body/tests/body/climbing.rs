@@ -8,33 +8,35 @@ use glam::DVec3;
 use crate::figures;
 use crate::play::{play, quantile};
 
-/// Seconds after it took hold in which hands and feet are still on their way.
+/// Time after the climber took hold in which hands and feet are on their way, seconds. Checks begin after it.
 const TAKES_HOLD: f64 = 0.5;
 
-/// How hands and feet hold on in a scene.
+/// Measurements of hands and feet on their holds in a scene.
 #[derive(Debug, Default)]
 struct Holds {
-    /// Distances of palms from what they hold, metres, per frame.
+    /// Distances of palms from their holds, metres, per frame.
     palms: Vec<f64>,
-    /// Ways of palms over the skin in each stance, metres.
+    /// Distances of palms, in the skin's frame, from their places at the beginning of the hold, metres, per frame.
     drifts: Vec<f64>,
-    /// Distances from one hold to the next, metres.
+    /// Distances from one hold of a hand to the next, metres.
     steps: Vec<f64>,
-    /// How deep balls of 3 cm in the palms are in the skin, metres, per frame.
+    /// Depths in the skin of balls of 3 cm in the palms, metres, per frame.
     depths: Vec<f64>,
-    /// How many hold at least, and frames in which no hand does.
+    /// Least number of limbs that hold.
     least: usize,
+    /// Number of frames in which no hand holds.
     no_hand: usize,
     frames: usize,
-    /// The frames in which something was taken hold of, and what: hands 0 and 1, feet 2 and 3.
+    /// Times, seconds, and limbs of all plants: 0 and 1 are hands, 2 and 3 are feet.
     plants: Vec<(f64, usize)>,
-    /// Rates at which elbows and knees bend, radians a second, and for arms that hold the same for a metre of way
-    /// between shoulder and hand, as a share of that of an arm at 97 % of its length.
+    /// Rates at which elbows and knees bend, radians a second.
     bends: Vec<f64>,
+    /// Angles by which the elbows of holding arms bend per metre between shoulder and hand, divided by the angle of an
+    /// arm at 97 % of its length.
     shares: Vec<f64>,
 }
 
-/// A palm on its hold, in the frame of the skin.
+/// A palm on its hold, in the skin's frame.
 #[derive(Clone, Copy)]
 struct Palm {
     key: u64,
@@ -84,7 +86,7 @@ fn holds(scene: &Scene, figure: &Figure, rate: f64) -> Holds {
             if let Some(nearest) = nearest {
                 let out = (touch - nearest.point).dot(nearest.normal);
                 let height = nearest.distance.copysign(out);
-                // A ball that rests on the skin with the palm.
+                // The ball rests on the skin together with the palm, so its depth is the palm's.
                 seen.depths.push((-height).max(0.0));
             }
             let Some(hold) = held[index] else {
@@ -100,7 +102,7 @@ fn holds(scene: &Scene, figure: &Figure, rate: f64) -> Holds {
                 }
                 _ => {
                     if let Some(palm) = palm {
-                        // Where the last hold is now, or was a few frames ago.
+                        // The last hold, where it is now or was a few frames ago.
                         seen.steps.push(palm.point.distance(hold.point));
                     }
                     *palm = Some(Palm {
@@ -115,14 +117,14 @@ fn holds(scene: &Scene, figure: &Figure, rate: f64) -> Holds {
     seen
 }
 
-/// An arm or a leg in a frame.
+/// The bend of an arm or a leg in a frame.
 #[derive(Clone, Copy)]
 struct Bent {
-    /// Of elbow or knee, radians.
+    /// Angle of elbow or knee, radians.
     angle: f64,
-    /// From shoulder to wrist, in the world.
+    /// From shoulder to wrist, or from hip to ankle, in world space.
     line: DVec3,
-    /// Half of its length, metres.
+    /// Half of the limb's length, metres.
     bone: f64,
     holds: bool,
 }
@@ -171,9 +173,9 @@ impl Holds {
             "{what}: drift {} m",
             most(&self.drifts)
         );
-        // No elbow bends faster for the way of its hand than one at 97 % of the arm: 9.1 rad a metre for bones of 45
-        // cm. In a single frame of 36 rides one does, by 1.5 times: the skin pulls an arm straight that is about to let
-        // go.
+        // For the motion between shoulder and hand, no elbow bends faster than one at 97 % of the arm's length: 9.1 rad
+        // per metre for bones of 45 cm. One frame in 36 rides has 1.5 times this rate: the skin pulls an arm straight
+        // that is about to let go.
         let faster = self.shares.iter().filter(|share| **share > 1.0).count();
         let share = most(&self.shares);
         assert!(
@@ -185,7 +187,7 @@ impl Holds {
     }
 }
 
-/// Scene B14 on a wall: enough hold at every speed, steps have their length and time, and frame rates do not matter.
+/// Scene B14 on a wall: enough limbs hold at each speed, and steps are not longer than allowed.
 #[test]
 fn enough_of_them_hold_at_every_speed() {
     let diagonal = DVec3::new(-1.0, 1.0, 0.0).normalize();
@@ -205,13 +207,13 @@ fn enough_of_them_hold_at_every_speed() {
     }
 }
 
-/// Scene B14: the same sequence of hands and feet at any frame rate.
+/// Scene B14: hands and feet move in the same sequence at any frame rate.
 #[test]
 fn the_sequence_does_not_depend_on_the_frame_rate() {
     let figure = figures::hero();
     for speed in [0.3, 0.79, 1.5] {
         let scene = bodies::wall(DVec3::Y * (speed / 1.5)).unwrap();
-        // From when all hold, and it climbs.
+        // From the time when all limbs hold and the climber climbs.
         let sequence = |rate: f64| -> Vec<(f64, usize)> {
             let plants = holds(&scene, &figure, rate).plants;
             plants.into_iter().filter(|plant| plant.0 > 1.55).collect()
@@ -228,7 +230,7 @@ fn the_sequence_does_not_depend_on_the_frame_rate() {
                 let (a, b) = (of(&usual), of(&other));
                 let what = format!("{speed} m/s at {rate} Hz, limb {limb}: {a:?} {b:?}");
                 assert!(a.len() >= 2 && a.len().abs_diff(b.len()) <= 1, "{what}");
-                // One tick of the slowest is asked for.
+                // The target is one tick at the lowest rate.
                 let late = a
                     .iter()
                     .rev()
@@ -251,7 +253,7 @@ fn creatures() -> Vec<Creature> {
     all
 }
 
-/// Scenes B12 and B13 on walking creatures.
+/// Scenes B12 and B13: palms stay on the skin of walking creatures.
 #[test]
 fn palms_stay_on_skin() {
     let (mut played, mut missed) = (0, 0);
@@ -278,7 +280,7 @@ fn palms_stay_on_skin() {
                 let deep = seen.depths.iter().filter(|depth| **depth > 0.005).count();
                 let share = deep as f64 / seen.depths.len() as f64;
                 missed += usize::from(share > 0.001);
-                // 0.001 are asked for: missed in 1 ride of 36, by hands on their way to a next hold.
+                // The target is 0.001. One ride of 36 misses it, by hands on their way to the next hold.
                 assert!(share <= 0.0015, "{what}: {share} of all frames");
                 played += 1;
             }
@@ -287,7 +289,7 @@ fn palms_stay_on_skin() {
     assert!(played >= 3 && missed <= 1, "{missed} of {played} rides");
 }
 
-/// Scene B23: arms and trunk under a shake of 3 Hz.
+/// Scene B23: hands hold on while the skin shakes at 3 Hz.
 #[test]
 fn a_body_that_is_shaken_hangs_on() {
     for (name, figure) in figures::all() {

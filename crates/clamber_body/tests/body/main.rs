@@ -1,5 +1,5 @@
-//! Scenes B12 to B20 and B23 to B25: a body on ground, walls and creatures, with the project's hero and with other
-//! figures that play the hero's clips.
+//! Scenes B12 to B20 and B23 to B25: bodies on ground, walls and creatures. The figures are the project's hero, and
+//! others that play the hero's clips.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 

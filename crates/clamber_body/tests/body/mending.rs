@@ -1,4 +1,4 @@
-//! What is held goes, stretches, or was never there.
+//! Lost holds, stretching skin, acts, refused frames, missing obstacles, and allocations.
 
 use clamber_animation::{Layer, LayerKind};
 use clamber_body::{Act, Body, BodyError, BodyFrame, Extremity, Side};
@@ -13,10 +13,11 @@ use glam::{DAffine3, DVec3};
 
 use crate::figures;
 
+/// Length of a tick and of a frame, seconds.
 const DT: f64 = 1.0 / 60.0;
 
-/// A wall at z = 0, 8 m wide and high, of squares of 5 cm. Its upper half hangs from joint 1, the lower from joint 0,
-/// with a soft border between heights 3.8 and 4.2 m.
+/// A wall at z = 0, 8 m wide and high, of squares of 5 cm. Its upper half follows joint 1, its lower half joint 0. The
+/// weights change between heights of 3.8 and 4.2 m.
 fn wall() -> SkinnedSurface {
     let cells = 160u32;
     let place = |k: u32| f64::from(k) * 0.05;
@@ -58,7 +59,7 @@ fn wall() -> SkinnedSurface {
     surface
 }
 
-/// The upper half moved up.
+/// The palette that moves the upper half up by `up` metres.
 fn palette(up: f32) -> Palette {
     let upper = Affine::from_f64(&DAffine3::from_translation(DVec3::Y * f64::from(up)));
     Palette::from_matrices([Affine::IDENTITY, upper])
@@ -71,7 +72,7 @@ struct Cling {
 }
 
 impl Cling {
-    /// Holds on with its shoulders at the border between the halves.
+    /// A climber that holds on with its shoulders at the border between the halves.
     fn new(figure: &clamber_body::Figure) -> Self {
         let mut config = ClimberConfig::colossus_climber();
         config.stamina = None;
@@ -117,7 +118,7 @@ impl Cling {
     }
 }
 
-/// Scene B15: the triangle under a hand is gone in the next tick.
+/// Scene B15: a hand takes hold beside the triangle under it when the triangle is removed.
 #[test]
 fn a_hand_whose_skin_is_gone_takes_hold_beside_it() {
     for (name, figure) in figures::all() {
@@ -145,7 +146,7 @@ fn a_hand_whose_skin_is_gone_takes_hold_beside_it() {
     }
 }
 
-/// Scene B16: skin that stretches between hands and feet takes no limb with it.
+/// Scene B16: hands and feet let go of skin that stretches between them, and no bone stretches.
 #[test]
 fn skin_that_stretches_is_let_go() {
     for (name, figure) in figures::all() {
@@ -179,7 +180,7 @@ fn skin_that_stretches_is_let_go() {
     }
 }
 
-/// A weapon's clip takes one hand; the others hold on.
+/// A weapon's clip takes one hand; the other limbs keep their holds.
 #[test]
 fn a_hand_with_a_weapon_leaves_its_hold() {
     let figure = figures::hero();
@@ -210,7 +211,8 @@ fn a_hand_with_a_weapon_leaves_its_hold() {
     assert!(cling.body.set_act(&figure, Some(wrong), 0.2).is_err());
 }
 
-/// An act may begin at any moment of a climb: the other hand holds before the act takes its own, and goes on holding.
+/// An act may begin at any moment of a climb: the act takes its hand only when the other hand holds, and that hand goes
+/// on holding.
 #[test]
 fn an_act_never_takes_both_hands() {
     let figure = figures::hero();
@@ -242,14 +244,14 @@ fn an_act_never_takes_both_hands() {
             }
             let what =
                 format!("{speed} m/s, from tick {begin}: {lost} without hands, {acts} with one");
-            // Who climbs on fast has to move the hand that is left.
+            // At higher speeds the remaining hand has to move.
             let most = if speed < 0.5 { 0 } else { 60 };
             assert!(lost <= most && acts > 60, "{what}");
         }
     }
 }
 
-/// Bad numbers are refused, and the body is as it was.
+/// Frames with bad numbers are refused, and the body does not change.
 #[test]
 fn bad_frames_are_refused() {
     let figure = figures::hero();
@@ -287,7 +289,7 @@ fn bad_frames_are_refused() {
     ));
     assert_eq!(body.pose(), &pose);
     assert_eq!(body.world_from_model(), place);
-    // A frame without time changes nothing either, and one of a minute is right.
+    // A frame of 0 s changes nothing, and a frame of a minute is valid.
     body.update(&figure, &good, 0.0).unwrap();
     body.update(&figure, &good, 60.0).unwrap();
     assert!(
@@ -298,7 +300,7 @@ fn bad_frames_are_refused() {
     );
 }
 
-/// Nothing to stand on, no obstacles at all, a climber of another size.
+/// A body without obstacles is updated, for climbers of several sizes.
 #[test]
 fn a_body_needs_no_obstacles() {
     let figure = figures::hero();

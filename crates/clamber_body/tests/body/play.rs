@@ -1,7 +1,7 @@
 use clamber_body::{Body, BodyFrame, Figure};
 use clamber_scenes::bodies::{Scene, Stage};
 
-/// Plays a scene with a frame per tick, and shows each to `see`.
+/// Plays a scene with one frame per tick, and passes each frame to `see`.
 pub(crate) fn play(
     scene: &Scene,
     figure: &Figure,
@@ -25,7 +25,7 @@ pub(crate) fn play(
     }
 }
 
-/// A share of values in ascending order; 0 of none.
+/// The quantile at `share` of values, which it sorts in ascending order. 0 without values.
 pub(crate) fn quantile(values: &mut [f64], share: f64) -> f64 {
     values.sort_by(f64::total_cmp);
     let last = values.len().saturating_sub(1);

@@ -6,7 +6,7 @@ use glam::DVec3;
 use crate::figures;
 use crate::play::{play, quantile};
 
-/// Height of a point above the nearest skin.
+/// Height of a point above the nearest skin, metres; negative inside.
 fn above(stage: &Stage<'_>, point: DVec3) -> f64 {
     let surfaces = stage.surfaces.iter();
     let hits = surfaces.filter_map(|surface| surface.closest_point(point, 1.0));
@@ -17,20 +17,20 @@ fn above(stage: &Stage<'_>, point: DVec3) -> f64 {
     nearest.distance.copysign(out)
 }
 
-/// How feet stand in a scene.
+/// Measurements of standing feet in a scene.
 #[derive(Debug, Default)]
 struct Stances {
-    /// Speeds of the lower end of a sole along what it stands on, from frame to frame, metres a second.
+    /// Speeds of a sole's lower end along the ground below it, from frame to frame, metres a second.
     speeds: Vec<f64>,
-    /// Ways of these in each stance, metres.
+    /// Distances that these ends move in each stance, metres.
     ways: Vec<f64>,
-    /// Heights of the lower end of a sole above the skin, metres, either way.
+    /// Distances of a sole's lower end from the skin, metres, above or below.
     gaps: Vec<f64>,
-    /// The same of the other end, while the foot is flat: in the middle of its stance.
+    /// Distances of the sole's other end from the skin in the middle of a stance, where the foot is flat, metres.
     flat: Vec<f64>,
 }
 
-/// A foot's place in the frame of what it stands on.
+/// A foot on the ground, in the ground's frame.
 #[derive(Clone, Copy)]
 struct Stand {
     key: u64,
@@ -90,7 +90,7 @@ fn most(values: &[f64]) -> f64 {
     values.iter().copied().fold(0.0, f64::max)
 }
 
-/// Scene B19: feet do not slide over what they stand on, be it the ground, a lift or a turntable.
+/// Scene B19: feet do not slide over the ground, a lift or a turntable.
 #[test]
 fn feet_stay_where_they_stand() {
     for (name, figure) in figures::all() {
@@ -112,7 +112,8 @@ fn feet_stay_where_they_stand() {
     }
 }
 
-/// The height of the hips above a ramp of a slope through the treads, for each frame between two places.
+/// Positions of the hips between two places on stairs, for each frame. Their heights are relative to a ramp of the
+/// stairs' slope.
 fn hips_above_ramp(scene: &Scene, figure: &Figure, slope: f64, rate: f64) -> Vec<DVec3> {
     let mut way = Vec::new();
     play(scene, figure, rate, |stage, body| {
@@ -128,7 +129,7 @@ fn hips_above_ramp(scene: &Scene, figure: &Figure, slope: f64, rate: f64) -> Vec
     way
 }
 
-/// Scene B18: on stairs the pelvis goes along a line, without bobbing at each step.
+/// Scene B18: on stairs the pelvis follows a straight line, without bobbing at each step.
 #[test]
 fn the_pelvis_goes_straight_up_and_down_stairs() {
     for (name, figure) in figures::all() {
@@ -140,12 +141,12 @@ fn the_pelvis_goes_straight_up_and_down_stairs() {
                 let mean = way.iter().map(|p| p.y).sum::<f64>() / way.len() as f64;
                 let off = way.iter().map(|p| (p.y - mean).abs()).fold(0.0, f64::max);
                 let what = format!("{name}, {} at {rate} Hz", scene.name);
-                // At other rates the climber's own steps differ; at 30 Hz it makes 10 cm a frame.
+                // The climber's own steps differ with the rate; at 30 Hz it moves 10 cm a frame.
                 let most = [(60.0, 0.06), (144.0, 0.08), (30.0, 0.12)];
                 let most = most.iter().find(|(other, _)| *other == rate).unwrap().1;
                 assert!(way.len() > 20 && off <= most, "{what}: {off} m");
                 let rises = |p: &[DVec3]| (p[1].y - p[0].y) + slope * (p[1].z - p[0].z);
-                // Slower than 1 cm/s is no motion.
+                // Less than 1 cm/s counts as no motion.
                 let speeds = way.windows(2).map(|pair| rises(pair) * rate);
                 let signs: Vec<f64> = speeds.filter(|v| v.abs() > 0.01).map(f64::signum).collect();
                 let turns = signs.windows(2).filter(|pair| pair[0] != pair[1]).count();
@@ -179,7 +180,7 @@ fn soles_lie_flat_on_slopes() {
     }
 }
 
-/// Angle between thigh and shin, radians: pi is straight.
+/// Angle between thigh and shin, radians: pi for a straight leg.
 fn knee(figure: &Figure, body: &Body, side: Side) -> f64 {
     let leg = figure.humanoid().leg(side);
     let at = |joint| {
@@ -224,7 +225,7 @@ fn one_foot_stands_on_a_block() {
     }
 }
 
-/// Feet tell where they come down, on what, and how fast.
+/// Each step of a foot is reported with its point and its speed.
 #[test]
 fn steps_are_told() {
     let figure = figures::hero();
@@ -247,7 +248,7 @@ fn steps_are_told() {
             }
         }
     });
-    // 4 s at 1.4 m/s with a stride of 1.4 m: eight steps, in turn.
+    // 4 s at 1.4 m/s with a stride of 1.4 m are eight steps, with alternating feet.
     assert_eq!(steps.len(), 8, "{steps:?}");
     for pair in steps.windows(2) {
         assert_ne!(pair[0].extremity, pair[1].extremity);

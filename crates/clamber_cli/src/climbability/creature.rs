@@ -1,4 +1,4 @@
-//! The creature, as its file and its brain make it.
+//! Loads the creature from its file and, if there is one, its brain's file.
 
 use std::sync::Arc;
 
@@ -8,10 +8,10 @@ use clamber_surface::rig::{Clip, Skeleton, WeakPoint};
 
 use super::{ClimbabilityError, ClimbabilityOptions};
 
-/// Length of the brain's ticks, seconds: no number of the report depends on it.
+/// Tick length of the brain, seconds. No number of the report depends on it.
 const TICK: f64 = 1.0 / 60.0;
 
-/// What the report looks at.
+/// The creature of the report.
 pub(super) struct Creature {
     pub(super) skeleton: Skeleton,
     pub(super) mesh: Arc<ColliderMesh>,
@@ -19,8 +19,9 @@ pub(super) struct Creature {
     pub(super) weak_points: Vec<WeakPoint>,
     /// The triangles of each plate.
     pub(super) plates: Vec<Vec<TriangleId>>,
-    /// Metres, if the options or the brain say so.
+    /// Height, metres, if the options or the brain give one.
     pub(super) height: Option<f64>,
+    /// Height for which the clips were made, metres, if the options or the brain give one.
     pub(super) made_for: Option<f64>,
 }
 
@@ -46,7 +47,7 @@ impl Creature {
             file: file.clone(),
             error,
         })?;
-        // What the kind adds to them is no clip of the file: breath, which it plays on top of others.
+        // The kind may append a clip of its own: the breath, which it adds to other clips. The report leaves it out.
         let of_file = rig.clips.len();
         let parts = CreatureParts {
             skeleton: rig.skeleton,

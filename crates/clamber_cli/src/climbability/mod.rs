@@ -1,4 +1,4 @@
-//! Tells where a climber can get to on a creature.
+//! Reports where a climber can get to on a creature.
 
 mod creature;
 mod picture;
@@ -24,27 +24,27 @@ pub use require::Requirement;
 
 use crate::progress::Progress;
 
-/// Tells where a climber can get to on a creature, and what keeps it from the weak points.
+/// Reports where a climber can get to on a creature, and why it does not reach a weak point.
 ///
-/// Divides the creature's skin into patches, looks from which to which a climber walks and climbs, and plays all clips.
-/// With --require it is a check for a game's CI: it exits with 1 if a requirement does not hold, and with 2 if there is
-/// no report.
+/// Divides the creature's skin into patches, finds the patches between which a climber walks and climbs, and plays all
+/// clips. With --require it is a check for a game's CI: it exits with 1 if a requirement does not hold, and with 2 if
+/// no report can be made.
 #[derive(Args, Clone, Debug)]
 pub struct ClimbabilityOptions {
     /// A .glb or .gltf file.
     pub file: PathBuf,
 
-    /// The creature's brain file: its plates come off, its weak points count, and its `height` and `made_for` hold
-    /// where the options do not say otherwise.
+    /// The creature's brain file. The report includes its weak points and the skin below its plates. Its `height` and
+    /// `made_for` hold where the options give none.
     #[arg(long, value_name = "FILE.json")]
     pub brain: Option<PathBuf>,
 
-    /// Height for which the clips were made, metres: of another height, the creature plays them slower or faster by
+    /// Height for which the clips were made, metres. A creature of another height plays them slower or faster by
     /// Froude's law, as it does in a game [default: as the brain says; without one, clips keep their speed].
     #[arg(long, value_name = "METRES", value_parser = positive, allow_negative_numbers = true)]
     pub made_for: Option<f64>,
 
-    /// Height of the creature, metres [default: as the brain says, or as in the file].
+    /// Height of the creature, metres [default: as the brain says, else as in the file].
     #[arg(long, value_name = "METRES", value_parser = positive, allow_negative_numbers = true)]
     pub height: Option<f64>,
 
@@ -56,13 +56,13 @@ pub struct ClimbabilityOptions {
     #[arg(long, value_name = "METRES", default_value_t = 0.35, value_parser = positive, allow_negative_numbers = true)]
     pub reach: f64,
 
-    /// Largest side of a patch of skin, metres.
+    /// Longest side of a patch of skin, metres.
     #[arg(long, value_name = "METRES", default_value_t = 0.4, value_parser = positive, allow_negative_numbers = true)]
     pub spacing: f64,
 
-    /// What has to hold, such as "weak_points>=3": a number of the report, one of >=, <=, >, < and =, and a number.
-    /// Numbers are weak_points (how many are reachable), reachable (share of the skin, 0 to 1), reachable_area and
-    /// rest_area (square metres), entries. May be given more than once.
+    /// A requirement, such as "weak_points>=3": the name of a number in the report, one of >=, <=, >, < and =, and a
+    /// value. The numbers are weak_points (how many are reachable), reachable (share of the skin, 0 to 1),
+    /// reachable_area and rest_area (square metres), and entries. May be given more than once.
     #[arg(long, value_name = "WHAT")]
     pub require: Vec<Requirement>,
 
@@ -70,8 +70,8 @@ pub struct ClimbabilityOptions {
     #[arg(long)]
     pub json: bool,
 
-    /// File for a picture from four sides: coloured from dark blue to yellow by how long it takes to get there, grey
-    /// where no climber gets to, with red discs for weak points.
+    /// File for a picture from four sides. The colour runs from dark blue to yellow with the climbing time between a
+    /// place and the ground. Skin that no climber reaches is grey, and red discs mark weak points.
     #[arg(long, value_name = "FILE.png")]
     pub picture: Option<PathBuf>,
 }
@@ -109,7 +109,7 @@ impl Material {
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum ClimbabilityError {
-    /// The file cannot be loaded.
+    /// The creature's file cannot be loaded.
     #[error(transparent)]
     Gltf(#[from] GltfError),
     /// The graph cannot be built.
@@ -139,7 +139,7 @@ pub enum ClimbabilityError {
     Colossus {
         /// The brain's file.
         file: PathBuf,
-        /// What does not fit.
+        /// The mismatch.
         error: ColossusError,
     },
     /// The picture cannot be written.
@@ -155,10 +155,10 @@ pub enum ClimbabilityError {
     Json(#[from] serde_json::Error),
 }
 
-/// Prints the report on a creature. True if all requirements hold.
+/// Prints the report on a creature. Returns true if all requirements hold.
 ///
 /// # Errors
-/// [`ClimbabilityError`] if the file cannot be loaded, or no graph can be built.
+/// [`ClimbabilityError`] if a file cannot be loaded, no graph can be built, or the report cannot be written.
 pub fn print(options: &ClimbabilityOptions) -> Result<bool, ClimbabilityError> {
     let creature = Creature::load(options)?;
     let palette = creature.skeleton.palette(&creature.skeleton.rest_pose());
@@ -233,7 +233,7 @@ pub fn print(options: &ClimbabilityOptions) -> Result<bool, ClimbabilityError> {
     Ok(holds)
 }
 
-/// One bar for each stage.
+/// Shows the progress of a build, with one bar for each stage.
 fn show(bar: &mut Option<(Stage, Progress)>, built: Built) {
     let is_same = bar.as_ref().is_some_and(|(stage, _)| *stage == built.stage);
     if !is_same {

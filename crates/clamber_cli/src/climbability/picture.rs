@@ -1,4 +1,4 @@
-//! A picture of a creature from four sides, coloured by how long it takes to get there.
+//! Draws a creature from four sides, coloured by the climbing time between each place and the ground.
 
 use std::fs::File;
 use std::io::{self, BufWriter};
@@ -8,14 +8,15 @@ use clamber_navigation::{ClimbGraph, ClimbReport};
 use clamber_surface::mesh::{ColliderMesh, TriangleId};
 use glam::{DVec2, DVec3};
 
-/// Height of a side, rows of pixels, and the border around it.
+/// Height of the picture, pixels.
 const ROWS: usize = 720;
+/// Border around each of the four views, pixels.
 const BORDER: usize = 20;
 
-/// A picture of one side is at most so many times as wide as it is high.
+/// Largest ratio of a creature's width to the height of its drawing. A flatter creature is scaled by its width.
 const WIDEST: f64 = 4.0;
 
-/// Colours of equal steps of time, from the ground to the place that takes longest: matplotlib's viridis.
+/// RGB colours at equal steps of climbing time, from 0 to the longest time: matplotlib's viridis.
 const COLORS: [[u8; 3]; 5] = [
     [68, 1, 84],
     [59, 82, 139],
@@ -23,14 +24,17 @@ const COLORS: [[u8; 3]; 5] = [
     [94, 201, 98],
     [253, 231, 37],
 ];
+/// RGB colour of skin that no climber reaches: grey.
 const UNREACHABLE: [u8; 3] = [150, 150, 150];
+/// RGB colour of the discs at weak points: red.
 const WEAK_POINT: [u8; 3] = [220, 40, 40];
+/// RGB colour of the background: white.
 const PAPER: [u8; 3] = [255, 255, 255];
 
-/// Where one looks from: the direction to the right in the picture. Up stays up.
+/// The four views, each by the direction in the world that points right in the picture. +Y points up in all of them.
 const SIDES: [DVec3; 4] = [DVec3::X, DVec3::NEG_Z, DVec3::NEG_X, DVec3::Z];
 
-/// Pixels, and how near to the eye what they show is.
+/// An RGB picture with a depth buffer. A pixel of greater nearness is closer to the eye.
 struct Picture {
     columns: usize,
     pixels: Vec<[u8; 3]>,
@@ -45,7 +49,7 @@ impl Picture {
         }
     }
 
-    /// Fills a triangle. Corners are columns and rows of pixels and nearness.
+    /// Fills a triangle. A corner is its column, its row and its nearness.
     fn fill(&mut self, corners: [DVec3; 3], color: [u8; 3]) {
         let [a, b, c] = corners.map(DVec3::truncate);
         let doubled = (b - a).perp_dot(c - a);
@@ -68,7 +72,7 @@ impl Picture {
         }
     }
 
-    /// A disc that nothing hides.
+    /// Draws a weak point's disc over everything else. The radius is in pixels.
     fn mark(&mut self, middle: DVec3, radius: f64) {
         let low = (middle.truncate() - radius).max(DVec2::ZERO);
         for y in low.y as usize..=(middle.y + radius) as usize {
@@ -82,7 +86,8 @@ impl Picture {
     }
 }
 
-/// Draws a creature at rest, whose vertices are given in the world, and writes a PNG.
+/// Draws a creature at rest and writes a PNG. `skin` holds the vertices of `mesh` in the world. Returns the longest
+/// climbing time between a reachable patch and the ground, seconds.
 ///
 /// # Errors
 /// [`io::Error`] if the file cannot be written.
@@ -139,7 +144,8 @@ pub(super) fn draw(
                 continue;
             }
             let [a, b, c] = corners.map(at);
-            // In pieces, since a triangle may have many patches.
+            // A triangle may have many patches: it is drawn in pieces of a few pixels, each with the colour of its own
+            // patch.
             let parts = ((b - a).length().max((c - a).length()) / 6.0)
                 .ceil()
                 .clamp(1.0, 64.0);
@@ -173,7 +179,7 @@ pub(super) fn draw(
     Ok(longest)
 }
 
-/// The colour of a share of the longest time.
+/// The colour for a time, given as a share of the longest time.
 fn shade(share: f64) -> [u8; 3] {
     let steps = (COLORS.len() - 1) as f64;
     let along = (share * steps).clamp(0.0, steps);
@@ -185,7 +191,7 @@ fn shade(share: f64) -> [u8; 3] {
     })
 }
 
-/// A colour on skin that faces the eye so much.
+/// Shades a colour by the cosine `facing` between the skin's normal and the direction to the eye.
 fn lit(color: [u8; 3], facing: f64) -> [u8; 3] {
     color.map(|part| (f64::from(part) * (0.55 + 0.45 * facing)) as u8)
 }

@@ -3,7 +3,7 @@ use std::str::FromStr;
 
 use clamber_navigation::ClimbReport;
 
-/// A number of the report, and what it has to be.
+/// A condition on one number of the report, such as `weak_points>=3`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Requirement {
     number: Number,
@@ -20,6 +20,7 @@ enum Number {
     Entries,
 }
 
+/// The numbers by their names in a requirement.
 const NUMBERS: [(&str, Number); 5] = [
     ("weak_points", Number::WeakPoints),
     ("reachable", Number::Reachable),
@@ -37,7 +38,7 @@ enum Order {
     Is,
 }
 
-/// The longer ones first: `>=` begins with `>`.
+/// The comparison signs. `>=` and `<=` come before `>` and `<`, as the first sign found in the text is taken.
 const ORDERS: [(&str, Order); 5] = [
     (">=", Order::AtLeast),
     ("<=", Order::AtMost),
@@ -47,7 +48,7 @@ const ORDERS: [(&str, Order); 5] = [
 ];
 
 impl Requirement {
-    /// The number in a report.
+    /// The report's value of the required number.
     pub fn found(&self, report: &ClimbReport) -> f64 {
         match self.number {
             Number::WeakPoints => {
@@ -61,7 +62,7 @@ impl Requirement {
         }
     }
 
-    /// True if a number is as required.
+    /// True if the value `found` meets the requirement.
     pub fn holds(&self, found: f64) -> bool {
         match self.order {
             Order::AtLeast => found >= self.wanted,

@@ -68,7 +68,7 @@ fn how(point: &PointReport) -> String {
 }
 
 fn treats(clip: &ClipReport) -> String {
-    // Harder shakes are not told apart.
+    // `HARDEST` stands for all harder shakes, too.
     let least = if clip.hardest_shake >= ClipReport::HARDEST {
         "shakes by at least"
     } else {

@@ -1,12 +1,12 @@
-//! Checks bounds against the skinned vertices that they must hold.
+//! Checks that bounding spheres hold their skinned vertices.
 
 use clamber_surface::geometry::Sphere;
 use clamber_surface::mesh::ColliderMesh;
 use clamber_surface::surface::SkinnedSurface;
 use glam::Vec3;
 
-/// Counts the skinned vertices that are outside a sphere of their part: the one that follows from the palette, and the
-/// one refitted to the positions. A vertex may count twice.
+/// Counts the skinned vertices that are outside a sphere of their part. Each part has two spheres: the one that the
+/// surface computes from the palette, and the one refitted to the positions. A vertex outside both counts twice.
 pub(super) fn violations(surface: &SkinnedSurface, positions: &[Vec3]) -> usize {
     let mesh = surface.mesh();
     let mut refitted = Vec::new();
@@ -23,7 +23,7 @@ pub(super) fn violations(surface: &SkinnedSurface, positions: &[Vec3]) -> usize 
     outside
 }
 
-/// A sphere around the mean of each part's skinned vertices, as in the thesis (5.2.4).
+/// Writes a sphere around the mean of each part's skinned vertices, as in the thesis (5.2.4).
 pub(super) fn refit(mesh: &ColliderMesh, positions: &[Vec3], spheres: &mut Vec<Option<Sphere>>) {
     spheres.clear();
     spheres.extend(mesh.parts().iter().map(|part| {

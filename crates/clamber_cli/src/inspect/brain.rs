@@ -1,4 +1,4 @@
-//! A brain's file: its states, what leads from one to another, and what can never happen.
+//! Prints a brain's file: its states, its transitions, and the ones that can never happen.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -10,7 +10,7 @@ use clamber_gltf::load;
 
 use super::{InspectError, InspectOptions};
 
-/// Prints a brain. Returns true if all of it can happen.
+/// Prints a brain. Returns true if all its states and transitions can happen.
 pub(super) fn print(options: &InspectOptions) -> Result<bool, InspectError> {
     let file = || options.file.clone();
     let text = std::fs::read_to_string(&options.file).map_err(|error| InspectError::Read {
@@ -53,10 +53,11 @@ pub(super) fn print(options: &InspectOptions) -> Result<bool, InspectError> {
     Ok(report.never.is_empty())
 }
 
-/// How far aside of where a model looks its feet may walk without a warning, degrees.
+/// Largest angle between the model's forward direction (+Z) and the way that its feet walk, degrees. A larger one is
+/// warned of.
 const ASIDE: f64 = 45.0;
 
-/// Prints what sizes, speeds and directions follow from the creature's file and the brain's.
+/// Prints the sizes, speeds and directions that follow from the creature's file and the brain's file.
 fn print_body(kind: &CreatureKind) {
     let body = &kind.brain().file().body;
     let height = kind.height();
@@ -88,7 +89,7 @@ fn print_body(kind: &CreatureKind) {
     }
 }
 
-/// Warns of clips that are played again and again, but do not end as they begin.
+/// Warns of clips that are played in a loop but do not end as they begin.
 fn print_jumps(kind: &CreatureKind) -> Result<(), InspectError> {
     let brain = kind.brain();
     let mut names: BTreeSet<&str> = BTreeSet::new();

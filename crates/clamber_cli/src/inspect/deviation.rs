@@ -1,4 +1,4 @@
-//! How far the skin is from exact arithmetic, and the collider from the visual meshes.
+//! Measures how far skinned vertices are from exact arithmetic, and the collider from the visual meshes.
 
 use clamber_gltf::Rig;
 use clamber_surface::geometry::{Affine, Similarity};
@@ -12,7 +12,7 @@ use std::sync::Arc;
 use super::median;
 use super::report::Distances;
 
-/// The largest error of a vertex coordinate against skinning in f64, as a share of its bound: infinite if a
+/// The largest error of a vertex coordinate against skinning in f64, as a share of its bound. It is infinite if a
 /// position is NaN or a bound of 0 is exceeded. `positions` are the mesh's vertices, skinned with `matrices`.
 pub fn skinning_error_share(mesh: &ColliderMesh, matrices: &[Affine], positions: &[Vec3]) -> f64 {
     let mut worst = 0.0f64;
@@ -32,7 +32,7 @@ pub fn skinning_error_share(mesh: &ColliderMesh, matrices: &[Affine], positions:
     worst
 }
 
-/// Number of vertices of each mesh that are measured in each pose.
+/// Number of random vertices of each mesh at which a distance is measured, in each pose.
 const SAMPLES: usize = 100;
 
 /// Distances between the visual meshes and the collider, from random vertices of each to the other.
@@ -53,7 +53,7 @@ impl VisualDistance {
         Ok(Self { visual, distances })
     }
 
-    /// Measures at random vertices of both, in a pose.
+    /// Measures the distances from random vertices of each surface to the other one, in the pose of the palette.
     pub(super) fn measure(
         &mut self,
         palette: &Palette,
@@ -75,7 +75,7 @@ impl VisualDistance {
         Ok(())
     }
 
-    /// The median and the largest distance; `None` if nothing was measured.
+    /// The median and the largest distance, or `None` if nothing was measured.
     pub(super) fn finish(&mut self) -> Option<Distances> {
         let worst = self.distances.iter().copied().reduce(f64::max)?;
         Some(Distances {
@@ -85,7 +85,7 @@ impl VisualDistance {
     }
 }
 
-/// Distance of a point from a surface, searched in ever wider spheres, so that near skin is found fast.
+/// Distance of a point from a surface. The search radius grows in steps, as a small one finds near skin fast.
 fn distance(surface: &SkinnedSurface, place: Vec3) -> Result<f64, SurfaceError> {
     // Most points are within a hundredth of the creature's size.
     let mut reach = surface.mesh().radius() * 0.01;

@@ -1,4 +1,4 @@
-//! Which joints make a human body, as a table and as a drawing of the rest pose.
+//! Shows the joints that make a human body, as a table and as a drawing of the rest pose.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -11,7 +11,8 @@ use plotters::prelude::*;
 
 use super::{InspectError, InspectOptions};
 
-/// Prints the body of a file, and draws it if asked to. False if the file has none.
+/// Prints the human body of a file, and draws it if `options.draw` is given. Returns false if the file has no human
+/// body.
 pub(super) fn print(rig: &Rig, options: &InspectOptions) -> Result<bool, InspectError> {
     println!("{}", options.file.display());
     let body = match Humanoid::find(&rig.skeleton) {
@@ -37,7 +38,7 @@ pub(super) fn print(rig: &Rig, options: &InspectOptions) -> Result<bool, Inspect
     Ok(body.is_some())
 }
 
-/// The joints that were found, and the sizes that follow.
+/// The joints of the body, the lengths of its limbs and the direction that it faces, as text.
 fn table(rig: &Rig, body: &Humanoid) -> String {
     let name = |joint: JointId| rig.skeleton.joints()[joint.index()].name.as_str();
     let mut text = String::new();
@@ -78,8 +79,8 @@ fn table(rig: &Rig, body: &Humanoid) -> String {
 /// Width and height of the drawing, pixels.
 const SIZE: (u32, u32) = (1200, 720);
 
-/// Draws the skeleton at rest from the front and from its left: the body's joints with what they are, or without a body
-/// all joints with their names.
+/// Draws the skeleton at rest from the front and from its left. The labels are the roles of the body's joints, or the
+/// names of all joints if there is no body.
 fn draw(rig: &Rig, body: Option<&Humanoid>, file: &Path) -> Result<(), String> {
     let palette = rig.skeleton.palette(&rig.skeleton.rest_pose());
     let palette = palette.map_err(|error| error.to_string())?;
@@ -107,7 +108,8 @@ fn draw(rig: &Rig, body: Option<&Humanoid>, file: &Path) -> Result<(), String> {
                 .collect()
         }
     };
-    // Seen from the front, its left is at the right; seen from its left, it faces left.
+    // The horizontal axes of the pictures. Seen from the front, its left is at the right; seen from its left, it faces
+    // left.
     let views = [("from the front", left), ("from its left", -facing)];
     let area = SVGBackend::new(file, SIZE).into_drawing_area();
     let failed = |error: &dyn std::fmt::Display| error.to_string();
@@ -153,7 +155,7 @@ fn draw(rig: &Rig, body: Option<&Humanoid>, file: &Path) -> Result<(), String> {
             let at = flat(place(*joint));
             let dot = Circle::new(at, 4, RED.filled());
             chart.draw_series([dot]).map_err(|error| failed(&error))?;
-            // What is on the far side is not named twice.
+            // The view from the left does not label the joints of the right side, which are behind the left ones.
             let is_near = title == "from the front" || !name.starts_with("right ");
             if is_near {
                 let text = Text::new(name.clone(), (7, -5), ("sans-serif", 12));

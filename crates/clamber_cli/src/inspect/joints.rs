@@ -1,4 +1,4 @@
-//! The joints of a creature as a tree, with what a brain's file needs to know of them.
+//! Prints the joints of a creature as a tree, with the numbers that the author of a brain's file needs.
 
 use std::fmt::Write as _;
 
@@ -7,7 +7,8 @@ use clamber_surface::mesh::VertexId;
 use clamber_surface::rig::JointId;
 use clamber_surface::skin::skin;
 
-/// The joints as a tree: their places at rest, in heights of the creature, and how much skin they move.
+/// The joints as a tree, with their places at rest, in heights of the creature, and the number of vertices that each
+/// joint moves, as the sum of their weights. Empty if the skeleton cannot be posed at rest.
 pub(super) fn tree(rig: &Rig) -> String {
     let skeleton = &rig.skeleton;
     let joints = skeleton.joints();

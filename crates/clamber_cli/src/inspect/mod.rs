@@ -1,5 +1,5 @@
-//! A report on a creature's file: what its import found, and measurements of the creature in every clip. For
-//! people who make creatures, and for measurements on many models.
+//! A report on a creature's file: the results of its import, and measurements of the creature in every clip. It serves
+//! authors of creatures, and measurements on many models.
 
 mod bounds;
 mod brain;
@@ -58,7 +58,7 @@ pub enum InspectError {
     Draw {
         /// The file.
         file: PathBuf,
-        /// Why not.
+        /// The reason.
         error: String,
     },
     /// A brain's file cannot be read.
@@ -66,7 +66,7 @@ pub enum InspectError {
     Read {
         /// The file.
         file: PathBuf,
-        /// Why not.
+        /// The reason.
         error: std::io::Error,
     },
     /// A brain's file is not valid.
@@ -74,7 +74,7 @@ pub enum InspectError {
     Brain {
         /// The file.
         file: PathBuf,
-        /// Why not.
+        /// The mistake.
         error: BrainError,
     },
     /// The brain and the creature do not fit each other.
@@ -82,7 +82,7 @@ pub enum InspectError {
     Colossus {
         /// The brain's file.
         file: PathBuf,
-        /// Why not.
+        /// The mismatch.
         error: ColossusError,
     },
     /// No brain can be proposed for the creature.
@@ -90,7 +90,7 @@ pub enum InspectError {
     Propose {
         /// The creature's file.
         file: PathBuf,
-        /// Why not.
+        /// The reason.
         error: String,
     },
     /// The file has no clip of that name.
@@ -103,13 +103,17 @@ pub enum InspectError {
     },
 }
 
-/// Loads a file, measures the creature, and prints both as they come; returns true if all checks hold. With
-/// [`InspectOptions::humanoid`], prints the human body in it instead; returns true if there is one. With
-/// [`InspectOptions::propose_brain`], prints a brain's file for it. With
-/// [`InspectOptions::brain`], prints a brain; returns true if all of it can happen.
+/// Loads a file and prints the results of its import, then measures the creature and prints the measurements. Returns
+/// true if all checks hold. These options print something else instead:
+///
+/// - [`InspectOptions::brain`]: a brain; returns true if all its states and transitions can happen.
+/// - [`InspectOptions::propose_brain`]: a brain's file for the creature.
+/// - [`InspectOptions::joints`]: the joints as a tree.
+/// - [`InspectOptions::humanoid`]: the human body in the file; returns true if there is one.
 ///
 /// # Errors
-/// [`InspectError`] if the file cannot be loaded, has no clip of that name, or a clip does not fit the creature.
+/// [`InspectError`] if a file cannot be read, has no clip of a chosen name, or a clip or a brain does not fit the
+/// creature.
 pub fn print(options: &InspectOptions) -> Result<bool, InspectError> {
     if options.brain {
         return brain::print(options);
@@ -143,7 +147,7 @@ pub fn print(options: &InspectOptions) -> Result<bool, InspectError> {
         if options.poses.is_none() && each < thorough.poses_of_each(chosen.len()) {
             println!("  {each} poses of each clip; --thorough measures more, --clip NAME one clip");
         }
-        // At once, also into a pipe.
+        // Also a pipe shows the import before the measurements begin.
         let _ = std::io::stdout().flush();
     }
     let inspection = inspect(&rig, options)?;
@@ -158,11 +162,10 @@ pub fn print(options: &InspectOptions) -> Result<bool, InspectError> {
     Ok(inspection.holds())
 }
 
-/// Measures a creature at rest and in its clips. Shows progress on standard error.
+/// Measures a creature at rest and in its clips. Shows its progress on standard error.
 ///
 /// # Errors
-/// [`InspectError`] if there is no clip of a chosen name, a clip does not fit the creature, or the visual meshes are
-/// broken.
+/// [`InspectError`] if no clip has a chosen name, a clip does not fit the creature, or the visual meshes are broken.
 pub fn inspect(rig: &Rig, options: &InspectOptions) -> Result<Inspection, InspectError> {
     let mut inspection = Inspection::of_import(rig);
     let mut surface = SkinnedSurface::new(rig.collider.clone());
@@ -196,8 +199,8 @@ pub fn inspect(rig: &Rig, options: &InspectOptions) -> Result<Inspection, Inspec
     Ok(inspection)
 }
 
-/// Compares answers with brute force, for one question of every kind and aim. Each is put twice: to the surface, which
-/// skins only what a query touches, and to a copy with everything skinned ahead.
+/// Compares answers with brute force, for one question of every kind and aim. Each question is asked twice: of the
+/// surface, which skins only the vertices that the query touches, and of a copy that has all vertices skinned ahead.
 pub fn compare_queries(
     surface: &SkinnedSurface,
     rng: &mut fastrand::Rng,
@@ -217,7 +220,7 @@ pub fn compare_queries(
     }
 }
 
-/// The clips to measure in: those that were asked for, or all.
+/// The clips to measure: the chosen ones, or all if none is chosen.
 fn chosen<'a>(rig: &'a Rig, options: &InspectOptions) -> Result<Vec<&'a Clip>, InspectError> {
     for name in &options.clips {
         if !rig.clips.iter().any(|clip| clip.name == *name) {
@@ -279,7 +282,7 @@ impl Timings {
     }
 }
 
-/// The median, the smaller one of two; `None` without values. Sorts `values`.
+/// The median, or `None` without values. For an even count it is the smaller of the middle two. Sorts `values`.
 fn median(values: &mut [f64]) -> Option<f64> {
     values.sort_by(f64::total_cmp);
     values.get(values.len().saturating_sub(1) / 2).copied()

@@ -2,28 +2,29 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-/// Reports what the import finds in a creature's file, and measures the creature in motion. Reports on a brain's file.
+/// Reports on a creature's file and measures the creature in motion. Reports on a brain's file.
 ///
-/// Loads the file as the library does and says at once what it found. Then it poses the creature at rest and in its
-/// clips, and compares skinning with exact arithmetic, every query with brute force, and bounds with the vertices that
-/// they must hold. Exits with 1 if a comparison fails, with 2 if the file cannot be loaded.
+/// Loads the file as the library does and prints the results of the import. Then it poses the creature at rest and in
+/// its clips, and compares skinning with exact arithmetic, every query with brute force, and bounds with the vertices
+/// that they must hold. Exits with 1 if a comparison fails, with 2 if the file cannot be loaded.
 ///
-/// With --brain it reads a brain's file: it prints states, transitions, and what can never happen. Exits with 1 if
-/// there is such a thing, with 2 if the file is not valid. With --propose-brain it writes such a file for a creature.
+/// With --brain it reads a brain's file and prints its states, its transitions, and the ones that can never happen. It
+/// exits with 1 if there are any, and with 2 if the file is not valid. With --propose-brain it writes such a file for a
+/// creature.
 #[derive(Args, Clone, Debug)]
 pub struct InspectOptions {
     /// A .glb or .gltf file; with --brain, a .json file.
     pub file: PathBuf,
 
-    /// The file is a creature's brain: print its states and transitions, and what can never happen.
+    /// Read the file as a creature's brain: print its states, its transitions, and the ones that can never happen.
     #[arg(long, conflicts_with_all = ["json", "scene", "skin", "clips", "poses", "thorough", "humanoid"])]
     pub brain: bool,
 
-    /// With --brain: the .glb or .gltf file of the creature, whose clips, joints and weak points the brain has to fit.
+    /// With --brain: the creature's .glb or .gltf file. The brain has to fit its clips, joints and weak points.
     #[arg(long, value_name = "FILE", requires = "brain")]
     pub creature: Option<PathBuf>,
 
-    /// With --brain: ticks a second of the game.
+    /// With --brain: ticks per second of the game.
     #[arg(long, value_name = "COUNT", requires = "brain", default_value_t = 60)]
     #[arg(value_parser = clap::value_parser!(u32).range(1..=1_000))]
     pub rate: u32,
@@ -36,7 +37,7 @@ pub struct InspectOptions {
     #[arg(long, value_name = "INDEX")]
     pub scene: Option<usize>,
 
-    /// Index of a skin of the creature to inspect [default: the creature with the most triangles].
+    /// Index of a skin: inspects the creature that has this skin [default: the creature with the most triangles].
     #[arg(long, value_name = "INDEX")]
     pub skin: Option<usize>,
 
@@ -44,7 +45,7 @@ pub struct InspectOptions {
     #[arg(long = "clip", value_name = "NAME")]
     pub clips: Vec<String>,
 
-    /// Number of poses of each clip [default: 30, or less, so that there are some 300 poses in all].
+    /// Number of poses of each clip [default: 30, or fewer if there are many clips, for about 300 poses in all].
     #[arg(long, value_name = "COUNT", conflicts_with = "thorough")]
     #[arg(value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub poses: Option<u32>,
@@ -53,16 +54,16 @@ pub struct InspectOptions {
     #[arg(long)]
     pub thorough: bool,
 
-    /// Print the joints as a tree, with their places at rest and how much skin they move, and measure nothing.
+    /// Print the joints as a tree, with their places at rest and the number of vertices they move, and measure nothing.
     #[arg(long, conflicts_with_all = ["json", "clips", "poses", "thorough", "humanoid", "brain"])]
     pub joints: bool,
 
-    /// Print a brain's file that fits the creature, to be changed, and measure nothing: legs, gait, head, fur, a weak
-    /// point, and states with the clips that it has.
+    /// Print a brain's file that fits the creature, as a draft to edit, and measure nothing. It has legs, gait, head,
+    /// fur, a weak point, and states for the clips that the creature has.
     #[arg(long, conflicts_with_all = ["json", "clips", "poses", "thorough", "humanoid", "brain", "joints"])]
     pub propose_brain: bool,
 
-    /// With --propose-brain: how tall the creature shall be, metres.
+    /// With --propose-brain: height of the creature, metres.
     #[arg(
         long,
         value_name = "METRES",
@@ -71,7 +72,7 @@ pub struct InspectOptions {
     )]
     pub height: f64,
 
-    /// Print which joints make a human body, and measure nothing. Exits with 1 if there is none.
+    /// Print the joints that make a human body, and measure nothing. Exits with 1 if the file has no human body.
     #[arg(long, conflicts_with_all = ["json", "clips", "poses", "thorough"])]
     pub humanoid: bool,
 
@@ -79,15 +80,15 @@ pub struct InspectOptions {
     #[arg(long, value_name = "SVG", requires = "humanoid")]
     pub draw: Option<PathBuf>,
 
-    /// Seed for the places of the queries; the same number gives the same places.
+    /// Seed of the random places of the queries. Equal seeds give equal places.
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
 }
 
-/// Number of poses of a clip, if there are few clips.
+/// Number of poses of a clip with `--thorough`, and the largest number by default.
 const POSES: u32 = 30;
 
-/// About so many poses are measured by default.
+/// Number of poses of all clips together, by default. More clips than that have one pose each.
 const BUDGET: usize = 300;
 
 impl InspectOptions {
@@ -113,7 +114,7 @@ impl InspectOptions {
         }
     }
 
-    /// Number of poses of each of so many clips: at least 1.
+    /// Number of poses of each clip if there are `clips` clips: at least 1.
     pub(super) fn poses_of_each(&self, clips: usize) -> u32 {
         let within_budget = (BUDGET / clips.max(1)).clamp(1, POSES as usize) as u32;
         match self.poses {

@@ -1,4 +1,4 @@
-//! Proposes a brain's file for a creature, as text that people change.
+//! Proposes a brain's file for a creature, as text for its author to edit.
 
 use std::fmt;
 
@@ -8,7 +8,8 @@ use serde::de::{Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
 
 use super::{InspectError, InspectOptions};
 
-/// Columns of a line, if it can be broken.
+/// Largest width of a line, columns, except where a value cannot be broken. Wide lines keep a file within the 40 lines
+/// that `tests/commands.rs` allows.
 const WIDTH: usize = 175;
 
 /// The text of a brain's file that fits the creature.
@@ -33,19 +34,19 @@ pub(super) fn text(rig: Rig, options: &InspectOptions) -> Result<String, Inspect
     Ok(text)
 }
 
-/// What is between brackets, with its keys.
+/// The entries of a list or an object. A key includes its quotes and colon; it is empty in a list.
 type Entries<'a> = Vec<(String, &'a Tree)>;
 
-/// JSON whose keys keep their order.
+/// JSON that keeps the order of its keys.
 enum Tree {
-    /// A number, text or word, as JSON writes it.
+    /// A number, a string, a boolean or null, as JSON writes it.
     Leaf(String),
     List(Vec<Tree>),
     Object(Vec<(String, Tree)>),
 }
 
 impl Tree {
-    /// In one line.
+    /// The value as one line.
     fn line(&self) -> String {
         match self {
             Self::Leaf(text) => text.clone(),
@@ -62,8 +63,8 @@ impl Tree {
         }
     }
 
-    /// After `before` columns of its first line and with so many brackets to follow it, in lines that are broken where
-    /// they would be too long.
+    /// Appends the value to `text`, broken into lines where one line would exceed [`WIDTH`]. The value begins at column
+    /// `before`, and its last line leaves room for `after` more characters.
     fn write(&self, name: &str, indent: usize, before: usize, after: usize, text: &mut String) {
         let line = self.line();
         let (open, close, items) = match self.items() {
@@ -73,8 +74,9 @@ impl Tree {
                 return;
             }
         };
-        // Entries of an object begin on its own line, as one of a list does that stands alone; those of other lists, and of
-        // the file's main parts, have lines of their own, which short ones share. Each state has one.
+        // The entries of an object, or of a list with one item, begin on the line of the bracket. The entries of a
+        // longer list, of the whole file, of `body` and of `states` begin on a new line. Short entries share a line,
+        // except that each main part of the file and each state has its own.
         let hugs = !matches!(name, "" | "\"body\": " | "\"states\": ")
             && (open == '{' || items.len() == 1);
         let is_alone = matches!(name, "" | "\"states\": ");
@@ -104,7 +106,7 @@ impl Tree {
             }
             text.push_str(key);
             let start = text.len();
-            // What a list in the middle of a line holds is not the file itself.
+            // An empty name stands for the whole file, so an item of a list gets another name.
             let name = if key.is_empty() { "[" } else { key };
             value.write(name, inner, column + key_length, end, text);
             column = match text[start..].rfind('\n') {
@@ -125,7 +127,7 @@ impl Tree {
         text.push(close);
     }
 
-    /// The brackets around a list or an object that is not empty, and what is between them, with its keys.
+    /// The brackets and the entries of a list or an object; `None` for a leaf and for an empty one.
     fn items(&self) -> Option<(char, char, Entries<'_>)> {
         match self {
             Self::List(items) if !items.is_empty() => {

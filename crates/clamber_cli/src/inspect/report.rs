@@ -5,18 +5,18 @@ use clamber_gltf::Rig;
 use clamber_surface::mesh::{SurfaceKind, SurfaceTag};
 use serde::{Serialize, Serializer};
 
-/// A report on a creature's file: what the import found, and what was measured. Lengths are in the file's metres.
+/// A report on a creature's file: the results of its import, and the measurements. Lengths are in the file's metres.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Inspection {
     /// Vertices of the collider, after welding.
     pub vertices: usize,
-    /// Vertices merged into an equal one.
+    /// Vertices that were merged into an equal one.
     pub welded: usize,
-    /// Vertices at the position of another one that move differently: the skin can open there.
+    /// Vertices at the position of another vertex that move differently from it: the skin can open there.
     pub cracks: usize,
     /// Triangles of the collider.
     pub triangles: usize,
-    /// Triangles that were dropped: without area, or duplicates.
+    /// Triangles that were dropped as they have no area or are duplicates.
     pub dropped_triangles: usize,
     /// Joints of the skeleton.
     pub joints: usize,
@@ -37,22 +37,23 @@ pub struct Inspection {
     pub visual_meshes: usize,
     /// Vertices of all visual meshes.
     pub visual_vertices: usize,
-    /// What the import skipped or repaired.
+    /// The parts of the file that the import skipped or repaired.
     pub warnings: Vec<String>,
-    /// Number of poses in which the following was measured.
+    /// Number of poses in which the numbers below were measured.
     pub poses: usize,
-    /// Largest error of a skinned coordinate against f64, as a share of the stated bound.
+    /// Largest error of a skinned coordinate against skinning in f64, as a share of the stated bound.
     #[serde(serialize_with = "number")]
     pub skinning_error_share: f64,
-    /// Answers that were compared with brute force, half of them skinned lazily, half with everything skinned ahead.
+    /// Answers that were compared with brute force. Half of them were skinned lazily, half with all vertices skinned
+    /// ahead.
     pub answers: usize,
-    /// Hits and contacts in those that agree.
+    /// Hits and contacts in the answers that agree with brute force.
     pub hits: usize,
     /// Answers that differ from brute force in any bit.
     pub wrong_answers: usize,
-    /// The first of them: question, answer, and what brute force answers.
+    /// The first wrong answer: its question, the answer, and the answer of brute force.
     pub first_wrong_answer: Option<String>,
-    /// How often a skinned vertex was outside a bound that must hold it.
+    /// How often a skinned vertex was outside of a bounding sphere of its part.
     pub bound_violations: usize,
     /// Distances between the visual meshes and the collider; `None` without visual meshes.
     pub collision_to_visual: Option<Distances>,
@@ -96,7 +97,7 @@ pub struct Distances {
 }
 
 impl Inspection {
-    /// The report on an import, with nothing measured yet.
+    /// The report on an import, before any measurement.
     pub(super) fn of_import(rig: &Rig) -> Self {
         let build = &rig.report.build;
         let mut tags = BTreeMap::new();
@@ -142,13 +143,13 @@ impl Inspection {
         }
     }
 
-    /// The report as one JSON object. Errors and distances that are not finite are text: `inf`, `NaN`.
+    /// The report as one JSON object. Errors and distances that are not finite are written as text: `inf`, `NaN`.
     pub fn to_json(&self) -> String {
         serde_json::to_string_pretty(self).unwrap_or_else(|error| error.to_string())
     }
 
-    /// True if what the library promises for every creature held for this one: skinning error within its bound, no
-    /// wrong answer, and no bound violation.
+    /// True if the library's promises held for this creature: the skinning error is within its bound, no answer is
+    /// wrong, and no vertex is outside of a bound.
     pub fn holds(&self) -> bool {
         self.skinning_error_share <= 1.0 && self.wrong_answers == 0 && self.bound_violations == 0
     }
@@ -174,7 +175,7 @@ impl Rows {
 }
 
 impl Inspection {
-    /// What the import found, as rows of a table.
+    /// The results of the import, as rows of a table.
     pub fn import(&self) -> String {
         let mut rows = Rows::default();
         let mut row = |name: &str, value: String| rows.push(name, value);
@@ -223,7 +224,7 @@ impl Inspection {
         rows.0
     }
 
-    /// What was measured, as rows of a table.
+    /// The measurements, as rows of a table.
     pub fn measured(&self) -> String {
         let mut rows = Rows::default();
         let mut row = |name: &str, value: String| rows.push(name, value);
@@ -270,7 +271,7 @@ impl fmt::Display for Inspection {
     }
 }
 
-/// Serialises a finite number as a number, any other as text (`inf`, `NaN`), where JSON would have `null`.
+/// Serialises a finite number as a number and any other as text (`inf`, `NaN`), where JSON would have `null`.
 fn number<S: Serializer>(number: &f64, serializer: S) -> Result<S::Ok, S::Error> {
     if number.is_finite() {
         serializer.serialize_f64(*number)
@@ -279,7 +280,7 @@ fn number<S: Serializer>(number: &f64, serializer: S) -> Result<S::Ok, S::Error>
     }
 }
 
-/// Joins items by commas, in lines that fit beside the rows' names; `none` without items.
+/// Joins items with commas, in lines that fit beside the rows' names. Returns `none` if there are no items.
 fn list(items: impl Iterator<Item = String>) -> String {
     let mut text = String::new();
     let mut column = 0;
@@ -305,5 +306,5 @@ fn list(items: impl Iterator<Item = String>) -> String {
 /// Number of characters that fit beside the rows' names.
 const WIDTH: usize = 70;
 
-/// A line break, indented to the first item.
+/// A line break with an indent to the column of the first item: 2 spaces and the 24 columns of `Rows::push`.
 const BREAK: &str = "\n                          ";

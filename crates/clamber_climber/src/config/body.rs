@@ -19,24 +19,26 @@ pub struct BodyConfig {
     /// always a ball.
     pub height: f64,
     /// Thickness of the body's outer layer, which may overlap obstacles, metres, from a thousandth to half of the
-    /// radius. Default 0.01. The core inside it enters nothing, unless the climber is crushed or the solver's rounds do
-    /// not suffice ([`StepReport::is_clear`](crate::StepReport::is_clear)). A wider margin forgives rougher deformation
-    /// and shows more overlap.
+    /// radius. Default 0.01. The core inside this layer does not enter obstacles, unless the climber is crushed or the
+    /// solver's rounds do not suffice ([`StepReport::is_clear`](crate::StepReport::is_clear)). A wider margin forgives
+    /// rougher deformation and shows more overlap.
     pub margin: f64,
-    /// Mass, kilograms, positive. Default 80. Obstacles that can be pushed feel it ([`Push`](crate::Push)).
+    /// Mass, kilograms, positive. Default 80. It determines the impulses on obstacles that can be pushed
+    /// ([`Push`](crate::Push)).
     pub mass: f64,
-    /// Largest force with which it pushes obstacles that it runs into, newtons, not negative. Default 600. Neither its
-    /// weight nor the impulse of an airborne climber is limited by it.
+    /// Largest force with which the climber pushes obstacles that it runs into, newtons, not negative. Default 600. It
+    /// limits neither the climber's weight nor the impulse of an airborne climber.
     pub push_force: f64,
-    /// What happens when it walks into another climber ([`ClimberObstacle`](crate::ClimberObstacle)). Default
-    /// [`Others::Block`].
+    /// Whether the climber blocks, pushes or passes another climber ([`ClimberObstacle`](crate::ClimberObstacle)) that
+    /// it walks into. Default [`Others::Block`].
     pub others: Others,
 }
 
-/// Share by which a margin may be out of its range: rounding, when radius and margin are scaled.
+/// Relative tolerance on the range of the margin: rounding, when radius and margin are scaled.
 const ROUNDING: f64 = 1e-12;
 
 impl BodyConfig {
+    /// Defaults of the fields: a person's ball.
     pub(super) const BALL: Self = Self {
         radius: 0.4,
         height: 0.0,
@@ -60,9 +62,9 @@ impl BodyConfig {
     pub(super) fn validate(&self) -> Result<(), ClimberError> {
         check::positive("body.radius", self.radius)?;
         check::not_negative("body.height", self.height)?;
-        // A thinner layer is less than the rounding by which ground is found.
+        // A thinner margin would be less than the rounding error with which ground is found.
         let range = "from a thousandth to half of the radius";
-        // Both ends stay in the range at every size, whatever the rounding.
+        // With the tolerance, both ends stay in the range at every size.
         let (least, most) = (1e-3 * (1.0 - ROUNDING), 0.5 * (1.0 + ROUNDING));
         let holds = (self.radius * least..=self.radius * most).contains(&self.margin);
         check::check("body.margin", range, self.margin, holds)?;

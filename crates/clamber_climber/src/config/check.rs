@@ -28,7 +28,7 @@ pub(super) fn not_negative(name: &'static str, x: f64) -> Result<(), ClimberErro
     )
 }
 
-/// A limit may be infinite: it is never reached then.
+/// A limit may be infinite; it is then never reached.
 pub(super) fn limit(name: &'static str, x: f64) -> Result<(), ClimberError> {
     check(name, "not negative", x, x >= 0.0)
 }

@@ -8,17 +8,17 @@ use crate::ClimberError;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
 pub struct GripConfig {
-    /// How far from its ball it can grip, metres, not negative. Default 0.35, an arm. Raise it to grab more easily in
-    /// flight. At 0 it grips nothing.
+    /// Distance from the body's ball up to which the climber can grip, metres, not negative. Default 0.35, an arm.
+    /// Raise it to grab more easily in flight. At 0 the climber grips nothing.
     pub reach: f64,
     /// Climbing speed under full input, relative to the hold, metres a second, not negative. Default 1.5.
     pub climb_speed: f64,
-    /// Steepest surface that it climbs on, radians from level ground: a vertical wall is 90 degrees, a ceiling 180.
-    /// From a steeper one it only hangs. Not negative. Default 180 degrees: it climbs along ceilings. At 120 degrees it
-    /// hangs from walls that lean over by more than 30.
+    /// Steepest surface that the climber climbs on, radians from level ground: a vertical wall is 90 degrees, a
+    /// ceiling 180. From a steeper surface the climber only hangs. Not negative. Default 180 degrees: it climbs along
+    /// ceilings. At 120 degrees it hangs from walls that lean over by more than 30.
     pub max_overhang: f64,
-    /// Shake above which it only hangs, metres a second squared, not negative, may be infinite. Default 15. It climbs
-    /// again once the shake has stayed below seven tenths of this for `calm_time`.
+    /// Shake above which the climber only hangs, metres a second squared, not negative, may be infinite. Default 15.
+    /// The climber climbs again once the shake has stayed below seven tenths of this for `calm_time`.
     pub hang_acceleration: f64,
     /// How long a hold has to stay calm before a climber that hangs from it pulls itself in to climb, seconds, not
     /// negative. Default 0.4. The time starts anew whenever the hold is not calm. A hold is calm if its shake is at
@@ -27,13 +27,15 @@ pub struct GripConfig {
     /// Speed at which a jump leaves a hold or a ledge, away from it and upwards, metres a second, not negative. Default
     /// 4. A faster blow takes the climber off its hold.
     pub jump_speed: f64,
-    /// Fastest that hands catch a hold in flight, metres a second relative to the hold, not negative, may be infinite.
-    /// Default 15, a fall of 11 m. Beyond it they slip ([`ClimberEvent::HandsSlipped`](crate::ClimberEvent)). A slower
-    /// catch costs [`StaminaConfig::catch_cost`](crate::StaminaConfig::catch_cost).
+    /// Largest speed relative to a hold at which hands catch it in flight, metres a second, not negative, may be
+    /// infinite. Default 15, a fall of 11 m. At a higher speed, the hands slip
+    /// ([`ClimberEvent::HandsSlipped`](crate::ClimberEvent)). A slower catch costs
+    /// [`StaminaConfig::catch_cost`](crate::StaminaConfig::catch_cost).
     pub catch_speed: f64,
 }
 
 impl GripConfig {
+    /// Defaults of the fields: a person's arms.
     pub(super) const DEFAULT: Self = Self {
         reach: 0.35,
         climb_speed: 1.5,

@@ -14,45 +14,46 @@ pub struct GroundConfig {
     pub walk_speed: f64,
     /// Upward speed that a jump adds, metres a second, not negative. Default 5, which jumps 1.3 m high.
     pub jump_speed: f64,
-    /// How far below its feet a walking climber looks for ground to stay on, metres, not negative. Default 0.2. It has
-    /// to cover a step down, and how far a slope falls away in a tick. Raise it for coarse ground, lower it to fly off
-    /// edges sooner.
+    /// Distance below its feet in which a walking climber looks for ground to stay on, metres, not negative. Default
+    /// 0.2. It has to cover a step down, and the distance by which a slope falls away in a tick. Raise it for coarse
+    /// ground, lower it to fly off edges sooner.
     pub snap_distance: f64,
     /// Highest step that walking climbs, metres, not negative. Default 0.3.
     pub step_height: f64,
-    /// How long after the ground has ended a jump still works, seconds, not negative. Default 0.1.
+    /// Time after the ground has ended in which a jump still works, seconds, not negative. Default 0.1.
     pub coyote_time: f64,
-    /// How long a jump that came too early is remembered, seconds, not negative. Default 0.15.
+    /// Time for which a jump that came too early is remembered, seconds, not negative. Default 0.15.
     pub jump_buffer: f64,
     /// Acceleration along the ground towards the velocity that the input asks for, metres a second squared, not
     /// negative. Default 1,000: practically at once. Lower values feel like ice, or heavy. Speed above `walk_speed` is
     /// braked by `friction` instead.
     pub acceleration: f64,
-    /// Deceleration along the ground while the climber is faster than `walk_speed`, as after a fast landing, or slides
-    /// from a blow, metres a second squared, not negative. Default 15.
+    /// Deceleration along the ground, metres a second squared, not negative. Default 15. It applies while the climber
+    /// is faster than `walk_speed`, for example after a fast landing, or slides from a blow.
     pub friction: f64,
     /// Acceleration by input in the air, metres a second squared, not negative. Default 0: no steering. Platformers
     /// have about 10.
     pub air_acceleration: f64,
-    /// Fastest fall relative to the air, along gravity, metres a second, positive, may be infinite. Default 60, that of
-    /// a person. A body that is thrown down faster is slowed by as much as gravity would speed it up.
+    /// Largest speed of a fall relative to the air, along gravity, metres a second, positive, may be infinite. Default
+    /// 60, the terminal speed of a person. A body that is thrown down faster is slowed by as much as gravity would
+    /// speed it up.
     pub terminal_speed: f64,
     /// Coefficient of friction on slopes that are too steep to stand on, not negative. Default 0. However large it is,
-    /// a body slides on, down slopes that it cannot stand on.
+    /// a body keeps sliding down slopes that it cannot stand on.
     pub slide_friction: f64,
     /// Factor on gravity while a jump still rises and [`jump_held`](crate::ClimberInput::jump_held) is false, at least
     /// 1 and finite. Default 1: every jump is equally high. At 3 a tap jumps a third as high.
     pub jump_release_gravity: f64,
-    /// Threshold at which the ground throws the climber off: by how much its acceleration away from the feet exceeds
-    /// gravity, metres a second squared, not negative. Default 20: under a gravity of 9.81, level ground has to
-    /// accelerate downwards at more than 29.81. Both are taken along the ground's normal, and the ground's acceleration
-    /// is low-pass filtered ([`ClimberState::shake`](crate::ClimberState::shake)). Lower values throw sooner; at
-    /// infinity, feet stick to any ground.
+    /// Threshold at which the ground throws the climber off: the amount by which the ground's acceleration away from
+    /// the feet exceeds gravity, metres a second squared, not negative. Default 20: under a gravity of 9.81, level
+    /// ground has to accelerate downwards at more than 29.81. Both accelerations are taken along the ground's normal,
+    /// and the ground's acceleration is low-pass filtered ([`ClimberState::shake`](crate::ClimberState::shake)). Lower
+    /// values throw sooner; at infinity, feet stick to any ground.
     pub throw_acceleration: f64,
 }
 
-/// A standing climber stays on slopes up to this many radians steeper than those on which it lands: 2 degrees, more
-/// than the wobble of a breathing animal, so that the mode does not flicker.
+/// Angle by which the slope under a standing climber may be steeper than the slopes on which it lands, radians: 2
+/// degrees. It is more than the wobble of a breathing animal, so that the mode does not flicker.
 const SLOPE_HYSTERESIS: f64 = 0.035;
 
 impl GroundConfig {
@@ -61,6 +62,7 @@ impl GroundConfig {
         self.max_slope + SLOPE_HYSTERESIS
     }
 
+    /// Defaults of the fields: a person's.
     pub(super) const DEFAULT: Self = Self {
         max_slope: 50.0 * DEGREE,
         walk_speed: 3.0,
@@ -98,7 +100,7 @@ impl GroundConfig {
     }
 
     pub(super) fn validate(&self) -> Result<(), ClimberError> {
-        // The normals of level skin are rounded.
+        // At least one degree, since the normals of level skin are rounded.
         let range = "in radians, from 0.0175 (one degree) to below 1.5708 (a right angle)";
         let right_angle = core::f64::consts::FRAC_PI_2;
         let holds = (DEGREE..right_angle).contains(&self.max_slope);

@@ -19,6 +19,7 @@ pub struct HangConfig {
 }
 
 impl HangConfig {
+    /// Defaults of the fields: a person's.
     pub(super) const DEFAULT: Self = Self {
         arm_length: 0.9,
         leg_length: 0.6,

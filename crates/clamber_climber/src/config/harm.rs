@@ -10,22 +10,23 @@ pub struct TumbleConfig {
     /// Shake above which a standing climber is knocked down, metres a second squared, not negative. Default 30.
     /// Infinite: never.
     pub knock_acceleration: f64,
-    /// Speed of a blow above which it knocks the climber down, or off a hold, metres a second, not negative, may be
-    /// infinite. Default 3.
+    /// Speed above which a blow knocks the climber down, or off a hold, metres a second, not negative, may be infinite.
+    /// Default 3.
     pub knock_speed: f64,
     /// Speed of a landing, towards the ground or along it, above which the climber tumbles, metres a second, not
     /// negative, may be infinite. Default 11, a fall of six metres.
     pub landing_speed: f64,
     /// Coefficient of friction of a tumbling climber, not negative. Default 0.6.
     pub friction: f64,
-    /// Coefficient of restitution: share of the impact speed that it bounces back with, 0 to 1. Default 0.2.
+    /// Coefficient of restitution: share of the impact speed at which the climber bounces back, 0 to 1. Default 0.2.
     pub restitution: f64,
-    /// How long it has to lie still on ground that can be stood on before it gets up, seconds, not negative. Default
-    /// 0.5.
+    /// Time for which the climber has to lie still on ground that can be stood on before it gets up, seconds, not
+    /// negative. Default 0.5.
     pub recover_time: f64,
 }
 
 impl TumbleConfig {
+    /// Defaults of the fields: a person's.
     pub(super) const DEFAULT: Self = Self {
         knock_acceleration: 30.0,
         knock_speed: 3.0,
@@ -58,13 +59,13 @@ impl TumbleConfig {
 
 /// Damage from falls and blows.
 ///
-/// Hit points are 1 for an unhurt climber. Nothing happens by itself at 0: death is up to the game.
+/// Hit points are 1 for an unhurt climber. A climber at 0 goes on as before: death is up to the game.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
 pub struct HealthConfig {
-    /// Fastest landing that does no damage, metres a second towards the ground, not negative, may be infinite. Default
-    /// 10, a fall of five metres.
+    /// Largest speed of a landing that does no damage, metres a second towards the ground, not negative, may be
+    /// infinite. Default 10, a fall of five metres.
     pub safe_speed: f64,
     /// Hit points that a landing costs for each metre a second by which it is faster than `safe_speed`, not negative.
     /// Default 0.05: a landing at 12 m/s takes an unhurt climber from 1 to 0.9. A blow costs its own
@@ -73,6 +74,7 @@ pub struct HealthConfig {
 }
 
 impl HealthConfig {
+    /// Defaults of the fields: a person's.
     pub(super) const DEFAULT: Self = Self {
         safe_speed: 10.0,
         fall_damage: 0.05,

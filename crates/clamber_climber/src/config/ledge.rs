@@ -15,19 +15,20 @@ pub struct LedgeConfig {
     /// Greatest distance of the wall in front from the ball, and width of a gap in a ledge that hands reach across,
     /// metres, not negative. Default 0.35.
     pub reach: f64,
-    /// How far the centre of the body's ball, the climber's position, is below the ledge from which it hangs, metres,
+    /// Distance of the climber's position, the centre of the body's ball, below the ledge from which it hangs, metres,
     /// not negative. Default 0.6.
     pub drop: f64,
-    /// Speed along a ledge, metres a second, not negative. Default 1. At 0 it does not go along ledges.
+    /// Speed along a ledge, metres a second, not negative. Default 1. At 0 the climber does not move along ledges.
     pub shimmy_speed: f64,
     /// Duration of a pull-up, seconds, positive. Default 0.6.
     pub pull_up_time: f64,
-    /// Fastest that hands catch a ledge in flight, metres a second relative to the ledge, not negative, may be
+    /// Largest speed relative to a ledge at which hands catch it in flight, metres a second, not negative, may be
     /// infinite. Default 15. See [`GripConfig::catch_speed`](crate::GripConfig::catch_speed).
     pub catch_speed: f64,
 }
 
 impl LedgeConfig {
+    /// Defaults of the fields: a person's.
     pub(super) const DEFAULT: Self = Self {
         reach_up: 0.9,
         reach: 0.35,

@@ -87,8 +87,8 @@ impl ClimberConfig {
         }
     }
 
-    /// The same character `size` times as large, under the same gravity: a mouse, an imp, an ogre. It moves alike, in
-    /// √`size` times the time (Froude's law).
+    /// The same character `size` times as large, under the same gravity: a mouse, an imp, an ogre. Its movements look
+    /// alike, but take √`size` times as long (Froude's law).
     ///
     /// | numbers | factor |
     /// |---|---|
@@ -97,12 +97,12 @@ impl ClimberConfig {
     /// | rates per second (also those of stamina and damping), costs and damage for each m/s | 1 / √`size` |
     /// | gravity, other accelerations, mass, force, angles, coefficients, shares, costs of one effort | 1 |
     ///
-    /// Mass and force are left to you: a body of the same density has `size`³ times both. What is no number of the
-    /// configuration does not change with the size: for 0.3 s a climber that let go grips nothing, and arms draw it
-    /// into place below a ledge at 7.5 radii a second.
+    /// Mass and force are left to you: a body of the same density has `size`³ times both. Constants that are not part
+    /// of the configuration do not change with the size: a climber that let go grips nothing for 0.3 s, and arms draw
+    /// it into place below a ledge at 7.5 radii a second.
     ///
-    /// `size` is positive and finite. `scaled` itself refuses nothing: of any other size it makes a configuration that
-    /// [`Climber::new`](crate::Climber::new), [`set_config`](crate::Climber::set_config) and
+    /// `size` must be positive and finite. `scaled` does not check it: for any other size, it returns a configuration
+    /// that [`Climber::new`](crate::Climber::new), [`set_config`](crate::Climber::set_config) and
     /// [`try_resize`](crate::Climber::try_resize) refuse. Their
     /// [`ClimberError::OutOfRange`](crate::ClimberError::OutOfRange) names `shake_time`, which they check first.
     ///

@@ -1,5 +1,5 @@
-/// Factors from one size to another under the same gravity. Accelerations stay, so times and speeds both grow with the
-/// square root of lengths (Froude's law).
+/// Factors from one size to another under the same gravity. Accelerations stay the same, so times and speeds both grow
+/// with the square root of lengths (Froude's law).
 ///
 /// Each part of a configuration names every field where it is scaled, so that a new field cannot be forgotten.
 #[derive(Clone, Copy)]

@@ -2,7 +2,7 @@ use super::check;
 use super::scale::Scale;
 use crate::ClimberError;
 
-/// How much stamina holding on costs. Stamina is 1 for a rested climber; at 0 its grip opens.
+/// Costs of holding on, in stamina. Stamina is 1 for a rested climber; at 0 its grip opens.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
@@ -10,7 +10,8 @@ pub struct StaminaConfig {
     /// Stamina spent per second of holding on, not negative. Default 1/40: forty seconds on a creature that keeps
     /// still.
     pub hold_drain: f64,
-    /// Shake up to which holding on costs no more, metres a second squared, not negative. Default 4, a walk.
+    /// Shake up to which holding on costs no extra stamina, metres a second squared, not negative. Default 4, the shake
+    /// of a walk.
     pub shake_threshold: f64,
     /// Stamina spent per second and per m/s² of shake above the threshold, not negative. Default 1/60: a shake of 10
     /// m/s² above the threshold uses up a rested climber's stamina in six seconds, not counting `hold_drain`.
@@ -22,13 +23,14 @@ pub struct StaminaConfig {
     /// as much. A climber with less stamina does not jump.
     pub jump_cost: f64,
     /// Stamina spent by catching a hold or a ledge in flight, for each metre a second by which the speed relative to it
-    /// exceeds that of a walk, not negative. Default 1/400. A climber whose stamina does not suffice slips.
+    /// exceeds the walking speed, not negative. Default 1/400. A climber whose stamina does not suffice slips.
     pub catch_cost: f64,
     /// Stamina spent by a pull-up over a ledge, 0 to 1. Default 0.01.
     pub mantle_cost: f64,
 }
 
 impl StaminaConfig {
+    /// Defaults of the fields: a person's.
     pub(super) const DEFAULT: Self = Self {
         hold_drain: 1.0 / 40.0,
         shake_threshold: 4.0,

@@ -3,6 +3,7 @@ use clamber_world::ObstacleId;
 use super::*;
 use crate::{ClimberConfig, ClimberInput, ClimberMode, ClimberState};
 
+/// Length of a tick, seconds.
 const DT: f64 = 1.0 / 60.0;
 
 fn capsule(rng: &mut fastrand::Rng) -> WorldCapsule {
@@ -177,7 +178,7 @@ fn invalid_queries_find_nothing() {
     for bad in [f64::NAN, -1.0, f64::NEG_INFINITY] {
         let ray = body.cast_ray(DVec3::X * 2.0, -DVec3::X, bad);
         assert_eq!((bad.to_bits(), ray), (bad.to_bits(), None));
-        // Behind the ray's origin, where a negative length would lead.
+        // Looks behind the ray's origin, where a negative length would lead.
         assert_eq!(body.cast_ray(DVec3::X * 2.0, DVec3::X, bad), None);
         assert_eq!(body.closest_point(DVec3::ZERO, bad), None);
         let ball = WorldCapsule::ball(DVec3::ZERO, bad);
@@ -224,7 +225,7 @@ fn grazing_contacts_are_never_reported_late() {
         radius: 0.4,
     };
     let body = solid(now, DVec3::ZERO);
-    // Past a round end, with ever smaller depth.
+    // The ball passes a round end, with ever smaller depth.
     for exponent in 0..40 {
         let deep = libm::exp2(-f64::from(exponent)) * 0.1;
         let ball = WorldCapsule::ball(DVec3::new(-30.0, 1.0 + 0.8 - deep, 0.0), 0.4);

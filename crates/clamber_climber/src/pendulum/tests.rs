@@ -2,7 +2,10 @@ use super::*;
 use core::f64::consts::{PI, TAU};
 use fastrand::Rng;
 
+/// Gravity, metres a second squared.
 const G: f64 = 9.81;
+
+/// Length of the arm, metres.
 const LENGTH: f64 = 1.5;
 
 fn tick(hz: f64) -> PendulumTick {

@@ -1,11 +1,11 @@
 use super::*;
 use core::f64::consts::TAU;
 
-/// Seconds.
+/// Time constant of the filter, seconds.
 const TIME_CONSTANT: f64 = 0.1;
 
-/// Seconds until the integral of the excess above the threshold reaches the budget, and the largest
-/// filtered acceleration until then.
+/// Time until the integral of the excess above the threshold reaches the budget, seconds, and the largest filtered
+/// acceleration until then.
 fn held(velocity: impl Fn(f64) -> DVec3, threshold: f64, budget: f64, hz: f64) -> (f64, f64) {
     let (mut shake, mut spent, mut peak) = (Shake::default(), 0.0, 0.0_f64);
     for tick in 0..(60.0 * hz) as usize {

@@ -22,35 +22,35 @@ use crate::{ClimberConfig, ClimberError};
 pub struct ClimberState {
     /// Centre of its ball, in world space, metres. For a capsule, centre of the lower ball.
     pub position: DVec3,
-    /// Velocity after the last tick, in world space, metres a second. Corrections of position, such as steps up, are
-    /// not part of it, and neither is how other climbers push it aside: `own_way` over the tick's length includes both.
+    /// Velocity after the last tick, in world space, metres a second. It excludes corrections of position, such as
+    /// steps up, and displacements by other climbers: `own_way` over the tick's length includes both.
     pub velocity: DVec3,
-    /// Velocity of its support, in world space, metres a second; in the air, that of what it touched last. A climber
-    /// that has touched nothing for a second takes on the velocity of the air
-    /// ([`StepRules::air_velocity`](crate::StepRules::air_velocity)) within the next. The climber's own motion is
-    /// measured against it, so that a fall or a late jump is the same in every frame that moves steadily.
+    /// Velocity of the climber's support, in world space, metres a second; in the air, velocity of the last obstacle
+    /// that it touched. A climber that has touched nothing for a second takes on the velocity of the air
+    /// ([`StepRules::air_velocity`](crate::StepRules::air_velocity)) within the next second. The climber's own motion
+    /// is measured against this velocity, so that a fall or a late jump is the same in every frame that moves steadily.
     pub base_velocity: DVec3,
-    /// Displacement of the last tick beyond that of its support, or beyond its velocity in the air, in world space,
-    /// metres. As an obstacle to others it makes this way one tick later.
+    /// Displacement in the last tick beyond the support's, or beyond the climber's velocity in the air, in world space,
+    /// metres. As an obstacle to others, the climber makes this displacement one tick later.
     pub own_way: DVec3,
-    /// Direction that it faces: a unit vector perpendicular to up, in world space.
+    /// Direction that the climber faces: a unit vector perpendicular to up, in world space.
     pub heading: DVec3,
     /// The current mode.
     pub mode: ClimberMode,
-    /// The ground underfoot, the hold that it grips, or the ledge that it hangs from. `None` in the air, while sliding
-    /// or tumbling, and optional in a custom mode.
+    /// The ground underfoot, the hold that the climber grips, or the ledge that it hangs from. `None` in the air, while
+    /// sliding or tumbling, and optional in a custom mode.
     pub support: Option<Support>,
-    /// Velocity of its support over the last tick, in world space, metres a second. `None` without a support, and after
-    /// it was placed elsewhere or pushed by the climber's landing.
+    /// Velocity of the support over the last tick, in world space, metres a second. `None` without a support, and after
+    /// the support was placed elsewhere or pushed by the climber's landing.
     pub support_velocity: Option<DVec3>,
-    /// Share of its weight that it put on its support in the last tick: 1 while that is at rest, 0 while both fall
-    /// freely. 0 without a support that can be pushed. Not negative.
+    /// Share of the climber's weight that its support got in the last tick: 1 while the support is at rest, 0 while
+    /// both fall freely. 0 without a support that can be pushed. Not negative.
     pub load: f64,
-    /// Shake: the acceleration of its support, low-pass filtered over
+    /// Shake: the acceleration of the support, low-pass filtered over
     /// [`ClimberConfig::shake_time`](crate::ClimberConfig::shake_time), in world space, metres a second squared. Decays
-    /// while it has no support.
+    /// while the climber has no support.
     pub shake: DVec3,
-    /// Strength left for holding on, 0 (its grip opens) to 1 (rested).
+    /// Strength left for holding on, 0 (the grip opens) to 1 (rested).
     pub stamina: f64,
     /// Hit points left, 0 to 1 (unhurt).
     pub hit_points: f64,
@@ -60,15 +60,15 @@ pub struct ClimberState {
     /// Time left in which a jump that came early is remembered, seconds
     /// ([`GroundConfig::jump_buffer`](crate::GroundConfig::jump_buffer)).
     pub jump_buffer: f64,
-    /// Time left in which it grips nothing after it let go, seconds.
+    /// Time left in which the climber grips nothing after it let go, seconds.
     pub open_handed: f64,
-    /// How long it has touched nothing, seconds, counted up to 2. 0 while it has a support.
+    /// Time since the climber last touched an obstacle, seconds, counted up to 2. 0 while it has a support.
     pub untouched: f64,
-    /// True if its body is the ball alone although [`BodyConfig::height`](crate::BodyConfig::height) is not 0: it was
-    /// asked to crouch ([`ClimberInput::crouch`](crate::ClimberInput::crouch)), holds on, was crushed, or has no room
-    /// to stand up.
+    /// True if the body is the ball alone although [`BodyConfig::height`](crate::BodyConfig::height) is not 0: the
+    /// climber was asked to crouch ([`ClimberInput::crouch`](crate::ClimberInput::crouch)), holds on, was crushed, or
+    /// has no room to stand up.
     pub crouched: bool,
-    /// True if obstacles left it too little room in the last tick.
+    /// True if obstacles left the body too little room in the last tick.
     pub crushed: bool,
     /// Memory of [`ClimberMode::Standing`].
     pub standing: StandingMemory,
@@ -86,13 +86,13 @@ pub struct ClimberState {
     pub memory: [f64; MEMORY],
 }
 
-/// How many numbers a game's custom modes can remember, together.
+/// Number of values that a game's custom modes can remember, together.
 pub const MEMORY: usize = 8;
 
-/// How much the length of the heading may differ from 1, so that a state can be saved with rounded decimals.
+/// Largest difference of the heading's length from 1, so that a state can be saved with rounded decimals.
 const UNIT: f64 = 1e-6;
 
-/// Names of the state's numbers.
+/// Names of the state's numbers, in the order of [`ClimberState::numbers`].
 const NAMES: [&str; 13] = [
     "stamina",
     "hit_points",
@@ -171,13 +171,14 @@ impl ClimberState {
         Ok(())
     }
 
-    /// Its acceleration by gravity while nothing holds it up, metres a second squared.
+    /// The climber's acceleration by gravity, metres a second squared; zero while it has a support or is in a custom
+    /// mode.
     pub(crate) fn fall(&self, config: &ClimberConfig) -> DVec3 {
         let falls = self.support.is_none() && !self.mode.is_custom();
         if falls { config.gravity } else { DVec3::ZERO }
     }
 
-    /// Its displacement over the next tick if nothing carries it and it meets nothing.
+    /// The climber's displacement over the next tick if no support carries it and it meets no obstacle.
     pub(crate) fn own_displacement(&self, config: &ClimberConfig, dt: f64) -> DVec3 {
         (self.velocity + self.fall(config) * (0.5 * dt)) * dt
     }

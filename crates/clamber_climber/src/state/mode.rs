@@ -1,4 +1,4 @@
-/// What a climber is doing: one of seven modes of this crate, or a custom mode of the game.
+/// The activity of a climber: one of seven modes of this crate, or a custom mode of the game.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
@@ -7,7 +7,7 @@ pub enum ClimberMode {
     Standing,
     /// Slides down ground that is too steep to stand on.
     Sliding,
-    /// Grips a point of an obstacle, its hold, crouched on it, and can climb along the surface.
+    /// Grips a point of an obstacle, its hold, and can climb along the surface. The body is crouched.
     Holding,
     /// Hangs by its hands from a grip that shakes or leans over too far to climb on, or swings after a blow. It can
     /// only hold on or let go.
@@ -16,7 +16,7 @@ pub enum ClimberMode {
     LedgeHanging,
     /// In the air, falling or jumping.
     Falling,
-    /// Knocked over: falls, bounces, slides or lies, whatever the input. It gets up by itself after
+    /// Knocked over: falls, bounces, slides or lies, and ignores input. It gets up by itself after
     /// [`TumbleConfig::recover_time`](crate::TumbleConfig::recover_time) at rest on ground.
     Tumbling,
     /// A mode of the game's own, with the id of its [`CustomMode`](crate::CustomMode).
@@ -25,7 +25,7 @@ pub enum ClimberMode {
 
 use ClimberMode::{Custom, Falling, Hanging, Holding, LedgeHanging, Sliding, Standing, Tumbling};
 
-/// Every change between the modes of this crate: from, to, and why.
+/// Every change between the modes of this crate: from, to, and the reason.
 ///
 /// Several changes may happen in one tick: a climber that lets go on a slope stands, then slips. Custom modes may begin
 /// in any mode and end in any mode.

@@ -1,35 +1,35 @@
 //! The frame of a body in the air: the velocity against which its own motion is measured.
 //!
-//! It is the velocity of what the body touched last. A body that has touched nothing for a while takes on the velocity
-//! of the air, so that a lift or a train that it left long ago no longer says what "up" or "still" means to it.
+//! The frame has the velocity of the last obstacle that the body touched. A body that has touched nothing for a while
+//! takes on the velocity of the air: a lift or a train that it left long ago is no longer its frame.
 
 use glam::DVec3;
 
 use super::Tick;
 
-/// How long a body that touches nothing keeps the frame of what it touched last, seconds.
+/// Time for which a body that touches nothing keeps the frame of the last obstacle that it touched, seconds.
 const KEPT: f64 = 1.0;
 
-/// How long the frame then takes to become that of the air, seconds.
+/// Time in which the frame then changes to the velocity of the air, seconds.
 const FADES: f64 = 1.0;
 
 impl Tick<'_> {
-    /// True for a body that nothing carries.
+    /// True for a body that no support carries.
     pub(super) fn is_free(&self) -> bool {
         self.carried.is_none()
     }
 
-    /// Velocity of what the last movement touched; `None` if it touched nothing.
+    /// Velocity of the obstacles that the last movement touched; `None` if it touched none.
     ///
-    /// Among things that move apart, the nearest to the frame so far of all velocities between two of theirs. So a body
-    /// between a piston and a wall stays in the frame of the room, and one between two closing walls in the frame in
-    /// which they close. (The mean was tried, and presses bodies through walls. So does the one that moves most alike,
-    /// in closing wedges.)
+    /// If the obstacles move apart, every velocity between two of theirs is a candidate, and the candidate nearest to
+    /// the frame so far is taken. So a body between a piston and a wall stays in the frame of the room, and a body
+    /// between two closing walls stays in the frame in which they close. (The mean was tried, and presses bodies
+    /// through walls. So does the velocity of the obstacle that moves most like the frame, in closing wedges.)
     pub(super) fn touched_velocity(&self) -> Option<DVec3> {
         let frame = self.state.base_velocity;
         let touched = self.mover.touched();
         let velocity = |index: usize| self.mover.velocity_of(&touched[index]);
-        // Others in the air are no frame, and those on the ground have it from there.
+        // Other characters do not count: in the air they are no frame, and on the ground they have the ground's.
         let counts = |index: &usize| !self.mover.is_character(&touched[*index]);
         let nearest = (0..touched.len()).filter(counts).flat_map(|a| {
             let from = velocity(a);
@@ -60,14 +60,14 @@ impl Tick<'_> {
         if passed >= left {
             self.state.base_velocity = air;
         } else if passed > 0.0 {
-            // A straight line in time, whatever the length of the ticks.
+            // Linear in time, for ticks of any length.
             let frame = self.state.base_velocity;
             self.state.base_velocity = frame + (air - frame) * (passed / left);
         }
     }
 }
 
-/// The point between `a` and `b` that is nearest to another one.
+/// The point between `a` and `b` that is nearest to `to`.
 pub(super) fn nearest_between(a: DVec3, b: DVec3, to: DVec3) -> DVec3 {
     let way = b - a;
     let length_sq = way.length_squared();

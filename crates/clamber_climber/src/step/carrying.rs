@@ -20,7 +20,8 @@ pub(super) struct Carried {
     /// Velocity of the support over the previous tick; `None` if that is not known, or the support was placed
     /// elsewhere.
     pub(super) velocity_before: Option<DVec3>,
-    /// The climber's position a tick ago. If the support was placed elsewhere, where the climber would have been there.
+    /// The climber's position a tick ago. If the support was placed elsewhere, the corresponding position at the new
+    /// place.
     pub(super) start: DVec3,
     /// The position to which its support has carried it.
     pub(super) position: DVec3,
@@ -39,7 +40,8 @@ impl Carried {
 }
 
 impl Tick<'_> {
-    /// Follows the support to its current position, and measures its shake. A support that is gone is lost.
+    /// Follows the support to its current position, and measures its shake. If the support is gone, the climber loses
+    /// it.
     pub(super) fn be_carried(&mut self) {
         let Some(mut support) = self.state.support else {
             return;
@@ -48,7 +50,7 @@ impl Tick<'_> {
         let dt = self.dt();
         let attachment = &mut support.attachment;
         let obstacle = self.mover.obstacle(attachment.obstacle);
-        // Nobody is carried by whom it carries.
+        // A climber is not carried by another one that it carries.
         let obstacle = obstacle.filter(|obstacle| !self.judge.carries(*obstacle));
         let followed = obstacle.and_then(|obstacle| attachment.follow(obstacle, dt, slack));
         let followed = followed.filter(|followed| followed.motion.is_finite());
@@ -88,20 +90,21 @@ impl Tick<'_> {
         });
     }
 
-    /// Its position before its own movement in this tick.
+    /// The climber's position before its own movement in this tick.
     pub(super) fn place(&self) -> DVec3 {
         let carried = self.carried.as_ref();
         carried.map_or(self.state.position, |carried| carried.position)
     }
 
-    /// Its own velocity at the tick's beginning: relative to its support, and rotated with it.
+    /// The climber's own velocity at the tick's beginning: relative to its support, and rotated with it.
     pub(super) fn own_velocity(&self) -> DVec3 {
         let own = self.was - self.base_was;
         let carried = self.carried.as_ref();
         carried.map_or(own, |carried| carried.motion.turn * own)
     }
 
-    /// Its velocity if it does nothing in this tick: its own at the tick's beginning, on top of its support's.
+    /// The climber's velocity if it does nothing in this tick: its own velocity at the tick's beginning, plus its
+    /// support's.
     pub(super) fn carried_velocity(&self) -> DVec3 {
         match &self.carried {
             Some(carried) => carried.velocity() + self.own_velocity(),
@@ -109,8 +112,8 @@ impl Tick<'_> {
         }
     }
 
-    /// True if the material can carry the climber, which means that its motion is known. An obstacle that answers
-    /// queries but reports no motion blocks the climber, but cannot be stood on or held.
+    /// True if the material can carry the climber: its motion is known. An obstacle that answers queries but reports no
+    /// motion blocks the climber, but cannot be stood on or held.
     pub(super) fn carries(&self, touch: &Touch) -> bool {
         self.mover.path_of(touch).is_some()
     }
@@ -131,8 +134,8 @@ impl Tick<'_> {
         self.state.support_velocity = motion.map(|motion| motion.velocity);
         self.state.base_velocity = motion.map_or(DVec3::ZERO, |motion| motion.velocity);
         self.state.untouched = 0.0;
-        // The last support has carried it in this tick already. The new one is at its final position, so it adds no
-        // motion.
+        // The last support has already carried the climber in this tick. The new one is at its final position, so it
+        // adds no motion.
         self.carried = motion.map(|motion| Carried {
             support,
             motion: PointMotion {
@@ -147,7 +150,7 @@ impl Tick<'_> {
         });
     }
 
-    /// Keeps its support, with another position relative to it.
+    /// Keeps the support, with another position relative to it.
     pub(super) fn keep_support(&mut self, carried: &Carried, position: DVec3) {
         self.state.position = position;
         self.state.support = Some(Support {
@@ -178,7 +181,7 @@ impl Tick<'_> {
         self.leave(ClimberMode::Falling)
     }
 
-    /// The attachment of its support.
+    /// The attachment of the support.
     pub(super) fn attachment(&self) -> Option<Attachment> {
         self.state.support.map(|support| support.attachment)
     }

@@ -34,15 +34,15 @@ pub trait CustomMode {
     /// tick.
     ///
     /// This is also the place to count down a timer such as a cooldown, kept in [`ModeContext::memory`]. The timer
-    /// misses the ticks in which a mode before this one begins. While the mode itself runs, count in
+    /// misses the ticks in which an earlier mode in the list begins. While the mode itself runs, count in
     /// [`CustomMode::step`].
     fn begins(&self, context: &mut ModeContext<'_, '_>) -> bool;
 
-    /// Runs one tick of the mode, and returns what comes next.
+    /// Runs one tick of the mode, and returns the next mode.
     ///
     /// Move the body at most once, by [`ModeContext::move_to`] or [`ModeContext::move_by`]. A second movement is not
-    /// refused, but meets the obstacles' motion of this tick a second time. Without a movement, the climber is carried
-    /// by its support; without a support, it goes on at its velocity.
+    /// refused, but sweeps the body against the obstacles' motion of this tick a second time. Without a movement, the
+    /// climber is carried by its support; without a support, it goes on at its velocity.
     fn step(&self, context: &mut ModeContext<'_, '_>) -> NextMode;
 }
 
@@ -121,9 +121,9 @@ impl<'a> ModeContext<'_, 'a> {
         &mut self.tick.mover
     }
 
-    /// The climber's position at the tick's end before its own movement, in world space: where its support has carried
-    /// it, or without a support where [`ModeContext::base_velocity`] has. Obstacles are at their positions of the same
-    /// time. [`ModeContext::state`] has the position after the movement.
+    /// The climber's position at the tick's end before its own movement, in world space: after the motion of its
+    /// support or, without a support, after a tick at [`ModeContext::base_velocity`]. Obstacles are at their positions
+    /// of the same time. [`ModeContext::state`] has the position after the movement.
     pub fn position(&self) -> DVec3 {
         let tick = &self.tick;
         match &tick.carried {
@@ -139,8 +139,8 @@ impl<'a> ModeContext<'_, 'a> {
         self.tick.carried_velocity()
     }
 
-    /// Velocity of its support, in world space, metres a second; without one, its frame in the air
-    /// ([`ClimberState::base_velocity`]). Its own motion is measured against it.
+    /// Velocity of the climber's support, in world space, metres a second; without a support, velocity of its frame in
+    /// the air ([`ClimberState::base_velocity`]). The climber's own motion is measured against it.
     pub fn base_velocity(&self) -> DVec3 {
         let carried = self.tick.carried;
         carried.map_or(self.tick.state.base_velocity, |carried| carried.velocity())
@@ -151,18 +151,19 @@ impl<'a> ModeContext<'_, 'a> {
         self.tick.rules.air_velocity
     }
 
-    /// Sets the velocity that its own motion is measured against from now on, in world space, metres a second, such as
-    /// that of water. It counts as a touch: without another one, it becomes that of the air from the first to the
-    /// second second after this call. While it has a support, the support's velocity is used instead, and replaces it.
+    /// Sets the velocity that the climber's own motion is measured against from now on, in world space, metres a
+    /// second, for example the velocity of water. The call counts as a touch: without a later touch, the velocity
+    /// changes to the air's between one and two seconds after this call. While the climber has a support, the support's
+    /// velocity is used instead, and replaces this one.
     pub fn set_base_velocity(&mut self, velocity: DVec3) {
         self.tick.state.base_velocity = velocity;
         self.tick.state.untouched = 0.0;
     }
 
-    /// Sweeps the body to `target`, a position in world space at the tick's end, and returns where it got.
+    /// Sweeps the body to `target`, a position in world space at the tick's end, and returns the result.
     ///
-    /// `velocity` is the velocity that it would have without contacts, in world space, metres a second. The state gets
-    /// this velocity, clipped by the contacts. A support is kept.
+    /// `velocity` is the velocity that the climber would have without contacts, in world space, metres a second. The
+    /// state gets this velocity, clipped by the contacts. A support is kept.
     pub fn move_to(&mut self, target: DVec3, velocity: DVec3) -> Moved {
         let path = self.tick.path(target);
         let moved = self.tick.slide(&path, Intent::Go);
@@ -177,7 +178,7 @@ impl<'a> ModeContext<'_, 'a> {
     /// [`ModeContext::move_to`] for one tick at a velocity in world space, metres a second, the support's velocity
     /// included.
     pub fn move_by(&mut self, velocity: DVec3) -> Moved {
-        // The position already includes how the support has carried it.
+        // The position already includes the motion by the support.
         let own = velocity - self.base_velocity();
         self.move_to(self.position() + own * self.dt(), velocity)
     }
@@ -188,7 +189,7 @@ impl<'a> ModeContext<'_, 'a> {
     }
 
     /// Ground up to `reach` metres below the climber's feet, at its position after its movement, or before it if it has
-    /// not moved yet. `None` if there is none, or it reports no motion.
+    /// not moved yet. `None` if no ground is found, or the ground reports no motion.
     pub fn ground_below(&mut self, reach: f64) -> Option<Ground> {
         let position = self.here();
         self.tick.ground_below(position, reach)
@@ -210,14 +211,14 @@ impl<'a> ModeContext<'_, 'a> {
     }
 
     /// The rule for a contact: whether it may be stood on, gripped and so on
-    /// ([`StepRules::contact`](crate::StepRules)). Contacts that are not solid are not found by [`ModeContext::mover`];
-    /// the rest of the rule is for the mode to keep.
+    /// ([`StepRules::contact`](crate::StepRules)). [`ModeContext::mover`] does not find contacts that are not solid.
+    /// The mode itself has to keep the rest of the rule.
     pub fn rule(&self, touch: &Touch) -> ContactRule {
         self.tick.judge.rule_of(touch)
     }
 
-    /// Attaches the climber to a contact, which carries it from now on, such as a wall that it runs along. Call it
-    /// before a change to a mode that needs a support.
+    /// Attaches the climber to a contact, for example on a wall that it runs along. The contact carries it from now on.
+    /// Call it before a change to a mode that needs a support.
     pub fn attach(&mut self, touch: &Touch) {
         let place = self.here();
         self.tick.attach(touch, place);
@@ -230,7 +231,8 @@ impl<'a> ModeContext<'_, 'a> {
     }
 
     /// Attaches the climber to ground, and puts it there without a sweep. Return the result from [`CustomMode::step`]
-    /// to stand. If `step` returns something else, this only does what [`ModeContext::attach_to_ground`] does.
+    /// to stand. If `step` returns another value, the climber is only attached, as by
+    /// [`ModeContext::attach_to_ground`].
     pub fn stand_on(&mut self, ground: &Ground) -> NextMode {
         self.attach_to_ground(ground);
         NextMode::Change(ClimberMode::Standing)

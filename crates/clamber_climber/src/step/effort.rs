@@ -10,7 +10,7 @@ use super::{NextMode, Tick};
 use crate::config::StaminaConfig;
 use crate::{ClimberEvent, ClimberMode, Shake};
 
-/// How long it grips nothing after its stamina was used up, seconds.
+/// Time for which the climber grips nothing after its stamina was used up, seconds.
 const EXHAUSTED: f64 = 1.0;
 
 impl Tick<'_> {
@@ -66,7 +66,7 @@ impl Tick<'_> {
         velocity - normal * into
     }
 
-    /// The fastest blow that does not take it off its hold, metres a second.
+    /// Speed of the fastest blow that does not take the climber off its hold, metres a second.
     fn holds_against(&self) -> f64 {
         let grip = self.config.grip;
         grip.map_or(self.config.ground.jump_speed, |grip| grip.jump_speed)
@@ -78,7 +78,7 @@ impl Tick<'_> {
         }
     }
 
-    /// Leaves its support because of a blow, with its current velocity.
+    /// Leaves the support because of a blow, with the climber's current velocity.
     pub(super) fn be_knocked_off(&mut self) -> NextMode {
         let by = self.input.blow.and_then(|blow| blow.by);
         if let Some(from) = self.attachment() {
@@ -87,11 +87,12 @@ impl Tick<'_> {
         self.leave(ClimberMode::Falling)
     }
 
-    /// Updates the shake from the motion of its support. A support that was placed elsewhere, or whose last velocity is
+    /// Updates the shake from the motion of the support. A support that was placed elsewhere, or whose last velocity is
     /// not known, adds no acceleration.
     pub(super) fn feel(&mut self, motion: &PointMotion, was_placed: bool) {
         let before = self.state.support_velocity.filter(|_| !was_placed);
-        // Its own push has moved a free support as it was to, one that something holds not at all, and others in between.
+        // The climber's own push has moved a free support as expected, a held support not at all, and others in
+        // between.
         self.support_change = before.map(|before| {
             let expected = nearest_between(before, self.base_was, motion.velocity);
             motion.velocity - expected
@@ -108,7 +109,7 @@ impl Tick<'_> {
         self.state.shake = shake.acceleration;
     }
 
-    /// Spends stamina on a single effort. False if it does not suffice; nothing is spent then.
+    /// Spends stamina on a single effort. False if stamina does not suffice; none is spent then.
     pub(super) fn spend(&mut self, cost: impl Fn(&StaminaConfig) -> f64) -> bool {
         let Some(stamina) = &self.config.stamina else {
             return true;
@@ -121,10 +122,10 @@ impl Tick<'_> {
         true
     }
 
-    /// Whether hands that are in flight can hold a contact: not if it passes them too fast, nor if stamina does not
-    /// suffice. A catch costs stamina by its speed; up to that of a walk, gripping is free.
+    /// True if hands in flight can hold a contact: it does not pass them too fast, and stamina suffices. A catch costs
+    /// stamina by its speed; up to the walking speed, it is free.
     pub(super) fn catches(&mut self, touch: &Touch, fastest: f64) -> bool {
-        // By its speed before contacts: whether the tick ends in one is chance.
+        // The speed is taken before contacts: whether the tick ends in a contact is chance.
         let velocity = self.flew_at.unwrap_or(self.state.velocity);
         let speed = (velocity - self.mover.velocity_of(touch)).length();
         let hard = (speed - self.config.ground.walk_speed).max(0.0);
@@ -152,7 +153,7 @@ impl Tick<'_> {
             [shake_before, self.state.shake].map(|acceleration| Shake { acceleration });
         let beyond = after.excess(&before, stamina.shake_threshold, dt);
         if self.state.mode.is_holding() {
-            // Arms that draw the body up work as hard as climbing as far.
+            // Arms that draw the body up cost as much as climbing over the same distance.
             let climb_speed = self.config.grip.map_or(0.0, |grip| grip.climb_speed);
             let drawing = if climb_speed > 0.0 {
                 self.drawn_up / climb_speed

@@ -8,29 +8,30 @@ use super::moving::{Intent, towards};
 use super::{LEVEL, NextMode, Tick};
 use crate::{ClimberConfig, ClimberEvent, ClimberMode};
 
-/// A contact at no more than this multiple of the speed that gravity adds in a tick is no impact.
+/// Multiple of the speed that gravity adds in a tick, up to which a contact is no impact.
 const RESTS: f64 = 1.5;
 
-/// How long a tumbling body that does not come to rest stays down after it has first touched ground, beyond the time in
-/// which it gets up, seconds. Without friction it would slide on for ever.
+/// Time for which a tumbling body that does not come to rest stays down after it first touched ground, in addition to
+/// the recovery time, seconds. Otherwise a body without friction would slide on endlessly.
 const STAYS_DOWN: f64 = 6.0;
 
-/// Friction on a steep slope takes at most this share of what gravity gives along it.
+/// Largest share of gravity along a steep slope that friction takes away.
 const BRAKES: f64 = 0.9;
 
-/// Cosine of the slope below which ground is too level to keep off in the air: 4 degrees.
+/// Cosine from up of the normal of refused ground, above which the ground is too level for steering to keep off it: 4
+/// degrees.
 const UPRIGHT: f64 = 0.9975;
 
-/// A share of the speed at which a body falls from the height of its radius: slower contacts do not bounce.
+/// Factor of [`slow_speed`] on the square root of gravity times radius: slower contacts do not bounce.
 const SLOW: f64 = 0.25;
 
-/// Memory of a climber that is in the air or slides: whether it rises from a jump. The climber's step sets it; a game
-/// only stores it.
+/// Memory of a climber that is in the air or slides: whether it rises from a jump. The climber's step sets this memory;
+/// a game only stores it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
 pub struct FlyingMemory {
-    /// True while it rises from a jump.
+    /// True while the climber rises from a jump.
     pub jumping: bool,
 }
 
@@ -39,13 +40,13 @@ pub struct FlyingMemory {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
 pub struct TumblingMemory {
-    /// How long it has lain still, seconds.
+    /// Time for which the climber has lain still, seconds.
     pub still: f64,
-    /// How long ago it first touched ground that can be stood on, seconds.
+    /// Time since the climber first touched ground that can be stood on, seconds.
     pub down: f64,
 }
 
-/// A speed that is slow for a body of its size under its gravity, metres a second: 0.5 for a radius of 0.4 m.
+/// A speed that is slow for a body of this size under this gravity, metres a second: 0.5 for a radius of 0.4 m.
 pub(crate) fn slow_speed(config: &ClimberConfig) -> f64 {
     SLOW * libm::sqrt(config.gravity.length() * config.body.radius)
 }
@@ -61,7 +62,7 @@ impl Tick<'_> {
         }
         self.steer();
         let falling = self.fall();
-        // After the movement: its position and those of the obstacles are then of the same time.
+        // Grips after the movement, when the climber's position and the obstacles' positions are of the same time.
         match self.grip_or_catch() {
             Some(next) => next,
             None => self.land(falling),
@@ -94,8 +95,9 @@ impl Tick<'_> {
         self.state.velocity += change;
     }
 
-    /// A level change of velocity without what leads into slopes that are too steep to stand on: they would deflect it
-    /// upwards, and be climbed. (Unreal's `LimitAirControl` and Jolt's sample do the same.)
+    /// A level change of velocity without the component into slopes that are too steep to stand on: the slopes would
+    /// deflect it upwards, and the climber would climb them. (Unreal's `LimitAirControl` and Jolt's sample do the
+    /// same.)
     fn off_steep_slopes(&mut self, change: DVec3) -> DVec3 {
         let (up, body) = (self.config.up(), self.body());
         let limit = self.standing_slope();
@@ -103,10 +105,10 @@ impl Tick<'_> {
         self.mover.overlap(&body, here, body.margin);
         let is_steep =
             |normal: DVec3| self.config.slope(normal) > limit && normal.dot(up) > GRAZING;
-        // What may not be stood on is a slope as well, where it is not level.
+        // Ground that the rule refuses counts as a slope as well, where it is not level.
         let leans = |normal: DVec3| (GRAZING..UPRIGHT).contains(&normal.dot(up));
         let slopes = || {
-            // By both normals: the edge of a step is no slope.
+            // A slope needs two steep normals: the edge of a step is no slope.
             let touches = self.mover.overlaps().iter();
             touches
                 .filter(|touch| {
@@ -118,7 +120,7 @@ impl Tick<'_> {
         let kept = slopes().fold(change, |kept, level| {
             kept - level * kept.dot(level).min(0.0)
         });
-        // Between two slopes, what leads along one leads into the other.
+        // Between two slopes, a change along one leads into the other.
         let leads_into = |level: DVec3| kept.dot(level) < -LEVEL * change.length();
         if slopes().any(leads_into) {
             DVec3::ZERO
@@ -127,7 +129,8 @@ impl Tick<'_> {
         }
     }
 
-    /// Moves the body through one tick of free fall. Returns the velocity that it would have had without contacts.
+    /// Moves the body through one tick of free fall. Returns the velocity that the body would have had without
+    /// contacts.
     ///
     /// Positions are exactly on the parabola at each tick's end: the acceleration is constant over the tick.
     fn fall(&mut self) -> DVec3 {
@@ -150,13 +153,13 @@ impl Tick<'_> {
         if self.state.mode == ClimberMode::Sliding {
             self.be_braked_by_slope(falling);
         }
-        // Gravity changed it, and what it hit got its pushes.
+        // Gravity has no reaction on a support, and the obstacles that were hit have already got their impulses.
         self.rides = self.state.velocity;
         self.be_hurt_by_impact(falling);
         falling
     }
 
-    /// The change of velocity by gravity in a tick, less what the air takes from a fall at the terminal speed.
+    /// The change of velocity by gravity in a tick, less the part that the air takes from a fall at the terminal speed.
     fn limited_by_air(&self, change: DVec3) -> DVec3 {
         let down = change.normalize_or_zero();
         let most = self.config.ground.terminal_speed;
@@ -174,8 +177,8 @@ impl Tick<'_> {
         }
     }
 
-    /// Brakes a body on slopes that are too steep to stand on, by as much as their contact takes from its fall, times
-    /// the coefficient of friction. What gravity gives it along the slope is braked by less than all, so that it never
+    /// Brakes a body on slopes that are too steep to stand on. Friction takes the speed that the contact takes from the
+    /// fall, times the coefficient of friction. Down the slope it takes less than gravity adds, so that the body never
     /// comes to rest where it cannot stand.
     fn be_braked_by_slope(&mut self, falling: DVec3) {
         let usual = self.config.ground.slide_friction;
@@ -209,7 +212,7 @@ impl Tick<'_> {
         self.rub(&touch, along, braked);
     }
 
-    /// Costs hit points for the hardest of the last movement's impacts, by its speed along the contact's normal: on
+    /// Costs hit points for the hardest impact of the last movement, by its speed along the contact's normal: on
     /// ground, slopes, walls and ceilings alike.
     fn be_hurt_by_impact(&mut self, falling: DVec3) {
         if self.config.health.is_none() {
@@ -241,7 +244,7 @@ impl Tick<'_> {
         slow_speed(self.config)
     }
 
-    /// Stands on the ground that it came down on, or slides down it. A crushed climber does neither.
+    /// Stands on the ground that the climber came down on, or slides down it. A crushed climber does neither.
     fn land(&mut self, falling: DVec3) -> NextMode {
         if self.state.crushed {
             return NextMode::Stay;
@@ -262,21 +265,21 @@ impl Tick<'_> {
         }
     }
 
-    /// The ground that it came down on. Not ground that it leaves: who jumps may still touch a friend that is pressed
-    /// into it from below.
+    /// The ground that the climber came down on. Ground that it leaves does not count: a climber that jumps may still
+    /// touch another one that is pressed into it from below.
     fn ground_met(&mut self, falling: DVec3) -> Option<Ground> {
         let slope = self.config.ground.max_slope;
         let ground = self.held_up(self.state.position, slope)?;
         (!self.leaves(&ground.touch, falling)).then_some(ground)
     }
 
-    /// True if it moves away from a contact, both at the velocity `falling`, which contacts have not clipped, and at
-    /// its velocity now.
+    /// True if the climber moves away from a contact, both at the velocity `falling`, which contacts have not clipped,
+    /// and at its velocity now.
     fn leaves(&self, touch: &Touch, falling: DVec3) -> bool {
         let up = self.config.up();
         let obstacle = self.mover.obstacle(touch.obstacle);
         let other = obstacle.and_then(|obstacle| obstacle.character());
-        // What another climber rises by itself is no part of its material's velocity.
+        // The velocity of another climber's material does not include the other's own rise.
         let (rises, least) = other.map_or((0.0, self.slow()), |other| {
             (other.own_velocity.dot(up).max(0.0), 0.0)
         });
@@ -285,7 +288,7 @@ impl Tick<'_> {
         away(falling) && away(self.state.velocity)
     }
 
-    /// Lands on ground, and keeps its speed along it.
+    /// Lands on ground, and keeps the speed along the ground.
     fn land_on(&mut self, ground: &Ground, falling: DVec3) -> NextMode {
         let touch = &ground.touch;
         let ground_velocity = self.mover.velocity_of(touch);
@@ -294,7 +297,7 @@ impl Tick<'_> {
         let along = own - touch.normal * own.dot(touch.normal);
         self.state.position = ground.position;
         self.attach(touch, ground.position);
-        // What it lands on gives way, and both go on at one speed.
+        // An obstacle that gives way and the climber go on at one speed.
         self.state.base_velocity +=
             self.velocity_after_hit(touch, ground_velocity) - ground_velocity;
         self.state.velocity = self.clipped(self.state.base_velocity + along);
@@ -358,7 +361,7 @@ impl Tick<'_> {
             return NextMode::Stay;
         }
         self.attach(touch, ground.position);
-        // Its feet brake what its body could not.
+        // The feet brake the rest of the slide.
         self.state.velocity = self.state.base_velocity + sliding.clamp_length_max(left);
         NextMode::Change(ClimberMode::Standing)
     }

@@ -1,4 +1,4 @@
-//! Other climbers that overlap this one: both give way, and nobody else is moved by it.
+//! Climbers that overlap. Both give way, and no other climber is moved by it.
 
 use clamber_mover::{IntoOthers, is_beside};
 use clamber_world::{CharacterBody, Obstacle, ObstacleId};
@@ -9,19 +9,19 @@ use crate::ClimberConfig;
 use crate::config::Others;
 use crate::obstacle::{SAME_PLACE, between};
 
-/// The fastest that climbers part, radii a second: 2 m/s for a radius of 0.4 m.
+/// Maximum speed at which climbers part, radii a second: 2 m/s for a radius of 0.4 m.
 const PARTS: f64 = 5.0;
 
-/// The fastest that climbers part which push each other, as a multiple of the walking speed.
+/// Maximum speed at which climbers that push each other part, as a multiple of the walking speed.
 const PUSHES: f64 = 2.0;
 
-/// The fastest that climbers part which pass each other, radii a second.
+/// Maximum speed at which climbers that pass each other part, radii a second.
 const PASSES: f64 = 1.25;
 
-/// Who is slower than this share of that speed stands still.
+/// Share of the speed [`PASSES`] up to which a climber stands still.
 const STILL: f64 = 0.1;
 
-/// Least level part of the direction between two bodies in which they part levelly.
+/// Smallest level part of the unit direction between two bodies at which they part levelly.
 const ASIDE: f64 = 0.1;
 
 /// A climber as a character among others.
@@ -34,8 +34,8 @@ pub(crate) fn among_others(config: &ClimberConfig) -> IntoOthers {
 }
 
 impl Tick<'_> {
-    /// The displacement in this tick by which it parts from the climbers that it overlaps: from each by the other's
-    /// share of their mass. Walls stop it like any other movement.
+    /// The displacement in this tick by which the climber parts from the climbers that it overlaps: from each by the
+    /// other's share of their total mass. Walls stop it like any other movement.
     pub(super) fn parting(&self) -> DVec3 {
         if !self.mover.has_characters() {
             return DVec3::ZERO;
@@ -52,19 +52,19 @@ impl Tick<'_> {
         way.clamp_length_max(most)
     }
 
-    /// The farthest that it parts from others in a tick.
+    /// Maximum displacement in a tick by which the climber parts from others, metres.
     fn parting_at_most(&self, others: Others) -> f64 {
         let slow = PARTS * self.config.body.radius;
         let speed = match others {
             Others::Block => slow,
-            // As fast as any two walk against each other.
+            // As fast as two climbers can walk against each other.
             Others::Push => slow.max(PUSHES * self.config.ground.walk_speed),
             Others::Pass => PASSES * self.config.body.radius,
         };
         speed * self.dt()
     }
 
-    /// True if it or the other one moves by itself.
+    /// True if this climber or the other one moves on its own.
     fn is_passing(&self, other: &CharacterBody) -> bool {
         let slow = PASSES * STILL * self.config.body.radius;
         let own = self.was - self.base_was;
@@ -83,7 +83,7 @@ impl Tick<'_> {
         if self.judge.rules.contact.is_none() {
             return true;
         }
-        // It is where it will be at the end of the tick, like this one.
+        // The other is where it will be at the end of the tick, and so is this climber.
         let contact = other.closest_point(self.expected, f64::INFINITY);
         contact.is_none_or(|contact| self.judge.rule(id, other, &contact).solid)
     }
@@ -93,15 +93,15 @@ impl Tick<'_> {
             return DVec3::ZERO;
         }
         let body = self.body();
-        // Who stands on the head of one that stands up is placed there.
+        // A climber on the head of one that stands up is placed there.
         let placed = self.carried.as_ref().filter(|carried| !carried.swept);
         let capsule = body.at(placed.map_or(self.began, |carried| carried.position));
         let apart = between(&other.capsule, &capsule);
         let up = self.config.up();
         let least = other.capsule.radius.min(capsule.radius);
         let is_beside = is_beside(&capsule, &other.capsule, up);
-        // Who stands on another one is pressed onto it by less than the margin. Beside each other, both give way at the
-        // same depth.
+        // A climber that stands on another one is pressed onto it by less than the margin. Climbers beside each other
+        // both give way at the same depth.
         let slack = if is_beside {
             body.margin * (least / capsule.radius)
         } else {
@@ -124,13 +124,13 @@ impl Tick<'_> {
         } else {
             apart.away
         };
-        // The lighter one gives way more, and no faster than that.
+        // The lighter climber gives way more, and no faster than the maximum.
         let [own, others] = [other.mass, self.config.body.mass].map(|mass| mass / all);
         away * (own * depth.min(self.parting_at_most(softness) / own.max(others)))
     }
 
-    /// The side to which it parts from another climber at the same place: opposite for the two. `None` without an id of
-    /// its own, by which both would go to the same side for ever.
+    /// The side to which the climber parts from another one at the same place: opposite for the two. `None` without an
+    /// id of its own, since both would then go to the same side in every tick.
     fn side_of(&self, id: ObstacleId) -> Option<DVec3> {
         let own = self.rules.id.filter(|own| *own != id)?;
         let side = self.config.up().any_orthonormal_vector();

@@ -27,8 +27,9 @@ impl Tick<'_> {
         self.carries(&ground.touch).then_some(ground)
     }
 
-    /// The contact of the last movement that holds the climber up at a position, and the position at which it stands on
-    /// it. The two positions differ because a turning obstacle keeps a landing climber some millimetres away.
+    /// The contact of the last movement that holds the climber up at a position, and the position at which the climber
+    /// stands on this contact. The two positions differ because a turning obstacle keeps a landing climber some
+    /// millimetres away.
     ///
     /// `None` if no contact holds it up, or if the climber was pushed off the contact later in the same movement.
     pub(super) fn held_up(&mut self, position: DVec3, max_slope: f64) -> Option<Ground> {
@@ -48,8 +49,8 @@ impl Tick<'_> {
         Some(Ground { touch, position })
     }
 
-    /// True if the climber touches a slope that is too steep, where no level ground ends. At the edge of level ground
-    /// the ground counts as ended, whichever of the two faces that meet there is reported as the contact.
+    /// True if the climber touches a slope that is too steep and has no level ground beside it. At the edge of level
+    /// ground the ground counts as ended, whichever of the two faces that meet there is reported as the contact.
     pub(super) fn is_on_slope(&mut self, position: DVec3, max_slope: f64) -> bool {
         let up = self.config.up();
         let body = self.body();

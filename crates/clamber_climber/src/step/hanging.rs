@@ -11,21 +11,21 @@ use crate::config::GripConfig;
 use crate::pendulum::{Pendulum, PendulumTick};
 use crate::{ClimberEvent, ClimberMode};
 
-/// Speed at which it pulls itself in once its hold is calm, as a share of the climbing speed.
+/// Speed at which the climber pulls itself in once its hold is calm, as a multiple of the climbing speed.
 const PULL: f64 = 4.0 / 3.0;
 
-/// A hold is calm if its shake is at most this share of the shake that makes the climber hang.
+/// Share of the shake that makes the climber hang, up to which its hold counts as calm.
 const CALM: f64 = 0.7;
 
-/// Speed at which stretched arms shorten again, in arm lengths a second: 4.5 m/s for arms of 0.9 m. It is no slower
-/// than [`PULL`], or short arms would pull more slowly than they climb.
+/// Speed at which stretched arms shorten again, in arm lengths a second: 4.5 m/s for arms of 0.9 m. The speed is at
+/// least the speed of [`PULL`], or short arms would pull more slowly than they climb.
 const SHORTEN: f64 = 5.0;
 
-/// Arms let go when they are stretched to this multiple of their length.
+/// Multiple of their length to which arms can be stretched before they let go.
 const STRETCH: f64 = 1.5;
 
-/// Distance from its hands at which it climbs again, as a share of its radius. Not 1.25: the arms of the default
-/// configuration get exactly that short in a whole number of ticks, and rounding would decide.
+/// Distance from its hands at which the climber climbs again, in radii. Not 1.25: the arms of the default configuration
+/// get exactly that short in a whole number of ticks, and rounding would decide.
 const CLOSE: f64 = 1.27;
 
 /// Memory of a climber that hangs by its hands from a grip.
@@ -33,12 +33,12 @@ const CLOSE: f64 = 1.27;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
 pub struct HangingMemory {
-    /// Length of its arms, metres. Shorter than at full stretch while it pulls itself in.
+    /// Length of the arms, metres. Shorter than at full stretch while the climber pulls itself in.
     pub arm: f64,
-    /// How long its hold has been calm enough to climb on, seconds.
+    /// Time for which the hold has been calm enough to climb on, seconds.
     pub calm: f64,
-    /// End of its legs after the last tick, relative to its position, in world space, metres. Zero while they are drawn
-    /// in.
+    /// End of the legs after the last tick, relative to the climber's position, in world space, metres. Zero while the
+    /// legs are drawn in.
     pub legs: DVec3,
 }
 
@@ -57,12 +57,12 @@ impl Tick<'_> {
             return self.leave(ClimberMode::Falling);
         }
         let now = carried.velocity();
-        // A climber that has just begun to hang is at rest below its hands, except for a blow.
+        // A climber that has just begun to hang is at rest below its hands, apart from a blow.
         let (pivot_was, relative) = match carried.velocity_before {
             Some(before) if !self.has_entered => {
-                // What it has changed the hands' velocity by, along the arms, is no acceleration that it feels: the
-                // pull of the arms was that between two bodies. Across the arms, what holds the hold may have kept that
-                // off.
+                // The climber's own pull has changed the velocity of its hands. Along the arms, it does not feel this
+                // change as an acceleration, since the arms pulled between two bodies. Across the arms, an object that
+                // holds the hold may have prevented the change.
                 let changed = before + self.change_by_load() - self.base_was;
                 let arm = carried.start - carried.motion.previous_position;
                 let along = changed.project_onto_normalized(arm.normalize_or(self.config.up()));
@@ -74,7 +74,7 @@ impl Tick<'_> {
         self.swing(&carried, pivot_was, relative)
     }
 
-    /// Stretches its arms, or pulls itself in once the hold has been calm for long enough.
+    /// Stretches the arms, or pulls the climber in once the hold has been calm for long enough.
     fn reach_or_pull(&mut self, carried: &Carried, grip: &GripConfig) {
         let leans_over = self.config.slope(carried.normal()) > grip.max_overhang;
         let shakes = self.state.shake.length() > CALM * grip.hang_acceleration;
@@ -95,7 +95,7 @@ impl Tick<'_> {
         }
     }
 
-    /// Swings below its hands. `pivot_was` is the velocity of the hands in the last tick, and `relative` the body's
+    /// Swings below the hands. `pivot_was` is the velocity of the hands in the last tick, and `relative` the body's
     /// velocity relative to that.
     fn swing(&mut self, carried: &Carried, pivot_was: DVec3, relative: DVec3) -> NextMode {
         let hang = &self.config.hang;
@@ -139,12 +139,12 @@ impl Tick<'_> {
             let clipped = self.clipped_by_arm(velocity, carried, moved.position - pivot);
             velocity + self.shared_with_hold(clipped - velocity)
         };
-        // After a blow it swings although the hold is calm: the swing ends only after `calm_time`.
+        // After a blow, the climber swings although the hold is calm: the swing ends only after `calm_time`.
         let calm_time = self.config.grip.map_or(0.0, |grip| grip.calm_time);
         let longest = hang.arm_length.max(radius) * STRETCH;
         let reach = moved.position.distance(pivot);
         if reach > longest {
-            // An obstacle in its way has torn it off.
+            // An obstacle in the way has torn the climber off.
             self.state.open_handed = OPEN_HANDED;
             return self.lose_footing();
         }
@@ -176,7 +176,7 @@ impl Tick<'_> {
         moved
     }
 
-    /// Its share of a change of velocity by contacts, of which the hold takes the rest if it touches nothing else: a
+    /// The climber's share of a change of velocity by contacts. If it touches nothing else, its hold takes the rest: a
     /// light hold that swings against the climber is stopped by it.
     fn shared_with_hold(&mut self, change: DVec3) -> DVec3 {
         let touched = self.mover.touched();

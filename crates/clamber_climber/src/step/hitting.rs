@@ -1,11 +1,11 @@
 //! Impulses on the obstacles in the climber's way, if they can be pushed.
 //!
-//! An airborne climber transfers its momentum to what it hits: the impulse that brings both to one speed, this tick's
-//! gravity included. A climber that stands or holds on gives obstacles in its way a push of limited force. Only what it
-//! hits in the air changes its own velocity, to the common one.
+//! An airborne climber transfers its momentum to the obstacles that it hits: the impulse that brings both to one speed,
+//! this tick's gravity included. A climber that stands or holds on gives obstacles in its way a push of limited force.
+//! Only hits in the air change the climber's own velocity, to the common one.
 //!
-//! What was hit may be held by something else: a crate that lies against a wall stops a climber as the wall would. That
-//! shows one tick later, when it has not given way.
+//! Another object may hold the obstacle that was hit: a crate that lies against a wall stops a climber as the wall
+//! would. This shows one tick later, when the obstacle has not given way.
 
 use clamber_mover::Touch;
 use glam::DVec3;
@@ -18,22 +18,22 @@ use crate::event::Push;
 /// Cosine of the largest angle between the normals of contacts on the same side of the body: 60 degrees.
 const SAME_SIDE: f64 = 0.5;
 
-/// What gives way by less than this share of what its own mass would is held.
+/// Share of the expected change of velocity below which an obstacle has not given way, and counts as held.
 const HELD: f64 = 0.1;
 
-/// Who slides on ice was stopped if it went on by less than this share of its way.
+/// Share of its way below which a climber that slides on ice counts as stopped.
 const STOPPED: f64 = 0.5;
 
-/// A body that rests on something meets it at no more than this multiple of the speed that gravity adds in a tick, also
-/// in a lift that speeds up by as much as gravity.
+/// Largest speed at which a body that rests on another one meets it, as a multiple of the speed that gravity adds in a
+/// tick: also in a lift that speeds up by as much as gravity.
 const LIES: f64 = 4.0;
 
-/// What was nearer than this multiple of the margin at the start of the tick was touched then.
+/// Distance at the start of the tick, as a multiple of the margin, within which an obstacle was touched then.
 const TOUCHED: f64 = 2.0;
 
 impl Tick<'_> {
-    /// Pushes the obstacles that kept the body from moving at the velocity `wanted`, except those that it stands on or
-    /// holds.
+    /// Pushes the obstacles that kept the body from moving at the velocity `wanted`, except the obstacles that the
+    /// climber stands on or holds.
     pub(super) fn push_aside(&mut self, wanted: DVec3) {
         self.recoil = DVec3::ZERO;
         self.wanted = wanted;
@@ -87,17 +87,17 @@ impl Tick<'_> {
         }
     }
 
-    /// True for something that the climber hit in the last tick and that has not given way since: something else holds
-    /// it, or it rests against the climber.
+    /// True for an obstacle that the climber hit in the last tick and that has not given way since: another object
+    /// holds it, or it rests against the climber.
     ///
-    /// A stream of bodies looks the same. So a held one only stops the climber: what would make it faster through the
-    /// air is weighed.
+    /// A stream of bodies looks the same. So an obstacle counts as held only if it does no more than stop the climber.
+    /// An obstacle that would make the climber faster through the air is treated by its mass.
     fn is_held(&self, touch: &Touch) -> bool {
         let Some((before, now)) = self.met_again(touch) else {
             return false;
         };
         let normal = touch.normal;
-        // The last hit was to slow it to the climber's velocity.
+        // The last hit should have slowed the obstacle to the climber's velocity.
         let asked = before - self.was.dot(normal);
         let stays = self.slips() || asked <= self.jitter() || before - now < HELD * asked;
         let (wanted, air) = (self.wanted.dot(normal), self.rules.air_velocity.dot(normal));
@@ -106,7 +106,7 @@ impl Tick<'_> {
     }
 
     /// The velocities of a contact along its normal, in the last tick and in this one. `None` if the climber did not
-    /// touch it in the last tick, or if something else has hit it since.
+    /// touch the obstacle in the last tick, or if a blow has driven the climber into it since.
     fn met_again(&self, touch: &Touch) -> Option<(f64, f64)> {
         let normal = touch.normal;
         let is_known = self.presses_on(normal) && self.was_touched(touch);
@@ -118,12 +118,12 @@ impl Tick<'_> {
         } else {
             self.base_was.dot(normal)
         };
-        // What rests on something may be lifted with it.
+        // An obstacle that rests on another one may be lifted with it.
         let is_same = is_known && !is_struck && now <= before + self.rests_at();
         is_same.then_some((before, now))
     }
 
-    /// The fastest contact of a body at rest on something that may speed up.
+    /// Largest contact speed of a body at rest on another one that may speed up, metres a second.
     fn rests_at(&self) -> f64 {
         LIES * self.config.gravity.length() * self.dt()
     }
@@ -132,13 +132,13 @@ impl Tick<'_> {
         JITTER * self.config.gravity.length() * self.dt()
     }
 
-    /// True if it stands on ice.
+    /// True if the climber stands on ice.
     pub(super) fn slips(&self) -> bool {
         self.state.mode == ClimberMode::Standing && self.is_slippery()
     }
 
-    /// True if it was pressed against the same side in the last tick already. A climber that stands was, if it did not
-    /// get on in that direction.
+    /// True if the climber was already pressed against the same side in the last tick: for a climber that stands, if it
+    /// did not get on in that direction.
     fn presses_on(&self, normal: DVec3) -> bool {
         if self.carried.is_some() {
             let went_on = -self.state.own_way.dot(normal);
@@ -149,7 +149,7 @@ impl Tick<'_> {
         pressed > SAME_SIDE * self.was_pressed.length() * normal.length()
     }
 
-    /// True if it touched a contact's material at the start of the tick.
+    /// True if the climber touched a contact's material at the start of the tick.
     fn was_touched(&self, touch: &Touch) -> bool {
         let body = self.body();
         self.mover.path_of(touch).is_some_and(|path| {
@@ -158,13 +158,13 @@ impl Tick<'_> {
         })
     }
 
-    /// True for a contact with something that can be pushed, and was in the last tick.
+    /// True for a contact with an obstacle that can be pushed, if the climber also touched it in the last tick.
     pub(super) fn hit_before(&self, touch: &Touch) -> bool {
         self.response_at(touch, -touch.normal) > 0.0 && self.met_again(touch).is_some()
     }
 
     /// The velocity of a contact that moves at `velocity`, after the last movement has hit it. Along the contact's
-    /// normal it is no slower than the climber, which has shared its momentum with all that it hit.
+    /// normal it is no slower than the climber, which has shared its momentum with all obstacles that it hit.
     pub(super) fn velocity_after_hit(&self, touch: &Touch, velocity: DVec3) -> DVec3 {
         let normal = touch.normal;
         let closing = (velocity - self.wanted - self.recoil).dot(normal);

@@ -9,62 +9,62 @@ use super::{NextMode, Tick};
 use crate::config::GripConfig;
 use crate::{ClimberEvent, ClimberInput, ClimberMode};
 
-/// Speed at which arms draw the body to its hold, as a share of the climbing speed.
+/// Speed at which arms draw the body to its hold, as a multiple of the climbing speed.
 const DRAW: f64 = 8.0 / 3.0;
 
 /// Longest time in which arms draw the body over the length of its radius, seconds: at least 1 m/s for a radius of 0.4
-/// m, for a climber that climbs slowly or not at all.
+/// m. It counts for a climber that climbs slowly or not at all.
 const DRAW_TIME: f64 = 0.4;
 
-/// How long it grips nothing after it jumped off a hold, let go or was torn off, seconds.
+/// Time for which the climber grips nothing after it jumped off a hold, let go or was torn off, seconds.
 pub(super) const OPEN_HANDED: f64 = 0.3;
 
-/// Faces whose normals differ by more than this angle meet in a corner, radians: 40 degrees.
+/// Angle between the normals of two faces, above which they meet in a corner, radians: 40 degrees.
 const CORNER: f64 = 0.7;
 
-/// Cosine of the largest angle between a face's normal and the separation normal at which it lies flat on the face: 10
-/// degrees.
+/// Cosine of the largest angle between a face's normal and the separation normal at which the climber lies flat on the
+/// face: 10 degrees.
 const FLAT: f64 = 0.985;
 
-/// A climber that makes less than this share of an upward step is at the top of its hold, and looks for a ledge.
+/// Share of an upward step below which a climber is at the top of its hold, and looks for a ledge.
 const STUCK: f64 = 0.25;
 
-/// Share of the input along the hold above which it climbs at full speed. Below, it climbs more slowly.
+/// Share of the input along the hold above which the climber climbs at full speed. Below, it climbs more slowly.
 const FULL: f64 = 0.1;
 
 /// Cosine from up of a hold's normal, below which the hold is a ceiling: it leans over by more than 45 degrees.
 const CEILING: f64 = -0.707;
 
-/// A jump off a hold goes straight away from it where its normal and up sum to less than this: off ceilings within 6
-/// degrees of level. Between them the sum has a direction of rounding, and of bumps.
+/// Length of the sum of a hold's normal and up, below which a jump goes straight away from the hold: off ceilings
+/// within 6 degrees of level. There, rounding and bumps decide the direction of the sum.
 const STRAIGHT: f64 = 0.1;
 
 /// Cosine of the angle by which a held stick may turn before its direction is taken anew: 20 degrees.
 const HELD_STILL: f64 = 0.939_692_620_785_908_4;
 
-/// Memory of a climber that climbs by [`ClimberInput::walk`]: in which direction along its hold the stick leads.
+/// Memory of a climber that climbs by [`ClimberInput::walk`]: the direction along its hold that the stick asks for.
 ///
-/// The direction is found when the stick is pressed, or turned by more than 20 degrees. While the stick is held, it
-/// goes along with the hold's normal, over bumps and round edges, by the shortest rotation (parallel transport). All
-/// are zero without a held stick.
+/// The direction is found when the stick is pressed, or turned by more than 20 degrees. While the stick is held, the
+/// direction follows the hold's normal, over bumps and round edges, by the shortest rotation (parallel transport). All
+/// fields are zero without a held stick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
 pub struct HoldingMemory {
     /// The stick's direction when `along` was found: a level unit vector in world space.
     pub stick: DVec3,
-    /// Direction in which it climbs: a unit vector in world space, perpendicular to `normal`.
+    /// Direction in which the climber climbs: a unit vector in world space, perpendicular to `normal`.
     pub along: DVec3,
     /// Normal of the hold in the last tick: a unit vector in world space.
     pub normal: DVec3,
 }
 
-/// A face that opposes the input's direction by more than this cosine is climbed onto, not along.
+/// Cosine by which a face has to oppose the input's direction for the climber to climb onto it, not along it.
 const AHEAD: f64 = 0.3;
 
 impl Tick<'_> {
-    /// Takes hold of the best grip in reach, or catches a ledge, if the input asks for it, stamina is left and its
-    /// hands are ready.
+    /// Takes hold of the best grip in reach, or catches a ledge, if the input asks for it, stamina is left and the
+    /// climber's hands are ready.
     pub(super) fn grip_or_catch(&mut self) -> Option<NextMode> {
         if !self.input.grip || self.state.stamina == 0.0 || self.state.open_handed > 0.0 {
             return None;
@@ -115,7 +115,7 @@ impl Tick<'_> {
         self.climb(&carried, &grip, wish)
     }
 
-    /// The direction in which the input leads along the hold; its length is the share of full speed.
+    /// The direction along the hold that the input asks for; its length is the share of full speed.
     fn climb_wish(&mut self, carried: &Carried) -> DVec3 {
         let normal = carried.normal();
         let (up, walk, climb) = (self.config.up(), self.input.walk, self.input.climb);
@@ -157,7 +157,7 @@ impl Tick<'_> {
         self.leave(ClimberMode::Falling)
     }
 
-    /// Jumps off its hold, away from it and upwards; off a level ceiling, straight down.
+    /// Jumps off the hold, away from it and upwards; off a level ceiling, straight down.
     pub(super) fn jump_off(&mut self, normal: DVec3, speed: f64) -> NextMode {
         let up = self.config.up();
         let between = normal + up;
@@ -221,7 +221,7 @@ impl Tick<'_> {
         if let Some(next) = self.catch_ledge(position) {
             return next;
         }
-        // Nothing to grip there: the climber stays where it was.
+        // There is no grip: the climber stays where it was.
         let moved = self.slide(&self.path(carried.position), Intent::Stay);
         self.settle(carried, moved.position, carried.velocity());
         NextMode::Stay
@@ -243,20 +243,20 @@ impl Tick<'_> {
         (DRAW * climb_speed).max(self.config.body.radius / DRAW_TIME)
     }
 
-    /// Largest distance of its centre from its hold, metres: arms at full stretch, and some give.
+    /// Largest distance of the body's centre from its hold, metres: arms at full stretch, and some give.
     fn reach(&self, grip: &GripConfig) -> f64 {
         self.config.body.radius * 1.25 + grip.reach
     }
 
-    /// Loses its hold, because an obstacle has pushed it farther away than its arms reach, or crushed it.
+    /// Loses the hold, because an obstacle has pushed the climber farther away than its arms reach, or crushed it.
     pub(super) fn be_torn_off(&mut self, carried: &Carried) -> NextMode {
         self.state.open_handed = OPEN_HANDED;
-        // Without the speed of being pushed out.
+        // The velocity excludes the push by the obstacle.
         self.state.velocity = carried.velocity();
         self.lose_footing()
     }
 
-    /// Stands on ground among its contacts, if one holds it up.
+    /// Stands on ground among the contacts of the last movement, if one holds the climber up.
     pub(super) fn stand_where_it_hangs(&mut self) -> Option<NextMode> {
         let ground = self.held_up(self.state.position, self.config.ground.max_slope)?;
         self.state.position = ground.position;
@@ -265,9 +265,9 @@ impl Tick<'_> {
         Some(NextMode::Change(ClimberMode::Standing))
     }
 
-    /// The grip at a position: the nearest contact that can be gripped and reached. Of contacts about as near, the one
-    /// that the input pushes against is taken, unless climbing on it leads back against the hold whose normal is
-    /// `holds`, as in a crease. `None` if there is no grip, or it cannot carry the climber.
+    /// The grip at a position: the nearest contact that can be gripped and reached. Among contacts about equally near,
+    /// the one that the input pushes against is taken, unless climbing on it leads back against the hold with the
+    /// normal `holds`, as in a crease. `None` if there is no grip, or it cannot carry the climber.
     pub(super) fn find_grip(
         &mut self,
         position: DVec3,
@@ -298,8 +298,8 @@ impl Tick<'_> {
         self.carries(&touch).then_some(touch)
     }
 
-    /// Attaches it to the contact that it climbs onto. It turns a corner when it lies flat on a face whose normal
-    /// differs from that of the last one.
+    /// Attaches the climber to the contact that it climbs onto. It turns a corner when it lies flat on a face whose
+    /// normal differs from the last face's.
     fn climb_on_to(&mut self, carried: &Carried, touch: &Touch, position: DVec3) {
         let face = carried.support.attachment.frame * carried.support.face;
         self.attach(touch, position);
@@ -322,16 +322,16 @@ impl Tick<'_> {
 fn projected(wanted: DVec3, normal: DVec3) -> DVec3 {
     let share = wanted.length().min(1.0);
     let along = wanted - normal * wanted.dot(normal);
-    // Input straight into the hold does not move the climber: rounding would decide its direction.
+    // Input straight into the hold does not move the climber: rounding would decide the direction.
     let fade = (along.length() / (FULL * wanted.length())).min(1.0);
     along.normalize_or_zero() * if fade.is_finite() { share * fade } else { 0.0 }
 }
 
-/// The direction along a hold in which a stick that is pressed now climbs, a unit vector. `stick` is a level unit
-/// vector.
+/// The direction along a hold in which a stick that has just been pressed climbs, a unit vector. `stick` is a level
+/// unit vector.
 ///
-/// On walls it is turned with the hold from level ground, so that towards the wall is up. Under ceilings this turn has
-/// no axis that stays the same from one bump to the next, and the stick's own direction is taken.
+/// On walls, the stick is turned with the hold from level ground, so that towards the wall is up. Under ceilings, the
+/// axis of this turn changes from one bump to the next, so the stick's own direction is taken.
 fn pressed(up: DVec3, normal: DVec3, stick: DVec3) -> DVec3 {
     if normal.dot(up) > CEILING {
         turn_to(up, normal) * stick
@@ -340,8 +340,8 @@ fn pressed(up: DVec3, normal: DVec3, stick: DVec3) -> DVec3 {
     }
 }
 
-/// How much the input pushes against `face`, beyond a threshold, while the climber holds a face of normal `held`, along
-/// which it leads in the direction `wish`. Zero if climbing on `face` would lead back against the held one.
+/// Measures how much the input pushes against `face`, beyond a threshold, while the climber climbs in the direction
+/// `wish` along a face with the normal `held`. Zero if climbing on `face` would lead back against the held face.
 fn leads_on(input: &ClimberInput, (held, wish): (DVec3, DVec3), face: DVec3) -> f64 {
     let beyond = match input.climb {
         DVec3::ZERO => turn_to(held, face) * wish,
@@ -355,7 +355,7 @@ fn leads_on(input: &ClimberInput, (held, wish): (DVec3, DVec3), face: DVec3) -> 
     }
 }
 
-/// The shortest rotation from one unit vector to another. If they are opposite, its axis is any perpendicular one.
+/// The shortest rotation from one unit vector to another. If they are opposite, its axis is any perpendicular vector.
 fn turn_to(from: DVec3, to: DVec3) -> DQuat {
     let axis = from.cross(to);
     let real = 1.0 + from.dot(to);

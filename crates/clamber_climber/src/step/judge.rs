@@ -1,4 +1,4 @@
-//! Asking the game's rule for contacts.
+//! Queries of the game's rule for contacts.
 
 use clamber_mover::Touch;
 use clamber_world::{Contact, Obstacle, ObstacleId, SurfaceKind};
@@ -21,7 +21,7 @@ pub(crate) struct Judge<'a> {
 }
 
 impl Judge<'_> {
-    /// The rule for a contact.
+    /// The rule for a contact. A climber that this one carries cannot be gripped or hung from.
     pub(crate) fn rule(
         &self,
         id: ObstacleId,
@@ -48,14 +48,14 @@ impl Judge<'_> {
         }
     }
 
-    /// True for another climber that this one carries in the end.
+    /// True for another climber that this one carries, directly or through others.
     pub(super) fn carries(&self, other: &dyn Obstacle) -> bool {
         let own = self.rules.id;
         let carrier = || other.character().and_then(|other| other.carried_by);
         own.is_some() && carrier() == own
     }
 
-    /// The rule for a contact of the mover's.
+    /// The rule for a contact that the mover found.
     pub(super) fn rule_of(&self, touch: &Touch) -> ContactRule {
         match self.obstacle(touch.obstacle) {
             Some(obstacle) => self.rule(touch.obstacle, obstacle, &touch.contact),
@@ -65,7 +65,7 @@ impl Judge<'_> {
 
     /// True if hands may grip a contact.
     pub(super) fn grips(&self, touch: &Touch) -> bool {
-        // The usual rule asks which obstacle it is, and there may be many.
+        // The tag is checked first: the usual rule looks up the obstacle, and there may be many.
         let is_ruled = self.rules.contact.is_some();
         (is_ruled || touch.contact.tag.kind == SurfaceKind::Fur) && self.rule_of(touch).grip
     }
@@ -75,7 +75,7 @@ impl Judge<'_> {
         known.next().map(|(_, obstacle)| *obstacle)
     }
 
-    /// The rule for a support whose material is at `place`. Without a rule of the game's own, nothing ends a support.
+    /// The rule for a support whose material is at `place`. Without the game's own rule, no support is refused.
     pub(super) fn rule_of_support(&self, support: &Support, place: DVec3) -> ContactRule {
         if self.rules.contact.is_none() {
             return ContactRule::GRIP;
@@ -94,7 +94,8 @@ impl Judge<'_> {
         self.rule(on.obstacle, obstacle, &contact)
     }
 
-    /// True if the climber begins the tick on ground that may be stepped onto. What may not be is then no way up.
+    /// True if the climber begins the tick without a support, or on ground that may be stepped onto. Contacts without
+    /// [`ContactRule::step`] are then no way up.
     pub(crate) fn keeps_off_curbs(&self) -> bool {
         let on = self.state.support;
         on.is_none_or(|on| self.rule_of_support(&on, on.attachment.point).step)
@@ -112,7 +113,7 @@ impl Tick<'_> {
         self.judge.rules.contact.is_some() && !self.judge.rule_of(touch).stand
     }
 
-    /// Leaves ground that the rule no longer lets it stand on: it falls through, or slides off.
+    /// Leaves ground that the rule refuses: the climber falls through it, or slides off.
     pub(super) fn be_refused_by_ground(&mut self, own: DVec3) -> Option<NextMode> {
         if self.on.solid && self.on.stand {
             return None;
@@ -122,12 +123,12 @@ impl Tick<'_> {
             self.event(ClimberEvent::Slipped);
             return Some(self.leave(ClimberMode::Sliding));
         }
-        // A jump shortly after would lead back up.
+        // Without this, a late jump would lead back up.
         self.state.coyote = 0.0;
         Some(self.lose_footing())
     }
 
-    /// Loses a hold or a ledge that the rule no longer lets it hold.
+    /// Loses a hold or a ledge that the rule refuses.
     pub(super) fn be_refused_by_hold(&mut self, holds: bool) -> Option<NextMode> {
         (!self.on.solid || !holds).then(|| self.lose_footing())
     }

@@ -16,21 +16,23 @@ use crate::{ClimberEvent, ClimberMode};
 /// Speed at which arms draw the body into place below the ledge, radii a second: 3 m/s for a radius of 0.4 m.
 const DRAW: f64 = 7.5;
 
-/// A climber farther from its place than this share of its radius is drawn there before it pulls itself up.
+/// Distance from its place, as a fraction of the radius, above which a climber is drawn there before it pulls itself
+/// up.
 const OUT_OF_PLACE: f64 = 0.1;
 
-/// Hands may be up to this share of the radius to the side of where the body hangs, as on a sharp corner, where there
-/// is nothing straight ahead to hold: 0.45 of it, and what a hand leans over an edge.
+/// Largest distance of the hands to the side of where the body hangs, as a fraction of the radius. At a sharp corner,
+/// hands hold the edge up to 0.45 aside, plus the distance that a hand leans over an edge.
 const BESIDE: f64 = 0.6;
 
-/// Share of the input towards the wall above which the climber pulls itself up, and away from it, climbs down.
+/// Share of the input towards the wall above which the climber pulls itself up. With as much input away from the wall,
+/// it climbs down.
 const UPWARD: f64 = 0.5;
 
-/// Share of the input along the ledge that moves the climber at least. Less is the rounding of a wall's normal.
+/// Smallest share of the input along the ledge that moves the climber. Less is the rounding of a wall's normal.
 const ASIDE: f64 = 1e-3;
 
 /// Cosine of the largest angle by which a stick that has led the climber around a corner may turn and still lead on: 20
-/// degrees, more than a thumb wavers, and less than it turns to ask for something else.
+/// degrees. It is more than a thumb wavers, and less than a player turns the stick to change the direction.
 const HELD: f64 = 0.94;
 
 /// Memory of a climber that hangs from a ledge.
@@ -40,14 +42,14 @@ const HELD: f64 = 0.94;
 pub struct LedgeHangingMemory {
     /// Progress of a pull-up, 0 (hangs) to 1 (stands on top).
     pub pull_up: f64,
-    /// How long an obstacle has kept it from pulling itself up farther, seconds.
+    /// Time for which an obstacle has kept the climber from pulling itself up farther, seconds.
     pub blocked: f64,
     /// True after a pull-up was given up for lack of room, until the input no longer asks for one.
     pub gave_up: bool,
-    /// True while it goes back to its place below the edge, from a pull-up that was given up or from the top.
+    /// True while the climber goes back to its place below the edge, from a pull-up that was given up or from the top.
     pub returns: bool,
     /// Direction of the input that leads to the climber's right, a level unit vector in world space. Set while the
-    /// input has led it around a corner, so that the same input leads on; otherwise zero.
+    /// input has led the climber around a corner, so that the same input leads on; otherwise zero.
     pub right: DVec3,
 }
 
@@ -58,7 +60,7 @@ impl Tick<'_> {
         let Ledge { touch, facing, .. } = self.find_ledge(place, self.facing(), &config)?;
         let lift = (touch.contact.point - place).dot(self.config.up()) - config.drop;
         if self.state.mode == ClimberMode::Standing && lift <= 0.0 {
-            // It would hang no higher than it stands.
+            // The climber would hang no higher than it stands.
             return None;
         }
         if !self.catches(&touch, config.catch_speed) {
@@ -75,7 +77,7 @@ impl Tick<'_> {
         Some(NextMode::Change(ClimberMode::LedgeHanging))
     }
 
-    /// Direction in which it looks for a ledge: that of `walk`, or the heading without input.
+    /// Direction in which the climber looks for a ledge: the direction of `walk`, or the heading without input.
     fn facing(&self) -> DVec3 {
         let up = self.config.up();
         let walk = self.input.walk;
@@ -123,7 +125,7 @@ impl Tick<'_> {
         }
         let mut wish = self.ledge_wish();
         if !self.on.stand {
-            // There is nothing to pull itself up onto.
+            // There is no ground to pull itself up onto.
             wish.up = wish.up.min(0.0);
         }
         let pulls_up = self.is_pulling_up(wish.up);
@@ -140,7 +142,7 @@ impl Tick<'_> {
         }
     }
 
-    /// Grips at a position, if there is a grip, such as the wall below its ledge.
+    /// Grips at a position, if there is a grip, for example on the wall below the ledge.
     fn grip_at(&mut self, place: DVec3) -> Option<NextMode> {
         let grip = self.config.grip?;
         let touch = self.find_grip(place, &grip, None)?;
@@ -158,7 +160,7 @@ impl Tick<'_> {
         input - up * input.dot(up)
     }
 
-    /// What the input asks for, relative to the wall. Since the ledge turned a corner, the stick leads on along the
+    /// The wish of the input, relative to the wall. After the ledge has turned a corner, the stick leads on along the
     /// ledge as it did before, as long as it is held there or straight back.
     fn ledge_wish(&mut self) -> LedgeWish {
         let up = self.config.up();
@@ -184,14 +186,14 @@ impl Tick<'_> {
         }
     }
 
-    /// Its position while it hangs: the ball at the wall, below the edge.
+    /// The climber's position while it hangs: the ball at the wall, below the edge.
     fn hanging_place(&self, carried: &Carried, config: &LedgeConfig) -> DVec3 {
         let out = self.ledge_probe(self.state.heading, config).hands_ahead();
         carried.motion.position - self.state.heading * out - self.config.up() * config.drop
     }
 
-    /// The way from a position to the place where it hangs. Hands may be a little to the side of the body, as at a
-    /// ledge's end, or where the top slopes.
+    /// The way from a position to the place where the climber hangs. Hands may be a little to the side of the body, as
+    /// at a ledge's end, or where the top slopes.
     fn way_to(&self, place: DVec3, position: DVec3) -> DVec3 {
         let side = self.state.heading.cross(self.config.up());
         let way = place - position;
@@ -199,7 +201,7 @@ impl Tick<'_> {
         way - side * way.dot(side).clamp(-beside, beside)
     }
 
-    /// The part of a displacement that arms make in a tick.
+    /// The part of a displacement that the arms make in a tick.
     fn drawn(&self, way: DVec3) -> DVec3 {
         way.clamp_length_max(DRAW * self.config.body.radius * self.dt())
     }
@@ -208,11 +210,11 @@ impl Tick<'_> {
         way.length() > OUT_OF_PLACE * self.config.body.radius
     }
 
-    /// True if its ledge leaves it no room, or an obstacle holds it out of reach. If it held on, it would be dragged
-    /// through that obstacle.
+    /// True if the ledge leaves the climber no room, or an obstacle holds it out of reach. If it held on, it would be
+    /// dragged through that obstacle.
     fn is_pressed_off(&self, place: DVec3, moved: &Moved, config: &LedgeConfig) -> bool {
         let is_crushed = moved.missing_room > self.config.body.margin;
-        // It may have caught the ledge from above its place as well as from below.
+        // The climber may have caught the ledge from above its place as well as from below.
         let reach = self.config.body.radius + config.reach + config.reach_up.max(config.drop);
         let is_far = moved.position.distance(place) > reach && !self.state.ledge_hanging.returns;
         is_crushed || is_far

@@ -42,14 +42,14 @@ use crate::{
 pub(crate) use carrying::CONTINUOUS;
 use carrying::Carried;
 
-/// Most changes of mode in a tick. Further changes follow in the next tick.
+/// Maximum number of mode changes in a tick. Further changes follow in the next tick.
 const MOST_CHANGES: u32 = 4;
 
-/// Least share of a direction that is level, for a climber to face it. Less is rounding: the normal of level skin, for
-/// example.
+/// Smallest level part of a direction, as a fraction of its length, for the climber to turn to it. A smaller part is
+/// rounding, for example of the normal of level skin.
 const LEVEL: f64 = 1e-6;
 
-/// Memory that a climber reuses from tick to tick. Of its contents, only the contacts of the last tick are used later.
+/// Memory that a climber reuses from tick to tick. Only the contacts of the last tick are read later.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Scratch {
     mover: MoverMemory,
@@ -62,7 +62,7 @@ impl Scratch {
     }
 }
 
-/// Capacity for contacts, reserved from the first tick on.
+/// Number of contacts for which memory is reserved from the first tick on.
 const CONTACTS: usize = 64;
 
 /// The arguments of a tick.
@@ -76,7 +76,7 @@ pub(crate) struct Asked<'a> {
     pub(crate) dt: f64,
 }
 
-/// One tick of one climber: what its phases read and write.
+/// One tick of one climber: the data that its phases read and write.
 pub(crate) struct Tick<'a> {
     config: &'a ClimberConfig,
     input: &'a ClimberInput,
@@ -89,48 +89,49 @@ pub(crate) struct Tick<'a> {
     contacts: &'a mut Vec<ClimberContact>,
     /// Position at the tick's beginning.
     began: DVec3,
-    /// Where its support carries it in this tick, or its velocity in the air.
+    /// Position to which the support, or the velocity in the air, takes the climber in this tick.
     expected: DVec3,
-    /// How far it gives way to climbers that it overlaps.
+    /// Displacement by which the climber gives way to climbers that it overlaps.
     parting: DVec3,
     /// Velocity at the tick's beginning, including a blow.
     was: DVec3,
-    /// True if it was crushed in the last tick.
+    /// True if the climber was crushed in the last tick.
     was_crushed: bool,
-    /// Velocity of its support, or of its frame in the air, at the tick's beginning.
+    /// Velocity of the support, or of the frame in the air, at the tick's beginning.
     base_was: DVec3,
-    /// The velocity at which its own momentum is what it was: any change from it has a reaction on its support.
+    /// Velocity at which the climber's own momentum is the same as before: a difference from it has a reaction on the
+    /// support.
     rides: DVec3,
-    /// Velocity of a blow that does not end the mode by itself: the climber stays on its feet or its hold. Zero if
-    /// none.
+    /// Velocity of a blow that does not end the mode by itself: the climber stays on its feet or its hold. Zero without
+    /// such a blow.
     struck: DVec3,
-    /// How its support has carried it in this tick.
+    /// How the support has carried the climber in this tick.
     carried: Option<Carried>,
-    /// The rule for the support that has carried it. Everything is allowed without one.
+    /// The rule for the support that has carried the climber. Without a support, everything is allowed.
     on: ContactRule,
-    /// How far arms have drawn the body upwards in this tick, metres.
+    /// Distance by which the arms have drawn the body upwards in this tick, metres.
     drawn_up: f64,
     /// True if the target of a movement was not finite.
     is_lost: bool,
     /// True if the body has made its movement.
     has_moved: bool,
-    /// True if that movement was through the air.
+    /// True if this movement was through the air.
     has_flown: bool,
-    /// How the velocity of its support has changed since the last tick, beyond what its own recoil has changed; `None`
-    /// if that is not known.
+    /// Change of the support's velocity since the last tick, beyond the change by the climber's own recoil; `None` if
+    /// it is not known.
     support_change: Option<DVec3>,
-    /// The impulse that its arms gave to the body, if it hangs by them.
+    /// Impulse of the arms on the body, if the climber hangs by them.
     pull: Option<DVec3>,
-    /// What the last movement's hits changed its velocity by. Zero if it hit nothing that gives way.
+    /// Change of the climber's velocity by the hits of the last movement. Zero if it hit no obstacle that gives way.
     recoil: DVec3,
-    /// The velocity at which that movement would have gone on without contacts.
+    /// Velocity that this movement would have had without contacts.
     wanted: DVec3,
-    /// If nothing carried it and it touched something in the last tick, the displacement by which contacts changed its
-    /// way; otherwise zero.
+    /// Displacement by which contacts changed the climber's way in the last tick, if it had no support and touched an
+    /// obstacle then; otherwise zero.
     was_pressed: DVec3,
-    /// Velocity of its movement through the air before contacts clipped it.
+    /// Velocity of the movement through the air before contacts clipped it.
     flew_at: Option<DVec3>,
-    /// True if its mode began in this tick.
+    /// True if the current mode began in this tick.
     has_entered: bool,
 }
 
@@ -142,7 +143,7 @@ pub(crate) fn body(config: &ClimberConfig, state: &ClimberState) -> MoverBody {
 }
 
 impl<'a> Tick<'a> {
-    // A tick is large, and would be copied.
+    // Inlined, since a tick is large and would be copied.
     #[inline]
     pub(crate) fn new(
         config: &'a ClimberConfig,
@@ -205,7 +206,7 @@ impl<'a> Tick<'a> {
         })
     }
 
-    /// Brings the state to the end of the tick. `None` if it is not finite then.
+    /// Brings the state to the end of the tick. `None` if the state is not finite then.
     pub(crate) fn run(&mut self) -> Option<StepReport> {
         let shake = self.state.shake;
         self.be_struck();
@@ -260,7 +261,7 @@ impl<'a> Tick<'a> {
                 break;
             };
             if mode == self.state.mode {
-                // Without this, the handler would run again and again.
+                // Otherwise the handler would run again and again.
                 self.event(ClimberEvent::AlreadyInMode { mode });
                 break;
             }
@@ -321,7 +322,7 @@ impl<'a> Tick<'a> {
         }
     }
 
-    /// Crouches while it holds on or is asked to, and stands up where there is room.
+    /// Crouches while the climber holds on or is asked to crouch, and stands up where there is room.
     fn stand_up(&mut self) {
         let height = self.config.body.height;
         if height == 0.0 {
@@ -348,7 +349,7 @@ impl<'a> Tick<'a> {
         self.report.events.push(event);
     }
 
-    /// Turns to face the level component of a direction; no change if that is no more than rounding.
+    /// Turns to face the level component of a direction; no change if that component is mere rounding.
     fn face(&mut self, direction: DVec3) {
         let up = self.config.up();
         let level = direction - up * direction.dot(up);

@@ -7,8 +7,8 @@ use super::Tick;
 use super::carrying::Carried;
 use crate::{ClimberContact, ClimberEvent, ClimberMode, ContactPhase};
 
-/// Contacts with one key count as one if they are nearer to each other than this share of the radius, and their normals
-/// differ by at most the angle of [`ONE_FACE`]. A movement may find a contact twice.
+/// Distance, as a fraction of the radius, within which contacts with the same key count as one, if their normals differ
+/// by at most the angle of [`ONE_FACE`]. A movement may find a contact twice.
 const ONE_CONTACT: f64 = 0.25;
 
 /// Cosine of the largest angle between the normals of contacts on one face: 8 degrees, since skin bends.
@@ -24,8 +24,8 @@ pub(super) enum Intent {
 }
 
 impl Tick<'_> {
-    /// The path of the body, in its current shape, from its position a tick ago to a target, beside which it gives way
-    /// to other climbers. Its frame is the support.
+    /// The path of the body, in its current shape, from its position a tick ago to a target. The target is shifted by
+    /// the displacement with which the climber gives way to other climbers. The path's frame is the support.
     pub(super) fn path(&self, target: DVec3) -> Path {
         let body = self.body();
         let target = target + self.parting;
@@ -55,11 +55,12 @@ impl Tick<'_> {
         self.slide_at(path, intent, wanted)
     }
 
-    /// [`Tick::slide`] with the velocity by which contacts are judged, where that is not the mean over the tick.
+    /// [`Tick::slide`] with a velocity for judging contacts that is not the mean over the tick.
     pub(super) fn slide_at(&mut self, path: &Path, intent: Intent, wanted: DVec3) -> Moved {
         let mut moved = self.mover.slide(path);
         if self.is_free() {
-            // A body that is crushed keeps to the frame of what crushes it, not to that of a support which it left.
+            // A crushed body keeps to the frame of the obstacles that crush it, not to the frame of a support that it
+            // left.
             let frame = self.touched_velocity().map(|velocity| velocity * self.dt());
             if let Some(frame) = frame
                 && moved.missing_room > path.body.margin
@@ -72,7 +73,7 @@ impl Tick<'_> {
         self.note(path, intent, wanted, moved)
     }
 
-    /// [`Tick::slide`], or `None`, with nothing recorded, if the body has no room or its way is not clear.
+    /// [`Tick::slide`], or `None` if the body has no room or its way is not clear. Then no result is recorded.
     pub(super) fn slide_if_there_is_room(&mut self, path: &Path) -> Option<Moved> {
         let wanted = (path.target - path.start) / self.dt();
         let moved = self.mover.slide(path);
@@ -90,7 +91,7 @@ impl Tick<'_> {
         self.report.is_clear &= moved.is_clear;
         self.state.crushed = moved.missing_room > path.body.margin;
         if self.state.crushed {
-            // Only the ball is left, which needs the least room.
+            // Only the ball is kept, which needs the least room.
             self.state.crouched = true;
             self.event(ClimberEvent::Crushed {
                 depth: moved.missing_room - path.body.margin,
@@ -114,7 +115,7 @@ impl Tick<'_> {
             })
     }
 
-    /// Clips the velocity that a movement would have had without contacts, after what it hit has taken its share.
+    /// Clips the velocity that a movement would have had without contacts, after its hits have changed it.
     pub(super) fn clipped_after_hits(&self, velocity: DVec3) -> DVec3 {
         self.clipped(velocity + self.recoil)
     }
@@ -190,7 +191,7 @@ impl Tick<'_> {
         });
     }
 
-    /// Keeps its support at a position, and clips the wanted velocity by the contacts.
+    /// Keeps the support at a position, and clips the wanted velocity by the contacts.
     pub(super) fn settle(&mut self, carried: &Carried, position: DVec3, wanted: DVec3) {
         self.keep_support(carried, position);
         self.state.velocity = self.clipped(wanted);

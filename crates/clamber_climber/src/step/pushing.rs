@@ -10,17 +10,17 @@ use super::carrying::Carried;
 use crate::ClimberMode;
 use crate::event::Push;
 
-/// A support that accelerates by at most this multiple of gravity carries all of the climber's weight. From twice this
-/// on, its whole acceleration counts. Physics engines let bodies at rest jitter by a part of it.
+/// Acceleration of a support, as a multiple of gravity, up to which it carries all of the climber's weight. From twice
+/// this on, its whole acceleration counts. Physics engines let bodies at rest jitter by a part of this.
 pub(super) const JITTER: f64 = 0.03;
 
-/// The largest square of the angle, radians, by which a light hold may swing in a tick under the pull of the arms.
-/// Where it would swing farther, it gets less of their pull. At twice this, the pull of ticks that lag behind drives
+/// Largest square of the angle, radians, by which a light hold may swing in a tick under the pull of the arms. A hold
+/// that would swing farther gets less of the pull. At twice this value, the pull, which lags behind by a tick, drives
 /// the swing.
 const STIFFEST: f64 = 0.15;
 
 impl Tick<'_> {
-    /// Gives the reaction to an impulse to what the climber stands on or holds, if that can be pushed. Without it a
+    /// Gives the climber's support the reaction to an impulse, if the support can be pushed. Without the reaction, a
     /// passenger would drive its cart by pushing against the cart's wall.
     pub(super) fn brace_against(&mut self, impulse: DVec3) {
         if impulse == DVec3::ZERO {
@@ -31,8 +31,9 @@ impl Tick<'_> {
         }
     }
 
-    /// Gives its support the reaction to a jump off it: all of the momentum that it takes along. What is light and held
-    /// up by something else passes the rest on to that: feet give it no more speed than the climber gets.
+    /// Gives the support the reaction to a jump off it: all of the momentum that the climber takes along. A light
+    /// support that another object holds up passes the rest on to that object: feet give the support no more speed than
+    /// the climber gets.
     pub(super) fn push_off(&mut self) {
         let Some(attachment) = self.attachment() else {
             return;
@@ -44,22 +45,23 @@ impl Tick<'_> {
         self.push_support(&attachment, -change * (self.config.body.mass * share));
     }
 
-    /// The share of its jump speed that it gets from its support: all of it from what is held up by something else, and
-    /// from what falls freely the share that the masses leave.
+    /// Share of its jump speed that the climber gets. Off a support that another object holds up, it gets all of it;
+    /// off a support that falls freely, the share that the two masses leave it.
     pub(super) fn jump_share(&self) -> f64 {
         let held = self.is_held_up();
         held + (1.0 - held) / (1.0 + self.relative(self.config.up()))
     }
 
-    /// The climber's mass as a multiple of its support's, for impulses in a direction. 0 if that cannot be pushed.
+    /// The climber's mass as a multiple of its support's, for impulses in a direction. 0 if the support cannot be
+    /// pushed.
     pub(super) fn relative(&self, direction: DVec3) -> f64 {
         self.attachment().map_or(0.0, |attachment| {
             self.response_of(&attachment, direction) * self.config.body.mass
         })
     }
 
-    /// How far something else holds up what it stands on: 1 if all of its weight is carried, 0 if both fall freely. 1 in
-    /// the tick after a hit: how far what was hit gives way is not known yet.
+    /// Share of the ground's weight that another object holds up: 1 if it holds all of it, 0 if the ground and the
+    /// climber fall freely. 1 in the tick after a hit, when it is not known yet how far the ground gives way.
     fn is_held_up(&self) -> f64 {
         if self.state.mode != ClimberMode::Standing {
             return 0.0;
@@ -67,7 +69,7 @@ impl Tick<'_> {
         let sinks = self.support_change.map_or(0.0, |change| self.sinks(change));
         let load = self.state.load;
         let relative = self.relative(self.config.gravity);
-        // After a landing it has not given any weight yet.
+        // After a landing, the climber has not given any weight yet.
         let held = if load == 0.0 {
             1.0 - sinks
         } else {
@@ -76,14 +78,14 @@ impl Tick<'_> {
         held.clamp(0.0, 1.0)
     }
 
-    /// The acceleration of its support along gravity, in multiples of that, without what may be a solver's jitter.
+    /// Acceleration of the support along gravity, in multiples of gravity, without a solver's possible jitter.
     fn sinks(&self, change: DVec3) -> f64 {
         let gravity = self.config.gravity;
         without_jitter(change.dot(gravity) / (gravity.length_squared() * self.dt()))
     }
 
-    /// Brakes its velocity `along` a contact, relative to that, by at most `braked`, and gives the contact the reaction.
-    /// Both come to one speed at most. Returns the speed that is left.
+    /// Brakes the climber's velocity `along` a contact, relative to the contact, by at most `braked`, and gives the
+    /// contact the reaction. The braking ends when both have the same speed. Returns the speed that is left.
     pub(super) fn rub(&mut self, touch: &Touch, along: DVec3, braked: f64) -> f64 {
         let way = along.normalize_or_zero();
         let mass = self.config.body.mass;
@@ -96,7 +98,7 @@ impl Tick<'_> {
         left
     }
 
-    /// Changes its velocity against a contact, which gets the reaction.
+    /// Changes the climber's velocity against a contact, which gets the reaction.
     fn change_against(&mut self, touch: &Touch, change: DVec3) {
         self.state.velocity += change;
         self.rides += change;
@@ -110,8 +112,9 @@ impl Tick<'_> {
         }
     }
 
-    /// Puts its weight on its support, except after a movement through the air: then the support got the impulse of the
-    /// hit. It also gets the reaction to changes of the climber's own velocity, or to the pull of its arms.
+    /// Puts the climber's weight on its support, except after a movement through the air: then the support got the
+    /// impulse of the hit. The support also gets the reaction to changes of the climber's own velocity, or to the pull
+    /// of its arms.
     pub(super) fn weigh_down(&mut self) {
         let Some(attachment) = self.attachment() else {
             self.state.load = 0.0;
@@ -145,12 +148,12 @@ impl Tick<'_> {
         }
     }
 
-    /// The impulse over the tick of the weight of a mass, as far as its support gets it.
+    /// The impulse of a mass's weight over the tick, as far as the support gets it.
     fn weight(&self, mass: f64) -> DVec3 {
         self.config.gravity * (mass * self.dt() * self.state.load)
     }
 
-    /// The mass of all climbers that stand on it or hold it, or stand on those, kg.
+    /// Mass of all climbers that stand on this one or hold it, directly or through others, kg.
     fn mass_borne(&self) -> f64 {
         let characters = self.obstacles.iter();
         characters
@@ -160,13 +163,13 @@ impl Tick<'_> {
             .sum()
     }
 
-    /// The share of its weight that its support gets in this tick: mass times gravity, less the support's acceleration.
-    /// `relative` is the mass, with that of those it bears, as a multiple of the support's. Zero for a support that
-    /// cannot be pushed.
+    /// Share of its weight that the climber's support gets in this tick: gravity less the support's acceleration along
+    /// it. `relative` is the mass of the climber and of the climbers on it, as a multiple of the support's mass. Zero
+    /// for a support that cannot be pushed.
     ///
-    /// The support's acceleration includes what the weight gave to it in the last tick, as far as nothing held it. So
-    /// the share is that of two bodies which move on together, of any masses: a light one is neither pulled down faster
-    /// than gravity nor weighed down by turns.
+    /// The support's acceleration includes the effect of the last tick's weight, unless another object held the
+    /// support. So the share is correct for two bodies which move on together, of any masses: a light support is
+    /// neither pulled down faster than gravity, nor loaded only in every other tick.
     fn load_on(&self, attachment: &Attachment, relative: f64) -> f64 {
         if relative == 0.0 {
             return 0.0;
@@ -188,7 +191,7 @@ impl Tick<'_> {
         share.max(0.0)
     }
 
-    /// What the weight of the last tick has changed its support's velocity by, if nothing held that.
+    /// Change of the support's velocity by the weight of the last tick, if no other object held the support.
     pub(super) fn change_by_load(&self) -> DVec3 {
         let Some(attachment) = self.attachment() else {
             return DVec3::ZERO;
@@ -197,13 +200,14 @@ impl Tick<'_> {
         weight * self.response_of(&attachment, weight)
     }
 
-    /// Gives its hold the reaction to the pull of its arms: as the arms hold one body at each end, by the share of the
-    /// hold's inertia. `weight` of it is the climber's weight, which it gets in any case.
+    /// Gives the hold the reaction to the pull of the arms. The arms hold one body at each end, so the hold gets the
+    /// share that its inertia leaves. `weight`, the climber's weight, is subtracted, since the hold gets it in any
+    /// case.
     fn pull_on(&mut self, attachment: &Attachment, pull: DVec3, weight: DVec3) {
-        // Slack arms do not pull: then the weight is taken back.
+        // Slack arms do not pull: this takes the weight back.
         let response = self.response_of(attachment, pull);
         let relative = response * self.config.body.mass;
-        // A hold of a hundredth of the climber's mass that something else holds swings faster than the ticks follow.
+        // A hold with a hundredth of the climber's mass that another object holds swings faster than the ticks follow.
         let dt = self.dt();
         let length = self.state.hanging.arm.max(self.config.body.radius);
         let stiffness = relative * self.config.gravity.length() * dt * dt / length;
@@ -211,8 +215,9 @@ impl Tick<'_> {
         self.push_support(attachment, given - weight);
     }
 
-    /// The reaction to starting, stopping and turning, and to being brought to the support's velocity. Both move on
-    /// together, so a light raft is not kicked away. Ice does not take the climber along: it gets all of the reaction.
+    /// Gives the support the reaction to starting, stopping and turning, and to the change to the support's velocity.
+    /// Climber and support move on together, so a light raft is not kicked away. Ice does not move on with the climber,
+    /// and gets all of the reaction.
     fn recoil(&mut self, attachment: &Attachment) {
         let change = self.state.velocity - self.rides;
         if change == DVec3::ZERO {
@@ -230,7 +235,7 @@ impl Tick<'_> {
         }
     }
 
-    /// Gives the support an impulse, if it can be pushed. The change of velocity that this makes will not count as
+    /// Gives the support an impulse, if it can be pushed. The change of velocity by this impulse will not count as
     /// shake.
     fn push_support(&mut self, attachment: &Attachment, impulse: DVec3) {
         let response = self.response_of(attachment, impulse);
@@ -243,8 +248,8 @@ impl Tick<'_> {
         self.add_to_support(attachment, impulse);
     }
 
-    /// Bounces off a contact at a speed, of which it gets the share that the masses leave, and gives the contact the
-    /// reaction.
+    /// Bounces off a contact at a speed, reduced to the share that the two masses leave the climber, and gives the
+    /// contact the reaction.
     pub(super) fn bounce(&mut self, touch: &Touch, speed: f64) {
         let mass = self.config.body.mass;
         let response = self.response_at(touch, touch.normal);
@@ -252,7 +257,7 @@ impl Tick<'_> {
         self.change_against(touch, change);
     }
 
-    /// Adds an impulse to what the support gets in this tick.
+    /// Adds an impulse to the impulses that the support gets in this tick.
     fn add_to_support(&mut self, attachment: &Attachment, impulse: DVec3) {
         self.push(Push {
             obstacle: attachment.obstacle,
@@ -262,7 +267,7 @@ impl Tick<'_> {
         });
     }
 
-    /// Adds a push to those of this tick.
+    /// Adds a push to the tick's pushes; pushes on the same material are summed.
     pub(super) fn push(&mut self, new: Push) {
         let key = |push: &Push| (push.obstacle, push.material.key);
         let mut pushes = self.report.pushes.iter_mut();
@@ -272,7 +277,7 @@ impl Tick<'_> {
         }
     }
 
-    /// The speed along a direction that an impulse of 1 N s in it gives to the support.
+    /// The speed along a direction that the support gains from an impulse of 1 N s in this direction.
     pub(super) fn response_of(&self, attachment: &Attachment, direction: DVec3) -> f64 {
         let direction = direction.normalize_or_zero();
         if direction == DVec3::ZERO {
@@ -282,15 +287,15 @@ impl Tick<'_> {
         self.mover.push_response(obstacle, material, direction)
     }
 
-    /// The speed along a unit vector that an impulse of 1 N s in this direction gives to a contact.
+    /// The speed along a unit vector that a contact gains from an impulse of 1 N s in this direction.
     pub(super) fn response_at(&self, touch: &Touch, direction: DVec3) -> f64 {
         let material = &touch.contact.material;
         self.mover
             .push_response(touch.obstacle, material, direction)
     }
 
-    /// True for contacts that it stands on or holds: its support, and while standing all that are level enough to be
-    /// underfoot.
+    /// True for contacts that the climber stands on or holds: its support, and while it stands, all contacts that are
+    /// level enough to be underfoot.
     pub(super) fn is_on(&self, touch: &Touch) -> bool {
         let is_underfoot = self.state.mode == ClimberMode::Standing
             && self.config.slope(touch.normal) <= self.standing_slope();
@@ -307,7 +312,7 @@ impl Tick<'_> {
     }
 }
 
-/// The acceleration of a support, in multiples of gravity, without what may be a solver's jitter.
+/// The acceleration of a support, in multiples of gravity, without a solver's possible jitter.
 fn without_jitter(acceleration: f64) -> f64 {
     let beyond = (acceleration.abs() - JITTER).clamp(0.0, JITTER) * 2.0;
     if beyond < 2.0 * JITTER {

@@ -8,22 +8,22 @@ use super::moving::{Intent, towards};
 use super::{NextMode, Tick};
 use crate::{ClimberEvent, ClimberMode};
 
-/// A climber that was pushed, at once or over many ticks, farther than this share of its radius from where it would
-/// stand upright on its material point looks for new ground.
+/// Distance from the upright position on the material point, as a fraction of the radius, beyond which a climber that
+/// was pushed, at once or over many ticks, looks for new ground.
 const SHOVED: f64 = 0.1;
 
-/// A climber that stands above its point, since something pushed it or it let go of a hold, goes down by this share of its
-/// radius in a second, until it is no farther above the point than the margin and than it is aside of it. It does not go
-/// back to the side: what pushed it may still be there.
+/// Speed at which a climber above its material point sinks towards it, radii a second, after an obstacle pushed it up
+/// or it let go of a hold. It stops sinking when its height above the point is at most the margin plus its distance to
+/// the side. It does not go back to the side: the obstacle that pushed it may still be there.
 const SETTLES: f64 = 0.5;
 
-/// A climber that is crushed into its ground by up to this share of its radius still stands on it.
+/// Depth, as a fraction of its radius, to which a climber may be crushed into its ground and still stands on it.
 const SUNK: f64 = 0.5;
 
-/// A walking climber is pressed onto its ground by this share of the margin.
+/// Depth to which a walking climber is pressed onto its ground, as a fraction of the margin.
 const PRESS: f64 = 0.5;
 
-/// Speed above this multiple of the walking speed is braked by friction; less may be rounding.
+/// Multiple of the walking speed above which friction brakes the climber; a smaller excess may be rounding.
 const EXCESS: f64 = 1.05;
 
 /// Memory of a climber that stands.
@@ -64,9 +64,9 @@ impl Tick<'_> {
         if self.state.jump_buffer > 0.0 {
             return self.jump(walk);
         }
-        // A slide is not over within a tick, unlike a start of the feet.
+        // Feet that grip reach their velocity at once. A slide does not, so it moves at the mean of its velocities.
         let mean = if self.is_slippery() {
-            // Feet that do not slip follow their ground at once.
+            // Feet that did not slip have followed their ground at once.
             let begins = if has_slipped { kept } else { own };
             (begins - normal * begins.dot(normal) + walk) * 0.5
         } else {
@@ -88,7 +88,7 @@ impl Tick<'_> {
         })
     }
 
-    /// Jumps, with the velocity of the ground that it leaves.
+    /// Jumps, starting from the velocity of the ground.
     fn jump(&mut self, walk: DVec3) -> NextMode {
         self.face(self.input.walk);
         let speed = self.config.ground.jump_speed * self.jump_share();
@@ -105,7 +105,7 @@ impl Tick<'_> {
         self.state.flying.jumping = true;
     }
 
-    /// Stays on its material point; obstacles may push it aside a little.
+    /// Stays on the material point; obstacles may push the climber aside a little.
     fn stay(&mut self, carried: &Carried) -> NextMode {
         let radius = self.config.body.radius;
         let upright = carried.motion.position + carried.normal() * radius;
@@ -116,7 +116,7 @@ impl Tick<'_> {
         let settles = too_far.min(SETTLES * radius * self.dt());
         let down = carried.normal() * -settles;
         let path = self.path(carried.position + down);
-        // What is in its way is neither hit nor pushed by that.
+        // The velocity excludes settling, which neither hits nor pushes obstacles.
         let wanted = (path.target - down - path.start) / self.dt();
         let moved = self.slide_at(&path, Intent::Stay, wanted);
         let went = (moved.position - carried.position).dot(-carried.normal());
@@ -128,7 +128,7 @@ impl Tick<'_> {
         let into = apart.dot(carried.normal()).clamp(-SUNK * radius, 0.0);
         let is_shoved = (apart - carried.normal() * into).length() > SHOVED * radius;
         if is_shoved && moved.missing_room > self.config.body.margin {
-            // Crushed away from its ground: it does not stand on what is below it now.
+            // Crushed away from its ground: the climber does not stand on the obstacle that is below it now.
             self.state.velocity = carried.velocity();
             return self.lose_footing();
         }
@@ -143,7 +143,8 @@ impl Tick<'_> {
         NextMode::Stay
     }
 
-    /// What hits have changed its velocity by, if its feet slip: nothing else brakes it, and its ground gets no reaction.
+    /// Change of the climber's velocity by hits, if its feet slip; otherwise zero. Slipping feet do not brake it, so
+    /// its ground gets no reaction.
     fn struck_on_ice(&mut self) -> DVec3 {
         let struck = if self.is_slippery() {
             self.recoil
@@ -154,8 +155,8 @@ impl Tick<'_> {
         struck
     }
 
-    /// Its velocity on its ground, clipped by the contacts of the last movement. Feet that slip do not brace it against
-    /// these: their impulses are no reaction for the ground.
+    /// The climber's velocity on its ground, clipped by the contacts of the last movement. Feet that slip do not brace
+    /// it against these contacts, so the ground gets no reaction to their impulses.
     fn stopped(&mut self, velocity: DVec3) -> DVec3 {
         let clipped = self.clipped(velocity);
         if self.is_slippery() {
@@ -164,7 +165,8 @@ impl Tick<'_> {
         clipped
     }
 
-    /// Walks relative to its ground, and finds the ground at its new position. `mean` is its velocity over the tick.
+    /// Walks relative to its ground, and finds the ground at its new position. `mean` is the climber's own velocity
+    /// over the tick.
     fn walk(&mut self, carried: &Carried, walk: DVec3, mean: DVec3) -> NextMode {
         if self.input.walk != DVec3::ZERO {
             let slides = self.is_slippery();
@@ -172,8 +174,8 @@ impl Tick<'_> {
         }
         let limit = self.standing_slope();
         let (up, normal) = (self.config.up(), carried.normal());
-        // Pressed onto the ground, so that the ground is among the contacts; between steep slopes, onto all of them
-        // alike.
+        // The target is pressed onto the ground, so that the ground is among the contacts; between steep slopes, it is
+        // pressed straight down, onto all of them alike.
         let onto = if self.config.slope(normal) > limit {
             up
         } else {
@@ -189,7 +191,8 @@ impl Tick<'_> {
             ..self.path(target - press)
         };
         let moved = if self.is_slippery() {
-            // What it strikes there gets the momentum of its slide, and not of what presses or parts it.
+            // Hits get the momentum of the slide, without the press onto the ground and the parting from other
+            // climbers.
             self.slide_at(&path, Intent::Go, carried.velocity() + mean)
         } else {
             self.slide(&path, Intent::Go)
@@ -199,7 +202,7 @@ impl Tick<'_> {
         let walk = walk + self.struck_on_ice();
         if let Some(position) = self.step_up(carried, target) {
             self.state.position = position;
-            // It keeps its speed, but not the rise by which it rolled up the step's edge.
+            // The climber keeps its speed, but not the rise by which it rolled up the step's edge.
             let level = walk - up * walk.dot(up).max(0.0);
             let walk = level.normalize_or_zero() * walk.length();
             return self.find_new_ground(carried, walk);
@@ -226,8 +229,8 @@ impl Tick<'_> {
             .then_some(position)
     }
 
-    /// True if no moving obstacle passed through where a correction of its movement leads. Always true if the support
-    /// was placed elsewhere, since nothing is swept then.
+    /// True if no moving obstacle is in the way of the tick's movement, shifted by a correction of its end. Always true
+    /// if the support was placed elsewhere, since the body is not swept then.
     pub(super) fn is_corrected_clear(&mut self, carried: &Carried, corrected: DVec3) -> bool {
         let moved = self.state.position;
         let body = self.body();
@@ -237,7 +240,7 @@ impl Tick<'_> {
                 .is_clear_with(&body, [carried.start, moved], corrected - moved)
     }
 
-    /// Stands on ground, with its own velocity clipped by the contacts of the last movement.
+    /// Stands on ground, with the climber's own velocity clipped by the contacts of the last movement.
     fn stand_on(&mut self, ground: &Ground, own: DVec3) -> NextMode {
         let slips = self.friction_of(&ground.touch) < 1.0;
         let from = self.carried.as_ref().filter(|_| slips);
@@ -245,14 +248,14 @@ impl Tick<'_> {
         self.state.position = ground.position;
         self.attach(&ground.touch, ground.position);
         let base = self.state.base_velocity;
-        // On ice each point has its own velocity, to which only friction takes it.
+        // On ice, each point has its own velocity, and only friction brings the climber to it.
         let change = from.map_or(DVec3::ZERO, |from| from - base);
         let kept = change - ground.touch.normal * change.dot(ground.touch.normal);
         self.state.velocity = self.stopped(base + own + kept);
         NextMode::Stay
     }
 
-    /// Stands on the ground below it now, or leaves the ground.
+    /// Stands on the ground below the climber now, or leaves the ground.
     fn find_new_ground(&mut self, carried: &Carried, walk: DVec3) -> NextMode {
         let reach = self.config.ground.snap_distance;
         if let Some(ground) = self.ground_below(self.state.position, reach)
@@ -260,7 +263,7 @@ impl Tick<'_> {
             && self.is_corrected_clear(carried, ground.position)
         {
             let path = Path::placed(self.body(), ground.position);
-            // A correction of the same movement: what that hit stays hit.
+            // This is a correction of the same movement, so the hits of that movement are kept.
             let (wanted, recoil) = (self.wanted, self.recoil);
             let moved = self.slide_at(&path, Intent::Go, wanted);
             self.recoil += recoil;
@@ -286,8 +289,8 @@ impl Tick<'_> {
         }
     }
 
-    /// True if ground is farther than the margin, and either it or what carries the climber is another climber: nobody
-    /// is a step down, and whoever leaves another one falls.
+    /// True if ground is farther than the margin, and either the ground or the climber's support is another climber:
+    /// another climber is never a step down, and a climber that leaves another one falls.
     fn is_far_onto_another(&self, carried: &Carried, ground: &Ground) -> bool {
         let from = carried.support.attachment.obstacle;
         let far = self.state.position.distance(ground.position) > self.config.body.margin;
@@ -300,7 +303,7 @@ impl Tick<'_> {
             && (self.mover.is_character(&ground.touch) || is_from_another())
     }
 
-    /// True if steep slopes on all sides hold it up.
+    /// True if steep slopes on all sides hold the climber up.
     fn is_wedged(&mut self, carried: &Carried) -> bool {
         let up = self.config.up();
         let path = self.path(carried.position - up * self.config.body.margin);
@@ -308,8 +311,8 @@ impl Tick<'_> {
         self.mover.holding_up(up, 0.0).is_some()
     }
 
-    /// Its own velocity along the ground, accelerated towards the velocity that the input asks for, and whether it has
-    /// not got there yet.
+    /// The climber's own velocity along the ground, accelerated towards the velocity that the input asks for, and
+    /// whether it has not reached that velocity yet.
     fn walk_velocity(&mut self, normal: DVec3, own: DVec3) -> (DVec3, bool) {
         let ground = &self.config.ground;
         let up = self.config.up();
@@ -336,7 +339,7 @@ impl Tick<'_> {
         }
         let mut most = change * self.dt();
         if friction < 1.0 {
-            // Friction brings a light body and the climber to one speed, and no farther.
+            // Friction ends once a light body and the climber have the same velocity.
             let way = wanted - own;
             most = most.min(way.length() / (1.0 + self.relative(way)));
         }
@@ -345,8 +348,8 @@ impl Tick<'_> {
         (walk, walk != wanted)
     }
 
-    /// What its ground has changed its own velocity by since the last tick, along itself, if that is slippery. Feet that
-    /// slip do not follow it by themselves: only friction takes them along.
+    /// Change of the ground's velocity since the last tick, along the ground, if the ground is slippery; otherwise
+    /// zero. Feet that slip do not follow this change by themselves: only friction takes them along.
     fn left_behind(&mut self, normal: DVec3) -> DVec3 {
         let known = |carried: &&Carried| carried.velocity_before.is_some();
         let Some(carried) = self.carried.as_ref().filter(known) else {
@@ -362,12 +365,12 @@ impl Tick<'_> {
         along
     }
 
-    /// True if its feet slip on its ground.
+    /// True if the climber's feet slip on its ground.
     pub(super) fn is_slippery(&self) -> bool {
         self.on.usable_friction() < 1.0
     }
 
-    /// How many times slower than usual it walks and climbs on its support.
+    /// Factor by which the climber walks and climbs more slowly than usual on its support.
     pub(super) fn slowness(&self) -> f64 {
         self.on.usable_friction().max(1.0)
     }

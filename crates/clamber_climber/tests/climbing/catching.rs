@@ -1,4 +1,4 @@
-//! Catches in flight, and jumps off what was caught.
+//! Catches in flight, and jumps off the caught hold.
 
 use clamber_climber::{Climber, ClimberConfig, ClimberInput, ClimberMode, ClimberState};
 use clamber_world::{HalfSpace, Obstacle, ObstacleId};
@@ -8,7 +8,7 @@ use crate::moving::MovingHalfSpace;
 use crate::numbers::in_world_of_size;
 use crate::scene::{FUR, HOLD};
 
-/// A climber beside fur that moves as fast as it.
+/// A climber beside fur that moves with its frame.
 struct Flight {
     climber: Climber,
     fur: HalfSpace,
@@ -106,7 +106,7 @@ fn a_jump_off_a_level_ceiling_goes_straight_down() {
     for size in [0.02, 1.0, 100.0] {
         for rate in [30.0, 60.0, 240.0] {
             for frame in [0.0, 30.0, 300.0] {
-                // Rounding of f32, and what a bump of skin is off level.
+                // Rounding of f32, and the tilt of a bump of skin.
                 for tilt in [0.0, 1e-16, 1e-7, 1e-3, 0.05] {
                     for aside in [DVec3::X, DVec3::NEG_Z] {
                         let config = in_world_of_size(usual, size);

@@ -24,7 +24,7 @@ fn grips_a_wall_of_fur_in_flight_and_stays_on_it() {
     let events = run(&mut climber, &[&wall], &HOLD, 60);
     assert!(events.is_empty(), "{events:?}");
     assert_mode(&climber, ClimberMode::Holding);
-    // It fell for one tick, and grips from there.
+    // The climber fell for one tick, and grips from there.
     let fallen = 9.81 * DT * DT * 0.5;
     let off = climber.state().position - DVec3::new(0.3, 2.0 - fallen, 1.4);
     assert!(off.length() < 1e-4, "{:?}", climber.state().position);
@@ -97,11 +97,12 @@ fn climbs_around_convex_corners_all_around_a_block() {
         turned += libm::atan2(p.z * q.x - p.x * q.z, p.x * q.x + p.z * q.z);
         angle = angle.max((q - p).length());
     }
-    // It climbs 22.5 m around the block: one round is 8 m of faces and a full circle of radius 0.4 m at the corners.
+    // The climber climbs 22.5 m around the block: one round is 8 m of faces and a full circle of radius 0.4 m at the
+    // corners.
     assert!(turned > 12.0, "{turned}");
     assert_eq!(
         corners,
-        // It lies flat on the next face shortly after its centre has passed the edge.
+        // The climber lies flat on the next face shortly after its centre has passed the edge.
         (turned / std::f64::consts::FRAC_PI_2 + 0.5 - 0.12) as usize,
         "{turned}"
     );
@@ -123,7 +124,7 @@ fn climbs_from_the_floor_up_a_concave_corner_and_over_the_top() {
     };
     let events = run(&mut climber, &surfaces, &forward, 330);
     let state = climber.state();
-    // On level fur it faces as it did on the wall.
+    // On level fur, the climber faces as it did on the wall.
     assert!(state.heading.dot(-DVec3::Z) > 0.999, "{state:?}");
     assert!(state.position.y > 6.0, "{state:?} {events:?}");
     let corners = events

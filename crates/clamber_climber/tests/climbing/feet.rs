@@ -1,4 +1,5 @@
-//! What standing and hanging do not change: how fast hands catch, that they hold a body of another size, and one-way edges.
+//! Climbers that stand or hang: hands catch no faster than in flight, a resized body hangs on, one-way platforms have
+//! edges to hang from, and a jump turns the climber to the stick.
 
 use clamber_climber::{
     Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, ClimberState, StepRules,
@@ -11,7 +12,8 @@ use crate::moving::MovingHalfSpace;
 use crate::numbers::in_world_of_size;
 use crate::scene::{FUR, HOLD, STONE, cuboid, moved, placed};
 
-/// How a climber fares that stands on a deck and grips fur beside it, which passes it at a speed.
+/// Plays a climber that stands on a deck and grips fur beside it, which passes it at a speed. Returns the climber, and
+/// whether its hands slipped.
 fn beside_fur(speed: f64, size: f64, rate: f64, frame: f64) -> (Climber, bool) {
     let config = in_world_of_size(ClimberConfig::colossus_climber(), size);
     let dt = 1.0 / rate;
@@ -63,7 +65,7 @@ fn hands_of_who_stands_catch_no_faster_than_in_flight() {
                     ClimberMode::Standing
                 };
                 assert_eq!((state.mode, slipped), (mode, !holds), "{told}");
-                // Faster than a walk, it costs stamina at once.
+                // A catch that is faster than a walk costs stamina at once.
                 let spent = 1.0 - state.stamina;
                 let costs = climber.config().stamina.unwrap().catch_cost;
                 let least = costs * (speed * size - climber.config().ground.walk_speed);
@@ -81,7 +83,7 @@ fn who_hangs_and_is_resized_hangs_on() {
                 stamina: None,
                 ..ClimberConfig::colossus_climber()
             };
-            // It hangs from all that is as steep as a ceiling.
+            // The climber hangs from any surface as steep as a ceiling.
             config.grip.as_mut().unwrap().max_overhang = 1.7;
             let config = config.scaled(size);
             let ceiling = HalfSpace::behind(DVec3::Y * (6.0 * size), DVec3::NEG_Y);
@@ -143,7 +145,7 @@ fn who_leaves_a_one_way_platform_with_the_grip_held_hangs_from_its_edge() {
     }
 }
 
-/// As in any other tick in which it walks.
+/// The jump turns the climber to the stick, as any other tick does in which it walks.
 #[test]
 fn who_jumps_with_the_stick_faces_its_direction() {
     for size in [1.0, 0.02, 100.0] {

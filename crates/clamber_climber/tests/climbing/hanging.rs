@@ -62,7 +62,8 @@ fn hangs_while_its_hold_shakes_and_climbs_again_when_it_is_calm() {
 
 #[test]
 fn legs_lie_against_a_convex_belly() {
-    // It hangs from the upper edge of a block that leans out below. The body lies on the block and stays there.
+    // The climber hangs from the upper edge of a block that leans out below. The body lies on the block and stays
+    // there.
     let mut block = cuboid(Vec3::new(4.0, 4.0, 1.0), FUR);
     let lean = DQuat::from_xyzw(0.1305, 0.0, 0.0, 0.9914).normalize();
     placed(&mut block, DVec3::ZERO, lean);

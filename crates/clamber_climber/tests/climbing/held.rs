@@ -1,11 +1,11 @@
-//! Something light that something else holds.
+//! A light obstacle that another object holds.
 
 use clamber_world::{
     Contact, MaterialPoint, Obstacle, PointMotion, SweepContact, TargetMotion, WorldCapsule,
 };
 use glam::DVec3;
 
-/// An obstacle that takes pushes as a body of a mass, kg, would, and does not give way.
+/// An obstacle that responds to impulses like a body with a mass, kg, and does not give way.
 pub(crate) struct Held<T>(pub(crate) T, pub(crate) f64);
 
 impl<T: Obstacle> Obstacle for Held<T> {

@@ -170,7 +170,7 @@ fn climbs_up_to_a_ledge_over_it_and_down_again() {
     let events = run(&mut climber, &[&block], &toward(1.0), 240);
     assert!(caught(&events), "{events:?} {:?}", climber.state());
     assert!(events.contains(&ClimberEvent::Mantled), "{events:?}");
-    // Again from hanging, down to the fur.
+    // From hanging again, down to the fur.
     let mut climber = hung(&block);
     let events = run(&mut climber, &[&block], &toward(-1.0), 60);
     let gripped = |event: &ClimberEvent| matches!(event, ClimberEvent::Grabbed { .. });
@@ -272,7 +272,8 @@ fn a_ledge_that_crushes_it_lets_go() {
     assert!((height - 1.4).abs() < 0.02, "{height}");
 }
 
-/// Around a corner, a held stick leads on along the ledge. Once it is released, it is read anew: at the wall is up.
+/// Around a corner, a held stick leads on along the ledge. After it is released, it is read anew: towards the wall is
+/// up.
 #[test]
 fn a_released_stick_is_read_anew_after_a_corner() {
     for released in [1, 6, 60] {

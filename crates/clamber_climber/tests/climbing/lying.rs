@@ -1,4 +1,4 @@
-//! Who lies on something light that something else moves.
+//! Climbers that lie on a light body which another object moves.
 
 use clamber_climber::{Blow, Climber, ClimberConfig, ClimberInput, ClimberMode};
 use clamber_world::{HalfSpace, Obstacle, ObstacleId};

@@ -14,12 +14,16 @@ use clamber_surface::surface::SkinnedSurface;
 use clamber_world::{Obstacle, ObstacleId};
 use glam::{DQuat, DVec3, Vec3};
 
+/// Length of a tick, seconds.
 pub(crate) const DT: f64 = 1.0 / 60.0;
 
+/// The tag of fur, which can be gripped.
 pub(crate) const FUR: SurfaceTag = SurfaceTag::new(SurfaceKind::Fur);
 
+/// The tag of stone with a ledge, which cannot be gripped.
 pub(crate) const STONE: SurfaceTag = SurfaceTag::new(SurfaceKind::Stone).with_ledge();
 
+/// Input that only holds the grip.
 pub(crate) const HOLD: ClimberInput = ClimberInput {
     grip: true,
     ..ClimberInput::IDLE

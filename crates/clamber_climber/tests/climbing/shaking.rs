@@ -84,7 +84,7 @@ fn a_teleport_does_not_count_as_shake() {
     let held_at = climber.state().position;
     let mut at = DVec3::ZERO;
     for tick in 0..240 {
-        // Accelerates gently to 3 m/s.
+        // The wall accelerates gently to 3 m/s.
         at.z += 0.05 * (f64::from(tick) / 60.0).min(1.0);
         if tick == 180 {
             at += DVec3::new(100.0, 30.0, -20.0);

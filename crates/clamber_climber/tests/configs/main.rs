@@ -12,9 +12,10 @@ mod random;
 use clamber_climber::{Climber, ClimberConfig};
 use glam::DVec3;
 
-/// A play with a configuration; an error says what went wrong.
+/// A play with a configuration; an error tells the failure.
 type Play = fn(&ClimberConfig) -> Result<(), String>;
 
+/// All plays, by name.
 const PLAYS: [(&str, Play); 10] = [
     ("drops and stands", plays::drops_and_stands),
     ("walks", plays::walks),

@@ -1,4 +1,4 @@
-//! What each configuration plays, at 60 Hz.
+//! The plays of each configuration, at 60 Hz.
 
 use clamber_climber::{
     Blow, Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, StepReport,
@@ -6,16 +6,22 @@ use clamber_climber::{
 use clamber_world::{HalfSpace, Obstacle, ObstacleId, SurfaceKind, SurfaceTag, TriangleTerrain};
 use glam::{DVec3, Vec3};
 
+/// Ticks a second.
 const RATE: f64 = 60.0;
+
+/// Length of a tick, seconds.
 const DT: f64 = 1.0 / RATE;
 
 /// Longest time in a mode other than standing, holding and hanging, seconds.
 const LONGEST: f64 = 10.0;
 
+/// The tag of fur, which can be gripped.
 const FUR: SurfaceTag = SurfaceTag::new(SurfaceKind::Fur);
 
+/// No input.
 const IDLE: ClimberInput = ClimberInput::IDLE;
 
+/// Input that only holds the grip.
 const HOLD: ClimberInput = ClimberInput { grip: true, ..IDLE };
 
 type Outcome = Result<(), String>;
@@ -47,7 +53,7 @@ impl Run {
         self.climber.state().position
     }
 
-    /// Without input it stands after a while.
+    /// Steps without input until the climber stands.
     fn comes_to_stand(&mut self) -> Outcome {
         for _ in 0..(LONGEST * RATE) as u32 {
             self.step(&IDLE);
@@ -59,7 +65,7 @@ impl Run {
         Err(format!("is {:?} at {} m/s", state.mode, state.velocity))
     }
 
-    /// Its mean speed along a direction over a second, after another second.
+    /// The climber's mean speed along a direction over a second, after another second.
     fn speed(&mut self, input: &ClimberInput, along: DVec3) -> f64 {
         (0..RATE as u32).for_each(|_| drop(self.step(input)));
         let from = self.place();
@@ -129,7 +135,7 @@ pub(crate) fn jumps(config: &ClimberConfig) -> Outcome {
         run.step(&held);
         top = top.max(run.place().y - from);
     }
-    // The highest point is seen at the end of a tick.
+    // The highest position is seen at the end of a tick only.
     let slack = 0.5 * gravity * DT * DT + config.body.margin;
     near("jumps", top, speed * speed / (2.0 * gravity), slack)?;
     run.comes_to_stand()
@@ -145,7 +151,7 @@ pub(crate) fn slides_down(config: &ClimberConfig) -> Outcome {
     let normal = DVec3::new(-libm::sin(angle), libm::cos(angle), 0.0);
     let slope = HalfSpace::behind(DVec3::ZERO, normal).unwrap();
     let along = DVec3::new(libm::cos(angle), libm::sin(angle), 0.0);
-    // Friction leaves a tenth of what gravity gives along the slope.
+    // Friction leaves a tenth of gravity's acceleration along the slope.
     let radius = config.body.radius;
     let pull = 0.1 * config.gravity.length() * libm::sin(angle);
     let way = (3.0 * radius).min(0.5 * pull * 16.0);
@@ -272,7 +278,7 @@ pub(crate) fn hangs(config: &ClimberConfig) -> Outcome {
     let speed = run.climber.state().velocity.length();
     match run.mode() {
         ClimberMode::LedgeHanging if speed == 0.0 => Ok(()),
-        // With hands so low that the body rests on the edge.
+        // The climber stands if its hands are so low that the body rests on the edge.
         ClimberMode::Standing => Ok(()),
         mode => Err(format!("{mode:?} at {speed} m/s after three seconds")),
     }
@@ -286,7 +292,7 @@ pub(crate) fn pulls_up(config: &ClimberConfig) -> Outcome {
     let Some(mut run) = hanging(config)? else {
         return Ok(());
     };
-    // Into its place first.
+    // First, the climber is drawn into its place.
     for _ in 0..120 {
         run.step(&HOLD);
     }

@@ -1,4 +1,4 @@
-//! Configurations with every number drawn at random, its ends among them.
+//! Configurations with every number drawn at random, including the ends of its range.
 
 use clamber_climber::{
     BodyConfig, ClimberConfig, GripConfig, GroundConfig, HangConfig, HealthConfig, LedgeConfig,
@@ -6,7 +6,7 @@ use clamber_climber::{
 };
 use glam::DVec3;
 
-/// A number of any size between two, or now and then zero.
+/// A number of any magnitude between two, or sometimes zero.
 fn any(rng: &mut fastrand::Rng, low: f64, high: f64) -> f64 {
     if rng.u8(0..10) == 0 {
         0.0
@@ -15,7 +15,7 @@ fn any(rng: &mut fastrand::Rng, low: f64, high: f64) -> f64 {
     }
 }
 
-/// A number of any size between two.
+/// A number of any magnitude between two.
 fn some(rng: &mut fastrand::Rng, low: f64, high: f64) -> f64 {
     low * libm::pow(high / low, rng.f64())
 }
@@ -29,7 +29,8 @@ fn limit(rng: &mut fastrand::Rng, low: f64, high: f64) -> f64 {
     }
 }
 
-/// Lengths are of the order of the radius, speeds of those of a body of that size under its gravity.
+/// Draws a configuration. Lengths are of the order of the radius, and speeds of the order that a body of this size has
+/// under its gravity.
 pub(crate) fn config(rng: &mut fastrand::Rng) -> ClimberConfig {
     let radius = some(rng, 0.05, 2.0);
     let gravity = some(rng, 2.0, 30.0);

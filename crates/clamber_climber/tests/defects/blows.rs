@@ -41,7 +41,7 @@ fn a_blow_moves_a_climber_on_its_feet() {
             assert_eq!(report.events.iter().filter(hurt).count(), 1, "{told}");
             run.steps((5.0 * hz) as u32, &IDLE);
             let moved = run.position().x;
-            // Friction alone brakes it to rest: feet do not stop a climber that slides.
+            // Friction alone brakes the climber to rest: feet do not stop a climber that slides.
             let expected = speed * speed / (2.0 * run.config().ground.friction);
             let slack = 0.02 * expected + speed / hz;
             assert!(
@@ -83,10 +83,10 @@ fn a_blow_moves_a_climber_on_its_hold() {
             let told = format!("{speed} m/s along {direction}: {farthest} m, {events:?}");
             assert!(farthest > if aside { 0.1 } else { 0.05 }, "{told}");
             let knocked = |event: &ClimberEvent| matches!(event, ClimberEvent::KnockedOff { .. });
-            // A blow faster than a jump off a hold takes it off.
+            // A blow faster than a jump off a hold takes the climber off its hold.
             assert_eq!(events.iter().any(knocked), speed > 4.0, "{told}");
         }
-        // Only the fast blow takes it off a ledge.
+        // Only the fast blow takes the climber off a ledge.
         let mut climber = Climber::new(without_tumble(), v(0.3, 2.75, 3.5)).unwrap();
         let toward = ClimberInput {
             walk: -DVec3::Z * 0.1,

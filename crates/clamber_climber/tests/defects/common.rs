@@ -39,7 +39,7 @@ pub(crate) fn tick(
     climber.step(input, &list(obstacles), DT).unwrap()
 }
 
-/// Steps a climber by one tick at 60 Hz in which everything, or nothing, can be gripped.
+/// Steps a climber by one tick at 60 Hz, in which every contact can be gripped, or none.
 pub(crate) fn tick_gripping(
     climber: &mut Climber,
     obstacles: &[&dyn Obstacle],
@@ -75,7 +75,7 @@ pub(crate) fn is_landed(event: &ClimberEvent) -> bool {
     matches!(event, ClimberEvent::Landed { .. })
 }
 
-/// True if the climber gripped something, caught a ledge or landed.
+/// True if the climber gripped a hold, caught a ledge or landed.
 pub(crate) fn is_attached(event: &ClimberEvent) -> bool {
     is_landed(event)
         || matches!(

@@ -1,4 +1,4 @@
-//! The list of contacts has every contact, by its place and face and not by its collider.
+//! The list of contacts has every contact, told apart by place and face and not by collider.
 
 use std::collections::BTreeMap;
 
@@ -81,7 +81,7 @@ fn a_corner_of_one_mesh_lists_what_a_corner_of_three_lists() {
     }
 }
 
-/// Two pillars of one mesh, side by side: their faces have one normal.
+/// Two pillars of one mesh, side by side: their faces have the same normal.
 #[test]
 fn two_faces_of_one_mesh_with_one_normal_are_two_contacts() {
     let pillar = |z: f64| Shape::boxed(v(1.0, -1.0, z - 0.2), v(2.0, 3.0, z + 0.2));

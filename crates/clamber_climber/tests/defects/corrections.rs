@@ -10,6 +10,7 @@ use crate::common::{at, list, v};
 use crate::scene::{HOLD, STONE, cuboid, moved};
 use crate::stage::{IDLE, Played, Run, Shape, Stage, shifted, walk};
 
+/// Tick rates, hertz.
 const RATES: [f64; 4] = [30.0, 60.0, 120.0, 240.0];
 
 fn configs() -> [(&'static str, ClimberConfig); 2] {
@@ -41,8 +42,8 @@ fn stepped_up(hz: f64, config: ClimberConfig) -> Run {
     panic!("at {hz} Hz it never stepped up");
 }
 
-/// Walks along Z for a tick. Asserts that the reported velocity is that of the support, plus that of the walk along the
-/// last ground or the current one.
+/// Walks along Z for a tick. Asserts that the reported velocity is the support's velocity plus the walk along the last
+/// ground or the current one.
 fn assert_walks(run: &mut Run, told: &str) {
     let speed = run.config().ground.walk_speed;
     let before = *run.state();
@@ -51,7 +52,7 @@ fn assert_walks(run: &mut Run, told: &str) {
     let own = state.velocity - state.base_velocity;
     let is_off = [before, *state].iter().any(|state| state.support.is_none());
     if is_off {
-        // At an edge it may leave the ground for a moment, at its walking speed.
+        // At an edge the climber may leave the ground for a moment, at its walking speed.
         let most = 1.01 * speed + 9.81 * run.stage.dt;
         assert!(own.length() <= most, "{told}: {own} of its own, {state:?}");
         return;
@@ -64,9 +65,9 @@ fn assert_walks(run: &mut Run, told: &str) {
     });
     let off = grounds.map(|normal| {
         let along = (DVec3::Z - DVec3::Y * (normal.z / normal.y)).normalize() * speed;
-        // Its velocity if it landed on the current ground.
+        // The climber's own velocity if it landed on the current ground.
         let stopped = along - grounds[1] * along.dot(grounds[1]).min(0.0);
-        // Its velocity if it stepped up, which leads onto level ground.
+        // The climber's own velocity if it stepped up, which leads onto level ground.
         let level = DVec3::Z * speed;
         [along, stopped, level].map(|velocity| own.distance(velocity))
     });
@@ -284,7 +285,8 @@ fn a_mantle_and_a_push_out_do_not_become_velocity() {
     }
 }
 
-/// Steps up and snaps to the ground included, so that who stands on a climber is carried by all that it does.
+/// Steps up and snaps to the ground are included, so that a climber on top of another is carried by all of its
+/// movements.
 #[test]
 fn a_climber_obstacle_goes_where_the_climber_has_gone() {
     for hz in RATES {
@@ -302,7 +304,7 @@ fn a_climber_obstacle_goes_where_the_climber_has_gone() {
                 let head = obstacle.closest_point(above, 9.0).unwrap();
                 let motion = obstacle.motion(&head.material, dt).unwrap();
                 let told = format!("{name} at {hz} Hz, tick {k}: {motion:?}");
-                // Its ground is at rest.
+                // The climber's ground is at rest.
                 let height = motion.position - climber.state().position;
                 assert!((height - DVec3::Y * 0.4).length() < 1e-9, "{told}");
                 if let Some(last) = last {

@@ -1,4 +1,4 @@
-//! Error messages name the value that is wrong, and are true of it.
+//! Error messages name the wrong value, and are true of it.
 
 use clamber_climber::{
     Climber, ClimberConfig, ClimberError, ClimberInput, ClimberState, HangConfig,
@@ -13,6 +13,7 @@ use glam::{DVec3, Quat, Vec3};
 use crate::scene::{STONE, cuboid};
 use crate::stage::IDLE;
 
+/// Numbers of every kind that a range can refuse or accept.
 const NUMBERS: [f64; 8] = [
     f64::NEG_INFINITY,
     -1.0,
@@ -24,7 +25,7 @@ const NUMBERS: [f64; 8] = [
     f64::NAN,
 ];
 
-/// Whether a number is in a range that is given in words.
+/// True if a number is in a range that is given in words.
 fn holds(range: &str, x: f64) -> bool {
     match range {
         "positive" => x > 0.0,
@@ -165,7 +166,7 @@ fn messages_about_configurations_are_true() {
     assert!(refused > 100, "{refused}");
 }
 
-/// Somebody who sets degrees reads what to set instead.
+/// A user that sets degrees reads that radians are expected.
 #[test]
 fn messages_about_angles_name_radians() {
     let sets: [Set<ClimberConfig>; 2] = [

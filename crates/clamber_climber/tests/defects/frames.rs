@@ -1,4 +1,4 @@
-//! The frame of a body in the air is not that of a support which it left long ago.
+//! The frame of a body in the air is not the frame of a support that it left long ago.
 
 use clamber_climber::{
     Climber, ClimberConfig, ClimberError, ClimberInput, ClimberMode, ClimberState, CustomMode,
@@ -51,7 +51,7 @@ fn a_boulder_on_the_ground_stops_a_climber_that_left_a_train() {
     }
 }
 
-/// Glides: falls at 2 m/s against its frame, as long as a button is held.
+/// Glides: falls at 2 m/s relative to its frame, as long as a button is held.
 struct Glide;
 
 impl CustomMode for Glide {

@@ -12,6 +12,7 @@ use glam::{DQuat, DVec3, Vec3};
 use crate::common::{at, tick, v};
 use crate::scene::{FUR, HOLD, STONE, climber, cuboid, moved};
 
+/// Input that climbs up.
 const UP: ClimberInput = ClimberInput {
     climb: DVec3::Y,
     ..HOLD
@@ -151,7 +152,7 @@ fn climbing_does_not_move_a_hold_behind_a_plate() {
                 let apart = (hold.point - middle).abs();
                 let is_behind = hold.obstacle == ObstacleId(0) && apart.x < 1.98 && apart.y < 1.98;
                 assert!(!is_behind, "{told}: holds {}", hold.point);
-                // Nothing is between the body and the hold.
+                // No obstacle is between the body and the hold.
                 let reach = hold.point - state.position;
                 let clear = reach.length() - 0.02;
                 let hit = plate.cast_ray(state.position, reach, clear);
@@ -169,7 +170,7 @@ fn fur_behind_a_plate_does_not_drag_the_climber_along() {
     let mut climber = climber(v(0.0, 0.0, 0.53));
     for k in 0..90 {
         if climber.state().position.y < -1.5 {
-            // It has fallen past the fence's lower edge.
+            // The climber has fallen past the plate's lower edge.
             return;
         }
         let by = v(0.05 * f64::from(k), 0.0, -1.0);
@@ -189,7 +190,7 @@ fn fur_behind_a_plate_does_not_drag_the_climber_along() {
     }
 }
 
-/// Armour above fur, of skin and of half-spaces: hands reach through no more than a 400th of the radius.
+/// Armour above fur, of skin and of half-spaces: hands reach through at most a 400th of the radius.
 #[test]
 fn does_not_grip_fur_through_thin_armour() {
     for radius in [0.02, 0.4, 2.0, 40.0] {

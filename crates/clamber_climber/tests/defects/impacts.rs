@@ -1,4 +1,4 @@
-//! What a body hits hurts it by its speed along the normal: ground, slopes, walls and ceilings alike.
+//! An impact hurts by its speed along the contact's normal: on ground, slopes, walls and ceilings alike.
 
 use clamber_climber::{Climber, ClimberConfig, ClimberEvent, ClimberInput, StepReport};
 use clamber_world::{HalfSpace, Obstacle};
@@ -7,7 +7,7 @@ use glam::DVec3;
 use crate::common::{list, v};
 use crate::stage::radians;
 
-/// Flies at a velocity against a half-space. Returns the sum of the damage, and how fast it was told that it landed.
+/// Flies at a velocity against a half-space. Returns the sum of the damage, and the reported speed of a landing.
 fn hit(normal: DVec3, velocity: DVec3, rate: f64) -> (f64, Option<f64>) {
     let wall = HalfSpace::behind(DVec3::ZERO, normal).unwrap();
     let mut config = ClimberConfig::colossus_climber();
@@ -44,7 +44,7 @@ fn an_impact_hurts_by_its_normal_speed_on_whatever_it_hits() {
                     let velocity = -normal * speed + along * slide;
                     let (damage, landed) = hit(normal, velocity, rate);
                     let told = format!("{degrees} degrees at {speed} and {slide} m/s, {rate} Hz");
-                    // Twentieth of a hit point for each metre a second beyond 10.
+                    // A twentieth of the hit points for each metre a second beyond 10.
                     let due = (speed - 10.0).max(0.0) * 0.05;
                     assert!((damage - due).abs() < 2e-3, "{told}: {damage}, due {due}");
                     let lands = degrees <= 50.0;
@@ -55,7 +55,7 @@ fn an_impact_hurts_by_its_normal_speed_on_whatever_it_hits() {
     }
 }
 
-/// Resting and sliding contacts are no impacts, not even where every speed hurts.
+/// Resting and sliding contacts are no impacts, even where every speed hurts.
 #[test]
 fn sliding_down_a_slope_does_not_hurt() {
     let mut config = ClimberConfig::colossus_climber();

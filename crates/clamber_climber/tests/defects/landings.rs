@@ -1,4 +1,4 @@
-//! Landings happen only on ground that holds the climber up, and keep its speed along the ground.
+//! Landings happen only on ground that holds the climber up, and keep the speed along the ground.
 
 use clamber_climber::{Climber, ClimberConfig, ClimberMode};
 use clamber_world::Obstacle;
@@ -93,7 +93,7 @@ fn a_fast_landing_slides_or_tumbles_on() {
                 }
                 assert_eq!(run.mode(), ClimberMode::Standing, "{told}");
                 let slid = run.position().x - landed;
-                // From 40 m/s, the final braking by its feet is less than a percent of the distance.
+                // From 40 m/s, the final braking by the feet is less than a percent of the distance.
                 let feet = if speed < 40.0 {
                     1.05 * config.ground.walk_speed
                 } else {

@@ -73,7 +73,7 @@ fn oblique_ledges_are_caught_faced_and_followed() {
     }
 }
 
-/// The climber starts anywhere around the edge where it can catch it.
+/// The climber starts at every place around the edge from which it can catch it.
 #[test]
 fn catching_a_ledge_moves_no_faster_than_arms_do() {
     let block = cuboid(Vec3::new(4.0, 3.0, 3.0), STONE);
@@ -98,7 +98,7 @@ fn catching_a_ledge_moves_no_faster_than_arms_do() {
                 let way = state.position.distance(before.position);
                 let is_new = events.iter().any(is_caught);
                 caught += u32::from(is_new);
-                // In the tick of the catch, it may also fall.
+                // In the tick of the catch, the climber may also fall.
                 let falling = if is_new {
                     before.velocity.length() * DT + 9.81 * DT * DT
                 } else {
@@ -118,8 +118,8 @@ fn catching_a_ledge_moves_no_faster_than_arms_do() {
     assert!(caught * 3 > starts, "{caught} of {starts}");
 }
 
-/// A friend stands behind the edge of each side of a tower. The climber goes back to hanging, and gets up once the
-/// friend has gone.
+/// A friend stands behind the edge of each side of a tower. The climber goes back to hanging, and pulls itself up once
+/// the friend has gone.
 #[test]
 fn a_friend_at_the_edge_is_waited_for_from_below() {
     let tower = cuboid(Vec3::splat(3.0), STONE);

@@ -1,4 +1,4 @@
-//! Modes of a game's own end their tick, whatever their handlers answer.
+//! Custom modes of a game end their tick, for every result of their handlers.
 
 use clamber_climber::{
     Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, CustomMode, ModeContext,
@@ -26,7 +26,7 @@ impl CustomMode for Charge {
     }
 }
 
-/// One of two modes that hand over to each other.
+/// A mode of a pair that hand over to each other.
 struct PingPong(u16);
 
 impl CustomMode for PingPong {
@@ -53,7 +53,7 @@ fn a_mode_that_changes_to_itself_stays() {
         let report = report.unwrap();
         let mode = ClimberMode::Custom(1);
         assert_eq!(climber.state().mode, mode);
-        // Its handler ran once.
+        // The mode's handler ran once.
         assert_eq!(climber.state().memory[0], f64::from(tick));
         let told = ClimberEvent::AlreadyInMode { mode };
         assert!(report.events.contains(&told), "{report:?}");

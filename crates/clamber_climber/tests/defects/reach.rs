@@ -8,7 +8,7 @@ use glam::{DQuat, DVec3, Vec3};
 use crate::common::{at, tick, v};
 use crate::scene::{DT, FUR, HOLD, STONE, cuboid, moved};
 
-/// Checks how far each tick moves a climber, and how long it keeps a support that is out of reach.
+/// Checks the displacement of a climber in each tick, and how long it keeps a support that is out of reach.
 #[derive(Default)]
 struct Watch {
     out_of_reach: u32,
@@ -141,7 +141,7 @@ fn climbing_around_a_blocked_edge_keeps_within_reach() {
     }
 }
 
-/// The support moves away while a post holds the climber back; or moves towards the post, and crushes the climber
+/// The support moves away while a post holds the climber back. Or it moves towards the post, and crushes the climber
 /// against it.
 fn against_a_post(is_crushed: bool) {
     for (name, start, walk, out) in [

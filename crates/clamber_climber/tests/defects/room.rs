@@ -1,9 +1,10 @@
-//! Bodies that turn, or pass what a rule lets pass, when they are resized.
+//! Resizes of bodies that turn, and of bodies among contacts that a rule makes passable.
 
 use clamber_climber::{Climber, ClimberConfig, ClimberError, ContactQuery, ContactRule, StepRules};
 use clamber_world::{Obstacle, ObstacleId, SurfaceTag, TriangleTerrain};
 use glam::DVec3;
 
+/// Sizes of the bodies, relative to a radius of 0.4 m.
 const SIZES: [f64; 4] = [1.0, 0.02, 10.0, 100.0];
 
 /// Two level sheets, the lower one at height 0.
@@ -69,7 +70,7 @@ fn what_a_rule_lets_pass_takes_no_room() {
         )
         .unwrap();
         let place = climber.state().position;
-        // The same size moves nobody, even where it overlaps something.
+        // The same size does not move the climber, even where it overlaps an obstacle.
         let same = *climber.config();
         assert_eq!(climber.try_resize(same, &obstacles), Ok(()));
         assert_eq!(climber.state().position, place);

@@ -16,7 +16,7 @@ use crate::common::{
 };
 use crate::scene::{DT, FUR, HOLD, STONE, climber, cuboid, moved};
 
-/// How a climber is supported by a block of 8 x 6 x 6 m around the origin.
+/// The support of a climber on a block of 8 x 6 x 6 m around the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum On {
     Fur,
@@ -24,6 +24,7 @@ enum On {
     Ground,
 }
 
+/// All kinds of support.
 const ALL: [On; 3] = [On::Fur, On::Ledge, On::Ground];
 
 impl On {
@@ -63,8 +64,8 @@ fn block() -> ColliderBuilder {
     ColliderBuilder::cuboid(4.0, 3.0, 3.0)
 }
 
-/// Changes the block of a rapier world below a climber. Returns the climber after some ticks, the attachment that it
-/// had before the change, and the reports since the change.
+/// Changes the block of a rapier world below a climber. Returns the climber after some ticks, its attachment before the
+/// change, and the reports since the change.
 fn changed(
     on: On,
     steps_after: bool,
@@ -98,7 +99,8 @@ fn changed(
     (climber, held.unwrap(), reports)
 }
 
-/// Asserts that the climber lost its support in the first tick, once, named it, and fell since.
+/// Asserts that the climber lost its support once, in the first tick, that the event names the support, and that the
+/// climber has fallen since.
 fn assert_lost(on: On, told: &str, climber: &Climber, held: &Attachment, reports: &[StepReport]) {
     let events: Vec<_> = reports.iter().flat_map(|report| &report.events).collect();
     let lost = reports[0].events.iter().find_map(|event| match event {
@@ -116,7 +118,7 @@ fn assert_lost(on: On, told: &str, climber: &Climber, held: &Attachment, reports
     assert_eq!(count(&all, is_attached), 0, "{told}, {on:?}: {all:?}");
     let state = climber.state();
     assert_eq!(state.mode, ClimberMode::Falling, "{told}, {on:?}");
-    // It falls from the tick of the loss on.
+    // The climber falls from the tick of the loss on.
     let time = DT * reports.len() as f64;
     let fallen = 0.5 * 9.81 * time * time;
     let from = held.position().y;
@@ -189,7 +191,7 @@ fn an_obstacle_without_motion_is_not_held_again_and_again() {
                 assert!(events.len() <= 3, "{told}");
                 let state = climber.state();
                 assert!(!state.mode.is_supported(), "{:?}: {told}", state.mode);
-                // In front of the wall it falls; above the block, the block stops it.
+                // In front of the wall the climber falls; above the block, the block stops it.
                 let low = if on == On::Ground { 3.45 } else { 0.0 };
                 assert!(state.position.y < low, "{}: {told}", state.position);
             }

@@ -353,6 +353,7 @@ impl Jaws {
     }
 }
 
+/// Velocities of the moving frame, metres a second.
 const FRAMES: [DVec3; 3] = [
     DVec3::ZERO,
     DVec3::new(30.0, 0.0, 0.0),
@@ -374,7 +375,7 @@ fn closing_jaws_do_not_let_a_limb_through() {
                 };
                 let (climber, origin) = jaws.close(limb, limb_at, |_, _| {});
                 let place = climber.state().position - origin;
-                // It ends in front of the limb, though it may be as deep in it as in the walls.
+                // The climber ends in front of the limb, though it may be as deep in the limb as in the walls.
                 assert!(
                     place.x > 0.6,
                     "{speed} m/s, in tick {hit}, frame {frame}: ends at {place}"

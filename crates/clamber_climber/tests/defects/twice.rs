@@ -133,7 +133,7 @@ fn a_surface_advanced_twice_does_not_shake_harder() {
             }
             tick(&mut climber, &[&floor], &IDLE);
             if k >= 30 {
-                // Without the start, when the last velocity is unknown.
+                // The start is left out, since the last velocity is unknown then.
                 most[index] = most[index].max(climber.state().shake.length());
             }
         }

@@ -1,4 +1,4 @@
-//! Climbers with others on their heads: these do not hold them down.
+//! Climbers with others on their heads. The others do not hold them down.
 
 use clamber_climber::{Climber, ClimberConfig, ClimberInput, ClimberMode, Others};
 use clamber_world::HalfSpace;
@@ -19,16 +19,17 @@ fn tower(height: f64, (size, mass): (f64, f64), others: Others, rate: f64) -> Cr
     crowd
 }
 
-/// How far the upper one is above the lower one's highest point, metres.
+/// Height of the upper climber above the lower one's highest point, metres.
 fn gap(crowd: &Crowd) -> f64 {
     let [below, above] = [0, 1].map(|index| crowd.climbers[index].body());
     let top = below.ends[0].y.max(below.ends[1].y) + below.radius;
     above.ends[0].y - above.radius - top
 }
 
-/// Sizes and masses of those on the head, for a climber of 80 kg.
+/// Sizes and masses of the climbers on the head of a climber of 80 kg.
 const LIGHT: [(f64, f64); 4] = [(0.1, 0.02), (0.5, 10.0), (1.0, 1.0), (1.0, 80.0)];
 
+/// All ways in which climbers behave towards others.
 const KINDS: [Others; 3] = [Others::Block, Others::Push, Others::Pass];
 
 #[test]
@@ -56,7 +57,7 @@ fn a_climber_jumps_with_a_friend_that_is_no_heavier_on_its_head() {
     }
 }
 
-/// A heavier one is a ceiling.
+/// A heavier climber is a ceiling.
 #[test]
 fn a_heavier_friend_on_the_head_holds_a_climber_down() {
     for rate in RATES {
@@ -133,7 +134,8 @@ fn a_climber_walks_up_stairs_with_a_friend_that_is_no_heavier_on_its_head() {
     }
 }
 
-/// Friends that pass take no room from each other, and those that overlap already take none from one that grows.
+/// Friends that pass do not take room from each other, nor do friends that overlap already take room from one that
+/// grows.
 #[test]
 fn friends_that_pass_or_overlap_leave_room_to_grow() {
     for size in [0.05, 1.0, 20.0] {

@@ -14,7 +14,7 @@ fn holds_friends(query: &ContactQuery<'_>) -> ContactRule {
     }
 }
 
-/// They fall as fast as anybody, whatever their order, and lie on the ground then.
+/// The climbers fall as fast as any body, in either order, and lie on the ground in the end.
 #[test]
 fn climbers_that_hold_each_other_fall_together() {
     let grip = ClimberInput { grip: true, ..IDLE };
@@ -58,7 +58,7 @@ fn climbers_that_hold_each_other_fall_together() {
                         };
                         let jumped = report.events.iter().any(jumps);
                         assert!(fell < 3.0 || !jumped, "{told}");
-                        // Hands draw them together, or legs swing, by up to an arm's length.
+                        // Hands draw the climbers together, or legs swing, by up to an arm's length.
                         assert!(
                             fell < 3.0 || (at - fell).abs() < 1.5,
                             "{told}: not at {fell}"

@@ -13,12 +13,13 @@ use glam::{DQuat, DVec3};
 use crate::numbers::in_world_of_size;
 use crate::scene::{STONE, cuboid};
 
-/// The rates at which everything here is played.
+/// The tick rates of all plays of this test, hertz.
 pub(crate) const RATES: [f64; 4] = [30.0, 60.0, 120.0, 240.0];
 
 /// Sizes of the bodies, relative to a radius of 0.4 m.
 pub(crate) const SIZES: [f64; 4] = [1.0, 0.02, 0.3, 100.0];
 
+/// No input.
 pub(crate) const IDLE: ClimberInput = ClimberInput::IDLE;
 
 /// A walker of another size, in a world of that size.
@@ -26,19 +27,19 @@ pub(crate) fn walker(size: f64) -> ClimberConfig {
     in_world_of_size(ClimberConfig::walker(), size)
 }
 
-/// Boxes, of which the first may move, and climbers among them.
+/// Boxes, and climbers among them. The first box may move.
 pub(crate) struct Crowd {
     pub(crate) boxes: Vec<SkinnedSurface>,
     pub(crate) climbers: Vec<Climber>,
     group: ClimberGroup,
     pub(crate) dt: f64,
-    /// The rule for their contacts.
+    /// The rule for the climbers' contacts.
     pub(crate) rule: Option<fn(&ContactQuery<'_>) -> ContactRule>,
-    /// False if they do not know their own ids.
+    /// False if the climbers do not know their own ids.
     pub(crate) know_ids: bool,
-    /// The order in which they are stepped and listed.
+    /// The order in which the climbers are stepped and listed.
     pub(crate) order: Vec<usize>,
-    /// Where the first box is.
+    /// The centre of the first box.
     deck: DVec3,
     /// Size of the bodies, relative to a radius of 0.4 m.
     size: f64,
@@ -92,7 +93,7 @@ impl Crowd {
         self.boxes.push(surface);
     }
 
-    /// Steps all climbers, after the deck has moved to `deck` from where it was put.
+    /// Steps all climbers, after the deck has moved to `deck`, relative to its first place.
     pub(crate) fn step(
         &mut self,
         deck: DVec3,
@@ -142,7 +143,7 @@ impl Crowd {
         }
     }
 
-    /// Puts a climber elsewhere, in the air.
+    /// Puts a climber at another place, in the air.
     pub(crate) fn put(&mut self, index: usize, position: DVec3) {
         let climber = &mut self.climbers[index];
         let state = *climber.state();
@@ -164,7 +165,7 @@ impl Crowd {
         self.climbers[index].state()
     }
 
-    /// Sets the velocity of a climber, and that of its frame.
+    /// Sets the velocities of a climber and of its frame.
     pub(crate) fn throw(&mut self, index: usize, velocity: DVec3, base_velocity: DVec3) {
         let state = ClimberState {
             velocity,

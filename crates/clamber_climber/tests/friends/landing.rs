@@ -127,7 +127,7 @@ fn nobody_is_crushed_or_loses_its_footing_by_who_lands_on_its_head() {
     }
 }
 
-/// The upper one jumps a tick after the lower one has jumped aside.
+/// The upper climber jumps some ticks after the lower one has jumped aside.
 #[test]
 fn a_jump_off_a_friend_who_jumps_is_a_jump() {
     for rate in RATES {
@@ -151,7 +151,7 @@ fn a_jump_off_a_friend_who_jumps_is_a_jump() {
                 });
                 top = top.max(crowd.position(1).y - from);
             }
-            // For so long, the friend lifts it.
+            // For these ticks, the friend lifts the climber.
             let lifted = 5.0 * f64::from(lag) / rate;
             assert!(
                 (1.1..1.45 + lifted).contains(&top),
@@ -161,7 +161,7 @@ fn a_jump_off_a_friend_who_jumps_is_a_jump() {
     }
 }
 
-/// A friend that comes up from below takes along one that rises slower, and hardly gets into it.
+/// A friend that comes up from below takes along a climber that rises more slowly, and hardly overlaps it.
 #[test]
 fn who_comes_up_fast_below_another_one_takes_it_along() {
     let frames = [DVec3::ZERO, DVec3::new(30.0, 0.0, -10.0), DVec3::Y * 10.0];
@@ -186,14 +186,14 @@ fn who_comes_up_fast_below_another_one_takes_it_along() {
                 let told = format!(
                     "{rate} Hz, frame {frame}, {aside} m aside, {comes} to {rises} m/s: {deepest}"
                 );
-                // The upper one sees where the lower one was a tick ago.
+                // The upper climber sees the lower one's place a tick ago.
                 assert!(deepest < 0.05 + 1.5 * comes / rate, "{told}");
             }
         }
     }
 }
 
-/// A friend, lifted by another one's jump, is pressed from below into one that stands on a shelf, and jumps.
+/// A friend, lifted by another one's jump, is pressed from below into a climber that stands on a shelf and jumps.
 #[test]
 fn a_jump_is_not_over_where_a_friend_comes_up_from_below() {
     for rate in RATES {
@@ -207,7 +207,7 @@ fn a_jump_is_not_over_where_a_friend_comes_up_from_below() {
                     &[place(0.4), place(1.2), above],
                     rate,
                 );
-                // It stands on the edge of a shelf.
+                // The climber stands on the edge of a shelf.
                 crowd.add_box(DVec3::new(0.5, 1.55, 0.0), DVec3::new(0.5, 0.05, 1.0));
                 crowd.rest(0.2);
                 let told = format!("{rate} Hz, {aside} m aside, {lag} ticks later");
@@ -241,7 +241,7 @@ fn who_stands_on_a_friend_that_is_gone_or_put_elsewhere_falls_or_goes_along() {
         let mut crowd = Crowd::new(ClimberConfig::walker(), &places, rate);
         crowd.rest(0.3);
         assert_eq!(crowd.state(1).mode, ClimberMode::Standing, "{rate} Hz");
-        // Put elsewhere, as by a game's teleport.
+        // The climber is put elsewhere, as by a game's teleport.
         let there = DVec3::new(3.0, 0.4, 0.0);
         let moved = Climber::new(ClimberConfig::walker(), there).unwrap();
         crowd.climbers[0] = moved;
@@ -250,7 +250,7 @@ fn who_stands_on_a_friend_that_is_gone_or_put_elsewhere_falls_or_goes_along() {
             let state = crowd.state(index);
             assert_eq!(state.mode, ClimberMode::Standing, "{rate} Hz: {state:?}");
         }
-        // Gone: nobody lists it any more.
+        // The climber is gone from the list.
         let upper = crowd.climbers.remove(1);
         let mut alone = Crowd::new(ClimberConfig::walker(), &[DVec3::ZERO], rate);
         alone.climbers[0] = upper;

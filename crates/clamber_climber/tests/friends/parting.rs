@@ -5,7 +5,7 @@ use glam::DVec3;
 
 use crate::crowd::{Crowd, IDLE, RATES, SIZES, walker};
 
-/// The fastest that climbers part, radii a second.
+/// Maximum speed at which climbers part, radii a second.
 const PARTS: f64 = 5.0;
 
 fn twins(height: f64, apart: DVec3, size: f64, rate: f64) -> Crowd {
@@ -35,7 +35,7 @@ fn two_at_one_place_part_to_both_sides_by_half() {
                             for (index, before) in before.into_iter().enumerate() {
                                 let way = crowd.position(index) - before;
                                 let most = (PARTS * 0.4 * size / rate).max(
-                                    // It falls the margin deep onto the ground.
+                                    // The body falls onto the ground by a margin.
                                     0.02 * size,
                                 );
                                 assert!(way.length() < most * 1.001, "{told}: {way}");
@@ -126,7 +126,7 @@ fn walkers_who_meet_stop() {
                 "{told}"
             );
             assert!((a.distance(b) - 0.8).abs() < 0.02, "{told}");
-            // Both may make a whole step towards each other before they know.
+            // Each may make a whole step towards the other before the overlap shows.
             let step = crowd.climbers[0].config().ground.walk_speed * speed / rate;
             assert!(deepest < 2.0 * step + 0.01, "{told}");
         }
@@ -183,7 +183,8 @@ fn two_at_one_place_that_know_no_ids_do_not_drift() {
     }
 }
 
-/// A rule sees where others touch a climber, not where they would if the ground had not moved.
+/// A rule sees the actual contact with another climber, not the contact that there would be if the ground had not
+/// moved.
 #[test]
 fn a_rule_for_friends_sees_the_same_contact_in_every_frame() {
     for rate in RATES {

@@ -5,7 +5,7 @@ use glam::DVec3;
 
 use crate::crowd::{Crowd, IDLE, RATES, SIZES, walker};
 
-/// Two in a row along x, of some masses.
+/// Two climbers in a row along x, with masses.
 fn pair(others: Others, masses: [f64; 2], size: f64, rate: f64) -> Crowd {
     let places = [0.0, 1.0].map(|x| DVec3::new(x, 0.4, 0.0) * size);
     let mut crowd = Crowd::new(walker(size), &places, rate);
@@ -190,7 +190,7 @@ fn who_stands_in_another_one_parts_softly() {
     }
 }
 
-/// Of two, passing counts before blocking, and blocking before pushing.
+/// If either of two climbers passes, they pass; otherwise, if either blocks, they block.
 #[test]
 fn the_softer_way_of_two_counts() {
     use Others::{Block, Pass, Push};
@@ -226,7 +226,7 @@ fn the_softer_way_of_two_counts() {
     }
 }
 
-/// The larger one pushes the smaller one as any other, and walks over nobody.
+/// The larger climber pushes the smaller one as any other, and does not walk over it.
 #[test]
 fn sizes_do_not_change_who_pushes_whom() {
     for ratio in [0.1, 0.3, 1.0, 3.0, 10.0] {
@@ -235,9 +235,9 @@ fn sizes_do_not_change_who_pushes_whom() {
                 let sizes = [ratio, 1.0];
                 let gap = 0.4 * (ratio + 1.0) + 0.3;
                 let places = [DVec3::Y * 0.4 * ratio, DVec3::new(gap, 0.4, 0.0)];
-                // In a tick it pushes by no more than three quarters of its radius.
+                // In a tick, the climber pushes by at most three quarters of the smaller radius.
                 let speed = 3.0 * f64::min(ratio, 1.0).sqrt();
-                // Ticks in which it walks by half its radius are too long for that.
+                // Ticks in which the climber walks by half the smaller radius are too long for that.
                 if speed / rate > 0.5 * 0.4 * f64::min(ratio, 1.0) {
                     continue;
                 }

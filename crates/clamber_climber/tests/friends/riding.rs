@@ -5,12 +5,13 @@ use glam::DVec3;
 
 use crate::crowd::{Crowd, IDLE, RATES, SIZES, walker};
 
-/// Where the deck is at a time: 0.2 m to and fro, twice a second.
+/// The deck's displacement at a time: 0.2 m to either side, twice a second.
 fn shakes(time: f64, axis: DVec3) -> DVec3 {
     axis * (0.2 * libm::sin(std::f64::consts::TAU * 2.0 * time))
 }
 
-/// Rides of 10 s from places where climbers have come to rest: how far each is from its place on the deck at most.
+/// Rides for 10 s on the places where the climbers have come to rest. Checks the largest distance of each climber from
+/// its place on the deck.
 fn ride(places: &[DVec3], axis: DVec3, size: f64, rate: f64, reverse: bool) {
     let mut config = walker(size);
     config.ground.throw_acceleration = f64::INFINITY;
@@ -60,7 +61,7 @@ fn a_stack_of_three_stays_on_a_deck_that_shakes() {
     for size in SIZES {
         for rate in RATES {
             for reverse in [false, true] {
-                // Up and down no faster than they fall.
+                // Up and down, the deck is never faster than the climbers fall.
                 for axis in [DVec3::X, DVec3::Y * 0.25, DVec3::new(0.6, 0.2, 0.0)] {
                     ride(&places, axis, size, rate, reverse);
                 }

@@ -8,8 +8,8 @@ use crate::crowd::{Crowd, IDLE};
 /// Half of the room's length, metres.
 const HALF: f64 = 1.5;
 
-/// Farthest step of a tick beside what carries it, metres, where the climber's own speed does not make it. Those who
-/// push each other may part as fast as two walk against each other.
+/// Largest displacement in a tick beside the motion of the support, metres, that is not the climber's own speed.
+/// Climbers that push each other may part as fast as two climbers walk against each other.
 fn farthest(others: Others) -> f64 {
     match others {
         Others::Block | Others::Pass => 0.1,
@@ -17,7 +17,8 @@ fn farthest(others: Others) -> f64 {
     }
 }
 
-/// How far somebody went by itself, metres. Where a wall stops what carries it, it only stays where it is.
+/// Distance that a climber moved on its own, metres. Motion that only undoes the carrying, because a wall stops it,
+/// does not count.
 fn beside_carrying(moved: DVec3, own: DVec3) -> f64 {
     let carried = moved - own;
     let left = [0, 1, 2].map(|axis| {

@@ -1,4 +1,4 @@
-//! The weight of climbers on climbers, on what can be pushed.
+//! The weight of climbers on climbers, on supports that can be pushed.
 
 use clamber_climber::{
     Climber, ClimberConfig, ClimberGroup, ClimberInput, ContactQuery, ContactRule, StepRules,
@@ -14,7 +14,7 @@ fn grips_friends(query: &ContactQuery<'_>) -> ContactRule {
     query.usual().with_grip(true)
 }
 
-/// The force on the scales, as a multiple of one climber's weight, after all have come to rest.
+/// The force on the scales, as a multiple of one climber's weight, after all climbers have come to rest.
 fn weighed(
     scales: &Held<HalfSpace>,
     config: ClimberConfig,
@@ -70,7 +70,7 @@ fn a_tower_weighs_as_much_as_all_of_its_climbers() {
     }
 }
 
-/// The upper one holds a ceiling, the lower one its feet.
+/// The upper climber holds a ceiling, and the lower one holds the upper one's feet.
 #[test]
 fn who_hangs_from_a_climber_that_hangs_weighs_on_its_hold() {
     for size in SIZES {

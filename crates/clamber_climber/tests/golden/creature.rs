@@ -10,8 +10,10 @@ use clamber_surface::rig::{
 };
 use glam::{DAffine3, DVec3, Vec3};
 
+/// Number of joints of the tube.
 pub(crate) const JOINTS: u32 = 16;
 
+/// Number of sides of the tube.
 const SIDES: u32 = 20;
 
 /// Radius of the tube, metres.
@@ -117,7 +119,7 @@ pub(crate) fn skeleton() -> Skeleton {
     Skeleton::new((0..JOINTS).map(joint).collect()).unwrap()
 }
 
-/// Waves along the tube, with every kind of interpolation in turn. One joint grows and shrinks, one is mirrored.
+/// Waves along the tube, with the kinds of interpolation in turn. One joint grows and shrinks, one is mirrored.
 pub(crate) fn clip() -> Clip {
     let mut channels = Vec::new();
     let keys = 8;

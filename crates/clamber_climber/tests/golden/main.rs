@@ -4,7 +4,7 @@
 //! CPU.
 //!
 //! [`RUN`] changes whenever a result changes by a single bit. If the change is intended, store the new hash in it, and
-//! the file by `CLAMBER_BLESS=1`.
+//! write the file with `CLAMBER_BLESS=1`.
 
 #![expect(
     clippy::unwrap_used,
@@ -18,7 +18,7 @@ mod run;
 use clamber_oracle::golden;
 use clamber_surface::SimdLevel;
 
-/// The hash of the run. Which climber, field, query and tick differ tells the file beside this one.
+/// The hash of the run. If it differs, the file beside this one tells which climber, field, query and tick differ.
 const RUN: u64 = 0x7333_03ed_f7c0_064f;
 
 /// Plays the run on `threads` threads at a SIMD level.
@@ -34,8 +34,8 @@ fn assert_golden(level: SimdLevel, threads: usize) {
 
 #[test]
 fn the_run_has_the_same_bits_at_every_simd_level() {
-    // As released, scalar code is among them with the feature `scalar` of `clamber_surface`, which CI turns on. With
-    // debug assertions, which make the lower levels slow, the best one alone.
+    // In a release build, scalar code is among the levels with the feature `scalar` of `clamber_surface`, which CI
+    // turns on. With debug assertions, which make the lower levels slow, only the best level is played.
     let levels = SimdLevel::available();
     let count = if cfg!(debug_assertions) {
         1

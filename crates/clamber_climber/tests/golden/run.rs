@@ -15,15 +15,22 @@ use clamber_oracle::golden::GoldenRun;
 use crate::bits::Bits;
 use crate::creature::{JOINTS, clip, ground, skeleton, tube};
 
+/// Length of the run, ticks.
 const TICKS: u32 = 150;
+
+/// Length of a tick, seconds.
 const TICK: f64 = 1.0 / 60.0;
+
+/// Number of climbers.
 const CLIMBERS: u32 = 24;
+
+/// Number of queries in a tick.
 const QUERIES: u64 = 96;
 
 /// Id of the tube as an obstacle.
 const TUBE: ObstacleId = ObstacleId(1);
 
-/// Where the run takes place.
+/// The place of the run in the world, metres: far from the origin.
 const PLACE: DVec3 = DVec3::new(1e5, 40.0, -3e4);
 
 /// Metres per unit of the model.
@@ -87,14 +94,14 @@ fn play_on_these_threads(run: &mut GoldenRun, level: SimdLevel) {
         let on_tube =
             |state: &&ClimberState| state.support.is_some_and(|s| s.attachment.obstacle == TUBE);
         carried += states.iter().filter(on_tube).count();
-        // Also the vertices that queries did not touch.
+        // Includes the vertices that queries did not touch.
         surface.skin_all(&mut positions);
         let mut bits = Bits::default();
         bits.positions(&positions);
         run.field("vertices", bits.finish());
         run.end_tick();
     }
-    // Otherwise the hashes would cover little.
+    // Otherwise the hashes would cover few ticks on the tube.
     assert!(carried > 400, "{carried} ticks of climbers on the tube");
 }
 
@@ -121,7 +128,7 @@ fn climber(index: u32) -> Climber {
     Climber::new(config, PLACE + above).unwrap()
 }
 
-/// Whether a climber grips and climbs, as every third does.
+/// True for every third climber, which grips and climbs.
 fn grips(index: u32) -> bool {
     index.is_multiple_of(3)
 }

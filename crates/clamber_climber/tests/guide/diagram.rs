@@ -4,6 +4,7 @@ use clamber_climber::{ClimberMode, TRANSITIONS};
 
 use crate::routes::{ROUTES, Route};
 
+/// Width and height of the picture.
 const SIZE: (i32, i32) = (960, 520);
 
 /// Radius of the arrows' corners.

@@ -1,8 +1,8 @@
 //! The guide's diagram and table of modes match the code.
 //!
-//! Both are generated here from `TRANSITIONS`, and stored in `src/guide`. After a change of the table, `CLAMBER_BLESS=1
-//! cargo test -p clamber_climber --test guide` writes them again. Look at the diagram then: the routes of its arrows
-//! are placed by hand, in `routes.rs`.
+//! The diagram and the table are generated here from `TRANSITIONS`, and stored in `src/guide`. After a change of the
+//! transitions, `CLAMBER_BLESS=1 cargo test -p clamber_climber --test guide` writes them again. Then look at the
+//! diagram: the routes of its arrows are placed by hand, in `routes.rs`.
 
 #![expect(
     clippy::unwrap_used,

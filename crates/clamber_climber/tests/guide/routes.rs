@@ -1,4 +1,4 @@
-//! Routes of the diagram's arrows: horizontal and vertical lines from the edge of one box to that of another.
+//! Routes of the diagram's arrows: horizontal and vertical lines from the edge of one box to the edge of another.
 //!
 //! Falling and Tumbling, to which nearly every mode changes, are bars above and below the others, so that few arrows
 //! cross.
@@ -13,7 +13,7 @@ use clamber_climber::ClimberMode::{
 pub(crate) struct Route {
     pub(crate) from: ClimberMode,
     pub(crate) to: ClimberMode,
-    /// Its corners, including both ends.
+    /// The route's corners, including both ends.
     pub(crate) way: &'static [(i32, i32)],
 }
 
@@ -21,6 +21,7 @@ const fn route(from: ClimberMode, to: ClimberMode, way: &'static [(i32, i32)]) -
     Route { from, to, way }
 }
 
+/// The routes of all arrows.
 pub(crate) const ROUTES: [Route; 29] = [
     // Between neighbours.
     route(Sliding, Standing, &[(166, 223), (214, 223)]),

@@ -10,9 +10,13 @@ use rayon::prelude::*;
 
 use crate::creature::{clip, ground, skeleton, tube};
 
+/// Length of a tick, seconds.
 const TICK: f64 = 1.0 / 60.0;
 
+/// Number of creatures.
 pub(crate) const CREATURES: usize = 3;
+
+/// Number of climbers.
 pub(crate) const CLIMBERS: usize = 6;
 
 /// First id of the climbers' bodies.
@@ -148,7 +152,7 @@ impl Herd {
     }
 }
 
-/// Everything that a climber can touch.
+/// All obstacles that a climber can touch.
 type World<'a> = (
     &'a SkinnedSurface,
     &'a [SkinnedSurface; CREATURES],
@@ -175,7 +179,7 @@ fn step(
         }
     }
     let input = input(index as u32, tick, climber.state().position);
-    // Every other climber has a rule with something of all that rules can say.
+    // Every other climber has a rule that uses each field of a rule.
     let is_ruled = index % 2 == 1;
     let rule = |query: &ContactQuery<'_>| {
         let id = query.id.0;
@@ -226,7 +230,7 @@ fn turn(creature: usize, time: f64) -> DQuat {
     rotation_from_axis_angle(DVec3::Y, 1.1 * creature as f64 + 0.1 * time)
 }
 
-/// Walks to the middle, where all climbers meet, and around there.
+/// Walks to the middle, where all climbers meet, and in circles there.
 fn input(index: u32, tick: u32, position: DVec3) -> ClimberInput {
     let middle = -position * DVec3::new(1.0, 0.0, 1.0);
     let angle = f64::from(index * 2 + tick / 45);

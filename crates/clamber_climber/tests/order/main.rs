@@ -13,6 +13,7 @@ mod herd;
 use clamber_climber::{ClimberEvent, ClimberMode, StepReport};
 use herd::{CLIMBERS, CREATURES, Herd, Order};
 
+/// Length of the run, ticks.
 const TICKS: u32 = 900;
 
 /// The fingerprint and report of every climber, tick by tick.
@@ -57,7 +58,7 @@ fn a_herd_has_the_same_bits_on_any_threads() {
     }
 }
 
-/// Otherwise equal bits would show little.
+/// Otherwise equal bits would prove little.
 #[test]
 fn the_herd_touches_all_creatures_and_each_other() {
     let mut herd = Herd::new();

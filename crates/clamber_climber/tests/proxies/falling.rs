@@ -39,7 +39,7 @@ fn a_light_crate_rests_on_a_standing_climber() {
         }
         let above = scene.above(load).y;
         assert!((above - 0.71).abs() < 0.008, "{setting:?}: {above}");
-        // It fell by 0.49 m, to 3.1 m/s, up to the last tick before the impact.
+        // The crate fell by 0.49 m, to 3.1 m/s, up to the last tick before the impact.
         let expected = 10.0 * 3.1 * scene.speed();
         assert!(
             (felt / expected - 1.0).abs() < 0.13,
@@ -67,7 +67,7 @@ fn a_fast_heavy_crate_knocks_a_standing_climber_down() {
         for (mass, knocks) in [(10.0, false), (30.0, false), (60.0, true), (400.0, true)] {
             let mut scene = standing(setting);
             let body = RigidBodyBuilder::dynamic().lock_rotations();
-            // It hits at 5.8 m/s: 60 kg change the speed of 80 kg by 4.4 m/s.
+            // The crate hits at 5.8 m/s: 60 kg change the speed of 80 kg by 4.4 m/s.
             let load = scene.add(body, [0.6; 3], above(&scene, 2.4), mass);
             let mut events = Vec::new();
             for tick in 0..scene.ticks(2.0) {

@@ -1,4 +1,4 @@
-//! Bodies that are far heavier than the climber, and what hangs.
+//! Bodies that are far heavier than the climber, and climbers that hang.
 
 use clamber_climber::{ClimberConfig, ClimberInput, ClimberMode};
 use clamber_world::rapier3d::prelude::{ColliderBuilder, RigidBodyBuilder};
@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use crate::scene::{SETTINGS, Scene};
 
-/// Whoever is struck by a mountain is struck as by a fall onto one: no faster than it came.
+/// A boulder strikes a climber like a fall onto the boulder: the climber gets no faster than the boulder came.
 #[test]
 fn a_boulder_throws_nobody_into_the_sky() {
     for setting in SETTINGS {
@@ -38,7 +38,7 @@ fn a_boulder_throws_nobody_into_the_sky() {
     }
 }
 
-/// Nothing is below who hangs from a ledge: it goes on with the crate at their common velocity.
+/// No support is below a climber that hangs from a ledge: it goes on with the crate at their common velocity.
 #[test]
 fn a_crate_takes_a_climber_off_its_ledge_at_their_common_velocity() {
     for setting in SETTINGS {
@@ -73,7 +73,7 @@ fn a_crate_takes_a_climber_off_its_ledge_at_their_common_velocity() {
             let left = -scene.own().y;
             let common = came * mass / (mass + 80.0);
             let told = format!("{setting:?}, {mass} kg: {left} m/s of {common}");
-            // Gravity adds to both in the tick.
+            // Gravity adds to both velocities in the tick.
             let slack = 0.03 * came + 2.0 * 9.81 * scene.dt();
             assert!((left - common).abs() < slack, "{told}");
         }

@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use crate::scene::{SETTINGS, Scene, WORLD};
 
-/// Memory that proxies take in some ticks, with a load on the climber and another that it walks into, if wanted.
+/// Memory that proxies allocate in some ticks, with a load on the climber and, if it walks, another one in its way.
 fn taken(scene: &mut Scene, walk: DVec3, ticks: u32) -> u64 {
     let input = ClimberInput {
         walk,
@@ -16,7 +16,7 @@ fn taken(scene: &mut Scene, walk: DVec3, ticks: u32) -> u64 {
     for _ in 0..ticks {
         let dt = scene.dt();
         scene.tick(&input);
-        // What the tick has done once more, with nothing else in between.
+        // Repeats the tick's work on proxies, without anything else in between.
         let world = &mut scene.world;
         let proxy = scene.proxy.as_mut().unwrap();
         let used = allocation_counter::measure(|| {

@@ -1,4 +1,4 @@
-//! What the climber does to bodies by itself is the same with a proxy as without: weight, pushes, landings.
+//! The climber's own effects on bodies are the same with a proxy as without: weight, pushes, landings.
 
 use clamber_climber::{ClimberConfig, ClimberInput, ClimberMode};
 use clamber_world::rapier3d::prelude::{RigidBodyBuilder, Vector};
@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use crate::scene::{SETTINGS, Scene, Setting};
 
-/// Walks against a box for two seconds, with jumps if wanted. Returns the speed of the box and where the climber is.
+/// Walks against a box for two seconds, with jumps if wanted. Returns the speed of the box and the climber's place.
 fn walked(setting: Setting, mass: f64, jumps: bool, seen: bool) -> (f64, f64) {
     let config = ClimberConfig::walker();
     let mut scene = Scene::new(setting, config, DVec3::Y * 0.41).with_floor();
@@ -66,7 +66,7 @@ fn what_carries_the_climber_does_not_collide_with_it() {
             let raft = scene.add(body, [9.0, 1.0, 9.0], DVec3::Y * -0.5, 4000.0);
             let mut heights = Vec::new();
             for tick in 0..scene.ticks(2.0) {
-                // Thrown up and down with up to 4 m/s².
+                // The raft is thrown up and down with up to 4 m/s².
                 let time = f64::from(tick) / f64::from(scene.ticks(1.0));
                 let push = libm::sin(time * std::f64::consts::TAU * 2.0) * 4.0 * 4000.0;
                 let body = scene.world.bodies.get_mut(raft).unwrap();

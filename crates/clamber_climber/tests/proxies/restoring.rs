@@ -1,4 +1,4 @@
-//! Two worlds with the same input have the same bits, and so has one that is restored.
+//! Two worlds with the same input have the same bits, and so does a world that is restored.
 
 use clamber_climber::{ClimberConfig, ClimberInput};
 use clamber_world::rapier3d::prelude::RigidBodyBuilder;

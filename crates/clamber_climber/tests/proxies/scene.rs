@@ -22,9 +22,9 @@ pub(crate) struct Scene {
     pub(crate) setting: Setting,
     pub(crate) before: BodyPoses,
     pub(crate) proxy: Option<ClimberProxy>,
-    /// What struck the climber in the last tick.
+    /// The hit on the climber in the last tick.
     pub(crate) hit: Option<ProxyHit>,
-    /// Everything moves at this velocity.
+    /// Velocity of all bodies and of the climber at the start.
     pub(crate) frame: DVec3,
 }
 
@@ -38,7 +38,7 @@ impl Scene {
         };
         world.integration_parameters.dt = (1.0 / hz) as f32;
         world.integration_parameters.length_unit = size as f32;
-        // Rapier clips speeds at 400 m/s, in which no frame is like another.
+        // Rapier clips speeds at 400 m/s, which would make fast frames differ.
         world.integration_parameters.normalized_max_linear_velocity = 1e4;
         let frame = DVec3::Z * frame;
         let mut climber = Climber::new(config.scaled(size), position * size).unwrap();
@@ -59,7 +59,7 @@ impl Scene {
         }
     }
 
-    /// The same climber, which bodies do not see.
+    /// The same climber without a proxy, so that bodies do not collide with it.
     pub(crate) fn without_proxy(mut self) -> Self {
         if let Some(proxy) = self.proxy.take() {
             proxy.remove(&mut self.world);
@@ -91,7 +91,7 @@ impl Scene {
         let body = body
             .translation((at * size).as_vec3())
             .linvel(self.frame.as_vec3())
-            // Rapier puts to sleep what moves as slowly as a giant's falling crate, or a heavy one that was pushed.
+            // Rapier puts slow bodies to sleep, such as a giant's falling crate, or a heavy body that was pushed.
             .can_sleep(false);
         let collider = ColliderBuilder::cuboid(x, y, z)
             .mass(mass as f32)

@@ -11,6 +11,7 @@ use glam::{DQuat, DVec3, Vec3};
 use crate::scene::{SETTINGS, Scene, Setting};
 use crate::skin::{FUR, HOLD, STONE, cuboid};
 
+/// Id of the creature as an obstacle.
 const CREATURE: ObstacleId = ObstacleId(3);
 
 /// A climber on a creature that heaves by a tenth of the climber's size, twice a second.

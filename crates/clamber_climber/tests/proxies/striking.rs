@@ -1,4 +1,4 @@
-//! Bodies that strike a climber from the side, in the air and on the ground: momentum, and fast small things.
+//! Bodies that strike a climber from the side, in the air and on the ground: momentum, and fast small bodies.
 
 use clamber_climber::{ClimberConfig, ClimberInput, ClimberMode};
 use clamber_world::rapier3d::prelude::{RigidBodyBuilder, Vector};
@@ -97,7 +97,7 @@ fn a_cart_shoves_a_standing_climber() {
             assert!(!scene.climber.state().crushed, "{told}");
         }
         let moved = (scene.climber.state().position.x - from) / setting.0;
-        // Pushed along at nearly its speed, since 800 kg do not feel the friction of a person.
+        // The climber is pushed along at nearly the cart's speed: the friction of a person hardly slows 800 kg.
         assert!((0.5..2.5).contains(&moved), "{setting:?}: {moved}");
         let left = scene.velocity(cart).x / speed;
         assert!((0.05..0.95).contains(&left), "{setting:?}: {left}");

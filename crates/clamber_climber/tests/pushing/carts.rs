@@ -1,5 +1,4 @@
-//! Carts, rafts and ships with a passenger: the momentum of bodies and climber changes by gravity and by what is fixed
-//! alone.
+//! Carts, rafts and ships with a passenger: only gravity and fixed bodies change the momentum of bodies and climber.
 
 use clamber_climber::{ClimberInput, ClimberMode};
 use clamber_world::rapier3d::prelude::{
@@ -10,6 +9,7 @@ use glam::DVec3;
 
 use crate::scene::{IDLE, Scene, cuboid, walk};
 
+/// Mass of the climber, kg.
 const MASS: f64 = 80.0;
 
 /// A cart on rails along X, with walls at both ends. Its deck is at height 1.1.
@@ -55,7 +55,7 @@ fn momentum(scene: &Scene, bodies: &[RigidBodyHandle]) -> f64 {
 
 #[test]
 fn a_passenger_does_not_drive_its_cart() {
-    // What carries the climber does not feel its inertia, so that jumps between the shoves of a crate leave some speed.
+    // The support does not feel the climber's inertia, so that jumps between the shoves of a crate leave some speed.
     let plays = [
         (false, 0, 0.05),
         (false, 97, 0.05),
@@ -74,7 +74,7 @@ fn a_passenger_does_not_drive_its_cart() {
                 bodies.push(scene.add(crate_body, [(cuboid(0.3, 0.3, 0.3), 30.0)]));
             }
             for tick in 0..1_200 {
-                // Pushes against the front wall, then against the rear one, jumps now and then.
+                // The climber pushes against the front wall, then against the rear one, and jumps sometimes.
                 let ahead = if tick / 200 % 2 == 0 { 1.0 } else { -1.0 };
                 let mut input = if tick < 30 {
                     IDLE
@@ -88,7 +88,7 @@ fn a_passenger_does_not_drive_its_cart() {
                 assert!(speed.abs() < 3.0, "{told}");
                 assert!(!scene.climber.state().crushed, "{told}");
             }
-            // At rest in the end, wherever it is.
+            // The cart is at rest in the end, at any place.
             for _ in 0..240 {
                 scene.tick(&IDLE);
             }
@@ -118,7 +118,7 @@ fn walking_stopping_and_jumping_on_a_raft_keep_the_momentum_of_both() {
             let mut input = if tick % 150 < 100 { walk(stick) } else { IDLE };
             input.jump = tick % 150 == 60;
             scene.tick(&input);
-            // Pushes of this tick reach the raft with the next one, together with the velocity that they change.
+            // Pushes of this tick reach the raft in the next one, together with the velocity that they change.
             scene.apply();
             let own = scene.climber.state().velocity - scene.climber.state().base_velocity;
             let in_air = scene.climber.state().mode == ClimberMode::Falling;

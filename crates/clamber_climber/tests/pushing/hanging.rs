@@ -1,4 +1,4 @@
-//! A climber that holds on to a body, which it does not tear about, however light the body is.
+//! A climber that holds on to a body, and does not tear it about, however light the body is.
 
 use clamber_climber::{Blow, ClimberConfig, ClimberInput, ClimberMode};
 use clamber_world::rapier3d::prelude::{
@@ -8,10 +8,13 @@ use glam::DVec3;
 
 use crate::scene::{FUR, Scene, cuboid};
 
+/// Mass of the climber, kg.
 const MASS: f64 = 80.0;
 
+/// Gravity, metres a second squared.
 const GRAVITY: f64 = 9.81;
 
+/// Input that only holds the grip.
 const HOLD: ClimberInput = ClimberInput {
     grip: true,
     ..ClimberInput::IDLE
@@ -40,7 +43,7 @@ const CASES: [(f64, f64, f64); 19] = [
     (100.0, 60.0, 10.0),
 ];
 
-/// A climber that never tires. If it `hangs`, it hangs from whatever is as steep as a wall.
+/// A climber that never tires. If it `hangs`, it hangs from any surface as steep as a wall.
 fn climber(hangs: bool) -> ClimberConfig {
     let mut config = ClimberConfig {
         stamina: None,
@@ -68,7 +71,7 @@ fn beside_a_box(
     (scene, handle)
 }
 
-/// Energies of body and climber at size 1, joules: of motion, and of height.
+/// Kinetic and potential energy of body and climber at size 1, joules.
 fn energies(scene: &Scene, body: RigidBodyHandle, size: f64) -> (f64, f64) {
     let (state, gravity) = (scene.climber.state(), GRAVITY);
     let body = &scene.world.bodies[body];
@@ -84,7 +87,7 @@ fn who_holds_a_body_that_falls_falls_as_gravity_lets_both() {
     for hangs in [false, true] {
         for case in CASES {
             for turns in [false, true] {
-                // A light body that turns about the hands of a climber is faster than both.
+                // A light body that turns about the hands of a climber is faster than a common fall.
                 if turns && hangs {
                     continue;
                 }
@@ -150,7 +153,7 @@ fn hanging_from_a_body_makes_no_energy() {
                         0.5 * MASS * (after.length_squared() - before.length_squared()).max(0.0);
                 }
                 lowest = lowest.min(height);
-                // A few per cent of what gravity has given, and of a fall of half a metre.
+                // A few per cent of the energy from gravity so far, and of a fall of half a metre.
                 let slack = 0.06 * (*all - lowest) + 0.5 * MASS * GRAVITY;
                 assert!(
                     moves + height < *all + slack,

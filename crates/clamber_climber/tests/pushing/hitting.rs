@@ -1,4 +1,4 @@
-//! A climber in the air that hits what can be pushed: both go on at one speed.
+//! A climber in the air that hits bodies that can be pushed: both go on at one speed.
 
 use clamber_climber::{ClimberConfig, ClimberEvent, ClimberMode};
 use clamber_world::rapier3d::prelude::{
@@ -8,6 +8,7 @@ use glam::DVec3;
 
 use crate::scene::{IDLE, Scene, cuboid, walk};
 
+/// Mass of the climber, kg.
 const MASS: f64 = 80.0;
 
 fn v32(v: DVec3) -> Vector {
@@ -103,7 +104,7 @@ fn a_passenger_that_jumps_against_its_carts_walls_does_not_drive_it() {
             input.jump = tick % (rate as u32 / 2) == 3;
             scene.step(&input);
             scene.apply();
-            // The reaction to a start on the deck is seen a tick later.
+            // The reaction to a start on the deck shows a tick later.
             let sum = (scene.momentum(cart).x + MASS * scene.climber.state().velocity.x) / size;
             most = most.max(sum.abs().min(last));
             last = sum.abs();

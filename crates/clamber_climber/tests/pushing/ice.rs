@@ -1,4 +1,4 @@
-//! Ice: feet that slip neither push their ground nor brace on it, beyond what friction does.
+//! Ice: feet that slip neither push their ground nor brace on it, beyond the force of friction.
 
 use clamber_climber::{
     ClimberConfig, ClimberEvent, ClimberInput, ContactQuery, ContactRule, StepRules,
@@ -8,9 +8,10 @@ use glam::DVec3;
 
 use crate::scene::{IDLE, Scene, cuboid, walk};
 
+/// Mass of the climber, kg.
 const MASS: f64 = 80.0;
 
-/// Half lengths of what it stands on.
+/// Half lengths of the body that the climber stands on, metres.
 const FLOE: DVec3 = DVec3::new(30.0, 0.25, 9.0);
 
 /// Sizes of the world, and rates, hertz.
@@ -28,7 +29,7 @@ fn v32(v: DVec3) -> Vector {
     v.as_vec3()
 }
 
-/// A scene with a climber of a velocity that comes down on the height 0.
+/// A scene with a climber at a velocity that comes down to height 0.
 fn scene(size: f64, rate: f64, at: DVec3, velocity: DVec3) -> Scene {
     let config = ClimberConfig::walker();
     let mut scene = Scene::with(config, size, 1.0 / rate, 9.81, at);
@@ -36,7 +37,7 @@ fn scene(size: f64, rate: f64, at: DVec3, velocity: DVec3) -> Scene {
     scene
 }
 
-/// A box that moves without turning, along the axes that it is free to.
+/// A box that moves along X and Z without turning.
 fn add(scene: &mut Scene, size: f64, place: DVec3, half: DVec3, mass: f64) -> RigidBodyHandle {
     let body = RigidBodyBuilder::dynamic()
         .translation(v32(place * size))
@@ -109,7 +110,7 @@ fn walking_and_sliding_on_a_floe_keep_the_momentum_of_both() {
     }
 }
 
-/// What stops it, or what it strikes, gives its ground nothing.
+/// Neither a pier that stops the climber nor a crate that it strikes changes the velocity of its ground.
 #[test]
 fn a_collision_on_a_floe_is_none_of_the_floes() {
     let rule = |query: &ContactQuery<'_>| query.usual().with_friction(0.0);
@@ -155,7 +156,8 @@ fn a_collision_on_a_floe_is_none_of_the_floes() {
     }
 }
 
-/// A box before a wall stops a climber on ice as the wall would, and it does not keep a speed that it has not.
+/// A box before a wall stops a climber on ice as the wall would, and the climber does not keep a speed that it has
+/// lost.
 #[test]
 fn a_light_box_before_a_wall_stops_who_slides() {
     for (size, rate) in WORLDS {
@@ -187,7 +189,7 @@ fn a_light_box_before_a_wall_stops_who_slides() {
     }
 }
 
-/// Who leaves a cart for ice slides on at the cart's speed.
+/// A climber that walks from a cart onto ice slides on at the cart's speed.
 #[test]
 fn who_walks_from_a_cart_onto_ice_slides_on() {
     for (size, rate) in WORLDS {
@@ -196,7 +198,7 @@ fn who_walks_from_a_cart_onto_ice_slides_on() {
             .translation(v32(DVec3::new(-5.0, -0.25, 0.0) * size))
             .can_sleep(false);
         let half = v32(DVec3::new(4.0, 0.25, 2.0) * size);
-        // The cart goes on through the ice, which is a hand lower.
+        // The cart goes on above the ice, whose top is a centimetre lower.
         let cart = scene.add(body, [(cuboid(half.x, half.y, half.z), 1.0)]);
         scene.world.bodies[cart].set_linvel(v32(DVec3::X * (5.0 * size)), true);
         let half = v32(DVec3::new(25.0, 0.25, 9.0) * size);
@@ -248,7 +250,7 @@ fn who_slides_on_ice_into_a_crate_shares_its_momentum() {
     }
 }
 
-/// Ice that tilts until nobody stands on it leaves a climber the speed at which it slides.
+/// Ice tilts until it is too steep to stand on. The climber keeps the speed at which it slides.
 #[test]
 fn who_slides_on_ice_that_tilts_keeps_its_speed() {
     let rule = |query: &ContactQuery<'_>| query.usual().with_friction(0.0);

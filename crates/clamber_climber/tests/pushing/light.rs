@@ -8,6 +8,7 @@ use glam::DVec3;
 
 use crate::scene::{IDLE, Scene, walk};
 
+/// Mass of the climber, kg.
 const MASS: f64 = 80.0;
 
 /// Sizes of the world, and rates, hertz.
@@ -24,7 +25,7 @@ fn v32(v: DVec3) -> Vector {
     v.as_vec3()
 }
 
-/// Without friction.
+/// A box by its half extents, without friction.
 fn cuboid(half: DVec3) -> ColliderBuilder {
     let half = v32(half);
     ColliderBuilder::cuboid(half.x, half.y, half.z).friction(0.0)
@@ -60,7 +61,7 @@ fn momentum(scene: &Scene, bodies: &[RigidBodyHandle]) -> DVec3 {
         .sum::<DVec3>()
 }
 
-/// Their kinetic energy, in a frame.
+/// Kinetic energy of the bodies and the climber, in a frame.
 fn energy(scene: &Scene, bodies: &[RigidBodyHandle], frame: DVec3) -> f64 {
     let own = scene.climber.state().velocity - frame;
     let of_bodies = bodies.iter().map(|body| {
@@ -73,7 +74,7 @@ fn energy(scene: &Scene, bodies: &[RigidBodyHandle], frame: DVec3) -> f64 {
     0.5 * MASS * own.length_squared() + of_bodies.sum::<f64>()
 }
 
-/// The last of a row of balls hits the one before it, which touches the climber still.
+/// The last of a row of balls hits the one before it, which still touches the climber.
 #[test]
 fn balls_in_a_row_give_a_floating_climber_their_momentum_and_no_more() {
     for (size, rate) in WORLDS {
@@ -122,7 +123,7 @@ fn balls_in_a_row_give_a_floating_climber_their_momentum_and_no_more() {
     }
 }
 
-/// Corners of a box strike one after the other.
+/// Two corners of a box strike one after the other.
 #[test]
 fn a_box_that_spins_makes_no_energy_of_its_second_corner() {
     for (size, rate) in WORLDS {
@@ -139,7 +140,7 @@ fn a_box_that_spins_makes_no_energy_of_its_second_corner() {
                     scene.step(&IDLE);
                     scene.apply();
                     let has = energy(&scene, &bodies, DVec3::ZERO);
-                    // At 30 Hz it turns by a radian in a tick, and its corners' ways are arcs.
+                    // At 30 Hz the box turns by a radian in a tick, and its corners move on arcs.
                     let most = if rate < 50.0 { 1.15 } else { 1.05 };
                     assert!(
                         has < most * joules,
@@ -151,7 +152,7 @@ fn a_box_that_spins_makes_no_energy_of_its_second_corner() {
     }
 }
 
-/// Velocities of the floor with all that is on it, metres a second: at rest, a train, and a lift.
+/// Velocities of the floor and of all bodies on it, metres a second: at rest, a train, and lifts.
 const FRAMES: [DVec3; 4] = [
     DVec3::ZERO,
     DVec3::new(30.0, 0.0, -10.0),
@@ -159,7 +160,7 @@ const FRAMES: [DVec3; 4] = [
     DVec3::new(0.0, -10.0, 0.0),
 ];
 
-/// A floor, a box on it, and a climber above that.
+/// A floor, a box on it, and a climber above the box.
 fn above_a_box(world: (f64, f64), frame: DVec3, half: DVec3, mass: f64, drop: f64) -> Scene {
     let (size, rate) = world;
     let start = DVec3::Y * (2.0 * half.y + 0.4 + drop);
@@ -182,7 +183,7 @@ fn above_a_box(world: (f64, f64), frame: DVec3, half: DVec3, mass: f64, drop: f6
     scene
 }
 
-/// The climber's height above the floor that moves along with a frame, in its own size, after `ticks`.
+/// The climber's height above the floor that moves with a frame, in its own size, after `ticks`.
 fn height(scene: &Scene, (size, rate): (f64, f64), frame: DVec3, ticks: u32) -> f64 {
     scene.climber.state().position.y / size - frame.y * f64::from(ticks) / rate
 }
@@ -257,7 +258,7 @@ fn a_jump_right_after_a_landing_on_a_box_is_as_high_as_off_the_floor() {
     }
 }
 
-/// Nobody jumps off a crate that falls with it as off the ground: both get the same momentum.
+/// A jump off a crate that falls with the climber is weaker than off the ground: both get the same momentum.
 #[test]
 fn a_jump_off_a_crate_that_falls_keeps_the_momentum_of_both() {
     for (size, rate) in WORLDS {
@@ -270,7 +271,7 @@ fn a_jump_off_a_crate_that_falls_keeps_the_momentum_of_both() {
                 .lock_rotations();
             let deck = (cuboid(DVec3::new(1.0, 0.25, 1.0) * size), mass);
             let bodies = [scene.add(body, [deck])];
-            // Its gravity begins when the climber stands, which it then does no longer with any weight.
+            // The crate's gravity begins when the climber stands. From then on, the climber has no weight on it.
             for _ in 0..3 {
                 scene.step(&IDLE);
                 scene.pushes.clear();
@@ -287,7 +288,7 @@ fn a_jump_off_a_crate_that_falls_keeps_the_momentum_of_both() {
             let told = format!("size {size}, {rate} Hz, {mass} kg: gained {gained} m/s");
             let jump = scene.climber.config().ground.jump_speed / size;
             let share = jump * mass / (mass + MASS);
-            // Gravity gives it a tick's fall with the crate, and another one in the air.
+            // Gravity adds the speed of a tick's fall with the crate, and of another one in the air.
             let gained = gained + 2.0 * 9.81 / rate;
             assert!((gained - share).abs() < 0.01 * jump, "{told}, not {share}");
             let impulse: f64 = scene.pushes.iter().map(|push| push.impulse.y).sum();
@@ -297,7 +298,7 @@ fn a_jump_off_a_crate_that_falls_keeps_the_momentum_of_both() {
     }
 }
 
-/// Its push does not move what something else holds, which is no shake.
+/// The floor holds the plank, so the climber's push does not move it, and must not count as shake.
 #[test]
 fn who_turns_round_on_a_light_plank_that_is_held_feels_no_shake() {
     for (size, rate) in WORLDS {
@@ -341,7 +342,7 @@ fn who_turns_round_on_a_light_plank_that_is_held_feels_no_shake() {
     }
 }
 
-/// A blow knocks a climber over on a cart, or it is thrown onto one: what brakes it takes the cart along.
+/// A blow knocks a climber over on a cart, or it is thrown onto one: the reaction to its braking takes the cart along.
 #[test]
 fn who_tumbles_on_a_cart_keeps_the_momentum_of_both() {
     for (size, rate) in WORLDS {
@@ -406,7 +407,7 @@ fn who_tumbles_on_a_cart_keeps_the_momentum_of_both() {
     }
 }
 
-/// A wedge of 60 degrees on ice slides away from below a climber that slides down it.
+/// A wedge of 60 degrees on ice slides away below a climber that slides down it.
 #[test]
 fn who_slides_down_a_free_wedge_gives_it_its_own_momentum() {
     for (size, rate) in WORLDS {

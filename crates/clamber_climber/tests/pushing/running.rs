@@ -7,10 +7,14 @@ use glam::DVec3;
 
 use crate::scene::{DT, IDLE, Scene, cuboid, sum, walk};
 
+/// Largest force with which the climber pushes, newtons.
 const FORCE: f64 = 600.0;
+
+/// Walking speed of the climber, metres a second.
 const SPEED: f64 = 3.0;
 
-/// The pushed point moves at [`SPEED`]; the box rocks a little, so that its centre is faster by up to a thousandth.
+/// Largest allowed speed of the box's centre, metres a second. The pushed point moves at [`SPEED`]; the box rocks a
+/// little, so that its centre is faster by up to a thousandth.
 const FASTEST: f64 = SPEED * 1.001;
 
 /// A climber on the floor, half a metre from a box with a mass and sides of a metre.
@@ -35,7 +39,7 @@ fn a_box_gains_the_momentum_that_it_is_given_and_never_outruns_the_climber() {
         assert!(gained.distance(given) < 1e-4, "{told}");
         assert!(given.length() <= FORCE * DT * (1.0 + 1e-9), "{told}");
         scene.step(&walk(DVec3::X));
-        // Nothing else pushes the box along the floor.
+        // No other body pushes the box along the floor.
         let over_the_tick = scene.momentum(handle) - before;
         assert!(
             (over_the_tick - given).x.abs() < 1e-3,
@@ -104,7 +108,7 @@ fn two_contacts_share_the_push_force_on_one_body_or_two() {
     }
 }
 
-/// What a climber gives, tick by tick, to a box that hangs beside a step which it climbs. All moves along with a frame.
+/// The climber's pushes, tick by tick, on a box that hangs beside a step that it climbs. All bodies move with a frame.
 fn pushes_beside_a_step(frame: DVec3, rise: f32, low: f32, beside: f32) -> Vec<DVec3> {
     let mut scene = Scene::new(0.0, DVec3::new(0.0, 0.4, 0.0));
     let block = |from: f32, until: f32, top: f32| {
@@ -128,8 +132,8 @@ fn pushes_beside_a_step(frame: DVec3, rise: f32, low: f32, beside: f32) -> Vec<D
     pushes.collect()
 }
 
-/// After the movement, the climber is set down on the step, where it may touch something else. The push that this gets
-/// is one by the movement.
+/// After the movement, the climber is set down on the step, where it may touch another body. The push on that body
+/// belongs to the movement.
 #[test]
 fn pushes_beside_a_step_are_the_same_in_every_frame() {
     let mut given = 0;

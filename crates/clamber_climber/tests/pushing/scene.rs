@@ -13,11 +13,13 @@ use glam::DVec3;
 
 use crate::numbers::in_world_of_size;
 
+/// Length of a tick, seconds.
 pub(crate) const DT: f64 = 1.0 / 60.0;
 
 /// The user data of colliders with fur.
 pub(crate) const FUR: u128 = 1;
 
+/// No input.
 pub(crate) const IDLE: ClimberInput = ClimberInput::IDLE;
 
 pub(crate) fn walk(direction: DVec3) -> ClimberInput {
@@ -43,7 +45,7 @@ impl Scene {
         Self::with(ClimberConfig::walker(), 1.0, DT, gravity, position)
     }
 
-    /// [`Scene::new`] in a world of another size: everything there takes as long as at size 1.
+    /// [`Scene::new`] in a world of another size, in which every motion takes as long as at size 1.
     pub(crate) fn with(
         config: ClimberConfig,
         size: f64,

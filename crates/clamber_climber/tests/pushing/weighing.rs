@@ -8,7 +8,10 @@ use glam::DVec3;
 
 use crate::scene::{DT, IDLE, Scene, cuboid, landing_speed, sum, walk};
 
+/// Mass of the climber, kg.
 const MASS: f64 = 80.0;
+
+/// Weight of the climber, newtons.
 const WEIGHT: f64 = MASS * 9.81;
 
 /// Walks in a circle within 2 m.
@@ -23,6 +26,7 @@ fn still(_: u32) -> ClimberInput {
 
 type Way = fn(u32) -> ClimberInput;
 
+/// Ways to move, by name.
 const WAYS: [(&str, Way); 2] = [("standing", still), ("walking", about)];
 
 /// A raft with a mass and its top at height 0, which floats without gravity and does not turn, and a climber above it.
@@ -55,7 +59,7 @@ fn a_raft_gets_the_climbers_weight_every_tick_standing_or_walking() {
                 assert!(aside.length() < 0.01 * WEIGHT, "{told}");
             }
             assert_eq!(report.pushes.len(), 1, "{told}");
-            // The push acts at its feet.
+            // The push acts at the climber's feet.
             let feet = scene.climber.state().position - DVec3::Y * 0.4;
             assert!(report.pushes[0].point.distance(feet) < 0.02, "{told}");
         }
@@ -69,7 +73,10 @@ struct Scales {
 }
 
 impl Scales {
+    /// Stiffness of the spring, newtons per metre.
     const STIFFNESS: f64 = 40_000.0;
+
+    /// Damping of the spring, newton seconds per metre.
     const DAMPING: f64 = 4_000.0;
 
     fn new() -> Self {
@@ -134,7 +141,7 @@ fn a_landing_brings_the_raft_and_the_climber_to_one_speed() {
         let together = -DVec3::Y * (speed * MASS / (MASS + mass));
         let told = format!("{mass} kg at {speed} m/s: {given}");
         assert!((scene.velocity(raft) - together).length() < 1e-4, "{told}");
-        // Its momentum is shared by both, which now have the same velocity.
+        // The climber's momentum is shared by both, which now have the same velocity.
         assert!(
             (given.y + MASS * (speed + together.y)).abs() < 1e-3,
             "{told}"
@@ -143,7 +150,7 @@ fn a_landing_brings_the_raft_and_the_climber_to_one_speed() {
         scene.assert_standing(&told);
         let own = scene.climber.state().velocity;
         assert!((own - together).length() < 1e-3, "{told}: {own}");
-        // From now on the raft gets its weight.
+        // From now on the raft gets the climber's weight.
         let given = sum(&scene.pushes);
         assert!(
             (given + DVec3::Y * (WEIGHT * DT)).length() < 1e-9,

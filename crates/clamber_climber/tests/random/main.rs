@@ -45,7 +45,7 @@ fn index(mode: ClimberMode) -> usize {
         .unwrap()
 }
 
-/// Plays random ticks. In a random one, a second climber is restored from the first one's state; both must stay equal.
+/// Plays random ticks. In a random tick, a second climber is restored from the first one's state; both must stay equal.
 fn run(seed: u64, ticks: u32, seen: &mut Seen) {
     let mut scene = Scene::new(seed);
     let mut climber = scene.climber();
@@ -139,8 +139,8 @@ fn a_hundred_thousand_random_ticks() {
     runs(200, 500);
 }
 
-/// A run of the million that once failed: an obstacle entered the core of a climber that was torn off a hold just after
-/// gripping it, since the climber stayed where it was.
+/// In one of the million random runs, an obstacle once entered the core of a climber that was torn off a hold just
+/// after gripping it, since the climber stayed where it was.
 #[test]
 fn a_grip_that_is_torn_off_at_once_lets_nothing_into_the_core() {
     let mut seen = Seen::default();

@@ -8,6 +8,7 @@ use glam::DVec3;
 
 use crate::creature::{JOINTS, clip, ground, skeleton, tube};
 
+/// Length of a tick, seconds.
 const TICK: f64 = 1.0 / 60.0;
 
 /// A tube that crawls over the ground, and a second one that flies around and into it.
@@ -20,7 +21,7 @@ pub(crate) struct Scene {
     /// A table of 4 m, for climbers to hang from.
     block: SkinnedSurface,
     time: f64,
-    /// How fast the clip plays.
+    /// Speed factor of the clip.
     haste: f64,
     config: ClimberConfig,
     start: DVec3,
@@ -87,7 +88,7 @@ impl Scene {
             input: ClimberInput::default(),
         };
         if scene.rng.bool() {
-            // Beside the table, about to catch its ledge.
+            // The climber starts beside the table, about to catch its ledge.
             scene.start = steep.translation + DVec3::new(2.6, -0.3, 0.0);
             scene.input.walk = -DVec3::X;
             scene.input.grip = true;
@@ -187,7 +188,7 @@ impl Scene {
         climber.step(input, &self.obstacles(), TICK).unwrap()
     }
 
-    /// How deep an obstacle is in the climber's core, metres.
+    /// Depth of an obstacle in the climber's core, metres.
     pub(crate) fn depth(&self, climber: &Climber) -> f64 {
         let body = &climber.config().body;
         let core = climber.body().with_radius(body.radius - body.margin);

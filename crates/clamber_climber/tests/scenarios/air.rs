@@ -1,4 +1,4 @@
-//! Climbers in the air that have left something that moves, and what they run into next.
+//! Climbers in the air that have left a moving support, and the obstacles that they run into next.
 
 use clamber_climber::{ClimberConfig, ClimberMode, ClimberState};
 use clamber_surface::geometry::{Similarity, rotation_from_axis_angle};
@@ -6,6 +6,7 @@ use glam::DVec3;
 
 use crate::stage::{IDLE, Played, Run, Shape, Stage, kinds, radians, shifted, walk};
 
+/// Tick rates, hertz.
 const RATES: [f64; 3] = [30.0, 60.0, 240.0];
 
 /// A notch between two walls that meet at x = 8 and open towards -X, each at an angle from the X axis.
@@ -27,7 +28,7 @@ fn notch(played: Played, rate: f64, half: f64) -> Stage {
     })
 }
 
-/// Flies at a velocity, having left a support of another one.
+/// A climber that flies at a velocity, after it left a support with another velocity.
 fn flying(stage: Stage, config: ClimberConfig, velocity: DVec3, base_velocity: DVec3) -> Run {
     let mut run = Run::new(stage, config, DVec3::ZERO);
     let state = ClimberState {
@@ -75,7 +76,7 @@ pub(crate) fn a_wall_that_squeezes_a_falling_climber_does_not_lift_it() {
                         DVec3::new(0.5, -60.0, -9.0),
                         DVec3::new(9.0, 60.0, 9.0),
                     ))
-                    // Leaves 0.7 m of the 0.8 m that the ball needs, for a second.
+                    // The gap is 0.7 m for a second, although the ball needs 0.8 m.
                     .with(
                         &Shape::boxed(DVec3::new(-1.0, -60.0, -9.0), DVec3::new(0.0, 60.0, 9.0)),
                         |time| {
@@ -129,7 +130,7 @@ pub(crate) fn steering_away_from_a_cliff_counts_from_the_cliff() {
     }
 }
 
-/// A frame that is kept for a second, and is that of the air after the next.
+/// The frame is kept for a second, and becomes the air's frame in the next second.
 pub(crate) fn the_frame_of_a_fall_becomes_that_of_the_air() {
     for &played in kinds() {
         for rate in RATES {
@@ -150,14 +151,14 @@ pub(crate) fn the_frame_of_a_fall_becomes_that_of_the_air() {
     }
 }
 
-/// Slopes of every steepness above the limit, every acceleration: nothing is gained but what a jump gives.
+/// Slopes of every steepness above the limit, every acceleration: only a jump gains height.
 pub(crate) fn steering_in_the_air_climbs_no_steep_slope() {
     for acceleration in [10.0, 13.0, 20.0, 30.0, 100.0] {
         for degrees in [53.0, 60.0, 65.0, 70.0, 80.0] {
             for &played in kinds() {
                 let mut config = ClimberConfig::walker();
                 config.ground.air_acceleration = acceleration;
-                // Its edge lies in the ground at x = 0.
+                // The slope's edge lies in the ground at x = 0.
                 let slope =
                     Shape::boxed(DVec3::new(-0.5, -1.0, -20.0), DVec3::new(60.0, 0.0, 20.0));
                 let angle = radians(degrees);

@@ -1,4 +1,4 @@
-//! Ledges that are followed to their end, over steps, across gaps and around corners, with the stick kept.
+//! Ledges that are followed to their end, over steps, across gaps and around corners, while the stick is held.
 
 use clamber_climber::ClimberMode::LedgeHanging;
 use clamber_climber::{ClimberConfig, ClimberInput};
@@ -7,33 +7,38 @@ use glam::DVec3;
 
 use crate::stage::{IDLE, Played, Run, Shape, Stage, Trace, every, turned, within};
 
+/// Input that only holds the grip.
 const HOLD: ClimberInput = ClimberInput { grip: true, ..IDLE };
 
-/// A scene with an edge at height 0, which the climber hangs from at the origin, facing -Z.
+/// A scene with an edge at height 0. The climber hangs from it at the origin, facing -Z.
 struct Scene {
     name: &'static str,
     walls: Vec<Shape>,
-    /// The stick, which is kept.
+    /// The stick, which is held.
     stick: DVec3,
-    /// Seconds for which it is kept.
+    /// Time for which the stick is held, seconds.
     seconds: f64,
-    /// Where the climber is then, and where it faces; zero where it has begun to turn.
+    /// The climber's final position and facing; the facing is zero where it has begun to turn.
     ends: (DVec3, DVec3),
-    /// True if it is at rest there although the stick is kept.
+    /// True if the climber is at rest there although the stick is held.
     rests: bool,
-    /// How often its way turns back: once in a sharp inner corner.
+    /// Number of times that the climber's way turns back: once in a sharp inner corner.
     turns_back: u32,
 }
 
-/// How far the centre of the ball is below the edge, and from the wall.
+/// Distance of the ball's centre below the edge, metres.
 const DROP: f64 = 0.6;
+
+/// Radius of the ball, and its centre's distance from the wall, metres.
 const RADIUS: f64 = 0.4;
 
-/// Speed along a ledge, and at which arms draw, metres a second.
+/// Speed along a ledge, metres a second.
 const SHIMMY: f64 = 1.0;
+
+/// Speed at which arms draw, metres a second.
 const DRAW: f64 = 3.0;
 
-/// Where it starts, before any shimmy.
+/// The climber's position before any shimmy.
 const START: DVec3 = DVec3::new(0.0, -DROP, RADIUS);
 
 /// A wall 4 m high whose top is at a height, from one x to another, with its face at a z.
@@ -151,7 +156,7 @@ fn corners() -> Vec<Scene> {
         rests: false,
         turns_back: u32::from(name == "a sharp inner corner"),
     };
-    // To the corner, around it on a circle, and along the next wall.
+    // The way leads to the corner, around it on a circle, and along the next wall.
     let arc = |degrees: f64| degrees.to_radians() * RADIUS;
     let square = prism(&[(-3.0, 0.0), (0.8, 0.0), (0.8, -9.0), (-3.0, -9.0)]);
     let obtuse = prism(&[(-3.0, 0.0), (0.8, 0.0), (6.8, -6.0), (-3.0, -6.0)]);
@@ -240,6 +245,7 @@ fn corners() -> Vec<Scene> {
     ]
 }
 
+/// Tick rates, hertz.
 const RATES: [f64; 4] = [60.0, 30.0, 120.0, 240.0];
 
 /// A climber that hangs at the origin.
@@ -322,7 +328,7 @@ fn play(scene: &Scene, played: Played, rate: f64, is_mirrored: bool, angle: f64)
     }
     let (position, facing) = (map(scene.ends.0), map(scene.ends.1));
     let off = run.position().distance(position);
-    // Where the ball rolls around an edge or moves up a step, its way is longer.
+    // The way is longer where the ball rolls around an edge or moves up a step.
     let allowed = if scene.rests {
         SHIMMY * dt + 0.15
     } else {
@@ -355,7 +361,7 @@ fn play(scene: &Scene, played: Played, rate: f64, is_mirrored: bool, angle: f64)
             );
         }
     }
-    // Back again: the same way, and with the stick released it rests where it is.
+    // The climber goes back the same way, and rests where it is once the stick is released.
     run.steps((1.5 * rate) as u32, &HOLD);
     let rest = run.position();
     for _ in 0..(0.5 * rate) as u32 {

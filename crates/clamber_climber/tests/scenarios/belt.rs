@@ -1,4 +1,4 @@
-//! A conveyor belt: an obstacle around another one, whose shape is at rest while its material moves.
+//! A conveyor belt: an obstacle that wraps another one, whose shape is at rest while its material moves.
 
 use clamber_climber::ClimberInput;
 use clamber_world::{

@@ -6,11 +6,13 @@ use glam::DVec3;
 
 use crate::stage::{IDLE, Played, Run, Shape, Stage, every, walk, within};
 
-/// Height of the second ball above the first: 1.6 m in all.
+/// Height of the second ball above the first, metres: the body is 1.6 m tall.
 const HEIGHT: f64 = 0.8;
 
+/// Radius of the body, metres.
 const RADIUS: f64 = 0.4;
 
+/// Tick rates, hertz.
 const RATES: [f64; 3] = [60.0, 30.0, 240.0];
 
 /// A floor, and a ceiling over z 2 to 6 with its lower side at a height.
@@ -46,7 +48,7 @@ pub(crate) fn a_climber_crouches_under_a_ceiling() {
             let told = format!("{played:?}, {rate} Hz");
             let mut run = Run::new(room(played, rate, 1.0), tall(), DVec3::ZERO).settle();
             let ahead = walk(DVec3::Z);
-            // Upright it stops at the ceiling's edge.
+            // Upright, the climber stops at the ceiling's edge.
             run.steps((2.0 * rate) as u32, &ahead);
             assert!(run.position().z < 2.0, "{told}: {}", run.position());
             assert!(!run.state().crouched, "{told}");
@@ -57,7 +59,7 @@ pub(crate) fn a_climber_crouches_under_a_ceiling() {
             }
             let inside = run.position();
             assert!(inside.z > 2.5 && inside.z < 5.6, "{told}: {inside}");
-            // Without room it stays down, and goes on.
+            // Without room the climber stays crouched, and goes on.
             for _ in 0..(rate * 0.25) as u32 {
                 run.step(&IDLE);
                 assert!(run.state().crouched, "{told}: {}", run.position());
@@ -71,7 +73,7 @@ pub(crate) fn a_climber_crouches_under_a_ceiling() {
 }
 
 pub(crate) fn who_has_no_room_does_not_stand_up() {
-    // Just too low for 1.6 m, and just high enough.
+    // The ceiling is just too low for 1.6 m, or just high enough.
     for (ceiling, stands) in [(1.57, false), (1.63, true)] {
         every(0.0, |played| {
             let told = format!("{played:?}, ceiling at {ceiling} m");
@@ -108,7 +110,7 @@ pub(crate) fn a_body_grows_only_where_it_has_room() {
             run.steps(5, &IDLE);
             within!(run.position().distance(place), 1e-3, "{told}: moved");
         }
-        // In the open, both are right, and keep their feet on the ground.
+        // In the open, both sizes have room, and keep their feet on the ground.
         run.steps(120, &walk(DVec3::Z));
         run.steps(30, &IDLE);
         for config in [tall(), wide, small, wide] {

@@ -6,9 +6,10 @@ use glam::DVec3;
 
 use crate::stage::{IDLE, Played, Run, Shape, Stage, Trace, every, turned, within};
 
+/// Radius of the body, metres.
 const RADIUS: f64 = 0.4;
 
-/// How far the centre of the ball is below the edge from which it hangs.
+/// Distance of the ball's centre below the edge from which it hangs, metres.
 const DROP: f64 = 0.6;
 
 /// Speed at which arms draw, metres a second.
@@ -19,7 +20,7 @@ fn block() -> Shape {
     Shape::boxed(DVec3::new(-6.0, -4.0, -6.0), DVec3::new(6.0, 0.0, 0.0))
 }
 
-/// A plate of 6 cm with such an edge.
+/// A plate of 6 cm with the same edge.
 fn plate() -> Shape {
     Shape::boxed(DVec3::new(-6.0, -0.06, -6.0), DVec3::new(6.0, 0.0, 0.0))
 }
@@ -30,15 +31,15 @@ fn floor(height: f64) -> Shape {
     Shape::boxed(low, DVec3::new(9.0, height, 9.0))
 }
 
-/// How a climber goes over the edge.
+/// A way to go over the edge.
 #[derive(Clone, Copy, Debug)]
 struct Way {
     rate: f64,
     /// The stick, for an edge that the climber leaves along +Z.
     stick: DVec3,
-    /// Height of the capsule's second ball.
+    /// Height of the capsule's second ball, metres.
     height: f64,
-    /// By how much the scene is turned about the vertical.
+    /// Angle by which the scene is turned about the vertical, radians.
     angle: f64,
 }
 
@@ -78,7 +79,7 @@ fn stage(played: Played, way: &Way, shapes: &[Shape]) -> Stage {
     })
 }
 
-/// Walks on with the stick kept until the climber hangs, for a time at most. True if it does.
+/// Walks on with the stick held until the climber hangs, for a limited time. True if it hangs.
 fn hangs(run: &mut Run, way: &Way, grip: bool) -> bool {
     let walk = turned(DVec3::Y, way.angle).rotation * way.stick;
     let input = ClimberInput { walk, grip, ..IDLE };
@@ -103,7 +104,8 @@ fn hangs_and_rests(played: Played, way: &Way, shapes: &[Shape]) -> Trace {
         grip: true,
         ..IDLE
     };
-    // With the stick kept: down to its place, no faster than arms draw, and along the ledge if the stick is oblique.
+    // With the stick held, the climber moves down to its place, no faster than arms draw, and along the ledge if the
+    // stick is oblique.
     let mut last = run.position();
     for _ in 0..way.rate as u32 {
         run.step(&input);
@@ -136,7 +138,7 @@ pub(crate) fn a_climber_that_steps_off_an_edge_hangs_from_it() {
     }
 }
 
-/// Without the grip, onto a step, onto ground that it could not hang above.
+/// The climber walks off without the grip, onto a step, or onto ground above which it has no room to hang.
 pub(crate) fn a_climber_that_can_step_down_or_has_no_room_does_not_hang() {
     let cases = [
         (false, None),

@@ -13,7 +13,7 @@ pub(crate) fn a_gutter_of_768_faces_is_walked_along_to_its_caps() {
         let stage = Stage::new(played).with_still(&gutter);
         let start = DVec3::Y * -0.33;
         let mut config = walker_at(4.0);
-        // Otherwise it would step up onto the rim.
+        // Otherwise the climber would step up onto the rim.
         config.ground.step_height = 0.0;
         let mut run = Run::new(stage, config, start).settle();
         let touched = run.stage.obstacles(|obstacles| {

@@ -1,4 +1,5 @@
-//! Invariance: results do not depend on where the world is, how it moves as a whole, or how its triangles are numbered.
+//! Invariance: results do not depend on the world's place, on its motion as a whole, or on the numbering of its
+//! triangles.
 
 use core::f64::consts::{PI, TAU};
 
@@ -39,6 +40,7 @@ pub(crate) fn tour(tick: u32) -> ClimberInput {
     }
 }
 
+/// Length of the tour, ticks.
 const TOUR: u32 = 300;
 
 fn tour_of(stage: Stage) -> Run {
@@ -97,7 +99,7 @@ pub(crate) fn stairs_in_steady_motion_are_walked_like_stairs_at_rest() {
         let stairs = Shape::stairs(10, 0.3, 0.3, 2.0);
         let stage = Stage::new(played).with(&stairs, move |time| shifted(velocity * time));
         let mut run = Run::new(stage, walker_at(3.0), -DVec3::Z).settle();
-        // Up, down a little, and up diagonally.
+        // The climber walks up, down a little, and up diagonally.
         run.steps(90, &walk(DVec3::Z));
         run.steps(30, &walk(-DVec3::Z));
         run.steps(60, &walk(DVec3::new(0.4, 0.0, 1.0)));

@@ -37,8 +37,8 @@ pub(crate) fn falls_lands_and_jumps() {
     });
 }
 
-/// A climber that something has pushed off the point that it stands on, or that let go of a hold above it, by less than
-/// makes it look for new ground.
+/// The climber is above the point that it stands on, as after a push or after letting go of a hold. The distance is too
+/// small for it to look for new ground.
 pub(crate) fn who_stands_above_its_point_goes_down_to_it() {
     for degrees in [0.0, 20.0, 40.0] {
         let angle = radians(degrees);
@@ -107,7 +107,7 @@ pub(crate) fn slopes_are_stood_on_to_the_limit_and_slid_down_beyond() {
                 let level = DVec3::new(along.x, 0.0, along.z).normalize();
                 run.steps(90, &walk(level));
                 let made = run.position() - before;
-                // Along the slope, in the input's direction as seen from above.
+                // The way is along the slope, in the input's direction as seen from above.
                 let rise = -level.dot(normal) / normal.y;
                 let along = (level + DVec3::Y * rise).normalize();
                 let off = made.distance(along * 3.0);
@@ -219,7 +219,7 @@ fn ramp(angle: f64) -> Shape {
     level.and(up)
 }
 
-/// How much steeper than the limit a slope may be for a climber that stands already, radians.
+/// Angle by which a slope may exceed the limit for a climber that stands already, radians.
 const HYSTERESIS: f64 = 0.035;
 
 pub(crate) fn a_slope_is_climbed_just_below_the_limit_and_not_just_above() {
@@ -305,7 +305,7 @@ pub(crate) fn a_walk_on_a_flat_box_keeps_its_height() {
         let mut run = Run::new(stage, config, DVec3::new(-7.0, 0.0, -7.0)).settle();
         let mut height = run.position().y;
         for tick in 0..90u32 {
-            // Diagonally across the box, with two turns.
+            // The climber walks diagonally across the box, with two turns.
             let angle = 0.7 + f64::from(tick / 30) * 2.2;
             run.step(&walk(DVec3::new(libm::cos(angle), 0.0, libm::sin(angle))));
             let jump = (run.position().y - height).abs();

@@ -7,6 +7,7 @@ use glam::{DAffine3, DVec3};
 
 use crate::stage::{IDLE, Run, Shape, Skin, Stage, every, shifted, within};
 
+/// Input that only holds the grip.
 const HOLD: ClimberInput = ClimberInput { grip: true, ..IDLE };
 
 /// A block of 8 by 6 by 6 m around the origin.

@@ -8,6 +8,7 @@ use glam::{DAffine3, DVec3};
 
 use crate::stage::{Played, Run, Shape, Skin, Stage, kinds, radians};
 
+/// Input that only holds the grip.
 const HOLD: ClimberInput = ClimberInput {
     grip: true,
     ..ClimberInput::IDLE
@@ -48,8 +49,8 @@ fn holding(played: Played, rate: f64, shape: &Shape, turning: f64, center: DVec3
     run
 }
 
-/// Climbs with the same input for some seconds. Returns the way along a direction, and the longest step back against
-/// the step before.
+/// Climbs with the same input for some seconds. Returns the displacement along a direction, and the longest
+/// displacement of a tick against the tick before.
 fn ride(run: &mut Run, rate: f64, seconds: f64, input: &ClimberInput, along: DVec3) -> (f64, f64) {
     let start = run.position();
     let (mut before, mut back) = (DVec3::ZERO, 0.0f64);
@@ -104,7 +105,7 @@ pub(crate) fn a_held_stick_crosses_a_belly_as_a_direction_does() {
     }
 }
 
-/// From below and from the top of a box, over its edges and all round it.
+/// The climber starts below a box or on top of it, and climbs over its edges all around it.
 pub(crate) fn a_held_stick_goes_round_the_edges_of_a_box() {
     let shape = Shape::boxed(DVec3::new(-2.0, 5.0, -1.5), DVec3::new(2.0, 8.0, 1.5));
     for &played in kinds() {
@@ -131,13 +132,13 @@ pub(crate) fn a_held_stick_goes_round_the_edges_of_a_box() {
                 seen[2] |= p.z > 1.8;
                 seen[3] |= p.z < -1.8;
             }
-            // 16 m around, of which it has climbed all.
+            // The way around is 16 m, and the climber has climbed all of it.
             assert_eq!(seen, [true; 4], "{told}: at {}", run.position());
         }
     }
 }
 
-/// Up a wall and onto the ceiling that it ends at.
+/// The climber goes up a wall and onto the ceiling at its top.
 pub(crate) fn a_held_stick_leads_from_a_wall_onto_its_ceiling() {
     let wall = Shape::boxed(DVec3::new(-3.0, 0.0, -1.0), DVec3::new(3.0, 5.0, 0.0));
     let ceiling = Shape::boxed(DVec3::new(-3.0, 5.0, -1.0), DVec3::new(3.0, 6.0, 9.0));
@@ -154,7 +155,7 @@ pub(crate) fn a_held_stick_leads_from_a_wall_onto_its_ceiling() {
     }
 }
 
-/// The direction is taken anew after 20 degrees, and turns with the creature.
+/// The direction is found anew when the stick turns by more than 20 degrees, and turns with the creature.
 pub(crate) fn a_stick_that_turns_far_enough_leads_anew() {
     let shape = belly(1.0);
     let at = |degrees: f64| {

@@ -1,5 +1,5 @@
-//! Scenarios by which other engines test characters (a table, in `table.rs`), and scenes after known failures of
-//! others. Each is played on skin, on bodies and on an obstacle of its own, in moving frames and at other scales
+//! Scenarios by which other engines test characters (a table, in `table.rs`), and scenes after known failures of other
+//! engines. Each is played on skin, on bodies and on an obstacle of its own, in moving frames and at other scales
 //! (`plays.rs`).
 //!
 //! `cargo test -p clamber_climber --test scenarios -- --nocapture the_table_in_markdown` prints the table. With

@@ -10,7 +10,7 @@ use glam::DVec3;
 use crate::frames::{hills, tour};
 use crate::stage::{IDLE, Run, Stage, TICK, jolt, one_kind, walk, walker_at};
 
-/// An obstacle whose answers are partly replaced by bad numbers.
+/// An obstacle with bad numbers in some of its answers.
 struct Broken<'a> {
     inner: &'a dyn Obstacle,
     bad: DVec3,

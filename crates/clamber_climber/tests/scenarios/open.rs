@@ -1,4 +1,4 @@
-//! Open scenarios: those that fail in some settings, and by how much.
+//! Open scenarios: scenarios that fail in some settings, with the size of the failure.
 
 /// One line per failure: the scenario, the setting as [`Setting`](crate::stage::Setting) prints it (or `in every
 /// setting`), and the result.
@@ -16,8 +16,8 @@ pub(crate) fn all() -> impl Iterator<Item = (&'static str, &'static str)> {
     })
 }
 
-/// Why the scenarios of the file are open. Found by starting the climber off its place by 1e-12 to 1e-5 m, and by
-/// comparing what it touches.
+/// The reasons why the scenarios of the file are open. They were found by starting the climber off its place by 1e-12
+/// to 1e-5 m, and by comparing its contacts.
 const REASONS: &[(&str, &str)] = &[
     (
         "a_hold_that_shakes_is_hung_from_until_it_is_calm",
@@ -37,7 +37,7 @@ const REASONS: &[(&str, &str)] = &[
     ),
 ];
 
-/// Why a scenario is open.
+/// The reason why a scenario is open.
 pub(crate) fn reason(test: &str) -> Option<&'static str> {
     let mut reasons = REASONS.iter();
     reasons.find_map(|(name, why)| (*name == test).then_some(*why))

@@ -28,7 +28,7 @@ pub(crate) fn on(
     Run::new(stage, jolt(), feet).settle()
 }
 
-/// The largest distance between a climber and its start position as carried by the motion.
+/// The largest distance between a climber and its start position after the motion has moved that position.
 pub(crate) fn drift(trace: &Trace, start: DVec3, motion: impl Fn(f64) -> Similarity) -> f64 {
     let local = motion(0.0).inverse_transform_point(start);
     let off = trace.positions.iter().enumerate().map(|(tick, p)| {
@@ -226,7 +226,7 @@ pub(crate) fn a_belt_carries_at_its_speed() {
         within!(off, 1e-4, "{played:?}: off by {off}");
         let off = run.state().velocity.distance(DVec3::Z * 2.0);
         within!(off, 1e-4, "{played:?}: velocity off by {off}");
-        // Walking on the belt.
+        // The climber walks on the belt.
         let before = run.feet();
         belt.rides(&mut run, &walk(DVec3::X), 60);
         let off = (run.feet() - before).distance(DVec3::new(1.0, 0.0, 2.0));

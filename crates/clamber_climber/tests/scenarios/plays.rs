@@ -20,9 +20,16 @@ use glam::DVec3;
 use crate::open;
 use crate::stage::{Allowed, Played, Setting, Trace, assert_alike, play};
 
+/// Obstacles of triangles in f64 only.
 const OWN: &[Played] = &[Played::Own];
+
+/// Surfaces whose root moves only.
 const ROOT: &[Played] = &[Played::Root];
+
+/// Surfaces whose joint moves only.
 const JOINT: &[Played] = &[Played::Joint];
+
+/// Rapier's bodies only.
 const BODY: &[Played] = &[Played::Body];
 
 /// Velocities of the frames, metres a second, along different axes. The slow one is first.
@@ -32,6 +39,7 @@ const FRAMES: [DVec3; 3] = [
     DVec3::new(0.0, 0.0, 300.0),
 ];
 
+/// Scales of the world, relative to metres.
 const SCALES: [f64; 4] = [0.02, 0.1, 10.0, 100.0];
 
 /// Allowed difference between own triangles and a root: the effect on a tour of f32 corners, and of sweeps that stop
@@ -47,7 +55,8 @@ const SCALED: Allowed = Allowed {
     velocity: f64::INFINITY,
 };
 
-/// Scenarios whose runs are not compared between settings on some obstacles, and why. Their own limits still apply.
+/// Scenarios whose runs are not compared between settings on some obstacles, with the reason. Their own limits still
+/// apply.
 const NOT_COMPARED: &[(&str, &[Played], &str)] = &[
     (
         "not_finite_answers_of_an_obstacle_do_not_spread",
@@ -104,7 +113,8 @@ fn settings() -> Vec<Setting> {
     all
 }
 
-/// Plays a scenario in every setting. Open settings have to fail, so that no entry stays open that passes.
+/// Plays a scenario in every setting. Open settings have to fail, so that an entry whose setting passes does not stay
+/// open.
 pub(crate) fn in_every_setting(name: &'static str, scenario: fn()) {
     let settings = settings();
     let outcomes = outcomes(name, &settings, scenario);

@@ -8,12 +8,13 @@ use glam::{DAffine3, DVec3};
 
 use crate::stage::{IDLE, Played, Run, Shape, Skin, Stage, every, shifted, turned, within};
 
+/// Input that only holds the grip.
 const HOLD: ClimberInput = ClimberInput { grip: true, ..IDLE };
 
-/// Seconds after which a climber gives up a pull-up that makes no progress.
+/// Time after which a climber gives up a pull-up that makes no progress, seconds.
 const GIVES_UP: f64 = 0.3;
 
-/// What is above the ledge, or on it.
+/// The obstacle above the ledge, or on it. Distances are in metres.
 #[derive(Clone, Copy, Debug)]
 enum Above {
     /// A ceiling, at a height above the ledge.
@@ -24,6 +25,7 @@ enum Above {
     Crate(f64),
 }
 
+/// All obstacles that block a pull-up.
 const ALL: [Above; 7] = [
     Above::Ceiling(0.2),
     Above::Ceiling(0.5),
@@ -63,7 +65,7 @@ impl Side {
         Self { from_front }
     }
 
-    /// A vector or a position, given for the side that faces +Z.
+    /// Turns a vector or a position that is given for the side that faces +Z.
     fn to(&self, front: DVec3) -> DVec3 {
         self.from_front.rotation * front
     }
@@ -86,7 +88,10 @@ fn ticks(seconds: f64, dt: f64) -> u32 {
     (seconds / dt).round() as u32
 }
 
+/// The stick for a pull-up, for the side that faces +Z.
 const UP: DVec3 = DVec3::NEG_Z;
+
+/// The position of the hanging climber, for the side that faces +Z.
 const PLACE: DVec3 = DVec3::new(0.3, 2.4, 3.4);
 
 /// A climber that hangs from the edge.
@@ -105,7 +110,7 @@ fn hung(stage: Stage, side: &Side, case: &str) -> Run {
     run
 }
 
-/// Steps until the climber is in its place below the edge, for a time at most. Returns the seconds that it took.
+/// Steps until the climber is in its place below the edge, for a limited time. Returns the time that it took, seconds.
 fn until_in_place(run: &mut Run, place: DVec3, input: &ClimberInput, most: f64) -> Option<f64> {
     let dt = run.stage.dt;
     (1..=ticks(most, dt)).find_map(|tick| {
@@ -115,8 +120,8 @@ fn until_in_place(run: &mut Run, place: DVec3, input: &ClimberInput, most: f64) 
     })
 }
 
-/// Steps a climber that is blocked until it gives up. Its velocity is how it moves. Once it slides along the obstacle,
-/// it does not go to and fro.
+/// Steps a climber that is blocked until it gives up. Checks that its velocity is the velocity at which it moves, and
+/// that it does not go back and forth once it slides along the obstacle.
 fn blocked_at_rest(run: &mut Run, input: &ClimberInput, case: &str) {
     let dt = run.stage.dt;
     let (mut blocked, mut last) = (0, DVec3::ZERO);
@@ -142,7 +147,7 @@ fn blocked_at_rest(run: &mut Run, input: &ClimberInput, case: &str) {
     );
 }
 
-/// The climber is where it hung, and its velocity is zero, for a second.
+/// Asserts that the climber is where it hung, and that its velocity is zero, for a second.
 fn rests(run: &mut Run, place: DVec3, input: &ClimberInput, case: &str) {
     for _ in 0..ticks(1.0, run.stage.dt) {
         run.step(input);
@@ -176,7 +181,7 @@ pub(crate) fn a_pull_up_without_room_is_given_up_after_a_while() {
     each_case(|played, above, side, dt, case| {
         let mut run = hung(stage(played, above, side, dt), side, case);
         let (place, up) = (side.to(PLACE), side.stick(UP));
-        // It tries, gives up by itself, and does not try again while the stick is held up.
+        // The climber tries, gives up by itself, and does not try again while the stick is held up.
         run.steps(ticks(0.25, dt), &up);
         assert!(
             run.state().ledge_hanging.pull_up > 0.0,
@@ -187,7 +192,7 @@ pub(crate) fn a_pull_up_without_room_is_given_up_after_a_while() {
         let back = until_in_place(&mut run, place, &up, 1.3);
         assert!(back.is_some(), "{case}: {:?}", run.state());
         rests(&mut run, place, &up, case);
-        // It tries again once the stick was released, and again it gives up.
+        // The climber tries again once the stick was released, and gives up again.
         run.step(&HOLD);
         run.steps(ticks(0.3, dt), &up);
         let pull_up = run.state().ledge_hanging.pull_up;
@@ -208,7 +213,7 @@ pub(crate) fn a_pull_up_without_room_obeys_the_stick_at_once() {
         let mut run = hung(stage(played, above, side, dt), side, case);
         let (place, up) = (side.to(PLACE), side.stick(UP));
         for input in [HOLD, side.stick(-UP), side.stick(DVec3::X * 1e-6)] {
-            // Until it is blocked.
+            // Steps until the climber is blocked.
             for _ in 0..ticks(1.0, dt) {
                 run.step(&up);
                 if run.state().ledge_hanging.blocked > 0.0 {
@@ -220,7 +225,7 @@ pub(crate) fn a_pull_up_without_room_obeys_the_stick_at_once() {
             run.step(&input);
             let pull_up = run.state().ledge_hanging.pull_up;
             assert_eq!(pull_up, 0.0, "{case}, {:?}", input.walk);
-            // Arms draw it back three times as fast as it goes along a ledge: at 3 m/s.
+            // Arms draw the climber back three times as fast as it goes along a ledge: at 3 m/s.
             let most = high.distance(place) / 3.0 * 1.6 + 2.0 * dt;
             let back = until_in_place(&mut run, place, &input, 1.0);
             let back = back.unwrap_or(f64::INFINITY);
@@ -267,7 +272,7 @@ pub(crate) fn a_climber_that_gives_up_a_pull_up_goes_aside_lets_go_and_jumps() {
     });
 }
 
-/// While it goes back, it climbs down to a hold.
+/// While the climber goes back, it climbs down to a hold.
 pub(crate) fn a_climber_that_gives_up_a_pull_up_climbs_down() {
     every(0.0, |played| {
         let still = |_| (vec![DAffine3::IDENTITY], shifted(DVec3::ZERO));
@@ -290,7 +295,7 @@ pub(crate) fn a_pull_up_goes_on_once_there_is_room() {
     for opens in [0.1, 0.2] {
         every(0.0, |played| {
             let rises = move |time: f64| {
-                // It hangs for a second, and is blocked some 0.3 s after that.
+                // The climber hangs for a second, and is blocked some 0.3 s after that.
                 let since = (time - 1.0 - 2.0 / 60.0 - 0.3 - opens).max(0.0);
                 shifted(DVec3::Y * (4.0 * since).min(2.0))
             };

@@ -83,7 +83,7 @@ pub(crate) fn a_sliver_is_hit_exactly_where_it_is() {
         let (a, along) = (point(&mut rng, 3.0), point(&mut rng, 1.0).normalize() * 5.0);
         let aside = along.any_orthonormal_vector() * 0.0004;
         let corners = [a, a + along, a + along * rng.f64() + aside].map(rounded);
-        // Past a point near the sliver.
+        // The ball passes a point near the sliver.
         let aim = a + along * rng.f64() + point(&mut rng, 0.5);
         let from = rounded(aim + point(&mut rng, 3.0));
         let way = rounded((aim - from) * 2.0);
@@ -157,7 +157,7 @@ pub(crate) fn a_cast_that_starts_inside_hits_at_time_0() {
     let shape = Shape::boxed(DVec3::splat(-1.0), DVec3::splat(1.0));
     for &played in kinds() {
         let stage = Stage::new(played).with_still(&shape);
-        // From outside the face, from inside, away from it, and from on it.
+        // The ball starts outside the face, inside, outside and moves away, and on the face.
         for (height, way) in [(1.2, -5.0), (0.8, -5.0), (1.2, 5.0), (1.0, 1.0)] {
             let ball = WorldCapsule::ball(DVec3::Y * height, 0.5);
             let hit = ask(&stage, |obstacle| {
@@ -184,7 +184,7 @@ pub(crate) fn a_core_on_a_feature_has_a_unit_separation_normal() {
         for center in [DVec3::ZERO, (a + b) * 0.5, a] {
             for capsule in [
                 WorldCapsule::ball(center, 0.5),
-                // Through the feature, along it, and with an end on it.
+                // These capsules pass through the feature, lie along it, or have an end on it.
                 WorldCapsule {
                     ends: [center - DVec3::Y, center + DVec3::Y],
                     radius: 0.5,
@@ -297,7 +297,7 @@ pub(crate) fn obstacles_that_do_not_approach_are_not_hit() {
         assert!(hit.is_some(), "{played:?}: nothing where the box comes");
         let hit = hit.unwrap();
         assert!((hit.time - 0.1).abs() <= 1e-3, "{played:?}: {}", hit.time);
-        // Both at rest.
+        // Ball and box are both at rest.
         stage.hold();
         let ball = WorldCapsule::ball(DVec3::Y * 3.0, 0.5);
         for way in [DVec3::ZERO, DVec3::Y, DVec3::X] {

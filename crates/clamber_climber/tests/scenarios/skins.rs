@@ -10,7 +10,7 @@ use glam::{DAffine3, DMat3, DVec3};
 
 use crate::stage::{IDLE, Run, Shape, Skin, Stage, jolt, one_kind, radians, walker_at, within};
 
-/// A skin with two joints, the second of which moves. `share` is the weight of that joint at a rest position.
+/// A skin with two joints. The second joint moves. `share` is the weight of that joint at a rest position.
 fn skin(
     shape: &Shape,
     share: impl Fn(DVec3) -> f64,
@@ -119,12 +119,12 @@ fn changes(run: &Run) -> usize {
 
 pub(crate) fn ground_that_trembles_about_the_limit_is_lost_once_at_most() {
     let tremble = |time: f64| radians(0.1) * libm::sin(TAU * 7.0 * time);
-    // Around the slope up to which a climber lands.
+    // The slope trembles around the limit for landings.
     let skin = tilts(move |time| radians(50.0) * (time / 2.0).min(1.0) + tremble(time));
     let mut run = on(skin, jolt(), DVec3::ZERO);
     run.steps(600, &IDLE);
     assert_eq!(changes(&run), 0, "loses its ground: {:?}", run.trace.events);
-    // Beyond the slope at which a standing climber slips, and back to one on which it lands, twice.
+    // The slope goes beyond the limit for standing, and back to one on which a climber lands, twice.
     let skin = tilts(move |time| {
         let wave = (time / 2.0).rem_euclid(2.0);
         let slow = if wave < 1.0 { wave } else { 2.0 - wave };
@@ -211,7 +211,7 @@ pub(crate) fn a_triangle_without_area_for_a_tick_keeps_the_climber() {
             config.ground = jolt().ground;
             config.tumble = None;
             config.stamina = None;
-            // The jerk must not make it hang: only the hold is tested.
+            // The jerk must not make the climber hang: only the hold is tested.
             if let Some(grip) = &mut config.grip {
                 grip.hang_acceleration = f64::INFINITY;
             }
@@ -282,7 +282,7 @@ pub(crate) fn no_velocity_enters_any_of_seventeen_planes() {
                 .map(|normal| -normal.dot(p))
                 .fold(0.0, f64::max);
             within!(entered, 0.005, "{count} planes, {velocity}: by {entered}");
-            // Never backwards, and never farther than wanted.
+            // The movement is never backwards, and never farther than wanted.
             let made = p.dot(velocity.normalize());
             assert!(
                 (-1e-3..=0.1 + 1e-3).contains(&made),

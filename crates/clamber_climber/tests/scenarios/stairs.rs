@@ -5,6 +5,7 @@ use glam::DVec3;
 
 use crate::stage::{IDLE, Run, Shape, Stage, every, jolt, kinds, walk, walker_at, within};
 
+/// Tick rates, hertz.
 const RATES: [u32; 4] = [60, 120, 240, 360];
 
 pub(crate) fn stairs_are_walked_up_at_any_rate() {
@@ -179,7 +180,7 @@ pub(crate) fn a_wall_along_a_drop_is_no_ground() {
         let mut run = Run::new(stage, walker_at(2.0), -DVec3::X).settle();
         run.steps(90, &walk(DVec3::X));
         for (mode, position) in run.trace.modes.iter().zip(&run.trace.positions) {
-            // Up to there it rolls over the edge.
+            // Up to there, the climber rolls over the edge.
             if position.x > 0.32 {
                 assert_eq!(*mode, Falling, "{played:?}: at {position}");
             }
@@ -263,7 +264,7 @@ pub(crate) fn a_hollow_box_is_solid_from_within() {
         }
         run.sound()
     });
-    // Thrown from inside at the lid.
+    // The climber is thrown at the lid from inside.
     for &played in kinds() {
         let hollow = Shape::boxed(DVec3::new(-2.0, 0.0, -2.0), DVec3::new(2.0, 3.0, 2.0));
         let stage = Stage::new(played).with_still(&hollow);

@@ -20,7 +20,7 @@ struct Row {
     scene: &'static str,
     /// The limits, and the reason for each difference from the source.
     demand: &'static str,
-    /// Names of its tests, which the table itself declares.
+    /// Names of the scenario's tests, which the table itself declares.
     tests: &'static [&'static str],
 }
 
@@ -35,6 +35,7 @@ macro_rules! scenarios {
             }
         )+)*
 
+        /// The rows of the table.
         const ROWS: &[Row] = &[$(Row {
             number: $number,
             source: $source,
@@ -46,10 +47,10 @@ macro_rules! scenarios {
     };
 }
 
-// Jolt's capsule has a radius of .3, a cylinder of 1.35 and a padding of .02 that keeps it away from obstacles. Ours
-// rests at its radius, with a core that is smaller by the margin: radius .32, height 1.35, margin .02. Then positions
-// of feet are those of Jolt. Unless a row says otherwise: 60 Hz, gravity 9.81, slopes up to 50 degrees, snap .5, steps
-// .4, feet that stick to any ground (as Jolt's do), no tumbling, no stamina.
+// Jolt's capsule has a radius of .3, a cylinder of 1.35 and a padding of .02 that keeps it away from obstacles. Our
+// climber rests at its radius, with a core that is smaller by the margin: radius .32, height 1.35, margin .02. Then
+// positions of the feet are the same as Jolt's. Unless a row says otherwise: 60 Hz, gravity 9.81, slopes up to 50
+// degrees, snap .5, steps .4, feet that stick to any ground (as Jolt's do), no tumbling, no stamina.
 scenarios! {
     1 "Jolt TestFallingAndJumping" Climber
         "Drops 2 m onto a box, jumps at 1 m/s, lands."
@@ -426,7 +427,7 @@ fn the_table_in_markdown() {
     println!("{table}");
 }
 
-/// Declares the tests of known failures of others and of ours, which are played in every setting, too.
+/// Declares the tests of known failures, of other engines and of this one, which are played in every setting, too.
 macro_rules! failures {
     ($($group:ident::$test:ident),+ $(,)?) => {
         $(
@@ -436,6 +437,7 @@ macro_rules! failures {
             }
         )+
 
+        /// Names of these tests.
         const FAILURES: &[&str] = &[$(stringify!($test)),+];
     };
 }

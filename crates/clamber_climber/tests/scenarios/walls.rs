@@ -61,7 +61,7 @@ pub(crate) fn two_walls_through_the_body_lift_it_out_and_let_it_go() {
             height = p.y;
         }
         assert!(run.feet().y > 0.5, "{played:?}: {}", run.feet());
-        // Out of the valley along the crease, and down to the floor.
+        // The climber walks out of the valley along the crease, and down to the floor.
         run.steps(120, &walk(DVec3::Z));
         assert!(run.feet().z > 1.0, "{played:?}: {}", run.feet());
         assert!(run.feet().y.abs() <= 0.05, "{played:?}: {}", run.feet());
@@ -168,7 +168,7 @@ pub(crate) fn a_slow_wall_pushes_off_an_edge() {
                 run.step(&IDLE);
                 ticks += 1;
                 let p = run.position();
-                // At the edge it rolls over, as far as it can stand there.
+                // At the edge the climber rolls over, as far as it can stand there.
                 assert!(
                     p.x <= 1.0 + 0.32,
                     "{played:?} at {speed} m/s: stands on nothing at {p}"
@@ -218,8 +218,8 @@ pub(crate) fn ground_moves_on_below_a_climber_held_back_by_a_wall() {
             let off = run.feet().distance(DVec3::new(0.18, -1.0, 0.0));
             within!(off, 1e-4, "{played:?} at {speed} m/s: {}", run.feet());
             assert_eq!(run.mode(), Standing);
-            // The ground's end passes below it. It then falls for a second, so that a rest of speed from rounding does
-            // not matter.
+            // The ground's end passes below the climber. The climber then falls for a second, so that a rest of speed
+            // from rounding does not matter.
             let left = ((10.7 / speed + 1.0) / run.stage.dt) as u32 - ticks;
             run.steps(left, &IDLE);
             assert!(

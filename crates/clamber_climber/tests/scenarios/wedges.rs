@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use crate::stage::{IDLE, Run, Shape, Stage, kinds, radians, within};
 
-/// Half of the distance between the walls at a time: in the end .15 m less than the ball needs.
+/// Half of the distance between the walls at a time: finally .15 m less than the ball needs.
 fn half_gap(closing: f64, time: f64) -> f64 {
     (0.45 - closing * time).max(0.25)
 }
@@ -64,7 +64,7 @@ fn in_wedges(check: impl Fn(&Pressed)) {
 struct Pressed {
     case: String,
     degrees: f64,
-    /// How much room each wall takes from the ball in the end, metres.
+    /// Room that each wall finally takes from the ball, metres.
     lacking: f64,
     crushed: bool,
     /// Longest displacement of the climber in a tick, metres.

@@ -120,7 +120,7 @@ fn inputs_keep_every_bit() {
     }
 }
 
-/// A custom mode that rises for a second, and keeps the time in its memory.
+/// A custom mode that rises for a second, and counts the time in its memory.
 struct Rise;
 
 impl CustomMode for Rise {

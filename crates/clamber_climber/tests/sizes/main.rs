@@ -1,4 +1,4 @@
-//! A climber of another size does the same under the same gravity, in √size times the time.
+//! A climber of another size moves in the same way under the same gravity, in √size times the time.
 
 #![allow(
     clippy::unwrap_used,
@@ -21,9 +21,10 @@ use numbers::{Unit, numbers};
 use play::play;
 use scenes::{person, scenes};
 
+/// Sizes of the climber, relative to the usual one.
 const SIZES: [f64; 4] = [0.02, 0.1, 10.0, 100.0];
 
-/// Differences up to this are rounding, relative to the usual size: skin is in f32.
+/// Largest difference that counts as rounding, relative to the usual size: skin is in f32.
 const ROUNDING: f64 = 1e-6;
 
 #[test]
@@ -75,10 +76,10 @@ fn scenes_are_played_alike_at_every_size() {
     }
 }
 
-/// Otherwise a number that does not scale would not be found by playing.
+/// Otherwise playing would not find a number that does not scale.
 #[test]
 fn every_number_matters_in_a_scene() {
-    // Only obstacles that can be pushed feel these.
+    // These numbers only have an effect on obstacles that can be pushed.
     let unfelt = ["BodyConfig::mass", "BodyConfig::push_force"];
     let usual: Vec<_> = scenes()
         .iter()
@@ -129,7 +130,7 @@ fn what_is_accepted_at_one_size_is_accepted_at_any_other() {
     for round in 0..10_000 {
         let mut config = person();
         config.body.radius = 0.01 + rng.f64();
-        // The ends of its range.
+        // The ends of the margin's range.
         let share = [1e-3, 0.5][round % 2];
         config.body.margin = config.body.radius * share;
         let infinite = &mut config.tumble.as_mut().unwrap().knock_speed;

@@ -4,10 +4,11 @@ use clamber_world::{
 };
 use glam::DVec3;
 
-/// A half-space that moves without turning. All of it is in f64, so that its velocities have no rounding of skin.
+/// A half-space that moves without turning. All its numbers are f64, so its velocities do not have the rounding of
+/// skin.
 pub(crate) struct MovingHalfSpace {
     pub(crate) at_rest: HalfSpace,
-    /// How far it has moved at the tick's beginning and at its end.
+    /// Displacements at the tick's beginning and at its end.
     pub(crate) shifts: [DVec3; 2],
 }
 

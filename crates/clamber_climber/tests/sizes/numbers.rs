@@ -23,12 +23,25 @@ const fn unit(metres: i32, seconds: i32) -> Unit {
     Unit { metres, seconds }
 }
 
+/// Unit of a length: metres.
 const LENGTH: Unit = unit(1, 0);
+
+/// Unit of a time: seconds.
 const TIME: Unit = unit(0, 1);
+
+/// Unit of a speed: metres a second.
 const SPEED: Unit = unit(1, -1);
+
+/// Unit of an acceleration: metres a second squared.
 const ACCELERATION: Unit = unit(1, -2);
+
+/// Unit of a rate: per second.
 const RATE: Unit = unit(0, -1);
+
+/// Unit of a cost for each metre a second.
 const PER_SPEED: Unit = unit(-1, 1);
+
+/// Unit of a share, an angle or a coefficient: 1.
 const SHARE: Unit = unit(0, 0);
 
 /// Lists the fields of a part of a configuration. A new field does not compile until it has a unit here.
@@ -43,7 +56,7 @@ macro_rules! list {
     };
 }
 
-/// All numbers but gravity.
+/// All numbers except gravity.
 pub(crate) fn numbers(config: &mut ClimberConfig) -> Vec<Number<'_>> {
     let mut all = Vec::new();
     let ClimberConfig {
@@ -142,7 +155,7 @@ pub(crate) fn numbers(config: &mut ClimberConfig) -> Vec<Number<'_>> {
     all
 }
 
-/// The same climber in a world that is `size` times as large, gravity included: everything takes as long as at the
+/// The same climber in a world that is `size` times as large, gravity included: every motion takes as long as at the
 /// usual size. [`ClimberConfig::scaled`] keeps gravity, and times change instead.
 pub(crate) fn in_world_of_size(mut config: ClimberConfig, size: f64) -> ClimberConfig {
     config.gravity *= size;

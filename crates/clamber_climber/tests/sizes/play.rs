@@ -1,4 +1,4 @@
-//! Plays a scene at a size: lengths by the size, speeds and times by its root.
+//! Plays a scene at a size: lengths are scaled by the size, speeds and times by its square root.
 
 use clamber_climber::{Blow, Climber, ClimberConfig, ClimberInput, ClimberMode, ClimberState};
 use clamber_surface::geometry::{Affine, Similarity};
@@ -13,13 +13,13 @@ use crate::scene::{STONE, cuboid};
 /// A scene at size 1: a box, a half-space that may move, and a climber.
 pub(crate) struct Scene {
     pub(crate) name: &'static str,
-    /// What the climber has that others have not.
+    /// Changes to the usual climber's configuration.
     pub(crate) adjust: fn(&mut ClimberConfig),
     /// The box's centre, and half its lengths.
     pub(crate) cuboid: Option<[DVec3; 2]>,
     /// A point of the half-space's plane, its normal and tag.
     pub(crate) half_space: (DVec3, DVec3, SurfaceTag),
-    /// How far the half-space has moved at a time in seconds.
+    /// Displacement of the half-space at a time in seconds.
     pub(crate) motion: fn(f64) -> DVec3,
     pub(crate) position: DVec3,
     pub(crate) velocity: DVec3,
@@ -29,14 +29,14 @@ pub(crate) struct Scene {
     pub(crate) jump: Option<f64>,
     pub(crate) blow: Option<(f64, DVec3)>,
     pub(crate) seconds: f64,
-    /// From when on the states are compared, seconds: before, the controller's own speeds show.
+    /// Time from which the states are compared, seconds: before it, speeds that are no part of the configuration show.
     pub(crate) from: f64,
-    /// A mode that it is in at some time.
+    /// A mode that the climber is in at some time.
     pub(crate) shows: ClimberMode,
 }
 
-/// What is compared of a state, in the units of size 1. The frame in the air is left out: it becomes that of the air
-/// within two seconds at every size.
+/// The compared part of a state, in the units of size 1. The frame in the air is left out: it becomes the air's within
+/// two seconds at every size.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Seen {
     pub(crate) mode: ClimberMode,
@@ -81,7 +81,7 @@ impl Seen {
         }
     }
 
-    /// The largest difference of a number, relative to it or to 1.
+    /// The largest difference of a number, relative to its size or to 1.
     pub(crate) fn apart(&self, other: &Self) -> f64 {
         if self.mode != other.mode {
             return f64::INFINITY;
@@ -93,7 +93,7 @@ impl Seen {
     }
 }
 
-/// Plays a scene with a climber whose configuration is of a size already. `rate` is that of the ticks at size 1.
+/// Plays a scene with a climber whose configuration already has the size. `rate` is the tick rate at size 1.
 pub(crate) fn play(scene: &Scene, config: ClimberConfig, size: f64, rate: f64) -> Vec<Seen> {
     let root = libm::sqrt(size);
     let dt = root / rate;

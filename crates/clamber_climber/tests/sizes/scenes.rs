@@ -11,11 +11,13 @@ use glam::DVec3;
 use crate::play::Scene;
 use crate::scene::{FUR, STONE};
 
+/// No input.
 const IDLE: ClimberInput = ClimberInput::IDLE;
 
+/// Input that only holds the grip.
 const HOLD: ClimberInput = ClimberInput { grip: true, ..IDLE };
 
-/// A climber with every ability on, none of whose times is a whole number of ticks, so that rounding decides nothing.
+/// A climber with every ability on. None of its times is a whole number of ticks, so that rounding decides nothing.
 pub(crate) fn person() -> ClimberConfig {
     let mut config = ClimberConfig::colossus_climber();
     config.body.height = 0.9;
@@ -36,7 +38,7 @@ pub(crate) fn person() -> ClimberConfig {
 }
 
 impl Scene {
-    /// Its climber at size 1.
+    /// The scene's climber at size 1.
     pub(crate) fn person(&self) -> ClimberConfig {
         let mut config = person();
         (self.adjust)(&mut config);
@@ -44,6 +46,7 @@ impl Scene {
     }
 }
 
+/// A scene without input that other scenes vary.
 const STAGE: Scene = Scene {
     name: "",
     cuboid: None,
@@ -73,12 +76,12 @@ const fn boxed(x: f64, y: f64, side: f64) -> Option<[DVec3; 2]> {
     Some([center, DVec3::new(4.0, 4.0, 8.0)])
 }
 
-/// To and fro, so many metres to either side and times a second, for a time.
+/// A swing of `size` metres to either side, `times` times a second, at a time.
 fn swing(size: f64, times: f64, time: f64) -> f64 {
     size * libm::sin(TAU * times * time)
 }
 
-/// Hangs below the edge of a box whose top is at height 0 and whose front is at x = 0.
+/// The climber hangs below the edge of a box whose top is at height 0 and whose front is at x = 0.
 const LEDGE: Scene = Scene {
     cuboid: boxed(0.0, 0.0, 1.0),
     half_space: (DVec3::new(0.0, -30.0, 0.0), DVec3::Y, STONE),
@@ -88,7 +91,7 @@ const LEDGE: Scene = Scene {
     ..STAGE
 };
 
-/// Holds a wall of fur whose front is at x = 0.
+/// The climber holds a wall of fur whose front is at x = 0.
 const WALL: Scene = Scene {
     half_space: (DVec3::ZERO, DVec3::NEG_X, FUR),
     position: DVec3::new(-0.7, 0.0, 0.1),
@@ -112,7 +115,7 @@ pub(crate) fn scenes() -> Vec<Scene> {
                 config.ground.walk_speed = 15.0;
                 config.ground.acceleration = 1_000.0;
             },
-            // At 30 Hz a tick leads from above the step to beyond its edge.
+            // At 30 Hz, the climber moves in a tick from above the step to beyond its edge.
             cuboid: boxed(0.75, 0.18, -1.0),
             position: DVec3::new(-0.3, 0.58, 0.0),
             input: |_| walks(DVec3::X),

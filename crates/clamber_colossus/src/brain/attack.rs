@@ -1,121 +1,128 @@
-//! What an attack does to people.
+//! Attacks: the clip, the limb, and the wave, shot or beam that an attack sends out.
 
 use serde::{Deserialize, Serialize};
 
 use super::BrainProblem;
 use super::compile::{check_seconds, out_of_range};
 
-/// What is let out is over after this time, seconds.
+/// The longest flight of a shot, and the longest time in which a wave reaches its radius, seconds.
 const LONGEST: f64 = 60.0;
 
-/// Shots are no faster than this when they leave, metres a second.
+/// The largest speed of a shot when it leaves the limb, metres a second. With a larger one, a saved shot could exceed
+/// the 62,000 m/s up to which saved states are accepted.
 const FASTEST: f64 = 1_000.0;
 
-/// Nothing pulls shots harder than this, metres a second squared.
+/// The largest gravity of a shot, metres a second squared. It adds 60,000 m/s in [`LONGEST`] seconds; with more, a
+/// saved shot could exceed the 62,000 m/s up to which saved states are accepted.
 const STRONGEST: f64 = 1_000.0;
 
-/// A clip in which a limb strikes: with its skin, by a wave that goes out from where it comes down, by something that
-/// it throws, by a beam, or by several of these.
+/// A clip in which a limb strikes: with its skin, by a wave from where it comes down, by a shot, by a beam, or by
+/// several of these.
 ///
-/// Waves, shots and beams spare who rides the creature, and who is behind terrain. Its own body stops none of them. All
-/// lengths and speeds are in metres and seconds of the world, whatever the creature's size is. What has neither damage
-/// nor throw strikes nobody.
+/// Waves, shots and beams spare riders of the creature, and people behind terrain. The creature's own body does not
+/// stop them. Lengths and speeds are in metres and metres a second of world space, and do not scale with the creature's
+/// size. A limb, wave, shot or beam with neither damage nor throw strikes nobody.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Attack {
-    /// The clip.
+    /// The clip that is played once.
     pub clip: String,
-    /// Joints whose skin hurts, such as `["foot.R", "toe.R"]`, or `["thumb.*.R", "hand.R"]`. The last one is its end.
+    /// Joints whose skin hurts, such as `["foot.R", "toe.R"]`, or `["thumb.*.R", "hand.R"]`. The last joint is the
+    /// limb's end.
     pub limb: Vec<String>,
-    /// Hit points that a blow of the limb costs, 0 to 1. If this and `throw` are 0, the limb hurts nobody.
+    /// Hit points that a blow of the limb costs, 0 to 1. If both this and `throw` are 0, the limb hurts nobody.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub damage: f64,
-    /// Speed that a blow of the limb gives along its motion, metres a second.
+    /// Speed that a blow of the limb gives the person along the limb's motion, metres a second.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub throw: f64,
-    /// The limb's end goes to its prey if that is within this distance of where the clip strikes, metres: a leg as far as
-    /// it reaches, a mouth or a hand as far as the neck or the arm above it does. 0 strikes where the clip does.
+    /// How far the limb's end may deviate from where the clip strikes, towards the prey, metres. A leg goes only as far
+    /// as it reaches, a mouth or a hand only as far as the neck or the arm above it does. 0 strikes where the clip
+    /// does.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub aim: f64,
-    /// A wave that goes out from the ground at the limb's end, or from the limb's end if there is no ground near it, at the
-    /// clip's first marker `impact`, or at its marker `recovery` if it has none. The limb, its wave and its beam together
-    /// strike a person once.
+    /// A wave from the ground near the limb's end, or from the limb's end if there is no ground near it. It starts at
+    /// the clip's first marker `impact`, or at its marker `recovery` if it has none. The limb, its wave and its beam
+    /// together strike a person once.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wave: Option<Wave>,
-    /// What leaves the limb's end at the clip's marker `active`. It ends where its middle meets terrain or another
-    /// creature, or where it touches somebody.
+    /// A shot that leaves the limb's end at the clip's marker `active`. It ends where its middle meets terrain or
+    /// another creature, or where it touches a person.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shot: Option<Shot>,
-    /// What goes out from the limb's end from the clip's marker `active` to its marker `recovery`, as far as terrain or
+    /// A beam from the limb's end, from the clip's marker `active` to its marker `recovery`. It ends at terrain or at
     /// another creature.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub beam: Option<Beam>,
-    /// A shot or a beam goes to where the middle of the prey was when the attack began. If no prey was seen then, it goes
-    /// to a place ahead of the creature, level with its feet, as far away as the creature is high. While the creature
-    /// sees prey, this place follows the prey with so many metres a second: for a shot until it leaves, for a beam until
-    /// its end. Whoever runs faster gets away.
+    /// Speed at which the target of a shot or a beam follows the prey, metres a second. The target starts at the middle
+    /// of the prey when the attack begins; if no prey is seen then, one creature's height ahead of the creature, level
+    /// with its feet. It follows the prey while the creature sees it: for a shot until the shot leaves, for a beam
+    /// until the beam ends. A faster person escapes.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub follows: f64,
 }
 
-/// A ball that grows, and strikes whom it reaches, once: a shock wave, a tremor, a blast.
+/// A growing ball that strikes each person once when it reaches them: a shock wave, a tremor, a blast.
 ///
-/// It begins somewhat above the ground, or off what a shot has met: by 0.5 m, or by a thirtieth of its radius if that is
-/// more. Lower rocks do not stop it. Distances count from there to a person's skin.
+/// The centre is above the ground, or off the surface that a shot has met, by 0.5 m or a thirtieth of `radius`,
+/// whichever is more. Lower rocks do not stop it. Distances are from the centre to a person's skin.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Wave {
-    /// How far it goes, metres.
+    /// The largest radius that it reaches, metres.
     pub radius: f64,
-    /// How fast it grows, metres a second: fast enough to be at its end within 60 s. Without it all are struck at once.
+    /// How fast it grows, metres a second: it has to reach `radius` within 60 s. `None` strikes all people within
+    /// `radius` at once.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub speed: Option<f64>,
-    /// It strikes only whose body would touch terrain if it were so many metres lower: who jumps is spared, and so is who
-    /// stands on another creature. Without it all are struck.
+    /// Height above terrain from which people are spared, metres: the wave strikes a person only if the body would
+    /// touch terrain when lowered by this. People in a jump or on another creature are spared. `None` strikes at any
+    /// height.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub height: Option<f64>,
-    /// Hit points that it costs where it begins, 0 to 1. At a distance d it is this times 1 - d / radius.
+    /// Hit points that it costs at its centre, 0 to 1. At a distance d it costs this times 1 - d / radius.
     pub damage: f64,
-    /// Speed that it gives where it begins, metres a second, in a direction half way between up and away from there. It
-    /// falls off as the damage does.
+    /// Speed that it gives at its centre, metres a second, in a direction half way between up and away from the centre.
+    /// It falls off as the damage does.
     pub throw: f64,
 }
 
-/// Something that is thrown, spat or shot.
+/// A projectile that a creature throws, spits or shoots.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Shot {
-    /// Metres a second, more than 0 and at most 1,000.
+    /// Speed when it leaves the limb, metres a second, more than 0 and at most 1,000.
     pub speed: f64,
-    /// Radius of the ball that strikes people, metres.
+    /// Radius of the ball that touches people, metres.
     pub radius: f64,
-    /// What pulls it down, metres a second squared, at most 1,000; 9.81 if it is not given. It goes by the flat one of two
-    /// arcs, and as far in that direction as its speed lets it if none gets there. With 0 it goes straight.
+    /// Gravity of the shot, metres a second squared, from 0 to 1,000; 9.81 by default. The shot takes the lower of two
+    /// arcs to its target. If the target is out of range, it flies as far in that direction as its speed allows. With 0
+    /// it flies straight.
     #[serde(default = "earth", skip_serializing_if = "is_earth")]
     pub gravity: f64,
-    /// Seconds after which it is gone if it meets nothing, at most 60; 20 if it is not given.
+    /// Seconds after which it disappears if it meets nothing, more than 0 and at most 60; 20 by default.
     #[serde(default = "lasts", skip_serializing_if = "is_default_lasts")]
     pub lasts: f64,
-    /// Hit points that it costs, 0 to 1.
+    /// Hit points that a hit costs, 0 to 1.
     pub damage: f64,
-    /// Speed that it gives along its way, metres a second.
+    /// Speed that a hit gives the person along the shot's path, metres a second.
     pub throw: f64,
-    /// A wave that goes out from where the shot meets something. The shot and its wave together strike a person once.
+    /// A wave from where the shot meets something. The shot and its wave together strike a person once.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wave: Option<Wave>,
 }
 
-/// A straight beam, that strikes whom it touches, once.
+/// A straight beam that strikes each person it touches once.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Beam {
-    /// How far it goes, metres.
+    /// Length of the beam if nothing stops it, metres.
     pub length: f64,
-    /// How thick it is, metres.
+    /// Radius of the beam, metres.
     pub radius: f64,
-    /// Hit points that it costs, 0 to 1.
+    /// Hit points that a hit costs, 0 to 1.
     pub damage: f64,
-    /// Speed that it gives along its way, metres a second.
+    /// Speed that a hit gives the person along the beam, metres a second.
     pub throw: f64,
 }
 
@@ -151,12 +158,12 @@ impl Attack {
         Ok(())
     }
 
-    /// True if its limb's skin hurts.
+    /// True if the skin of the limb hurts.
     pub(crate) fn limb_strikes(&self) -> bool {
         strikes(self.damage, self.throw)
     }
 
-    /// The wave that goes out where its limb comes down, or where its shot ends.
+    /// The wave of the limb or of the shot; `None` if the attack has no such wave.
     pub(crate) fn wave_of(&self, of: WaveOf) -> Option<&Wave> {
         match of {
             WaveOf::Limb => self.wave.as_ref(),
@@ -165,16 +172,17 @@ impl Attack {
     }
 }
 
-/// What a wave goes out from.
+/// The source of a wave: where the limb comes down, or where the shot ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum WaveOf {
     Limb,
     Shot,
 }
 
-/// Names of a wave's numbers, for messages.
+/// Names of a wave's fields in the file, for error messages.
 type WaveNames = [&'static str; 5];
 
+/// Names of the fields of [`Attack::wave`].
 const WAVE: WaveNames = [
     "wave.radius",
     "wave.speed",
@@ -182,6 +190,7 @@ const WAVE: WaveNames = [
     "wave.damage",
     "wave.throw",
 ];
+/// Names of the fields of [`Shot::wave`].
 const SHOT_WAVE: WaveNames = [
     "shot.wave.radius",
     "shot.wave.speed",
@@ -190,6 +199,7 @@ const SHOT_WAVE: WaveNames = [
     "shot.wave.throw",
 ];
 
+/// The range of lengths and speeds up to 1e6, for error messages.
 const MILLION: &str = "more than 0 and at most 1,000,000";
 
 impl Wave {
@@ -249,7 +259,7 @@ impl Shot {
     }
 }
 
-/// True if a blow does anything.
+/// True if a blow does damage or changes velocity.
 fn strikes(damage: f64, throw: f64) -> bool {
     damage != 0.0 || throw != 0.0
 }

@@ -1,4 +1,4 @@
-//! From a file to a brain: names become indices, seconds become ticks, and everything is checked.
+//! Compiles a brain file into a brain: names become indices, seconds become ticks, and everything is checked.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,10 +12,10 @@ use super::{
 use crate::senses::Sense;
 
 impl Brain {
-    /// Reads a brain from its file, for ticks of `tick` seconds.
+    /// Reads a brain from its JSON file, for ticks of `tick` seconds.
     ///
     /// # Errors
-    /// [`BrainError`], with line and state.
+    /// [`BrainError`], with the line and the state if they are known.
     pub fn from_json(text: &str, tick: f64) -> Result<Self, BrainError> {
         let file: BrainFile = serde_json::from_str(text).map_err(|error| {
             let line = error.line();
@@ -28,7 +28,7 @@ impl Brain {
         Compiler::new(&file, tick, Lines::of(text)).compile()
     }
 
-    /// A brain that was put together in code, for ticks of `tick` seconds.
+    /// Builds a brain from a [`BrainFile`] that was made in code, for ticks of `tick` seconds.
     ///
     /// # Errors
     /// [`BrainError`], without a line.
@@ -96,7 +96,7 @@ impl<'a> Compiler<'a> {
         Ok(brain)
     }
 
-    /// Appends all states, each before those inside it.
+    /// Appends all states: each outer state before its inner states.
     fn gather(
         &mut self,
         states: &'a BTreeMap<String, StateFile>,
@@ -285,7 +285,7 @@ impl<'a> Compiler<'a> {
         })
     }
 
-    /// Refuses transitions without conditions that lead in a circle, or on for more than a tick takes.
+    /// Refuses transitions without conditions that form a cycle, or a chain longer than [`MOST_TRANSITIONS`].
     fn check_instants(&self, brain: &Brain) -> Result<(), BrainError> {
         for first in brain.states() {
             let mut way = vec![brain.innermost(first)];
@@ -327,7 +327,7 @@ impl<'a> Compiler<'a> {
         }
     }
 
-    /// An error that is on a line, and in no state.
+    /// An error on a line outside of all states.
     fn at(&self, line: usize, problem: BrainProblem) -> BrainError {
         BrainError {
             line: (line > 0).then_some(line),
@@ -336,7 +336,7 @@ impl<'a> Compiler<'a> {
         }
     }
 
-    /// Refuses moods and senses of the game's own that have the name of another one: it would never be read.
+    /// Refuses a mood, or one of the game's own senses, whose name is already taken: no condition could read it.
     fn check_names(&self) -> Result<(), BrainError> {
         let mut known: BTreeSet<&str> = Sense::all().map(Sense::name).collect();
         for name in self.file.moods.keys().chain(&self.file.senses) {
@@ -350,7 +350,8 @@ impl<'a> Compiler<'a> {
 }
 
 impl Brain {
-    /// Where a state is left to at once; `None` if it is not, or not always.
+    /// The target of the transition without conditions that leaves this state at once; `None` without such a
+    /// transition, or if the state's act has to end first.
     fn instant_from(&self, state: StateId) -> Option<StateId> {
         let around = self.around(state).flat_map(|outer| {
             let range = self
@@ -362,7 +363,7 @@ impl Brain {
         if self.is_final(state) || self.act(state).is_some_and(super::Act::is_whole) {
             return None;
         }
-        // The first of those that go before all others.
+        // The first transition of the highest priority.
         let best = instant.reduce(|best, next| {
             if next.priority > best.priority {
                 next
@@ -374,7 +375,7 @@ impl Brain {
     }
 }
 
-/// How many states there are, those inside others included.
+/// Number of states, inner states included.
 fn count(states: &BTreeMap<String, StateFile>) -> usize {
     let inside = states.values().map(|state| count(&state.states));
     states.len() + inside.sum::<usize>()
@@ -390,7 +391,7 @@ fn check_act(file: &StateFile) -> Result<(), BrainProblem> {
     }
 }
 
-/// Refuses times and lengths that are not finite or negative.
+/// Refuses times and lengths that are not finite, negative, or more than 1,000,000.
 pub(super) fn check_seconds(what: &'static str, found: f64) -> Result<(), BrainProblem> {
     if (0.0..=1e6).contains(&found) {
         Ok(())
@@ -407,7 +408,7 @@ fn too_many(what: &'static str, found: usize, most: usize) -> BrainProblem {
     BrainProblem::TooMany { what, found, most }
 }
 
-/// Names in a row, for messages.
+/// A comma-separated list of names, for error messages.
 pub(crate) fn list<S: AsRef<str>>(names: impl IntoIterator<Item = S>) -> String {
     let names: Vec<String> = names
         .into_iter()
@@ -421,7 +422,7 @@ pub(crate) fn list<S: AsRef<str>>(names: impl IntoIterator<Item = S>) -> String 
 }
 
 impl Brain {
-    /// An error about a state.
+    /// An error in a state, with the state's line.
     pub(crate) fn error_in(&self, state: StateId, problem: BrainProblem) -> BrainError {
         BrainError {
             line: self.line(state),
@@ -431,7 +432,7 @@ impl Brain {
     }
 }
 
-/// An error's text without the line and column at its end: [`BrainError::line`] has the line.
+/// An error's text without the line and column at its end; [`BrainError::line`] has the line.
 fn without_place(error: &str) -> String {
     let end = error.rfind(" at line ").unwrap_or(error.len());
     error[..end].to_owned()

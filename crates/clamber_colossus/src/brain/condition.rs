@@ -3,7 +3,7 @@ use std::fmt;
 use super::BrainFile;
 use crate::senses::{RegionSense, Sense, Senses};
 
-/// A comparison of one number with a fixed one.
+/// A comparison of one number with a constant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Condition {
     pub(crate) source: Source,
@@ -11,7 +11,7 @@ pub(crate) struct Condition {
     pub(crate) value: f64,
 }
 
-/// Where a number comes from.
+/// The source of the number that a condition compares.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Source {
     Sense(Sense),
@@ -55,12 +55,12 @@ impl Comparison {
     }
 }
 
-/// Why the text of a condition is not one.
+/// Why the text of a condition cannot be read.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum ConditionFault {
-    /// It is neither a name nor `name operator number`.
+    /// The text is neither `name`, nor `!name`, nor `name operator number`.
     Form,
-    /// There is no such sense, mood or region; those that there are.
+    /// An unknown sense, mood or region, and the list of known names.
     Name(String, String),
 }
 
@@ -109,7 +109,7 @@ impl Condition {
         }
     }
 
-    /// True if it holds. `moods` are their values.
+    /// True if the condition holds. `mood` gives the value of a mood by its index.
     pub(crate) fn holds(&self, senses: &Senses, mood: impl Fn(usize) -> f64) -> bool {
         let number = match self.source {
             Source::Sense(sense) => senses.get(sense),
@@ -120,12 +120,12 @@ impl Condition {
         self.holds_for(number)
     }
 
-    /// True for this number of what it asks for.
+    /// True if the condition holds when its source has this value.
     pub(crate) fn holds_for(&self, number: f64) -> bool {
         self.comparison.holds(number, self.value)
     }
 
-    /// The numbers for which it holds, as an interval: a superset for `!=`.
+    /// The interval of numbers for which the condition holds; for `!=` the whole line, which is a superset.
     pub(crate) fn interval(&self) -> [f64; 2] {
         let (low, high) = (f64::NEG_INFINITY, f64::INFINITY);
         match self.comparison {
@@ -169,7 +169,7 @@ impl Source {
         own.map(Self::Own).ok_or_else(unknown)
     }
 
-    /// The numbers that the source can have.
+    /// The interval of numbers that the source can have.
     pub(crate) fn range(self) -> [f64; 2] {
         match self {
             Self::Mood(_) | Self::Sense(Sense::Health | Sense::Done | Sense::PreySeen) => {

@@ -5,11 +5,11 @@ use thiserror::Error;
 /// Why a brain was refused, and where in its file.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub struct BrainError {
-    /// The line of the file, from 1; `None` for a brain that was not read from a text, or where no line is at fault.
+    /// The line of the file, from 1; `None` for a brain that was not read from text, or if no single line is at fault.
     pub line: Option<usize>,
-    /// The state, with those around it, such as `calm/idle`; `None` if no state is at fault.
+    /// The path of the state at fault, such as `calm/idle`; `None` if no state is at fault.
     pub state: Option<String>,
-    /// What is wrong.
+    /// The fault itself.
     pub problem: Box<BrainProblem>,
 }
 
@@ -25,100 +25,100 @@ impl fmt::Display for BrainError {
     }
 }
 
-/// What can be wrong with a brain.
+/// A fault of a brain.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum BrainProblem {
-    /// The text is no brain file in JSON.
+    /// A text that is not a valid brain file.
     #[error("{0}")]
     Text(String),
-    /// A name that the file, the creature or this library does not know.
+    /// A name that is unknown to the file, the creature or this library.
     #[error("there is no {what} `{name}`; there is {known}")]
     Unknown {
-        /// What was looked for: a state, a clip, a joint.
+        /// The kind of the name: a state, a clip, a joint.
         what: &'static str,
-        /// The name.
+        /// The unknown name.
         name: String,
-        /// Those that there are.
+        /// The list of known names.
         known: String,
     },
-    /// A name that stands twice.
+    /// A name that is used twice.
     #[error("there are two {what} `{name}`")]
     Twice {
-        /// What has that name.
+        /// The kind of the name, in the plural.
         what: &'static str,
-        /// The name.
+        /// The repeated name.
         name: String,
     },
     /// A condition that cannot be read.
     #[error("the condition {text:?} {fault}")]
     Condition {
-        /// The condition.
+        /// The condition's text.
         text: String,
-        /// What is wrong with it.
+        /// Why it cannot be read.
         fault: String,
     },
-    /// A number out of its range.
+    /// A number that is out of its range.
     #[error("`{what}` is {found}, which is not {range}")]
     OutOfRange {
         /// The number's name in the file.
         what: &'static str,
-        /// The range that it must be in.
+        /// The allowed range.
         range: &'static str,
-        /// The number.
+        /// The number found.
         found: f64,
     },
-    /// A height cannot be given to a skin without one.
+    /// A height for a creature whose skin has no height at rest.
     #[error("`{what}` is given, but at rest the skin has no height")]
     NoHeight {
         /// The number's name in the file.
         what: &'static str,
     },
-    /// Transitions without conditions that lead from state to state in a circle.
+    /// A cycle of transitions without conditions.
     #[error("it leads back to itself at once, by {0}")]
     Circle(String),
-    /// More transitions without conditions one after the other than a tick takes.
+    /// A chain of transitions without conditions that is longer than a tick allows.
     #[error("it is left at once, and so are the next {0} states: at most {most} transitions may follow each other in a tick", most = super::MOST_TRANSITIONS)]
     Chain(usize),
-    /// A state that is never left has transitions, or states inside it.
+    /// A final state with transitions or inner states.
     #[error("it is final, so it can have neither transitions nor states inside it")]
     FinalState,
-    /// A state with others inside it has an act of its own, or none of them is its start.
+    /// A state with inner states that has an act of its own, or no start.
     #[error("it has states inside it, so it needs a `start`, and has no `act` of its own")]
     Composite,
-    /// A state without others inside it has a start.
+    /// A state without inner states that has a start.
     #[error("it has no states inside it, so it has no `start`")]
     Leaf,
-    /// More than a brain may have.
+    /// A brain with too many states, moods or regions, or with states that are nested too deeply.
     #[error("there are {found} {what}; a brain has at most {most}")]
     TooMany {
-        /// What there is too much of.
+        /// The things that are too many, in the plural.
         what: &'static str,
-        /// How many.
+        /// Their number.
         found: usize,
-        /// How many there may be.
+        /// The largest number allowed.
         most: usize,
     },
-    /// Joints of a leg or of the head that cannot be moved by inverse kinematics.
+    /// Joints of a leg or of the head that inverse kinematics cannot move.
     #[error("the {limb} of {joints} cannot be moved: {fault}")]
     Limb {
-        /// The leg or the head.
+        /// The limb: a leg or the head.
         limb: &'static str,
-        /// Its joints, in the order of the file.
+        /// The limb's joints, in the order of the file.
         joints: String,
         /// Why they cannot be moved.
         fault: String,
     },
-    /// A walk's `strike` names a clip with which no state attacks.
+    /// A walk's `strike` names a clip that no attack plays.
     #[error("`strike` names the clip `{clip}`, and no state attacks with that")]
     NoAttack {
         /// The clip.
         clip: String,
     },
-    /// An act needs a gait, and the body has none.
+    /// A walk or a turn of a body without a gait.
     #[error("it walks or turns, and `body` has no `gait`")]
     NoGait,
-    /// A clip of an attack lacks a marker, or has them in another order.
+    /// The clip of an attack that lacks a marker, or whose markers are in the wrong order.
     #[error("the clip `{clip}` of an attack needs the markers `active` and, later, `recovery`")]
     Phases {
         /// The clip.

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::{Attack, unique};
 use crate::kind::BodyFile;
 
-/// A brain as its file has it: states, moods, and what leads from one state to another.
+/// A brain as in its file: states, moods, and the transitions between states.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BrainFile {
@@ -14,129 +14,131 @@ pub struct BrainFile {
     pub body: BodyFile,
     /// The state in which the creature begins.
     pub start: String,
-    /// Moods by name: numbers from 0 to 1 that are raised by what is sensed, and fade.
+    /// Moods by name: numbers from 0 to 1 that conditions raise, and that fade.
     #[serde(default, with = "unique", skip_serializing_if = "BTreeMap::is_empty")]
     pub moods: BTreeMap<String, MoodFile>,
-    /// Regions of the body by name, each with joints, whose senses are told apart. `"spine.*"` names all joints that
-    /// begin with `spine.`, and `"thumb.*.L"` all that also end with `.L`.
+    /// Regions of the body by name, each with its joints. Some senses are also counted per region. `"spine.*"` names
+    /// all joints that begin with `spine.`, and `"thumb.*.L"` all joints that begin with `thumb.` and end with `.L`.
     #[serde(default, with = "unique", skip_serializing_if = "BTreeMap::is_empty")]
     pub regions: BTreeMap<String, Vec<String>>,
-    /// The game's own senses: numbers that it sets.
+    /// Names of the game's own senses: numbers that the game sets.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub senses: Vec<String>,
-    /// The states by name. A name stands only once in the file.
+    /// The states by name. Names are unique in the file, inner states included.
     #[serde(with = "unique")]
     pub states: BTreeMap<String, StateFile>,
 }
 
-/// A mood.
+/// A mood: a number from 0 to 1 that conditions raise, and that fades.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MoodFile {
-    /// Seconds in which it fades from 1 to 0, at a steady rate.
+    /// Seconds in which it fades from 1 to 0, at a constant rate.
     pub fades: f64,
-    /// What raises it.
+    /// Conditions that raise it.
     pub raised: Vec<RaiseFile>,
 }
 
-/// What raises a mood.
+/// A rule that raises a mood.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RaiseFile {
     /// Conditions that must all hold.
     pub when: Vec<String>,
-    /// The mood is at least this while they hold, 0 to 1.
+    /// Lower bound of the mood while the conditions hold, 0 to 1.
     pub to: f64,
 }
 
-/// A state. It has either an act, or states inside it, of which one is current.
+/// A state with either an act or inner states. One of the inner states is current.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StateFile {
-    /// What the creature does. Without one it goes on standing as it stands.
+    /// The creature's act in this state. With `None` it stands; if it has a gait, it plays the idle clip.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub act: Option<Act>,
-    /// Where it looks. A state inside another one looks where the outer one does, unless it says otherwise.
+    /// Where the creature looks. `None` takes the gaze of the outer state.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gaze: Option<Gaze>,
-    /// Seconds in which the act fades in; 0.6 if it does not say.
+    /// Seconds in which the act fades in; 0.6 by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fade: Option<f64>,
-    /// Weak points, by name, that can be hurt in this state although they are hidden otherwise.
+    /// Names of weak points that can be hurt in this state although their order hides them otherwise.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub exposes: Vec<String>,
-    /// Seconds after it was left in which it can't be entered again.
+    /// Seconds after the state was left in which it cannot be entered again.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cooldown: Option<f64>,
-    /// True if it is never left.
+    /// True if the state is never left.
     #[serde(rename = "final", default, skip_serializing_if = "is_false")]
     pub is_final: bool,
-    /// Of the states inside it, the one that is entered with it.
+    /// The inner state that is entered when this state is entered.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub start: Option<String>,
-    /// What leads out of it, and of all states inside it.
+    /// Transitions out of this state and of all its inner states.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub transitions: Vec<TransitionFile>,
-    /// The states inside it.
+    /// The inner states by name.
     #[serde(default, with = "unique", skip_serializing_if = "BTreeMap::is_empty")]
     pub states: BTreeMap<String, StateFile>,
 }
 
-/// What leads from a state to another one. All that it names must hold; if it names nothing, it is taken at once.
+/// A transition from one state to another. It is possible while `when`, `any`, `on` and `after` all allow it; without
+/// any of them it is taken at once.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TransitionFile {
-    /// The state that is entered.
+    /// The target state.
     pub to: String,
     /// Conditions that must all hold, such as `"riders >= 1"` or `"!prey_seen"`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub when: Vec<String>,
-    /// Conditions of which at least one must hold.
+    /// Conditions; at least one must hold.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub any: Vec<String>,
-    /// A marker of the clip that must have been passed in this tick.
+    /// A marker that the clip must have passed in this tick.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub on: Option<String>,
-    /// Seconds that the state must have lasted. A time that is drawn by lot is the same for all transitions of a state
-    /// with the same range, so that their weights decide.
+    /// Seconds that the state must have lasted. A random time is the same for all transitions of a state with the same
+    /// range, so that their weights decide.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub after: Option<After>,
-    /// Of the transitions that can be taken, those of the highest priority are; 0 if it does not say.
+    /// Priority: only possible transitions of the highest priority are taken; 0 by default.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub priority: i32,
-    /// Of several with the same priority one is drawn by lot, by their weights; 1 if it does not say.
+    /// Weight in the random choice among possible transitions of the same priority; 1 by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub weight: Option<f64>,
-    /// True if it may leave an act that has to be played to its end.
+    /// True if it may leave an act that otherwise has to be played to its end.
     #[serde(default, skip_serializing_if = "is_false")]
     pub interrupts: bool,
 }
 
-/// A time, seconds: fixed, or drawn by lot between two when the state is entered.
+/// A time, seconds: fixed, or random within a range. The random time is drawn when the state is entered.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum After {
-    /// Fixed.
+    /// A fixed time.
     Fixed(f64),
-    /// Drawn from here to there.
+    /// A random time between these two.
     Between([f64; 2]),
 }
 
-/// What a creature does in a state.
+/// The action of a creature in a state.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Act {
-    /// Plays a clip again and again, on the spot.
+    /// Plays a clip in a loop, on the spot.
     Play(String),
-    /// Plays a clip once, to its end, and holds that. The state is left only then, or by a transition that interrupts.
+    /// Plays a clip once, to its end, and holds its last pose. Before the end, only a transition that interrupts leaves
+    /// the state.
     Once(String),
-    /// Plays a clip once, in which a limb strikes people.
+    /// Plays a clip once in which a limb strikes people.
     Attack(Box<Attack>),
     /// Walks to a place.
     Walk(Walk),
     /// Turns on the spot to a place.
     Turn(Turn),
-    /// Sleeps: holds the pose that its clips have reached, sees nothing, but feels and hears. It costs almost nothing.
+    /// Sleeps: holds its current pose, sees nothing, but feels and hears. A sleeping creature costs almost nothing.
     Sleep,
 }
 
@@ -144,11 +146,12 @@ pub enum Act {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Walk {
-    /// Where to.
+    /// The goal of the walk.
     pub to: Place,
-    /// It has arrived when it is as near as this, metres. For an attack, as near to where that strikes.
+    /// The walk is done within this distance of the goal, metres; with `strike`, within this distance of where that
+    /// clip strikes.
     pub within: f64,
-    /// Walks to where this attack's clip strikes the place, and faces it.
+    /// The clip of an attack: the creature stops where this clip would strike the goal, and faces the goal.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub strike: Option<String>,
 }
@@ -157,25 +160,26 @@ pub struct Walk {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Turn {
-    /// To what.
+    /// The place to turn to.
     pub to: Place,
-    /// It is done when the place is as near as this to straight ahead, degrees.
+    /// The turn is done when the place is within this angle of straight ahead, degrees.
     pub within_deg: f64,
 }
 
-/// A place to go to, or to turn to.
+/// A place to walk or to turn to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Place {
-    /// The nearest person that is seen and does not ride; the place where one was seen last if none is.
+    /// The nearest person in view that does not ride the creature. If no such person is in view, the place where one
+    /// was last seen, or home if none was ever seen.
     Prey,
-    /// Where the creature was placed first.
+    /// The place where the creature was first put.
     Home,
-    /// A place of the arena, drawn by lot when the state is entered.
+    /// A random place in the arena, drawn when the act begins.
     Patrol,
-    /// Where the last noise came from.
+    /// The place of the last noise.
     Noise,
-    /// The nearest wall, at the side that is nearest to it.
+    /// The place in front of the nearest wall, half the creature's width away from it.
     Wall,
 }
 
@@ -183,14 +187,14 @@ pub enum Place {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Gaze {
-    /// As its clips do.
+    /// Where its clips look.
     #[default]
     Clip,
-    /// Here and there.
+    /// At changing random places ahead.
     Around,
     /// At its prey.
     Prey,
-    /// At who rides it.
+    /// At the rider that has been on it longest.
     Rider,
 }
 

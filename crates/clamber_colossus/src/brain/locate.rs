@@ -1,14 +1,14 @@
-//! Which line of a file a place of its JSON stands on. serde_json knows the line of what it cannot read, but not of a
-//! value that reads well and means nothing, such as the name of a state that does not exist.
+//! Finds the lines of JSON values in a brain file. serde_json reports a line only for text that it cannot parse, not
+//! for a value that parses but is invalid, such as the name of a state that does not exist.
 
 use std::collections::BTreeMap;
 
 use serde_json::value::RawValue;
 
-/// The lines of a file, found in one pass over it.
+/// The lines of a file's states, transitions and moods, found in one pass.
 #[derive(Debug, Default)]
 pub(super) struct Lines {
-    /// Of each state, by its path such as `calm/idle`: its line, and those of its transitions.
+    /// Per state, by its path such as `calm/idle`: the state's line, and the lines of its transitions.
     states: BTreeMap<String, (usize, Vec<usize>)>,
     moods: BTreeMap<String, usize>,
     start: usize,
@@ -47,12 +47,12 @@ impl Lines {
         }
     }
 
-    /// The line of a state; 0 if there is none.
+    /// The line of a state; 0 if it is unknown.
     pub(super) fn state(&self, path: &str) -> usize {
         self.states.get(path).map_or(0, |(line, _)| *line)
     }
 
-    /// The line of a state's transition; 0 if there is none.
+    /// The line of a state's transition; 0 if it is unknown.
     pub(super) fn transition(&self, path: &str, number: usize) -> usize {
         let found = self
             .states
@@ -61,18 +61,18 @@ impl Lines {
         found.copied().unwrap_or(0)
     }
 
-    /// The line of a mood; 0 if there is none.
+    /// The line of a mood; 0 if it is unknown.
     pub(super) fn mood(&self, name: &str) -> usize {
         self.moods.get(name).copied().unwrap_or(0)
     }
 
-    /// The line of the state in which the brain begins; 0 if there is none.
+    /// The line of the brain's `start`; 0 if it is unknown.
     pub(super) fn start(&self) -> usize {
         self.start
     }
 }
 
-/// The path of the innermost state that has a line, such as `calm/idle`.
+/// The path of the innermost state whose text includes a line, such as `calm/idle`.
 pub(super) fn state_on(text: &str, line: usize) -> Option<String> {
     let text = Text::new(text);
     let mut path: Vec<String> = Vec::new();
@@ -89,7 +89,7 @@ pub(super) fn state_on(text: &str, line: usize) -> Option<String> {
     (!path.is_empty()).then(|| path.join("/"))
 }
 
-/// A text that knows where its lines end.
+/// A text with the offsets of its line ends.
 struct Text<'a> {
     text: &'a str,
     ends: Vec<usize>,
@@ -107,9 +107,9 @@ impl<'a> Text<'a> {
         serde_json::from_str(self.text).ok()
     }
 
-    /// Where a part of the text begins in it.
+    /// The byte offset of a part of the text.
     fn offset(&self, part: &RawValue) -> usize {
-        // Borrowed from the text, so its address lies within.
+        // `part` borrows from the text, so its address lies within the text.
         (part.get().as_ptr() as usize).saturating_sub(self.text.as_ptr() as usize)
     }
 
@@ -131,6 +131,7 @@ fn entries(raw: &RawValue) -> Option<BTreeMap<String, &RawValue>> {
 mod tests {
     use super::*;
 
+    /// A file whose states, transitions and start are on known lines.
     const TEXT: &str = "{\n \"start\": \"a\",\n \"states\": {\n  \"a\": {\n   \"transitions\": [\n    {\"to\": \"b\"},\n    {\"to\": \"c\"}]},\n  \"b\": {}}}";
 
     #[test]

@@ -35,24 +35,26 @@ impl StateId {
     }
 }
 
-/// The most transitions in one tick. A state that is entered is left in the same tick only by a transition without
-/// conditions, and files with longer chains of those are refused.
+/// The most transitions in one tick. A state that has just been entered is left in the same tick only by a transition
+/// without conditions. Files with longer chains of such transitions are refused.
 pub const MOST_TRANSITIONS: usize = 8;
 
-/// The most states inside one another, and the most of other things, so that a brain's state stays below 1 KB.
+/// Deepest nesting of states. It is the length of two arrays in [`BrainState`], which has to stay below 1 KB.
 const MOST_DEPTH: usize = 4;
+/// Most states of a brain, so that its [`BrainState`] stays below 1 KB.
 const MOST_STATES: usize = 160;
+/// Most moods of a brain, so that its [`BrainState`] stays below 1 KB.
 const MOST_MOODS: usize = 16;
+/// Most regions of a brain: a joint's regions are the bits of a `u64`.
 const MOST_REGIONS: usize = 64;
 
-/// The largest weight of a transition: sums of them stay finite.
+/// Largest weight of a transition, so that sums of weights stay finite.
 const MOST_WEIGHT: f64 = 1e9;
 
-/// Seconds in which an act fades in, unless its state says otherwise.
+/// Default time in which an act fades in, seconds.
 const FADE: f64 = 0.6;
 
-/// A brain: states, moods, and what leads from one state to another. It never changes; what does is its
-/// [`BrainState`].
+/// A brain: states, moods, and the transitions between states. It never changes; [`BrainState`] holds all that changes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Brain {
     file: BrainFile,
@@ -60,21 +62,22 @@ pub struct Brain {
     states: Vec<State>,
     transitions: Vec<Transition>,
     moods: Vec<Mood>,
-    /// The state in which it begins: one without others inside it.
+    /// The innermost state in which it begins.
     start: StateId,
-    /// A hash of what a [`BrainState`] refers to: the names of states and moods, in their order.
+    /// A hash of the names of states and moods, in their order, and of the moods' fading times. A [`BrainState`] fits
+    /// brains with the same hash.
     mark: u64,
 }
 
 #[derive(Clone, Debug, PartialEq)]
 struct State {
     name: String,
-    /// With those around it, such as `calm/idle`.
+    /// The names of its outer states and its own, such as `calm/idle`.
     path: String,
     parent: Option<StateId>,
-    /// Number of states around it.
+    /// Number of outer states.
     depth: usize,
-    /// The state inside it that is entered with it.
+    /// The inner state that is entered with it.
     start: Option<StateId>,
     act: Option<Act>,
     gaze: Gaze,
@@ -84,20 +87,20 @@ struct State {
     is_final: bool,
     /// Range in `Brain::transitions`.
     transitions: core::ops::Range<usize>,
-    /// 0 if unknown.
+    /// Line in the file; 0 if unknown.
     line: usize,
 }
 
 #[derive(Clone, Debug, PartialEq)]
 struct Transition {
-    /// Its index in `Brain::transitions`.
+    /// Index in `Brain::transitions`.
     number: u64,
     from: StateId,
     to: StateId,
     when: Vec<Condition>,
     any: Vec<Condition>,
     on: Option<String>,
-    /// Ticks that the state must have lasted: from and to.
+    /// Range of the ticks that the state must have lasted.
     after: [u32; 2],
     priority: i32,
     weight: f64,
@@ -106,7 +109,7 @@ struct Transition {
 }
 
 impl Transition {
-    /// True if it needs nothing, and so is taken as soon as its state is entered.
+    /// True if it has no conditions, so that it is taken as soon as its state is entered.
     fn is_instant(&self) -> bool {
         self.when.is_empty() && self.any.is_empty() && self.on.is_none() && self.after == [0, 0]
     }
@@ -120,12 +123,12 @@ struct Mood {
 }
 
 impl Act {
-    /// True if it has to be played to its end.
+    /// True if the act has to be played to its end.
     fn is_whole(&self) -> bool {
         matches!(self, Self::Once(_) | Self::Attack(_))
     }
 
-    /// The clip that it plays; `None` for those of the gait.
+    /// The clip that the act plays; `None` for a sleep, and for walks and turns, which play clips of the gait.
     pub fn clip(&self) -> Option<&str> {
         match self {
             Self::Play(clip) | Self::Once(clip) => Some(clip),
@@ -146,7 +149,7 @@ impl Brain {
         self.tick
     }
 
-    /// Number of states, those with others inside them included.
+    /// Number of states, outer ones included.
     pub fn len(&self) -> usize {
         self.states.len()
     }
@@ -161,18 +164,18 @@ impl Brain {
         (0..self.states.len() as u16).map(StateId)
     }
 
-    /// The state with this name; `None` if there is none.
+    /// The state with this name; `None` if no state has it.
     pub fn find(&self, name: &str) -> Option<StateId> {
         let found = self.states.iter().position(|state| state.name == name)?;
         Some(StateId(found as u16))
     }
 
-    /// A state's name and those of the states around it, such as `calm/idle`; empty for a state of another brain.
+    /// A state's name after the names of its outer states, such as `calm/idle`; empty for a state of another brain.
     pub fn path(&self, state: StateId) -> &str {
         self.state(state).map_or("", |state| &state.path)
     }
 
-    /// What the creature does in a state; `None` if it stands as it stands.
+    /// The act of a state; `None` if the creature only stands in it.
     pub fn act(&self, state: StateId) -> Option<&Act> {
         self.state(state)?.act.as_ref()
     }
@@ -197,12 +200,12 @@ impl Brain {
         self.state(state).is_some_and(|state| state.is_final)
     }
 
-    /// True if the state `inner` is `outer`, or inside it.
+    /// True if `inner` is `outer` or one of its inner states.
     pub fn is_within(&self, inner: StateId, outer: StateId) -> bool {
         self.around(inner).any(|state| state == outer)
     }
 
-    /// The line of a state in its file; `None` if it was not read from one.
+    /// The line of a state in its file; `None` if the brain was not read from a file.
     pub fn line(&self, state: StateId) -> Option<usize> {
         let line = self.state(state)?.line;
         (line > 0).then_some(line)
@@ -213,7 +216,7 @@ impl Brain {
         self.file.moods.keys().map(String::as_str)
     }
 
-    /// The names of the regions, in their order, with the joints that each one names.
+    /// The names of the regions, in their order, each with its joints.
     pub fn regions(&self) -> impl ExactSizeIterator<Item = (&str, &[String])> {
         let regions = self.file.regions.iter();
         regions.map(|(name, joints)| (name.as_str(), joints.as_slice()))
@@ -224,7 +227,7 @@ impl Brain {
         &self.file.senses
     }
 
-    /// Senses of nothing, as this brain reads them.
+    /// Senses of a creature that senses nothing, with the sizes that this brain needs.
     pub fn no_senses(&self) -> crate::Senses {
         crate::Senses::nothing(self.file.regions.len(), self.file.senses.len())
     }
@@ -233,13 +236,13 @@ impl Brain {
         self.states.get(state.index())
     }
 
-    /// A state and those around it, from the inside out.
+    /// A state and its outer states, from the inside out.
     fn around(&self, state: StateId) -> impl Iterator<Item = StateId> {
         let first = self.state(state).map(|_| state);
         core::iter::successors(first, |state| self.state(*state)?.parent)
     }
 
-    /// The innermost state that is entered with a state.
+    /// The innermost state that is entered when this state is entered.
     fn innermost(&self, state: StateId) -> StateId {
         let inside = |state: &StateId| self.state(*state)?.start;
         core::iter::successors(Some(state), inside)
@@ -247,7 +250,7 @@ impl Brain {
             .unwrap_or(state)
     }
 
-    /// Ticks that are nearest to a time.
+    /// A time in ticks, rounded.
     fn ticks(seconds: f64, tick: f64) -> u32 {
         (seconds / tick).round().min(f64::from(u32::MAX)) as u32
     }

@@ -4,23 +4,23 @@ use std::fmt;
 use super::condition::Condition;
 use super::{After, Brain, StateId, Transition};
 
-/// A brain as text: its states, what leads where, and what can never happen.
+/// A brain as text: its states and transitions, and those that can never happen.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BrainReport {
     states: Vec<String>,
-    /// What can never happen, or never ends.
+    /// States and transitions that can never happen, and states that lead to no final state.
     pub never: Vec<Never>,
 }
 
-/// Something of a brain that is in vain, or has no end.
+/// A state or a transition that can never happen, or a state that leads to no final state.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Never {
-    /// The line of the file, from 1; `None` if the brain was not read from one.
+    /// The line of the file, from 1; `None` if the brain was not read from a file.
     pub line: Option<usize>,
-    /// The state, with those around it.
+    /// The state's path, such as `calm/idle`.
     pub state: String,
-    /// What is never, or for ever.
+    /// The fault, such as `nothing leads here`.
     pub what: String,
 }
 
@@ -50,13 +50,13 @@ impl fmt::Display for BrainReport {
 }
 
 impl Brain {
-    /// Its states and transitions as text, and what can never happen, as far as that is known without a creature:
-    /// [`CreatureKind::report`](crate::CreatureKind::report) also looks for the markers that transitions wait for.
+    /// The states and transitions as text, and those that can never happen, as far as this is known without a creature.
+    /// [`CreatureKind::report`](crate::CreatureKind::report) also checks the markers that transitions wait for.
     pub fn report(&self) -> BrainReport {
         self.report_with(&|_, _| true)
     }
 
-    /// The same, where `has` tells whether a clip has a marker.
+    /// The report, where `has(clip, marker)` tells whether a clip has a marker.
     pub(crate) fn report_with(&self, has: &dyn Fn(&str, &str) -> bool) -> BrainReport {
         BrainReport {
             states: self
@@ -196,7 +196,7 @@ impl Brain {
         }
     }
 
-    /// The transitions out of a state, those of the states around it included.
+    /// The transitions out of a state and out of its outer states.
     fn leaving(&self, state: StateId) -> impl Iterator<Item = &Transition> {
         let around = self.around(state);
         around.flat_map(|outer| {
@@ -205,8 +205,8 @@ impl Brain {
         })
     }
 
-    /// The innermost states that can be reached from one, itself included, if every condition may hold that is not in
-    /// contradiction to another one.
+    /// The innermost states that can be reached from `start`, `start` included. Any condition is taken to be possible,
+    /// unless it contradicts another condition of its transition.
     pub(crate) fn reached_from(&self, start: StateId) -> BTreeSet<StateId> {
         let (mut reached, mut open) = (BTreeSet::from([start]), vec![start]);
         while let Some(state) = open.pop() {
@@ -223,7 +223,7 @@ impl Brain {
         reached
     }
 
-    /// What two conditions of a transition contradict each other about.
+    /// The first sense or mood for which the transition's conditions cannot all hold; `None` if they can.
     fn contradiction(&self, transition: &Transition) -> Option<String> {
         let mut ranges: BTreeMap<String, [f64; 2]> = BTreeMap::new();
         for condition in &transition.when {
@@ -268,7 +268,7 @@ impl Brain {
             .filter(|state| self.is_within(*state, transition.from))
             .map(|state| (self.act(state), self.act(state).and_then(super::Act::clip)));
         let found = clips.any(|(act, clip)| match (act, clip) {
-            // Walks and turns play the clips of the gait, which this does not know.
+            // Walks and turns play clips of the gait, which are not known here.
             (Some(super::Act::Walk(_) | super::Act::Turn(_)), _) => true,
             (_, Some(clip)) => has(clip, wanted),
             _ => false,
@@ -276,7 +276,7 @@ impl Brain {
         (!found).then(|| wanted.clone())
     }
 
-    /// True if a transition of a single state waits for the end of an act that has none.
+    /// True if the transition waits for `done` in a state whose own act never ends.
     fn waits_for_no_end(&self, transition: &Transition) -> bool {
         use super::condition::Source;
         let state = &self.states[transition.from.index()];
@@ -288,7 +288,7 @@ impl Brain {
         is_endless && transition.when.iter().any(waits)
     }
 
-    /// True if a transition without conditions and with a higher priority stands beside it.
+    /// True if a transition of the same state, without conditions and of a higher priority, is always taken first.
     fn is_hidden(&self, transition: &Transition) -> bool {
         let range = self.states[transition.from.index()].transitions.clone();
         let mut beside = self.transitions[range].iter();

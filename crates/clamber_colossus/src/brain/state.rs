@@ -3,40 +3,40 @@ use serde::{Deserialize, Serialize};
 use super::{Brain, MOST_DEPTH, MOST_TRANSITIONS, StateId, Transition};
 use crate::senses::Senses;
 
-/// What changes in a brain: where it is, for how long, its moods and its lots. Below 1 KB, and all that has to be
-/// saved.
+/// All that changes in a brain: the current state, its duration, moods and random numbers. It takes less than 1 KB, and
+/// is all of the brain that has to be saved.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct BrainState {
-    /// The mark of its brain.
+    /// `Brain::mark` of its brain.
     brain: u64,
     current: StateId,
-    /// Ticks so far.
+    /// Ticks since the brain began.
     now: u32,
-    /// The tick in which the current state was entered, and those around it, from the outside in.
+    /// The ticks in which the current state and its outer states were entered, from the outside in.
     entered: [u32; MOST_DEPTH],
-    /// A lot that was drawn when each of these was entered.
+    /// Random numbers, each drawn when the state of that depth was entered.
     lots: [u64; MOST_DEPTH],
-    /// Of each state, the tick from which on it can be entered again.
+    /// Per state, the first tick in which it can be entered again.
     ready: Vec<u32>,
-    /// Of each mood, ticks until it has faded.
+    /// Per mood, ticks until it has faded.
     moods: Vec<u32>,
-    /// The state of the stream of random numbers.
+    /// The state of the random number generator.
     random: u64,
 }
 
-/// A state that was entered.
+/// A change from one state to another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Entered {
-    /// The state that was left: the innermost one.
+    /// The innermost state that was left.
     pub from: StateId,
-    /// The state that was entered: the innermost one.
+    /// The innermost state that was entered.
     pub to: StateId,
-    /// True if the transition may leave an act that has to be played to its end.
+    /// True if the transition may leave an act that otherwise has to be played to its end.
     pub interrupts: bool,
 }
 
 impl BrainState {
-    /// The start of a brain, with a seed for its lots.
+    /// The start state of a brain, with a seed for its random numbers.
     pub fn new(brain: &Brain, seed: u64) -> Self {
         let mut state = Self {
             brain: brain.mark,
@@ -54,18 +54,18 @@ impl BrainState {
         state
     }
 
-    /// The current state: the innermost one.
+    /// The innermost current state.
     pub fn current(&self) -> StateId {
         self.current
     }
 
-    /// Ticks since it was entered.
+    /// Ticks since the current state was entered.
     pub fn ticks_in_state(&self, brain: &Brain) -> u32 {
         let depth = brain.state(self.current).map_or(0, |state| state.depth);
         self.now - self.entered[depth].min(self.now)
     }
 
-    /// A mood, 0 to 1, by its index in [`Brain::moods`]; 0 if there is none.
+    /// A mood, 0 to 1, by its index in [`Brain::moods`]; 0 if there is no such mood.
     pub fn mood(&self, brain: &Brain, mood: usize) -> f64 {
         let (Some(left), Some(mood)) = (self.moods.get(mood), brain.moods.get(mood)) else {
             return 0.0;
@@ -73,7 +73,7 @@ impl BrainState {
         f64::from(*left) / f64::from(mood.fades)
     }
 
-    /// A lot from the brain's own stream.
+    /// The next number of the brain's random number generator.
     pub(crate) fn draw(&mut self) -> u64 {
         let mut random = fastrand::Rng::with_seed(self.random);
         let lot = random.u64(..);
@@ -81,12 +81,12 @@ impl BrainState {
         lot
     }
 
-    /// Bytes that it takes.
+    /// Size in memory, bytes.
     pub fn size(&self) -> usize {
         size_of::<Self>() + size_of_val(&self.ready[..]) + size_of_val(&self.moods[..])
     }
 
-    /// True if it is a state of this brain, or of one with the same states and moods.
+    /// True if it belongs to this brain, or to one with the same states and moods.
     pub(crate) fn fits(&self, brain: &Brain) -> bool {
         let is_innermost = brain
             .state(self.current)
@@ -97,10 +97,10 @@ impl BrainState {
 }
 
 impl Brain {
-    /// Lets a tick pass. `passed` are the markers that clips have passed in it. Calls `entered` for every state that is
-    /// entered, at most [`MOST_TRANSITIONS`] times.
+    /// Advances the brain by a tick. `passed` are the markers that clips passed in the tick. `entered` is called for
+    /// each state that is entered, at most [`MOST_TRANSITIONS`] times.
     ///
-    /// A state or senses of another brain change nothing.
+    /// Does nothing if the state or the senses belong to another brain.
     pub fn step(
         &self,
         state: &mut BrainState,
@@ -129,9 +129,9 @@ impl Brain {
         }
     }
 
-    /// The state of another brain, for this one: states and moods go on by their names, as a game wants that reads a
-    /// brain's file again while a creature lives. If this brain does not have the current state, it begins anew in its
-    /// start. A state that is not of `from` gives `None`.
+    /// Converts a state of the brain `from` into a state of this brain, for a game that reloads a brain's file while a
+    /// creature lives. States are matched by path, moods by name. If this brain does not have the current state, the
+    /// result begins in this brain's start. `None` if the state does not belong to `from`.
     pub fn carry_over(&self, from: &Brain, state: &BrainState) -> Option<BrainState> {
         if !state.fits(from) {
             return None;
@@ -165,7 +165,7 @@ impl Brain {
         Some(carried)
     }
 
-    /// A hash of the names of its states and moods, in their order, and of how long moods last.
+    /// A hash of the names of its states and moods, in their order, and of the moods' fading times.
     pub(crate) fn own_mark(&self) -> u64 {
         let mut hash = 0xcbf2_9ce4_8422_2325u64;
         let mut add = |bytes: &[u8]| {
@@ -184,14 +184,14 @@ impl Brain {
         hash
     }
 
-    /// Goes to a state at once, as a game may want for a scene of its own. Does nothing for a state of another brain.
+    /// Goes to a state at once, for a scripted scene. Does nothing if `state` or `to` belongs to another brain.
     pub fn go_to(&self, state: &mut BrainState, to: StateId) {
         if state.fits(self) && self.state(to).is_some() {
             self.enter(state, to);
         }
     }
 
-    /// Moods fade, and are raised.
+    /// Fades the moods by a tick, and raises those whose conditions hold.
     fn feel(&self, state: &mut BrainState, senses: &Senses) {
         for left in &mut state.moods {
             *left = left.saturating_sub(1);
@@ -206,7 +206,8 @@ impl Brain {
         }
     }
 
-    /// The transition that is taken now.
+    /// The transition to take now; `None` if none can be taken. With `at_once` only transitions without conditions
+    /// count.
     fn chosen(
         &self,
         state: &mut BrainState,
@@ -251,7 +252,7 @@ impl Brain {
         chosen.last().copied()
     }
 
-    /// True if a transition's conditions hold and its state can be entered.
+    /// True if the transition's conditions hold and its target can be entered.
     fn is_open(
         &self,
         state: &BrainState,
@@ -285,13 +286,13 @@ impl Brain {
         self.around(target).all(is_ready) && !is_repeated
     }
 
-    /// Ticks that a transition's state must have lasted.
+    /// Ticks that the transition's state must have lasted.
     fn wait(&self, state: &BrainState, transition: &Transition, depth: usize) -> u32 {
         let [from, to] = transition.after;
         if from == to {
             return from;
         }
-        // The same lot as long as the state lasts, for all transitions with the same times.
+        // The same random number while the state lasts, for all transitions with the same range.
         let seed = state.lots[depth].wrapping_add(u64::from(from) << 32 | u64::from(to));
         let share = unit(fastrand::Rng::with_seed(seed).u64(..));
         from + (share * f64::from(to - from + 1)) as u32
@@ -300,7 +301,7 @@ impl Brain {
     fn enter(&self, state: &mut BrainState, to: StateId) {
         let from = state.current;
         let target = self.innermost(to);
-        // The states that are left: those that are not around the target, and those that are entered anew.
+        // The states that are left: those that do not contain the target, and those that are entered anew.
         for left in self.around(from) {
             let Some(outer) = self.state(left) else {
                 continue;
@@ -322,7 +323,7 @@ impl Brain {
     }
 }
 
-/// A lot as a number from 0 to less than 1.
+/// Maps a random number to a number from 0 to less than 1.
 fn unit(lot: u64) -> f64 {
     (lot >> 11) as f64 / (1u64 << 53) as f64
 }

@@ -1,4 +1,5 @@
-//! Maps whose keys may not be repeated: serde's own lets the last one win, so a state would be lost without a word.
+//! Maps that refuse repeated keys. serde's own maps keep the last value of a repeated key, so a state could get lost
+//! without an error.
 
 use std::collections::BTreeMap;
 use std::fmt;

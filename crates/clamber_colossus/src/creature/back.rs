@@ -1,5 +1,5 @@
-//! What a creature does where it does not get on: it looks for a wider way, and where it can neither turn nor go on, as in
-//! a blind alley, it goes back until it can turn.
+//! How a creature gets out of a dead end: it looks for a wider way, and if it can neither turn nor go on, as in a blind
+//! alley, it walks backwards until it can turn.
 
 use core::f64::consts::{PI, TAU};
 
@@ -9,31 +9,45 @@ use super::{Creature, Surroundings};
 use crate::feet::{GRAVITY, STEP_TIME};
 use crate::kind::{Extent, Gait};
 
-/// It goes back this far at most, in heights, and not where there is less room than the second. The third is enough if it
-/// can turn then; it goes the fourth further, since a turn that is just free is not free in all of its steps. It sees as
-/// far back as the last.
+/// Longest retreat, in heights of the creature.
 const MOST: f64 = 6.0;
+
+/// Free room behind the creature below which it does not begin to retreat, in heights.
 const LEAST: f64 = 0.02;
+
+/// Shortest retreat, in heights. A longer one ends soon after the creature can turn.
 const ENOUGH: f64 = 0.2;
+
+/// Length that is added to a retreat once a turn is free, in heights. A turn that is only just free may still be
+/// blocked in one of its steps.
 const MORE: f64 = 0.1;
+
+/// Distance behind the creature that is checked for obstacles during a retreat, in heights.
 const SEES: f64 = 1.0;
 
-/// What may be left of a turn, radians.
+/// Angle that may be missing from a free turn, radians.
 const LEFT: f64 = 0.01;
 
-/// Within this of where it did not get on, in heights, it stands before something so many times before it gives up, and
-/// goes back so many times.
+/// Distance from the place where the creature got stuck, in heights. Stops and retreats within it count as stops and
+/// retreats at the same place.
 const HERE: f64 = 1.0;
+
+/// Stops at one place after which the next one blocks the creature.
 const MOST_STOPS: u8 = 6;
+
+/// Most retreats from one place.
 const MOST_RETREATS: u8 = 2;
 
-/// How far the body goes from a foot before that steps, as a share of the leg's length; and how fast it goes back at most,
-/// as a share of its walk.
+/// How far the body moves away from a standing foot in a retreat before that foot steps, as a share of the leg's
+/// length.
 const BY_STEP: f64 = 0.3;
+
+/// Highest speed of a retreat, as a share of the walking speed.
 const SLOW: f64 = 0.35;
 
 impl Creature {
-    /// How fast it goes back, metres a second: as fast as its feet can follow by steps of their own.
+    /// Speed of a retreat, metres a second: no faster than the feet can follow by steps of their own, which are not in
+    /// a clip.
     pub(super) fn backs(&self, gait: &Gait) -> f64 {
         let legs = self.kind.legs();
         let rounds = legs.len().div_ceil(at_once(legs.len())) as f64;
@@ -44,8 +58,11 @@ impl Creature {
         by_steps.fold(SLOW * self.full_speed(gait), f64::min)
     }
 
-    /// It stands before something on its way, as near to its next corner as it gets: perhaps it comes round it from here,
-    /// or by a wider way, or from further back.
+    /// Reacts to an obstacle on the way at which the creature has stopped.
+    ///
+    /// At the first stop, the creature skips the next corner of its way, since it may get past the obstacle from here.
+    /// Later it looks for a wider way or begins a retreat. It is blocked if neither is possible, or after too many
+    /// stops at this place.
     pub(super) fn stop(&mut self, around: &Surroundings<'_>, on_spot: &Extent) {
         self.get_stuck();
         let walked = &mut self.state.walked;
@@ -62,7 +79,8 @@ impl Creature {
         }
     }
 
-    /// Counts anew how often it did not get on, unless that was about here.
+    /// Takes this place as the one where the creature got stuck, and resets the counts of stops and retreats, unless
+    /// they already count for a place near here.
     fn get_stuck(&mut self) {
         let (place, here) = (self.state.position, HERE * self.size.height);
         let walked = &mut self.state.walked;
@@ -72,7 +90,8 @@ impl Creature {
         }
     }
 
-    /// Looks whether it can turn to what is so far aside, radians: the short way, or else the long way round.
+    /// True if the creature can turn by `aside` radians, or else the long way round to the same direction. The long way
+    /// is stored in `walked.round`, at most once per turn.
     pub(super) fn finds_turn(
         &mut self,
         around: &Surroundings<'_>,
@@ -93,7 +112,8 @@ impl Creature {
         true
     }
 
-    /// Begins to go back, if there is room behind it and it has not done so too often. Returns true if it does.
+    /// Begins a retreat, if there is room behind the creature and it has not retreated too often from here. Returns
+    /// true if it does.
     pub(super) fn begin_back(&mut self, around: &Surroundings<'_>, on_spot: &Extent) -> bool {
         let least = LEAST * self.size.height;
         self.get_stuck();
@@ -109,12 +129,12 @@ impl Creature {
         (walked.back, walked.gone_back, walked.has_gone_back) = (most, 0.0, true);
         (walked.ahead, walked.turn) = (0.0, 0.0);
         (walked.round, walked.has_gone_round) = (0, false);
-        // From there may be another way.
+        // Another way may begin there, so look for one once the retreat is over.
         (walked.wide, walked.ticks_left) = (Wide::Looks, 0);
         true
     }
 
-    /// Looks whether it still has room behind it, and whether it has to go back any further.
+    /// Updates how far the retreat still goes: it ends at an obstacle, or soon after the creature can turn.
     pub(super) fn look_back(&mut self, around: &Surroundings<'_>, on_spot: &Extent, aside: f64) {
         let height = self.size.height;
         let left = self.state.walked.back.min(MOST * height);
@@ -131,7 +151,8 @@ impl Creature {
         };
     }
 
-    /// How far it may go back, metres: as far as its way is free, but not out of its arena unless it was sent.
+    /// Free distance behind the creature, metres, at most `most`. It ends at the border of the arena, unless the
+    /// creature was sent.
     fn room_behind(&self, around: &Surroundings<'_>, on_spot: &Extent, most: f64) -> f64 {
         let behind = on_spot.behind();
         let back = -self.state.heading();

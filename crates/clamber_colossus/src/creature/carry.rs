@@ -1,4 +1,4 @@
-//! What moves below a creature carries it: a ship that turns, a lift that rises.
+//! Moving ground carries a creature: a ship that turns, a lift that rises.
 
 use clamber_world::PointMotion;
 use glam::{DQuat, DVec3};
@@ -9,19 +9,25 @@ use super::{Creature, Surroundings};
 use crate::angle::nearest_turn;
 use crate::feet::Carried;
 
-/// Ground carries it that is no further from its origin than this share of its height.
+/// Ground carries the creature if it is within this distance above or below the creature's origin, as a share of the
+/// creature's height.
 const NEAR: f64 = 0.15;
 
-/// The ground is looked at so far around its origin too, as a share of its height, and moves alike there to this share.
+/// Distance from the origin at which the motion of the ground is compared with that below the origin, as a share of the
+/// creature's height.
 const BROAD: f64 = 0.12;
+
+/// Largest difference between these motions for ground that moves as one, as a share of the distance that the ground
+/// moved.
 const ALIKE: f64 = 0.1;
 
-/// A point of the ground is the one that is remembered if it was no further from there than this share of its height.
+/// How near the previous position of the remembered ground point must be to the place where it was, as a share of the
+/// creature's height. Farther away, it is another point.
 const SAME: f64 = 1e-6;
 
 impl Creature {
-    /// Goes with the ground, as that has moved in this tick: the creature's place and heading, its feet, and the places
-    /// that it knows. Returns true if the ground moved.
+    /// Moves the creature with the ground, by the ground's motion in this tick: position and heading, feet, and the
+    /// places that the creature knows. Returns true if the ground carried it.
     pub(super) fn be_carried(&mut self, around: &Surroundings<'_>, dt: f64) -> bool {
         let went = std::mem::take(&mut self.state.carried).velocity.length() * dt;
         let Some(motion) = self.ground_motion(around, dt, went) else {
@@ -43,7 +49,7 @@ impl Creature {
             velocity: (state.position - before) / dt,
             yaw_rate: carried.yaw / dt,
         };
-        // Those may be far away: they go with the ground as if that were level.
+        // These places may be far away: the ground's yaw turns them, but not its pitch and roll.
         let known = [&mut state.home, &mut state.patrol, &mut state.noise];
         let prey = state.prey.iter_mut().map(|(_, place)| place);
         let known = known.into_iter().chain(prey);
@@ -63,7 +69,7 @@ impl Creature {
         for foot in &mut state.feet {
             foot.be_carried(&carried);
         }
-        // The ground below the places at which it is looked for.
+        // The stored ground heights rise with the ground.
         let rise = motion.position.y - motion.previous_position.y;
         for level in &mut state.ground {
             if *level < NO_GROUND {
@@ -73,10 +79,11 @@ impl Creature {
         true
     }
 
-    /// How the ground below it has moved in this tick; `None` if it has not, or if there is none.
+    /// Motion of the ground below the creature in this tick; `None` if the ground did not move, or if there is no
+    /// ground.
     ///
-    /// A point of the ground is remembered, since its motion costs less than a ray, and is looked for anew now and then.
-    /// `went` is how far the ground went in the last tick.
+    /// The creature remembers a point of the ground, since asking for its motion costs less than a ray. At intervals, a
+    /// ray looks for a new point. `went` is how far the ground moved in the last tick, metres.
     fn ground_motion(
         &mut self,
         around: &Surroundings<'_>,
@@ -87,7 +94,7 @@ impl Creature {
         let looks = self.state.ticks.is_multiple_of(often * LOOKS);
         let among = around.terrain.len() as u32;
         let known = self.state.stands_on.take();
-        // What was found had already moved in that tick.
+        // When the ray found the point, the ground had already moved in that tick, but the creature had not.
         let reach = 2.0 * NEAR * self.size.height + went;
         let is_near = |point: &GroundPoint| point.at.distance(self.state.position) <= reach;
         let known = known.filter(|point| point.among == among && is_near(point));
@@ -96,7 +103,7 @@ impl Creature {
         } else {
             None
         };
-        // A lift may have left the place where it is looked for.
+        // Without a new point the known one stays: a lift may have moved out of the ray's reach.
         let known = known.filter(|_| found.is_none());
         let mut point = known.or(found)?;
         let rests = |point: &GroundPoint| {
@@ -112,7 +119,7 @@ impl Creature {
             motion.previous_position.distance(point.at) <= SAME * self.size.height
         });
         if known.is_some() && !is_it {
-            // Another obstacle is in its place by now.
+            // The index now belongs to another obstacle.
             point = self.ground_point(around)?;
             motion = point_motion(around, &point, dt);
         }
@@ -123,13 +130,13 @@ impl Creature {
         (moves && !motion.placed).then_some(motion)
     }
 
-    /// The point of the ground below it.
+    /// The point of the ground below the creature.
     fn ground_point(&self, around: &Surroundings<'_>) -> Option<GroundPoint> {
         self.ground_point_at(around, self.state.position)
     }
 
-    /// True if the ground moves alike beside it and behind it, wherever some is there: a ship, and no rock that rolls by
-    /// between its feet.
+    /// True if the ground moves the same way ahead of the creature and behind it on both sides, wherever there is
+    /// ground. This tells a ship from a rock that rolls between the feet.
     fn is_broad(&self, carried: &Carried, around: &Surroundings<'_>, dt: f64) -> bool {
         let ahead = self.state.heading() * (BROAD * self.size.height);
         let left = DVec3::new(ahead.z, 0.0, -ahead.x);
@@ -171,7 +178,7 @@ fn point_motion(around: &Surroundings<'_>, point: &GroundPoint, dt: f64) -> Opti
     obstacle.motion(&point.material, dt)
 }
 
-/// The turn about up of a rotation, radians: its twist about Y.
+/// Yaw of a rotation, radians: its twist about Y.
 fn yaw_of(turn: DQuat) -> f64 {
     nearest_turn(2.0 * libm::atan2(turn.y, turn.w))
 }

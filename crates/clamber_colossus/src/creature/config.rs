@@ -3,34 +3,35 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::ColossusError;
 
-/// Where a creature begins, and how large it is.
+/// Start, size, seed and limits of a creature.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CreatureConfig {
-    /// Where its model's origin is at first: between its feet, on the ground, in world space.
+    /// Initial position of the model's origin, in world space: between the feet, on the ground.
     pub position: DVec3,
-    /// Its heading at first, radians about Y; 0 is +Z, positive turns to its left.
+    /// Initial heading, radians about Y. 0 is +Z; positive turns to the creature's left.
     pub yaw: f64,
-    /// How many times as large it is as its brain's file says ([`BodyFile::height`](crate::BodyFile::height)); metres per
-    /// unit of its own file if that says nothing. 1 by default.
+    /// Factor on the size that the brain's file gives ([`BodyFile::height`](crate::BodyFile::height)); metres per unit
+    /// of the creature's own file if the brain's file gives none. 1 by default.
     pub scale: f64,
-    /// The height for which its clips were made, metres, in place of
-    /// [`BodyFile::made_for`](crate::BodyFile::made_for); `None` by default.
+    /// Height for which the clips were made, metres. It replaces [`BodyFile::made_for`](crate::BodyFile::made_for);
+    /// `None` by default.
     pub made_for: Option<f64>,
-    /// Seed of its lots; 0 by default.
+    /// Seed of the creature's random numbers; 0 by default.
     pub seed: u64,
-    /// It does not walk further from where it began, metres; 100 by default.
+    /// Radius of the arena around the place where the creature began or was last put, metres; 100 by default. The
+    /// creature walks out of it only if the game sends it.
     pub arena: f64,
-    /// It does not walk onto steeper ground, radians; 25 degrees by default.
+    /// Steepest slope that the creature walks onto, radians; 25 degrees by default.
     pub most_slope: f64,
-    /// It does not see further, metres; 150 by default.
+    /// Horizontal distance within which the creature sees people, metres; 150 by default.
     pub sight: f64,
-    /// Noises that are no further away than this are heard as loud as they are, metres; 50 by default.
+    /// Distance within which noises are heard at full loudness, metres; 50 by default.
     pub hearing: f64,
 }
 
 impl Default for CreatureConfig {
-    /// At the origin, of its file's size, with an arena of 100 m, slopes to 25 degrees, sight to 150 m and
-    /// hearing to 50 m.
+    /// At the origin, with the size that the file gives, an arena of 100 m, slopes up to 25 degrees, sight up to 150 m
+    /// and full hearing up to 50 m.
     fn default() -> Self {
         Self {
             position: DVec3::ZERO,
@@ -87,7 +88,7 @@ impl CreatureConfig {
 mod tests {
     use super::*;
 
-    /// Somebody who sets degrees reads what to set instead.
+    /// A caller that passes degrees by mistake finds the expected unit in the message.
     #[test]
     fn errors_about_angles_name_radians() {
         let steep = CreatureConfig {

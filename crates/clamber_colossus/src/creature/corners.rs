@@ -1,4 +1,4 @@
-//! Ways round what stands between a creature and its goal: the corners of a path over a grid, found by A*.
+//! Ways around obstacles between a creature and its goal: the corners of a path over a grid, found by A*.
 
 use std::collections::BTreeMap;
 
@@ -13,50 +13,58 @@ use crate::kind::{Extent, Extents};
 /// Width of the grid's cells, as a share of the creature's height.
 const CELL: f64 = 0.35;
 
-/// So many steps from cell to cell are tried before it gives up.
+/// Number of steps between cells that a search tries at most. It bounds the time of a search.
 const MOST_STEPS: usize = 500;
 
-/// Straight lines are looked along in pieces of this share of its height.
+/// Straight lines are checked in pieces of this length, as a share of the creature's height.
 const PIECE: f64 = 1.0;
 
-/// It looks along straight lines as far as this, in heights. What is further away it does not know.
+/// Straight lines are checked up to this distance, in heights. The creature knows no obstacles farther away.
 const FARTHEST: f64 = 16.0;
 
-/// So many places of a way are left out at a time, if it is straight.
+/// A shortcut along the path leads fewer than this many places ahead.
 const SKIPPED: usize = 12;
 
-/// So near to where it is and to where it goes, in heights, a way may be as narrow as it can walk: as near as its corner
-/// that is furthest out is, at least.
+/// Distance from both ends of a wide way within which it may be narrow, in heights. It is at least the distance of the
+/// body's outermost corner from the origin.
 const NEAR: f64 = 1.2;
 
-/// A corner is passed when it is this near, as a share of the creature's height.
+/// Distance within which the creature has passed a corner, as a share of its height.
 const PASSED: f64 = 0.12;
 
-/// A way is looked for anew after so many seconds, for a giant: with something in its way, and without; and after so many
-/// if there was none, twice as many the next time, up to eight times as many.
+/// Time until the next search after one that found corners, seconds for a creature of `GIANT` height.
 const ANEW: f64 = 1.0;
+
+/// Time until the next search after one that found the straight line free, seconds for a creature of `GIANT` height.
 const FAR: f64 = 4.0;
+
+/// Time until the next search after one that found no way, seconds for a creature of `GIANT` height. It doubles with
+/// each failure in a row, up to eight times this.
 const AGAIN: f64 = 4.0;
 
-/// Small creatures look no sooner than after so many seconds.
+/// Shortest time until the next search, seconds. It applies to small creatures.
 const LEAST: f64 = 0.5;
 
-/// A place on the grid: steps from where the creature is along X and Z, and how high above it the ground is there, in
-/// thousandths of its height, since there may be several storeys.
+/// A place on the grid: steps from the creature's place along X and Z, and how much higher the ground is there, in
+/// thousandths of the creature's height. The height distinguishes storeys.
 type Cell = [i32; 3];
 
-/// The four neighbours of a cell, around it. A step between two of them leads to the corner that both have in common.
+/// Offsets to the four neighbours of a cell, in order around it. A step to one neighbour and a step in the direction of
+/// the next one lead to the diagonal cell between both.
 const SIDES: [[i32; 2]; 4] = [[1, 0], [0, 1], [-1, 0], [0, -1]];
 
-/// What steps to a neighbour and across a corner cost.
+/// Cost of a step to a neighbour.
 const STEP: u32 = 10;
+
+/// Cost of a diagonal step: about `STEP` times the square root of 2.
 const ACROSS: u32 = 14;
 
-/// A step across a corner leads to the same storey on both ways, to so many thousandths of the height.
+/// Largest difference between the ground heights at the end of both ways round to a diagonal cell, in thousandths of
+/// the creature's height. With more, the ways lead to different storeys, and there is no diagonal step.
 const SAME_STOREY: i32 = 100;
 
 impl Creature {
-    /// Finds the corners of the way to a goal, if it is time for that.
+    /// Searches for the corners of the way to the goal, if a search is due.
     pub(super) fn find_corners(&mut self, around: &Surroundings<'_>, way: &Way) {
         if self.state.walked.ticks_left > 0 {
             return;
@@ -91,7 +99,7 @@ impl Creature {
             Some(_) => 0,
             None => walked.failed.saturating_add(1),
         };
-        // Longer and longer: a search that finds nothing looks at all there is.
+        // Wait longer after each failure: a failed search is expensive, since it has tried all cells that it can reach.
         walked.corners = found.unwrap_or_default();
         let seconds = match (walked.failed, walked.corners.is_empty()) {
             (0, true) => FAR,
@@ -101,7 +109,7 @@ impl Creature {
         self.state.walked.ticks_left = self.ticks_of(seconds);
     }
 
-    /// Corners that it has reached are behind it.
+    /// Removes the next corners that the creature has reached.
     pub(super) fn pass_corners(&mut self) {
         let passed = PASSED * self.size.height;
         let position = self.state.position;
@@ -111,27 +119,27 @@ impl Creature {
         corners.drain(..count);
     }
 
-    /// Something is ahead: it looks for another way soon, unless it has found none.
+    /// Brings the next search forward because of an obstacle ahead, unless the last search found no way.
     pub(super) fn doubt_corners(&mut self) {
         if self.state.walked.failed == 0 {
             self.look_soon();
         }
     }
 
-    /// It looks for a way before long.
+    /// Brings the next search forward to `ANEW` from now, if it is not due sooner.
     pub(super) fn look_soon(&mut self) {
         let soon = self.ticks_of(ANEW);
         let walked = &mut self.state.walked;
         walked.ticks_left = walked.ticks_left.min(soon);
     }
 
-    /// Ticks of seconds that are told for a giant.
+    /// Converts seconds for a creature of `GIANT` height to ticks of this one.
     fn ticks_of(&self, seconds: f64) -> u32 {
         let seconds = (seconds * self.size.pace).max(LEAST);
         (seconds / self.kind.brain().tick()).clamp(1.0, 1e6) as u32
     }
 
-    /// The corners of a way; `None` if there is none, or it is too long.
+    /// The corners of a way; empty if the straight line to the goal is free. `None` if the search finds no way.
     fn corners(
         &self,
         around: &Surroundings<'_>,
@@ -147,7 +155,7 @@ impl Creature {
         if self.passes(around, width, start, end(start)).is_some() {
             return Some(Vec::new());
         }
-        // Those that it has are as good as new ones, as long as they lead there.
+        // The known corners are kept as long as the way along them is free.
         let known = &self.state.walked.corners;
         if let Some(last) = known.last() {
             let from = core::iter::once(start).chain(known.iter().copied());
@@ -165,7 +173,7 @@ impl Creature {
             cell: CELL * self.size.height,
         };
         let places = grid.search(way)?;
-        // Straight on wherever nothing stands in between.
+        // Leave out places wherever the straight line past them is free.
         let mut corners = Vec::new();
         let mut index = 0;
         while index + 1 < places.len() {
@@ -181,7 +189,7 @@ impl Creature {
         Some(corners)
     }
 
-    /// The height of the ground at a place, if it can walk there straight from another one.
+    /// The ground height at `to`, if the creature can walk there from `from` in a straight line.
     fn passes(
         &self,
         around: &Surroundings<'_>,
@@ -206,7 +214,8 @@ impl Creature {
         Some(origin.y)
     }
 
-    /// The room that it takes up at a place on its way.
+    /// The room that the creature takes up at a place on its way: the wide extent only if there is one and the place is
+    /// far from both ends.
     fn takes_up<'a>(&self, width: &Width<'a>, place: DVec3) -> &'a Extent {
         let is_far = |from: DVec3| (place - from).with_y(0.0).length() > width.near;
         let stout = width
@@ -219,12 +228,13 @@ impl Creature {
 /// How wide a way has to be.
 #[derive(Clone, Copy)]
 struct Width<'a> {
-    /// As wide as the creature is that walks.
+    /// Extent of the creature while it walks along the way.
     slim: &'a Extent,
-    /// As wide as it is while it turns, on a way of which no place is too narrow for that but near its ends.
+    /// Extent of the creature while it turns, for a way on which it can turn everywhere but near the ends. `None` for a
+    /// way that need only be wide enough to walk.
     stout: Option<&'a Extent>,
     goal: DVec3,
-    /// So near to its ends it may be narrow, metres.
+    /// Distance from both ends within which the way may be narrow, metres.
     near: f64,
 }
 
@@ -234,12 +244,12 @@ struct Grid<'a> {
     around: &'a Surroundings<'a>,
     width: &'a Width<'a>,
     start: DVec3,
-    /// Width of its cells, metres.
+    /// Width of the cells, metres.
     cell: f64,
 }
 
 impl Grid<'_> {
-    /// Places on the shortest way to a goal, from the start on.
+    /// Places on the shortest way to a goal, beginning with the start. `None` if the search finds none.
     fn search(&self, way: &Way) -> Option<Vec<DVec3>> {
         let to_goal = |at: &Cell| (way.goal - self.place(*at)).with_y(0.0).length();
         let is_there = |at: &Cell| to_goal(at) <= way.within.max(0.75 * self.cell);
@@ -269,7 +279,7 @@ impl Grid<'_> {
         Some(cells.into_iter().map(|at| self.place(at)).collect())
     }
 
-    /// The neighbour of a cell, if it can walk there.
+    /// The neighbour of a cell on one side, if the creature can walk there.
     fn beside(&self, at: Cell, side: usize, known: &mut Known) -> Option<Cell> {
         if let Some(known) = known.steps.get(&(at, side)) {
             return *known;
@@ -282,7 +292,7 @@ impl Grid<'_> {
         let to = self.place([at[0] + x, at[1] + z, 0]);
         let (home, is_sent) = (self.creature.state.home, self.creature.sent_to().is_some());
         let far = |place: DVec3| (place - home).with_y(0.0).length();
-        // Where it is sent, its arena does not matter.
+        // A creature that was sent may leave its arena.
         let is_inside = is_sent || far(to) <= self.creature.config.arena.max(far(self.start));
         let passes = || {
             let from = self.place(at);
@@ -295,7 +305,7 @@ impl Grid<'_> {
         });
         known.steps.insert((at, side), to);
         if let Some(to) = to.filter(|_| self.width.stout.is_none()) {
-            // What it can walk, it can walk back.
+            // A step is also free in reverse if the way has the same width everywhere.
             known.steps.insert((to, (side + 2) % 4), Some(at));
         }
         to
@@ -311,10 +321,10 @@ impl Grid<'_> {
     }
 }
 
-/// Steps of a grid that were tried.
+/// The steps of a grid that were tried.
 #[derive(Default)]
 struct Known {
-    /// From a cell to a side: where that leads.
+    /// For a cell and a side: the cell to which the step leads, `None` if the creature cannot walk there.
     steps: BTreeMap<(Cell, usize), Option<Cell>>,
     tried: usize,
 }

@@ -1,4 +1,4 @@
-//! How a creature moves along its way: its speed and its turning, and how they change.
+//! The motion of a creature along its way: its speed and turning, and how they change.
 
 use core::f64::consts::{FRAC_PI_2, TAU};
 
@@ -13,50 +13,61 @@ use crate::angle::nearest_turn;
 use crate::feet::{GRAVITY, STEP_TIME};
 use crate::kind::Gait;
 
-/// How fast its speed changes, metres a second squared, and a giant's turning, radians a second squared: 0.5 g is the
-/// most that its limbs may start with, and riders stand on them. Smaller ones turn sharper, by their height.
+/// Acceleration, metres a second squared.
 const SPEEDS_UP: f64 = 1.2;
+
+/// Deceleration, metres a second squared.
 const SLOWS_DOWN: f64 = 2.0;
+
+/// Deceleration of an abrupt stop, metres a second squared.
 const HALTS: f64 = 6.0;
+
+/// Angular acceleration of a creature of `GIANT` height, radians a second squared. Its limbs may begin to move with 0.5
+/// g at most, since riders stand on them. Smaller creatures turn sharper, in inverse proportion to their height.
 const TURNS: f64 = 0.12;
 
-/// How fast a giant steers towards a goal, radians a second for each radian that it is aside.
+/// Steering rate of a creature of `GIANT` height while it walks, radians a second for each radian between heading and
+/// goal.
 const STEERS: f64 = 0.8;
 
-/// It turns to within this angle at best, radians.
+/// Smallest angle within which a turn can end, radians.
 const LEAST_WITHIN: f64 = 0.003;
 
-/// How far the body turns away from a foot before that steps, as a share of the leg's length, when it turns on the spot
-/// by steps alone.
+/// How far the body turns away from a standing foot before that foot steps, as a share of the leg's length. It applies
+/// to turns on the spot without a turn clip.
 const TURNS_BY_STEP: f64 = 0.4;
 
-/// The slowest walk, as a share of its speed.
+/// Slowest walk, as a share of the walking speed.
 const SLOWEST: f64 = 0.35;
 
-/// It turns on the spot first if its goal is further aside than this, radians; and walks on if it is nearer. At the
-/// corners of a way it turns sooner, and until it looks straight ahead.
+/// Angle to the goal above which a walking creature turns on the spot first, radians.
 const TURN_FIRST: f64 = 1.2;
+
+/// Angle to the goal up to which a creature that turns on the spot walks on, radians. If the goal is a corner of the
+/// way, this angle replaces `TURN_FIRST`, and `STRAIGHT` replaces this angle.
 const WALK_ON: f64 = 0.5;
 
-/// A goal that is no further aside than this is straight ahead, radians.
+/// Angle up to which a goal is straight ahead, radians.
 const STRAIGHT: f64 = 0.15;
 
-/// Where a creature is, and how it moves.
+/// Place and motion of a creature.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Course {
     pub(super) position: DVec3,
     pub(super) yaw: f64,
-    /// Along its heading, metres a second, and radians a second to the left.
+    /// Speed along the heading, metres a second.
     pub(super) speed: f64,
+    /// Radians a second, positive to the left.
     pub(super) yaw_rate: f64,
-    /// How far its way is free, metres; and how far it may turn, radians, to the side that the sign tells. `None` if it
-    /// may turn as far as it wants.
+    /// Free distance ahead, metres.
     pub(super) ahead: f64,
+    /// Free angle to turn, radians; its sign is the side, positive to the left. `None` if the turn is not limited.
     pub(super) turn: Option<f64>,
-    /// How far it goes back, metres.
+    /// How far the creature still walks backwards, metres.
     pub(super) back: f64,
-    /// True while it turns on the spot, and while it stops abruptly.
+    /// True while the creature turns on the spot.
     turning: bool,
+    /// True while the creature stops abruptly.
     pub(super) halts: bool,
 }
 
@@ -76,38 +87,40 @@ impl Course {
     }
 }
 
-/// What a creature wants of its course.
+/// The speed and turn that a creature wants, and where its next goal is.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Wanted {
     speed: f64,
     pub(super) turn: f64,
-    /// How far its next goal is aside of its heading, radians, the way round on which it turns; and how far away,
-    /// metres.
+    /// Angle from the heading to the next goal, radians, in the direction in which the creature turns.
     pub(super) aside: f64,
+    /// Horizontal distance to the next goal, metres.
     pub(super) distance: f64,
     pub(super) arrived: bool,
     pub(super) turns_on_spot: bool,
-    /// True if its goal is ahead, so that it walks there if it can.
+    /// True if the goal is ahead, so that the creature walks to it if it can.
     pub(super) faces: bool,
     pub(super) walks: bool,
-    /// True if it stands before something.
+    /// True if the creature has to stop before an obstacle ahead.
     pub(super) is_stopped: bool,
 }
 
 impl Creature {
-    /// Its walking speed, metres a second.
+    /// Walking speed, metres a second.
     pub(super) fn full_speed(&self, gait: &Gait) -> f64 {
         gait.speed * self.size.scale * self.size.rate
     }
 
-    /// How far it has to see: as far as it takes to come to a stand, at its walking speed, and some ticks longer.
+    /// How far ahead the creature has to look, metres: its braking distance from the walking speed, and the distance
+    /// that it walks until it looks again.
     pub(super) fn sight(&self, gait: &Gait) -> f64 {
         let speed = self.full_speed(gait);
         let looks = ((SELDOM + 1) * LOOKS) as f64 * self.kind.brain().tick();
         speed * speed / (2.0 * 0.7 * SLOWS_DOWN) + speed * looks
     }
 
-    /// How far it has to be able to turn, radians, before it begins to do so as fast as it can: on the spot, or walking.
+    /// Free angle that the creature needs to turn at its full rate, radians: the angle in which it can stop, and the
+    /// angle until it looks again. `walks` selects the rate of steering, otherwise the rate on the spot counts.
     pub(super) fn turning_room(&self, gait: &Gait, walks: bool) -> f64 {
         let rate = if walks {
             gait.steer_rate * self.size.rate
@@ -118,26 +131,26 @@ impl Creature {
         rate * rate / (2.0 * 0.7 * self.turns()) + rate * looks
     }
 
-    /// How fast it may turn if it has to come to a stand within an angle, radians a second.
+    /// Highest turning rate from which the creature can stop within an angle, radians a second.
     fn stoppable(&self, angle: f64) -> f64 {
         (2.0 * 0.7 * self.turns() * angle.max(0.0)).sqrt()
     }
 
-    /// How fast its turning changes, radians a second squared.
+    /// Angular acceleration, radians a second squared.
     pub(super) fn turns(&self) -> f64 {
         TURNS / (self.size.pace * self.size.pace).max(1e-6)
     }
 
-    /// How fast it wants to walk and turn, as far as it knows its way.
+    /// The speed and turn that the creature wants, as far as it knows its way.
     pub(super) fn wanted(&self, gait: &Gait, way: Option<&Way>, course: &Course) -> Wanted {
         let mut wanted = Wanted::default();
         let Some(way) = way else { return wanted };
         let rate = self.size.rate;
         let full = self.full_speed(gait);
         let stride = self.stride();
-        // Steps are shorter, and take longer.
+        // On steep ground, steps are shorter and take longer.
         let careful = full * stride * stride;
-        // Clips and their rates are slower in a larger creature already.
+        // The turn is multiplied by `rate` below.
         let steers = STEERS / (self.size.pace * rate).max(1e-3);
         let walked = &self.state.walked;
         let is_near = !way.walks || level(way.goal - course.position).0 <= way.within;
@@ -147,7 +160,7 @@ impl Creature {
         let ahead = nearest_turn(direction - course.yaw);
         let bearing = way.bearing.filter(|_| is_near).unwrap_or(0.0);
         let aside = nearest_turn(ahead - bearing);
-        // The other way round if this one is blocked.
+        // Turn the long way round if the short one is blocked.
         let is_round = f64::from(walked.round) * aside < 0.0;
         let aside = if is_round {
             aside + TAU * f64::from(walked.round)
@@ -158,7 +171,8 @@ impl Creature {
         let within = way.within_angle.max(LEAST_WITHIN);
         let is_turned = way.bearing.is_none() || aside.abs() <= within;
         let braked = |distance: f64| (2.0 * 0.7 * SLOWS_DOWN * distance.max(0.0)).sqrt();
-        // Nor faster than it can stop within its height: it would never begin to walk where it does not see far.
+        // The slowest walk must be able to stop within the creature's height. Otherwise the creature would never begin
+        // to walk where it cannot see far.
         let slowest = (SLOWEST * careful).min(braked(self.size.height));
         let may_turn = |aside: f64| {
             let room = course.turn.map(|turn| turn * aside.signum());
@@ -170,8 +184,9 @@ impl Creature {
             return wanted;
         }
         let free = braked(course.ahead);
-        // On the circle to its goal that its heading touches it turns by twice the angle that the goal is aside, on a way
-        // of the distance over the sine of that; faster than this it would go round and round its goal.
+        // The circle that starts along the heading and passes through the goal has the radius distance / (2 sin(angle
+        // to the goal)). If the creature walked faster than the steering rate times this radius, it would circle around
+        // its goal.
         let missed = (aside.abs() - goal_within / distance.max(1e-9)).clamp(0.0, FRAC_PI_2);
         let steered = gait.steer_rate * rate;
         let round = steered * distance / (2.0 * libm::sin(missed)).max(1e-9);
@@ -206,32 +221,32 @@ impl Creature {
                 wanted.turn = 0.0;
             }
         }
-        // It has got as far as it gets.
+        // A blocked creature gets no farther.
         wanted.arrived |= walked.is_blocked;
         if wanted.turns_on_spot {
             let stoppable = |angle: f64| self.stoppable(angle);
-            // It gets there in the end, and no faster than it can stop there.
+            // Slow enough to stop at the goal, but not so slow that the creature never gets there.
             let braked = stoppable(aside.abs() - 0.5 * within).max(0.5 * stoppable(0.5 * within));
             let free = may_turn(aside);
             wanted.turn = aside.signum() * braked.min(self.most_turn(gait)).min(free);
-            // Not before it stands.
+            // No turn on the spot before the walk is slow.
             if course.speed > SLOWEST * full {
                 wanted.turn = 0.0;
             }
         }
-        // Not before it stands, after it went back.
+        // After a retreat, stop first.
         if course.speed < 0.0 {
             (wanted.speed, wanted.turn) = (0.0, 0.0);
         }
         wanted
     }
 
-    /// Its course `dt` seconds later, if it tries to do what is wanted. Speeds change; its place does not.
+    /// The course after `dt` seconds if the creature pursues `wanted`. The speeds change; the place does not.
     pub(super) fn moved(&self, gait: &Gait, wanted: &Wanted, course: Course, dt: f64) -> Course {
         let mut moved = course;
         let change = wanted.speed - course.speed;
         let slows_down = if course.halts { HALTS } else { SLOWS_DOWN };
-        // Ahead, and back.
+        // Largest acceleration forwards, and backwards.
         let mut most = [SPEEDS_UP; 2];
         if course.speed > 0.0 {
             most[1] = slows_down;
@@ -241,7 +256,7 @@ impl Creature {
         moved.speed += change.clamp(-most[1] * dt, most[0] * dt);
         moved.halts &= moved.speed != 0.0;
         if wanted.speed > 0.0 {
-            // A foot that hardly moves is no walk: the first step already has some speed.
+            // A walk begins at some speed, because feet that hardly move are no walk.
             moved.speed = moved.speed.max(0.02 * self.full_speed(gait));
         }
         let change = wanted.turn - course.yaw_rate;
@@ -249,7 +264,7 @@ impl Creature {
         moved
     }
 
-    /// How fast a clip of its gait is played at a course.
+    /// Playback speed of a clip of the gait at a course.
     pub(super) fn clip_speed(&self, gait: &Gait, playing: Playing, course: &Course) -> f64 {
         match playing {
             Playing::Walk => course.speed.max(0.0) / (self.full_speed(gait) * self.stride()),
@@ -260,8 +275,8 @@ impl Creature {
         }
     }
 
-    /// How fast it turns on the spot, radians a second: as its file says, but without a clip for it no faster than its
-    /// feet can follow by steps of their own.
+    /// Turning rate on the spot, radians a second, as the file gives it. Without a turn clip it is at most the rate at
+    /// which the feet can follow by steps of their own.
     fn most_turn(&self, gait: &Gait) -> f64 {
         let most = gait.turn_rate * self.size.rate;
         let legs = self.kind.legs();
@@ -278,7 +293,7 @@ impl Creature {
     }
 }
 
-/// Length of the level part of a vector, and its direction, radians from +Z to the left.
+/// Length of the horizontal part of a vector, and its direction, radians from +Z to the left.
 fn level(way: DVec3) -> (f64, f64) {
     (way.with_y(0.0).length(), libm::atan2(way.x, way.z))
 }

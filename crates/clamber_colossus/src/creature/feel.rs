@@ -1,4 +1,5 @@
-//! From what is around the creature to its senses. It happens first in a step, so that all senses are one tick old.
+//! Updates the senses of a creature from its surroundings. A step does this before the brain decides, so that all
+//! senses are one tick old.
 
 use clamber_animation::rig::JointId;
 use clamber_surface::mesh::TriangleId;
@@ -9,20 +10,20 @@ use super::{Creature, Noise, Person, Surroundings};
 use crate::angle::nearest_turn;
 use crate::senses::{RegionSense, Sense, Senses};
 
-/// It sees to this angle from ahead of its head, radians.
+/// Half of the horizontal field of view: the largest bearing from the creature's heading, radians.
 const FIELD_OF_VIEW: f64 = 1.8;
 
-/// It looks for people, and for a wall in one direction, in one of so many ticks.
+/// Interval between looks for people, and between measurements of the distance to a wall in one direction, in ticks.
 const LOOKS: u64 = 4;
 
-/// Seconds for which a rider may leave the skin without the ride being over: a leap, a stumble.
+/// Time for which a rider may leave the skin without ending the ride, seconds: a leap, a stumble.
 const LEAP: f64 = 0.6;
 
-/// How much larger than the sole the place under a foot is.
+/// Size of the area under a foot, relative to the sole.
 const UNDER: f64 = 1.2;
 
 impl Creature {
-    /// Takes in what is around it. Asleep it sees nothing, but feels and hears.
+    /// Updates all senses. A sleeping creature sees nothing, but feels and hears.
     pub(super) fn feel(&mut self, around: &Surroundings<'_>) {
         let mut senses = std::mem::take(&mut self.state.senses);
         senses.forget();
@@ -78,7 +79,7 @@ impl Creature {
                 }),
             }
         }
-        // Who left or died rides no longer.
+        // A ride ends when the person has been off the skin for too long, or no longer exists.
         let is_there = |ride: &Ride| people.iter().any(|person| person.id == ride.person);
         self.state
             .rides
@@ -129,14 +130,14 @@ impl Creature {
         senses.set(Sense::WeakPoints, count as f64);
     }
 
-    /// Looks for prey: whoever does not ride, is in front of its head, and is not hidden by terrain.
+    /// Looks for prey: the nearest person that does not ride, is in the field of view, and is not hidden by terrain.
     fn see(&mut self, around: &Surroundings<'_>, senses: &mut Senses) {
         let eye = self.eye();
         let is_prey = |person: &Person| {
             let prey = self.state.prey.map(|(id, _)| id);
             prey == Some(person.id) && person.riding.is_none() && person.body.is_valid()
         };
-        // When whom it has in view gets on it or leaves, it looks who else is there.
+        // When the visible prey begins to ride or disappears, look for other people at once.
         let has_prey = self.state.prey.is_some() && self.state.unseen == 0;
         let is_lost = has_prey && !around.people.iter().any(is_prey);
         let looks = is_lost || self.state.ticks.is_multiple_of(LOOKS);
@@ -155,10 +156,10 @@ impl Creature {
             {
                 continue;
             }
-            // Whoever is right below it is felt rather than seen.
+            // A person right below the creature is felt rather than seen.
             let is_near = distance < self.size.girth;
             let is_ahead = self.bearing(middle).abs() < FIELD_OF_VIEW;
-            // Whoever it had in view a moment ago still is.
+            // Between two looks, visible prey stays visible.
             let is_known = self.state.unseen == 0 && !looks && is_prey(person);
             if is_near || is_ahead && (is_known || looks && !around.hides(eye, person)) {
                 nearest = Some((distance, person.id, middle));
@@ -195,7 +196,7 @@ impl Creature {
         }
     }
 
-    /// Looks for a wall in the next direction.
+    /// Measures the distance to a wall in the next direction.
     fn look_for_wall(&mut self, around: &Surroundings<'_>) {
         let height = self.size.height;
         let index = (self.state.ticks / LOOKS % WALLS as u64) as usize;
@@ -241,7 +242,7 @@ impl Creature {
         nearest_turn(libm::atan2(way.x, way.z) - self.state.yaw)
     }
 
-    /// Where it sees from, in world space.
+    /// Position of the eye, in world space.
     pub(super) fn eye(&self) -> DVec3 {
         let world = self.surface.world_from_model();
         let frame = |joint| self.palette.model_from_joint(joint).copied();

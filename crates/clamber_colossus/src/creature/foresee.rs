@@ -1,4 +1,4 @@
-//! How a creature will stand, as far as its clips tell.
+//! Predicts the pose and the place of a creature from its clips and its course.
 
 use clamber_animation::rig::{Palette, Pose};
 use clamber_animation::{AnimationEvent, Animator, PoseBuffers, RootDelta};
@@ -10,9 +10,11 @@ use super::course::Course;
 use super::state::{Drift, Playing};
 use crate::error::ColossusError;
 
-/// A course is foreseen in steps of so many seconds for a giant, and in at most so many steps. Steps are longer for times
-/// that are further away.
+/// Time step of a prediction, seconds for a creature of `GIANT` height. Steps are longer if a prediction would need
+/// more than `MOST_STEPS`.
 const STEP: f64 = 0.1;
+
+/// Most steps of a prediction.
 const MOST_STEPS: f64 = 100.0;
 
 /// Memory that [`Creature::foresee`] reuses.
@@ -25,12 +27,13 @@ pub struct Foresight {
 }
 
 impl Creature {
-    /// How the creature will stand after some seconds, not negative, if its brain does not decide on anything else
-    /// until then: its clips and fades go on, and so does its way: it walks on, turns, and slows down to where it goes.
-    /// Fills in the palette, and gives its place in the world.
+    /// Predicts how the creature will stand after some seconds, if its brain decides nothing new until then. Fills in
+    /// the palette and returns the creature's place in the world. `seconds` must not be negative.
     ///
-    /// Ground that moves carries it on as it did in the last tick, in a circle if it turns. Feet are not put on the ground
-    /// and the head is not turned: what rides on those is carried elsewhere by as much as they are corrected now.
+    /// Clips and fades go on, and so does the creature along its way: it walks, turns, and slows down at its goal.
+    /// Moving ground carries it on as in the last tick, in a circle if the ground turns. The prediction neither puts
+    /// feet on the ground nor turns the head, so skin that moves with these is off by as much as they are corrected
+    /// now.
     ///
     /// # Errors
     /// [`ColossusError::Animation`] if `seconds` is negative or not finite.
@@ -47,7 +50,8 @@ impl Creature {
         animator.clone_from(&state.animator);
         memory.events.clear();
         let mut course = Course::of(state);
-        // It looks anew before it comes there, but where it cannot turn.
+        // The creature looks again before it has used up the free turn, so this is a limit only if the creature is
+        // blocked. The free distance is a limit only if it was measured, which needs the goal ahead.
         if !state.walked.is_blocked {
             course.turn = None;
         }
@@ -57,7 +61,7 @@ impl Creature {
         let way = self.current_way();
         let mut moved = RootDelta::default();
         if !(0.0..=f64::MAX).contains(&seconds) {
-            // Refuses it.
+            // Returns the error.
             animator.advance(kind.clips(), seconds, &mut memory.events)?;
         }
         let step = STEP * self.size.pace.max(1e-3);
@@ -67,7 +71,7 @@ impl Creature {
             if let Some(gait) = kind.gait() {
                 let wanted = self.wanted(gait, way.as_ref(), &course);
                 let next = self.moved(gait, &wanted, course, dt);
-                // Half of the way at each speed.
+                // The mean of the speeds at the beginning and the end of the step.
                 let [speed, turn] = [
                     0.5 * (course.speed + next.speed),
                     0.5 * (course.yaw_rate + next.yaw_rate),
@@ -108,15 +112,15 @@ impl Creature {
 }
 
 impl Drift {
-    /// Where a place is after some seconds that is seen from ground which moves in this way at `origin`: in a circle, if
-    /// it turns.
+    /// Where a place is after some seconds if it moves with ground that drifts like this at `origin`: on a circle, if
+    /// the ground turns.
     fn carry(&self, place: Similarity, origin: DVec3, seconds: f64) -> Similarity {
         if *self == Self::default() {
             return place;
         }
         let angle = self.yaw_rate * seconds;
         let half = 0.5 * angle;
-        // The chord of an arc.
+        // Length of an arc's chord relative to the arc.
         let chord = if half == 0.0 {
             1.0
         } else {

@@ -1,4 +1,4 @@
-//! The ground that a creature walks on: its origin follows it, and steps are shorter where it is steep.
+//! The ground below a creature: its origin follows the ground, and its steps are shorter on steep ground.
 
 use glam::DVec3;
 
@@ -7,28 +7,30 @@ use super::state::{GROUND, NO_GROUND};
 use super::{Creature, Surroundings};
 use crate::feet::Ground;
 
-/// The ground is looked for in steps of this share of its height: seven along its heading, from behind to ahead, and one
-/// to each side.
+/// Distance between the places where the ground height is measured, as a share of the creature's height. Seven places
+/// lie along the heading, from behind to ahead, and one to each side.
 pub(super) const GROUND_SPACING: f64 = 0.07;
 
-/// How much shorter its steps are where it goes up and down: on a slope of 45 degrees, by one over one and this.
+/// How much shorter steps are on slopes, uphill and downhill: by the factor 1 / (1 + `CAREFUL`) at 45 degrees.
 const CAREFUL: f64 = 1.2;
 
-/// Time constant with which a giant takes the ground ahead into account, seconds.
+/// Time constant of the steepness of the ground ahead, seconds for a creature of `GIANT` height.
 const LOOKS_AHEAD: f64 = 1.0;
 
-/// The largest vertical acceleration from following the ground, metres a second squared; and more for who runs, as a share
-/// of that on a circle of its height at its speed: it would be above slopes or in them otherwise.
+/// Largest vertical acceleration from following the ground, metres a second squared, unless `RUNS` allows more.
 const CLIMBS: f64 = 0.5;
+
+/// Largest vertical acceleration of a fast creature, as a share of the centripetal acceleration at its speed on a
+/// circle whose radius is its height. With less, the creature would float above slopes or sink into them.
 const RUNS: f64 = 0.4;
 
 impl Creature {
-    /// How long its steps are, as a share of those of its clip.
+    /// Length of the steps, as a share of their length in the clip.
     pub(super) fn stride(&self) -> f64 {
         1.0 / (1.0 + CAREFUL * self.state.steepness)
     }
 
-    /// Lets the model's origin follow the ground below it, as softly as riders want it.
+    /// Lets the model's origin follow the ground below it, as gently as riders need it.
     pub(super) fn follow_ground(&mut self, around: &Surroundings<'_>, dt: f64) {
         let height = self.size.height;
         let ground = Ground {
@@ -38,7 +40,8 @@ impl Creature {
         let heading = self.state.heading();
         let spacing = GROUND_SPACING * height;
         let aside = DVec3::new(heading.z, 0.0, -heading.x) * spacing;
-        // One place in each tick, and all of them in the first one, or if it passes more than one of them in a tick.
+        // One place in each tick; all of them in the first tick, and in a tick in which the creature moves by more than
+        // the spacing.
         let is_first = self.state.ticks <= 1;
         let all = is_first || self.state.speed.abs() * dt > spacing;
         let turn = (self.state.ticks % GROUND as u64) as usize;
@@ -51,7 +54,7 @@ impl Creature {
             let level = ground.below(self.state.position + place);
             self.state.ground[index] = level.map_or(NO_GROUND, |(level, _)| level);
         }
-        // The mean over what it walks on within a step or two: a step in the ground becomes a ramp.
+        // The mean height over the length of a step or two: a ledge becomes a ramp.
         let known =
             |index: usize| Some(self.state.ground[index]).filter(|level| *level < NO_GROUND);
         let (mut sum, mut count, mut steepest) = (0.0, 0.0, 0f64);
@@ -68,11 +71,11 @@ impl Creature {
         if let [Some(left), Some(right)] = [7, 8].map(known) {
             steepest = steepest.max((left - right).abs() / (2.0 * spacing));
         }
-        // Gradually, since a stride depends on it.
+        // The steepness changes gradually, since the stride depends on it.
         let share = 1.0 - libm::exp(-dt / (LOOKS_AHEAD * self.size.pace.max(1e-3)));
         self.state.steepness += (steepest - self.state.steepness) * share;
         if is_first {
-            // It has just been put there.
+            // The creature was just placed.
             self.state.position.y = sum / count;
             self.state.steepness = steepest;
         }

@@ -1,4 +1,4 @@
-//! The head of the pose.
+//! Turns the head of the pose.
 
 use clamber_animation::ik::LookMemory;
 use clamber_surface::geometry::Similarity;
@@ -8,19 +8,18 @@ use super::{Creature, Surroundings};
 use crate::brain::Gaze;
 use crate::kind::HUMAN;
 
-/// Half time of a gaze that goes to something else, and of its beginning and end, seconds, for a creature of human
-/// size.
+/// Half time in which a gaze moves to a new target, begins and ends, seconds for a creature of human size.
 const LOOKS: f64 = 0.25;
 
-/// How long a giant's glance lasts, seconds.
+/// Duration of one glance, seconds for a creature of `GIANT` height.
 const GLANCE: f64 = 3.5;
 
 impl Creature {
-    /// Turns the head to what the creature looks at.
+    /// Turns the head towards the target of the gaze.
     pub(super) fn turn_head(&mut self, world: &Similarity, around: &Surroundings<'_>, dt: f64) {
         let kind = std::sync::Arc::clone(&self.kind);
         let Some(look) = kind.look() else { return };
-        // Of human size it would be 1.
+        // Time scale: 1 for a creature of human size.
         let size = (self.size.height / HUMAN).max(0.1).sqrt();
         let target = self.target(around);
         let weight = f64::from(u8::from(target.is_some()));
@@ -34,7 +33,7 @@ impl Creature {
         let target = world.inverse_transform_point(self.state.gaze.value);
         let weight = self.state.gaze_weight.value.clamp(0.0, 1.0);
         if weight > 1e-3 {
-            // A target in its head moves nothing.
+            // A target inside the head leaves the pose as it is.
             let _ = look.solve(
                 kind.skeleton(),
                 &mut self.state.pose,

@@ -1,5 +1,5 @@
-//! The hips of the pose: low enough for all feet to reach the ground, over the feet that stand while another one steps,
-//! and shaken by what comes down.
+//! Moves the hips of the pose: down until all feet reach the ground, towards the standing foot before the other one
+//! steps, and in a tremor after impacts.
 
 use clamber_animation::joint_in_model;
 use clamber_animation::rig::JointId;
@@ -12,48 +12,59 @@ use super::legs::PutLeg;
 use super::state::Playing;
 use crate::feet::Carried;
 
-/// The most acceleration of the hips, up and down and to the sides, metres a second squared. Riders feel it, together
-/// with that of following the ground.
+/// Largest vertical acceleration of the hips, metres a second squared. Riders feel it in addition to the acceleration
+/// from following the ground.
 const DROPS: f64 = 0.4;
+
+/// Largest horizontal acceleration of the hips along each axis, metres a second squared. Riders feel it, too.
 const SHIFTS: f64 = 0.4;
 
-/// How far a leg is stretched at most, as a share of its length.
+/// Largest distance from hip to ankle, as a share of the leg's length.
 const STRETCH: f64 = 0.985;
 
-/// How far hips drop at most, as a share of the leg's length.
+/// Largest drop of the hips, as a share of the leg's length.
 const MOST_DROP: f64 = 0.35;
 
-/// How low hips are on a slope before legs need it, as a share of the leg's length and the slope's tangent.
+/// Drop of the hips on a slope even if the legs do not need it yet, as a share of the leg's length times the slope's
+/// tangent.
 const SLOPE_DROP: f64 = 0.32;
 
-/// Half time in which a giant's hips rise again when they need not be low any more, seconds: longer than a step.
+/// Half time in which the hips rise again once they need not be low, seconds for a creature of `GIANT` height. It is
+/// longer than a step.
 const RISES: f64 = 3.0;
 
-/// How far hips go towards the feet that stand before another one steps, and from which share of that on it does.
+/// How far the hips shift towards the standing foot before the other foot steps, as a share of the horizontal vector
+/// from that leg's hip to the ball of its foot.
 const SHIFT: f64 = 0.35;
+
+/// Share of this shift after which the other foot may step.
 const SHIFTED: f64 = 0.7;
 
-/// Of the tremor of an impact: its circular frequency at 1 m of leg, radians a second; damping; and what a step gives
-/// of it.
+/// Angular frequency of the tremor after an impact for a leg of 1 m, radians a second. It falls with the square root of
+/// the leg's length.
 const TREMOR_RATE: f64 = 50.0;
+
+/// Damping ratio of the tremor.
 const TREMOR_DAMPING: f64 = 0.25;
+
+/// Tremor of a step, as a share of the tremor of an impact.
 const STEP_TREMOR: f64 = 0.15;
 
-/// How far the hips are from where clips have them, in world space.
+/// Offset of the hips from their place in the clips, in world space.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Hips {
     offset: DVec3,
     velocity: DVec3,
-    /// How low they have to be lately, metres.
+    /// How far the hips recently had to drop, metres.
     drop: f64,
-    /// A damped oscillation up and down: metres, metres a second.
+    /// Vertical position and velocity of a damped oscillation: metres, metres a second.
     tremor: [f64; 2],
-    /// True while a foot wants to step and the hips are not over the others yet.
+    /// True while a foot has to wait with its step until the hips have shifted.
     waits: bool,
 }
 
 impl Hips {
-    /// True if none of its numbers is further from 0.
+    /// True if all numbers are at most `most` in magnitude.
     pub(super) fn is_within(&self, most: f64) -> bool {
         let vectors = [self.offset, self.velocity];
         let numbers = vectors.iter().flat_map(|vector| vector.to_array());
@@ -61,7 +72,7 @@ impl Hips {
         numbers.into_iter().all(|number| number.abs() <= most)
     }
 
-    /// Turns with ground that has moved.
+    /// Turns the offset and its velocity with ground that has moved.
     pub(super) fn turn(&mut self, carried: &Carried) {
         self.offset = carried.vector(self.offset);
         self.velocity = carried.vector(self.velocity);
@@ -72,12 +83,12 @@ impl Hips {
         !self.waits
     }
 
-    /// Something heavy came down: the hips tremble with at most this acceleration, metres a second squared.
+    /// Begins a tremor after an impact: the hips accelerate by at most `acceleration`, metres a second squared.
     fn strike(&mut self, acceleration: f64, rate: f64) {
         self.tremor[1] -= acceleration / rate;
     }
 
-    /// Lets the tremor ring on: exact for a damped oscillator, by its solution over the tick.
+    /// Advances the tremor by a tick, with the exact solution of a damped oscillator.
     fn ring(&mut self, rate: f64, dt: f64) {
         let [x, v] = self.tremor;
         let decay = TREMOR_DAMPING * rate;
@@ -94,7 +105,7 @@ impl Hips {
         }
     }
 
-    /// Goes to a place with at most these accelerations.
+    /// Moves towards a place with at most the acceleration `most` along each axis.
     fn go(&mut self, to: DVec3, most: DVec3, dt: f64) {
         for axis in 0..3 {
             let (value, velocity) = approach(
@@ -108,11 +119,12 @@ impl Hips {
     }
 }
 
-/// Near a goal it is approached at this share of what is left, in a second.
+/// Largest speed near a goal, as a share of the remaining distance in a second.
 pub(super) const NEARS: f64 = 2.0;
 
-/// Moves a number towards a goal with at most an acceleration: as fast as it can still be stopped, and gently near it, by a
-/// share of what is left in a second.
+/// Moves a number towards a goal with an acceleration of at most `most`. The speed is at most the speed from which it
+/// can still stop at the goal, and at most `nears` times the remaining distance a second. Returns the number and its
+/// velocity.
 pub(super) fn approach(
     [value, velocity]: [f64; 2],
     goal: f64,
@@ -129,7 +141,7 @@ pub(super) fn approach(
 }
 
 impl Creature {
-    /// Moves the hips of the pose for legs that are put somewhere. Returns by how much, in model space.
+    /// Moves the hips of the pose so that the legs reach their feet. Returns the offset, in model space.
     pub(super) fn shift_hips(&mut self, world: &Similarity, legs: &[PutLeg], dt: f64) -> DVec3 {
         let Some(joint) = self.kind.hips() else {
             return DVec3::ZERO;
@@ -139,8 +151,8 @@ impl Creature {
         let before = self.state.hips.drop;
         let steep = SLOPE_DROP * self.state.steepness * length;
         let needed = (legs.iter().map(drop_of).fold(0.0, f64::max) * scale).max(steep);
-        // It rises slowly, so that it does not bob with each step; and not while it stands, since a clip that made its
-        // legs too short once does so again in each round.
+        // The hips rise slowly, so that they do not bob with each step. They do not rise at all unless the creature
+        // walks or turns: a clip that made the legs too short once does so again in each round.
         let moves = matches!(self.state.playing, Playing::Walk | Playing::Turn(_));
         let rises = if moves {
             RISES * self.size.pace.max(1e-3)
@@ -149,25 +161,25 @@ impl Creature {
         };
         let risen = before * libm::exp2(-dt / rises);
         self.state.hips.drop = needed.max(risen).min(MOST_DROP * length);
-        // On more than two legs it stands between the others when one steps.
+        // With more than two legs, the hips are already between the standing feet when another foot steps.
         let wants_step = legs.len() == 2 && legs.iter().any(|leg| leg.wants_step);
         let mut to = DVec3::NEG_Y * self.state.hips.drop;
         let mut shift = DVec3::ZERO;
         let mut waits = false;
         if wants_step {
             let planted = || legs.iter().filter(|leg| leg.is_planted);
-            // Where both feet want to step, the first of them does.
+            // If both feet want to step, the first one does.
             let stander = planted().find(|leg| !leg.wants_step);
             if let Some(leg) = stander.or_else(|| planted().next_back()) {
                 waits = true;
                 let level = world.transform_vector(leg.ball - leg.hip);
-                // Hips stand between the legs: half of the way is over one of two feet.
+                // Only a share of the way, since the hips are between the two legs.
                 shift = DVec3::new(level.x, 0.0, level.z) * SHIFT;
             }
         }
         to += shift;
         if self.state.ticks <= 1 {
-            // It has just been put there.
+            // The creature was just placed.
             self.state.hips.offset = to;
         }
         self.state
@@ -185,7 +197,7 @@ impl Creature {
         offset
     }
 
-    /// Impacts and steps of this tick begin to tremble.
+    /// Begins the tremors of the impacts and steps in this tick.
     fn tremble(&mut self, rate: f64) {
         let most = self.kind.tremor();
         for event in &self.report.events {
@@ -198,7 +210,7 @@ impl Creature {
         }
     }
 
-    /// Moves a joint of the pose, and all below it, by an offset in model space.
+    /// Moves a joint of the pose, and all joints below it, by an offset in model space.
     fn offset_joint(&mut self, joint: JointId, offset: DVec3) {
         let skeleton = self.kind.skeleton();
         let parent = skeleton.joints()[joint.index()].parent;
@@ -210,7 +222,7 @@ impl Creature {
     }
 }
 
-/// How far down a leg's hip has to go for its foot to be reached.
+/// How far a leg's hip has to drop so that the leg reaches its ankle, in the model's units.
 fn drop_of(leg: &PutLeg) -> f64 {
     let way = leg.hip - leg.ankle;
     let reach = STRETCH * leg.reach;

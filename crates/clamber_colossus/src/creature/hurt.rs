@@ -1,4 +1,4 @@
-//! What a creature takes: wounds in weak points, blows on plates.
+//! Damage to a creature: wounds of weak points, blows to plates.
 
 use clamber_surface::mesh::TriangleId;
 use clamber_world::MaterialPoint;
@@ -9,9 +9,8 @@ use super::state::Felt;
 use super::{Creature, Wound};
 
 impl Creature {
-    /// Tells the creature that something struck it. Returns the damage that was done to a weak point: none if there is
-    /// no open one there, or if a plate took the blow. The brain knows in the next step, whose report tells what
-    /// happened.
+    /// Applies a wound. Returns the damage done to a weak point: 0 if there is no open weak point at that place, or if
+    /// a plate took the blow. The brain senses the wound in the next step, and the report of that step has its events.
     pub fn hurt(&mut self, wound: &Wound) -> f64 {
         if !wound.place.is_finite() || !(0.0..=f64::MAX).contains(&wound.damage) {
             return 0.0;
@@ -36,12 +35,12 @@ impl Creature {
         done
     }
 
-    /// A plate takes a blow.
+    /// Applies a blow to a plate, which staggers and may break.
     fn strain(&mut self, plate: usize, damage: f64) {
         let stagger = self.kind.plates()[plate].stagger;
         let state = &mut self.state.plates[plate];
         state.strain += damage;
-        // What is too much is not passed on: one blow staggers once.
+        // Damage beyond the threshold is lost, so that one blow causes one stagger at most.
         if state.strain < stagger {
             return;
         }
@@ -57,14 +56,14 @@ impl Creature {
         }
     }
 
-    /// What a blow at a point of the skin would strike: the open weak point there, and the whole plate that would take
-    /// the blow in its place. Both by their indices.
+    /// Finds the open weak point that a blow at a point of the skin would strike, and the unbroken plate that would
+    /// take the blow instead. Returns their indices.
     pub fn struck_at(&self, at: &MaterialPoint, place: DVec3) -> (Option<usize>, Option<usize>) {
         let triangle = u32::try_from(at.key).ok().map(TriangleId);
         let plate = triangle
             .and_then(|triangle| self.kind.plate_of(triangle))
             .filter(|plate| self.state.plates[*plate].left > 0);
-        // What was struck within the tick is compared where it is at the end, as the weak points are.
+        // The weak points are where they are at the end of the tick, so take the struck point where it is then.
         let place = self.skin_at(at).unwrap_or(place);
         let points = self.kind.weak_points().iter().enumerate();
         let mut near = points.filter(|(index, point)| {
@@ -75,7 +74,7 @@ impl Creature {
         (near.next().map(|(index, _)| index), plate)
     }
 
-    /// Where a point of the skin is after the last step, in world space.
+    /// Position of a point of the skin after the last step, in world space.
     fn skin_at(&self, at: &MaterialPoint) -> Option<DVec3> {
         let anchor = at.anchor_on(&self.surface)?;
         let tick = self.kind.brain().tick();
@@ -83,7 +82,7 @@ impl Creature {
         Some(motion.position)
     }
 
-    /// The damage that a weak point takes. What is too much for it is not passed on.
+    /// Applies damage to a weak point and returns the damage done. Damage beyond its hit points is lost.
     pub(super) fn wound(&mut self, weak_point: usize, damage: f64) -> f64 {
         let left = &mut self.state.hit_points[weak_point];
         let damage = damage.min(*left);
@@ -99,7 +98,7 @@ impl Creature {
         damage
     }
 
-    /// The share of the hit points of all weak points that is left: 0 once a major one is used up, and 1 without any.
+    /// The remaining share of the hit points of all weak points: 0 once a major one is used up, 1 without weak points.
     pub fn health(&self) -> f64 {
         let points = self.kind.weak_points().iter().zip(&self.state.hit_points);
         let (mut full, mut left) = (0.0, 0.0);
@@ -113,7 +112,7 @@ impl Creature {
         if full > 0.0 { left / full } else { 1.0 }
     }
 
-    /// Where a weak point is, in world space; `None` if there is no such weak point.
+    /// Position of a weak point, in world space; `None` if there is no such weak point.
     pub fn weak_point(&self, index: usize) -> Option<DVec3> {
         let point = self.kind.weak_points().get(index)?;
         let frame = self.palette.model_from_joint(point.joint)?;
@@ -121,8 +120,8 @@ impl Creature {
         Some(self.surface.world_from_model().transform_point(place))
     }
 
-    /// True if a weak point can be hurt now: it is not used up, and the current state exposes it, or all of lower order
-    /// are used up.
+    /// True if a weak point can be hurt now. It must have hit points left. Also, the current state must expose it, or
+    /// all weak points of lower order must be used up.
     pub fn is_open(&self, weak_point: usize) -> bool {
         let points = self.kind.weak_points();
         let hit_points = &self.state.hit_points;
@@ -137,7 +136,7 @@ impl Creature {
         *left > 0.0 && (exposed.contains(&point.name) || before.all(|(_, left)| *left <= 0.0))
     }
 
-    /// Hides the plates that are broken, and shows the others, of those that are otherwise.
+    /// Hides the broken plates and shows the others, where the skin does not do so yet.
     pub(super) fn hide_broken_plates(&mut self) {
         for plate in 0..self.kind.plates().len() {
             let shows = self.state.plates[plate].left > 0;
@@ -150,7 +149,7 @@ impl Creature {
     fn show_plate(&mut self, plate: usize, shows: bool) {
         self.shows_plate[plate] = shows;
         for triangle in &self.kind.plates()[plate].triangles {
-            // Refused only for triangles that a game has edited away.
+            // Fails only for triangles that a game has removed by editing.
             let _ = if shows {
                 self.surface.enable_triangle(*triangle)
             } else {

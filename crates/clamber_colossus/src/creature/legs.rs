@@ -1,4 +1,4 @@
-//! The feet of the pose.
+//! Puts the feet of the pose on the ground.
 
 use clamber_animation::ik::orient;
 use clamber_animation::joints_in_model;
@@ -12,68 +12,73 @@ use super::state::Playing;
 use crate::feet::{Foot, FootGoal, Ground, MOST_ASIDE, MOST_UP, SHARES, Sole};
 use crate::kind::{Contacts, Leg, rotation_of};
 
-/// From which share of its length on a leg in flight is stretched softly.
+/// A leg in flight stretches softly beyond this share of its length.
 const SOFT: f64 = 0.93;
 
-/// A foot looks at what it stands on in one of so many ticks.
+/// Interval between a foot's checks of the ground, in ticks.
 const LOOKS: u64 = 8;
 
-/// From which share of its length on a leg lets go of the ground: before it is straight.
+/// A leg lets go of the ground beyond this share of its length, before it is straight.
 const STRETCHED: f64 = 0.994;
 
-/// Ground that is this much above a foot is a wall, as a share of the leg's length: feet do not step on it.
+/// Ground higher than this above a foot is a wall, as a share of the leg's length. Feet do not step on walls.
 const WALL: f64 = 0.25;
 
-/// The most acceleration with which a foot goes to whom it strikes, and with which it goes after a clip that is no gait,
-/// metres a second squared.
+/// Largest acceleration of a foot towards the target that it strikes, and of a vertical correction while the clip of an
+/// act plays, metres a second squared.
 const BLOW: f64 = 40.0;
 
-/// How much more a foot counts that stands for a whole clip, when a clip's time is chosen.
+/// Additional weight of a foot in the choice of a clip's start time, if the foot stands for the whole clip. It is
+/// proportional to the time for which the foot still stands.
 const STANDING: f64 = 8.0;
 
-/// Two times of a clip whose costs differ by less than this fit alike.
+/// Start times whose costs differ by at most this fit equally well.
 const AS_GOOD: f64 = 1e-4;
 
-/// Times of a clip that are compared with the feet when it begins.
+/// Number of start times that are compared when a clip begins.
 const PHASES: u32 = 48;
 
-/// A leg as its clip has it.
+/// A leg as its clip poses it.
 struct ClipLeg {
-    /// Length of its bones together.
+    /// Total length of the bones, in the model's units.
     reach: f64,
-    /// In model space.
+    /// The hip joint, in model space.
     hip: DVec3,
     /// The ball of the foot, in world space.
     ball: DVec3,
-    /// Rotation of the ankle in model space, and its foot's turn about up, also in radians.
+    /// Rotation of the ankle, in model space.
     rotation: DQuat,
+    /// Yaw of the foot as a rotation, in model space.
     turn: DQuat,
+    /// Yaw of the foot, radians.
     heading: f64,
 }
 
-/// Where a leg is put in a tick, in model space.
+/// A leg whose foot is put on the ground in this tick, in model space.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PutLeg {
-    /// As its clip has it.
+    /// The hip joint in the clip.
     pub(super) hip: DVec3,
-    /// Where it goes, together with the ball of the foot.
+    /// Target of the ankle.
     pub(super) ankle: DVec3,
+    /// Target of the ball of the foot.
     pub(super) ball: DVec3,
-    /// Length of its bones together.
+    /// Total length of the bones.
     pub(super) reach: f64,
-    /// Of the ankle.
+    /// Rotation of the ankle.
     rotation: DQuat,
-    /// How flat its foot is on the ground, from 0 to 1. The ground has this normal, in world space.
+    /// How flat the foot is on the ground, from 0 to 1.
     pub(super) flat: f64,
+    /// Normal of the ground, in world space.
     pub(super) normal: DVec3,
-    /// How firmly it stands, from 0 to 1.
+    /// How firmly the foot stands, from 0 to 1.
     firm: f64,
     pub(super) wants_step: bool,
     pub(super) is_planted: bool,
 }
 
 impl Creature {
-    /// Puts the feet of the pose on the ground, and the hips so that they reach it.
+    /// Puts the feet of the pose on the ground, and moves the hips so that the legs reach them.
     pub(super) fn put_feet(&mut self, world: &Similarity, ground: &Ground<'_>, dt: f64) {
         let kind = std::sync::Arc::clone(&self.kind);
         let aims = self.aimed_leg();
@@ -127,7 +132,7 @@ impl Creature {
         for (index, (leg, put)) in kind.legs().iter().zip(&legs).enumerate() {
             self.bend_leg(leg, put);
             self.press_foot(world, leg, put);
-            // All legs hang below the hips.
+            // All legs move with the hips.
             let distance = (put.hip + moved).distance(put.ankle);
             let is_stretched = distance > STRETCHED * put.reach;
             self.state.feet[index].set_stretched(is_stretched);
@@ -135,9 +140,9 @@ impl Creature {
         self.legs = legs;
     }
 
-    /// Height of a foot's sole above the ground: of its point that is lowest, negative if that is in the ground. Ground
-    /// that is more than a quarter of the leg's length above the foot is a wall, and does not count. `None` if there is
-    /// no such leg, or no ground below it.
+    /// Smallest height of a foot's sole above the ground below it, metres; negative if the sole is in the ground.
+    /// Ground more than a quarter of the leg's length above a point of the sole is a wall, and does not count. `None`
+    /// if there is no such leg, or no ground below it.
     pub fn foot_clearance(&self, leg: usize, terrain: &[&dyn Obstacle]) -> Option<f64> {
         let ground = Ground {
             terrain,
@@ -161,8 +166,8 @@ impl Creature {
         places.filter_map(above).min_by(f64::total_cmp)
     }
 
-    /// The corners of a rectangle around a foot's sole, in world space, one after the other around it. `None` if there
-    /// is no such leg.
+    /// The corners of a rectangle around a foot's sole, in world space, in order around it. `None` if there is no such
+    /// leg.
     pub fn sole(&self, leg: usize) -> Option<[DVec3; 4]> {
         let [right_heel, left_heel, right_toe, left_toe] = self.kind.legs().get(leg)?.sole.corners;
         let below = DVec3::Y * self.kind.legs().get(leg)?.sole.ball_height;
@@ -176,7 +181,7 @@ impl Creature {
         ])
     }
 
-    /// Places in world space of points on a foot's sole, which are given relative to its ball.
+    /// Converts points on a foot's sole, which are relative to its ball, to world space.
     fn on_sole<'a>(&'a self, leg: usize, points: &'a [DVec3]) -> impl Iterator<Item = DVec3> + 'a {
         let world = self.surface.world_from_model();
         let frame = self.kind.legs().get(leg).and_then(|leg| {
@@ -230,7 +235,7 @@ impl Creature {
         let lands_at = if stands {
             clip
         } else {
-            // Where the creature will be then.
+            // The creature moves on until the foot lands.
             at + forward * (self.state.speed * lands_in)
         };
         let is_walk = self.state.playing == Playing::Walk;
@@ -244,12 +249,12 @@ impl Creature {
         } else {
             aside + self.past_others(index, forward)
         };
-        // Clips that strike or fall may lift a foot that stands faster than corrections are felt.
+        // The clip of a strike or a fall may lift a standing foot faster than `MOST_UP` allows.
         let most_up = match self.state.playing {
             Playing::Act(_) => BLOW,
             _ => MOST_UP,
         };
-        // A blow is meant, and no correction.
+        // A blow is intended: the limit for corrections does not apply.
         let most_aside = if aims == Some(index) {
             BLOW
         } else {
@@ -283,7 +288,8 @@ impl Creature {
         }
     }
 
-    /// How far aside a leg has to pass those beside it: as far as they stand nearer to it than in their clip.
+    /// Sideways offset with which a leg passes the standing feet beside it: the largest offset by which one of them has
+    /// come nearer to the leg than in its clip.
     fn past_others(&self, index: usize, forward: DVec3) -> DVec3 {
         let leg = &self.kind.legs()[index];
         let left = DVec3::new(forward.z, 0.0, -forward.x);
@@ -298,7 +304,7 @@ impl Creature {
         left * most.unwrap_or(0.0)
     }
 
-    /// The time of the clip that is begun at which its feet are where the creature's are.
+    /// Start time of a new clip, seconds: the time at which the clip's feet best fit the creature's feet.
     pub(super) fn step_in(&self) -> f64 {
         let legs = self.kind.legs();
         let duration = self.contacts(0).map_or(0.0, Contacts::duration);
@@ -310,7 +316,7 @@ impl Creature {
                 };
                 let way = (contacts.ball(time) - leg.ball_in(at)) / leg.length;
                 let is_other = contacts.stands(time) != self.state.feet[index].is_planted();
-                // What stands for long has to fit best.
+                // A foot that stands for long has to fit best.
                 let left = contacts
                     .left(time)
                     .map_or(0.0, |left| left / duration.max(1e-9));
@@ -324,7 +330,7 @@ impl Creature {
             .iter()
             .map(|(cost, _)| *cost)
             .fold(f64::INFINITY, f64::min);
-        // The first of those that are as good: rounding must not decide, which differs with the unit of a file.
+        // The first of the times that fit equally well: rounding, which depends on the unit of a file, must not decide.
         let mut best = costs.iter().filter(|(cost, _)| *cost <= least + AS_GOOD);
         best.next().map_or(0.0, |(_, time)| *time)
     }
@@ -339,7 +345,7 @@ impl Creature {
         }
     }
 
-    /// The leg that aims, until it has struck.
+    /// The leg that aims, until its strike is over.
     fn aimed_leg(&self) -> Option<usize> {
         let Playing::Act(state) = self.state.playing else {
             return None;
@@ -349,13 +355,13 @@ impl Creature {
         strike.leg.filter(|_| time < strike.active[1])
     }
 
-    /// Bends a leg so that its ankle is where the foot wants it.
+    /// Bends a leg so that its ankle reaches its target, and turns its foot.
     pub(super) fn bend_leg(&mut self, leg: &Leg, put: &PutLeg) {
         let skeleton = self.kind.skeleton();
-        // A leg in flight is not stretched to its end, so that its knee does not snap.
+        // A leg in flight does not stretch fully, so that its knee does not snap.
         let soft = SOFT + (1.0 - SOFT) * put.firm;
         let pose = &mut self.state.pose;
-        // A leg that cannot be bent stays as its clip has it.
+        // A leg that cannot be bent keeps the pose of its clip.
         if leg.limb.bend(skeleton, pose, put.ankle, soft) {
             let _ = orient(skeleton, pose, leg.ankle, put.rotation);
             if leg.ball != leg.ankle && put.flat > 0.0 {
@@ -367,15 +373,15 @@ impl Creature {
     }
 }
 
-/// How many of some legs may be in the air at once: half of them.
+/// How many of `legs` legs may be in the air at once: half of them, but at least one.
 pub(super) fn at_once(legs: usize) -> usize {
     (legs / 2).max(1)
 }
 
-/// Where a leg's ankle goes.
+/// Places the foot of a leg.
 fn put(world: &Similarity, leg: &Leg, foot: &Foot, clip: &ClipLeg) -> PutLeg {
     let normal = world.rotation.conjugate() * foot.normal();
-    // The foot's rotation does not depend on the shin's: it is that of its clip, or flat on the ground.
+    // The foot's rotation does not depend on the shin: the foot is turned as in its clip, or flat on the ground.
     let flat = foot.flat();
     let flattened = if flat > 0.0 {
         slerp(clip.rotation, clip.turn * leg.level, flat)
@@ -399,7 +405,8 @@ fn put(world: &Similarity, leg: &Leg, foot: &Foot, clip: &ClipLeg) -> PutLeg {
     }
 }
 
-/// The turn about up of a rotation: its twist about Y. Any turn for one that turns it upside down.
+/// Yaw of a rotation as a rotation: its twist about Y. The identity for a half turn about a horizontal axis, which has
+/// no yaw.
 fn turn_about_up(rotation: DQuat) -> DQuat {
     let length = (rotation.y * rotation.y + rotation.w * rotation.w).sqrt();
     if length > 1e-9 {

@@ -1,4 +1,4 @@
-//! A creature: a value that is stepped once a tick.
+//! A creature: a value that its owner steps once a tick.
 
 mod back;
 mod carry;
@@ -45,10 +45,10 @@ use self::size::Size;
 use crate::error::ColossusError;
 use crate::kind::CreatureKind;
 
-/// A creature that lives: it senses, decides, moves, and hurts whom its limbs strike.
+/// A living creature: it senses, decides, moves, and hurts people with its limbs.
 ///
-/// Its [`CreatureState`] is all that changes, and all that has to be saved. What it can be touched by is its
-/// [`SkinnedSurface`], which is posed by each step.
+/// The [`CreatureState`] is all that has to be saved. Climbers and weapons touch the [`SkinnedSurface`], which each
+/// step poses.
 #[derive(Clone, Debug)]
 pub struct Creature {
     kind: Arc<CreatureKind>,
@@ -60,21 +60,22 @@ pub struct Creature {
     buffers: PoseBuffers,
     report: CreatureReport,
     events: Vec<clamber_animation::AnimationEvent>,
-    /// Kept from tick to tick, so that a step does not allocate.
+    /// Buffer for the legs, reused so that a step does not allocate.
     legs: Vec<PutLeg>,
+    /// Buffer for the skin of a sole, reused so that a step does not allocate.
     sole: Vec<DVec3>,
     /// True while the skin is known to be without motion.
     is_still: bool,
-    /// Of each plate, whether the skin shows it: as its state says.
+    /// For each plate: whether the skin shows it. It follows the state of the plate.
     shows_plate: Vec<bool>,
 }
 
 impl Creature {
-    /// A creature at its place, in its first pose.
+    /// Creates a creature at its initial place, in its first pose.
     ///
     /// # Errors
     /// [`ColossusError::OutOfRange`] if the configuration is not valid, [`ColossusError::Animation`] or
-    /// [`ColossusError::Surface`] if its clips cannot pose the skin.
+    /// [`ColossusError::Surface`] if the clips cannot pose the skin.
     pub fn new(kind: Arc<CreatureKind>, config: CreatureConfig) -> Result<Self, ColossusError> {
         config.check()?;
         let size = Size::new(&kind, &config);
@@ -101,27 +102,27 @@ impl Creature {
         Ok(creature)
     }
 
-    /// The kind of creature.
+    /// The kind of the creature.
     pub fn kind(&self) -> &Arc<CreatureKind> {
         &self.kind
     }
 
-    /// Where it was placed, and how large it is.
+    /// The configuration with which the creature was created.
     pub fn config(&self) -> &CreatureConfig {
         &self.config
     }
 
-    /// All that changes.
+    /// The state of the creature: everything that has to be saved.
     pub fn state(&self) -> &CreatureState {
         &self.state
     }
 
-    /// The skin, as posed by the last step: the obstacle for climbers and weapons.
+    /// The skin as the last step posed it: the obstacle for climbers and weapons.
     pub fn surface(&self) -> &SkinnedSurface {
         &self.surface
     }
 
-    /// The skin, to disable parts of it or to edit it.
+    /// The skin, for disabling parts of it or editing it.
     pub fn surface_mut(&mut self) -> &mut SkinnedSurface {
         &mut self.surface
     }
@@ -136,23 +137,25 @@ impl Creature {
         &self.palette
     }
 
-    /// What happened in the last step.
+    /// The report of the last step.
     pub fn report(&self) -> &CreatureReport {
         &self.report
     }
 
-    /// Goes back to a saved state: the skin stands there without motion, and all goes on with the same bits as it did.
+    /// Restores a saved state. The skin is placed without motion, and later steps give the same bits as after the state
+    /// was saved.
     ///
     /// # Errors
-    /// [`ColossusError::OtherKind`] if the state is of another kind of creature, and those of posing. Nothing is changed then.
+    /// [`ColossusError::OtherKind`] if the state belongs to another kind of creature; also the errors of posing the
+    /// skin. The creature is unchanged then.
     pub fn restore(&mut self, mut state: CreatureState) -> Result<(), ColossusError> {
         self.swap_state(&mut state)
     }
 
-    /// [`Creature::restore`], and gives back the state that it had.
+    /// Restores a saved state as [`Creature::restore`] does, and leaves the previous state in `state`.
     ///
     /// # Errors
-    /// As [`Creature::restore`]. Neither state is changed then.
+    /// As [`Creature::restore`]. Both states are unchanged then.
     pub fn swap_state(&mut self, state: &mut CreatureState) -> Result<(), ColossusError> {
         state.check(&self.kind)?;
         std::mem::swap(&mut self.state, state);

@@ -1,4 +1,4 @@
-//! Lets a creature walk and turn: it looks where it goes, and moves there.
+//! Walks and turns a creature: it checks its way, and moves along it.
 
 use clamber_animation::AnimationEvent;
 
@@ -12,31 +12,35 @@ use crate::error::ColossusError;
 use crate::kind::{Extent, Extents, Gait, HUMAN};
 use crate::senses::Sense;
 
-/// It looks for what is in its way in one of so many ticks.
+/// Interval between checks of the way, in ticks.
 pub(super) const LOOKS: u64 = 8;
 
-/// Seconds in which one clip of the gait fades into another, for a creature of a human's height. Larger ones take
+/// Time in which one clip of the gait fades into another, seconds for a creature of human height. Larger creatures take
 /// longer, by the square root of their height (Froude's law).
 const FADE: f64 = 0.35;
 
-/// Where nothing is in its way it looks so many times less often. It turns so little, as a share of how fast that changes
-/// in a second, that it walks straight on.
+/// Factor on the interval while there is no obstacle on the way.
 pub(super) const SELDOM: u64 = 4;
+
+/// A yaw rate that the angular acceleration produces within this time counts as walking straight on, seconds.
 const STEADY: f64 = 0.1;
 
-/// What is further ahead than this stands for a way that is free as far as it looks, metres.
+/// A free distance above this means that the way is free as far as the creature looks, metres.
 const FREE: f64 = 1e5;
 
-/// A giant that does not get on tries for so many seconds at least from the beginning of its act on: a brain whose next
-/// state leads back to that one would change states in each tick.
+/// Shortest time between the beginning of an act and the sense `blocked`, seconds for a creature of `GIANT` height.
+/// Without it, a brain whose next state leads back to the blocked one would change states in every tick.
 const TRIES: f64 = 1.0;
 
-/// Less than this is no turn, radians; and one that walks turns to a goal that is no further aside without a look.
+/// A turn on the spot is blocked if its free angle is below this, radians, unless the goal is nearer.
 const LEAST_TURN: f64 = 0.05;
+
+/// A walking creature turns to a goal up to this angle without a check, radians.
 const LEAST_STEER: f64 = 0.02;
 
 impl Creature {
-    /// Lets clips and the creature's place move on by a tick, and says whether the act is done.
+    /// Advances the clips and the place of the creature by a tick, and sets the senses that tell whether the act is
+    /// done or blocked.
     pub(super) fn move_on(
         &mut self,
         around: &Surroundings<'_>,
@@ -105,7 +109,8 @@ impl Creature {
         Ok(())
     }
 
-    /// Looks where it goes: for corners of its way, how far the next piece of it is free, and how far it may turn.
+    /// Checks the way: searches for its corners, and measures how far its next piece is free and how far the creature
+    /// may turn.
     fn look(&mut self, gait: &Gait, way: &Way, around: &Surroundings<'_>) {
         let kind = std::sync::Arc::clone(&self.kind);
         let Some(Extents { on_spot, walking }) = kind.extents() else {
@@ -140,7 +145,8 @@ impl Creature {
         course.ahead = self.state.walked.ahead;
         let goes = self.wanted(gait, Some(way), &course);
         let walked = &mut self.state.walked;
-        // Nearly there, it takes the short way again; and another time it may go the long way round.
+        // With the goal less than a quarter turn away, the creature turns the short way again. The next turn may go the
+        // long way round.
         if !goes.turns_on_spot || goes.aside.abs() < core::f64::consts::FRAC_PI_2 {
             walked.round = 0;
         }
@@ -150,7 +156,7 @@ impl Creature {
         if goes.turns_on_spot {
             self.look_aside(gait, &goes, around, on_spot);
         } else if goes.walks && !goes.is_stopped {
-            // Its head and its tail go aside when it steers.
+            // Head and tail move sideways when the creature steers.
             let far = self.turning_room(gait, true).copysign(goes.aside);
             self.state.walked.turn = if goes.aside.abs() > LEAST_STEER {
                 self.room(around, walking).turn(far, self.slope())
@@ -162,7 +168,8 @@ impl Creature {
         }
     }
 
-    /// Looks how far it may turn on the spot. Where it cannot turn all the way, to either side, it goes back if it can.
+    /// Measures how far the creature may turn on the spot. If neither turn to the goal is free, the creature begins a
+    /// retreat if it can.
     fn look_aside(
         &mut self,
         gait: &Gait,
@@ -175,7 +182,7 @@ impl Creature {
         let room = self.room(around, on_spot);
         self.state.walked.turn = room.turn(most.copysign(goes.aside), self.slope());
         if self.state.speed > 0.0 {
-            // Not where it still walks.
+            // The creature still walks.
             return;
         }
         let is_first = !std::mem::replace(&mut self.state.walked.has_looked_round, true);
@@ -190,8 +197,8 @@ impl Creature {
         self.state.walked.is_blocked = !gets_on;
     }
 
-    /// True in ticks in which it looks where it goes: in one of [`LOOKS`], and less often while it walks straight on and
-    /// nothing is in its way, or has room to turn.
+    /// True in ticks in which the creature checks its way: in one of every [`LOOKS`] ticks. It checks less often while
+    /// it walks straight on along a free way, or while it turns on the spot with room to turn.
     fn looks(&self, gait: &Gait, wanted: &Wanted) -> bool {
         let (state, walked) = (&self.state, &self.state.walked);
         let is_new = !walked.is_known || wanted.faces && !walked.faces;
@@ -212,7 +219,8 @@ impl Creature {
         })
     }
 
-    /// Walks or turns towards a goal, or comes to a stand without one. Returns true if it is there.
+    /// Walks or turns towards a goal, or comes to a stop without one. Returns true if the creature is at its goal and
+    /// stands.
     fn walk(
         &mut self,
         gait: &Gait,
@@ -245,7 +253,7 @@ impl Creature {
         let playing = if moves {
             Playing::Walk
         } else if turns_on_spot && gait.turn.is_some() && self.state.speed >= 0.0 {
-            // Before it stands it does not turn yet.
+            // The turn is 0 until the creature stands.
             let side = if turn == 0.0 { aside } else { turn };
             Playing::Turn(u8::from(side < 0.0))
         } else if acts {
@@ -272,7 +280,7 @@ impl Creature {
         Ok(arrived && stands)
     }
 
-    /// True while it turns so fast that it does not stand yet.
+    /// True while the creature turns too fast to count as standing.
     pub(super) fn is_turning(&self) -> bool {
         self.state.yaw_rate.abs() >= 0.3 * self.size.pace * self.turns()
     }

@@ -1,4 +1,4 @@
-//! What a game makes a creature do: it is placed, sent somewhere, or put into a state.
+//! Orders of the game: it puts a creature somewhere, sends it to a place, forces a state of its brain, or harms it.
 
 use clamber_surface::geometry::rotation_from_axis_angle;
 use glam::DVec3;
@@ -10,27 +10,27 @@ use super::way::Way;
 use super::{Creature, CreatureConfig, CreatureState};
 use crate::error::ColossusError;
 
-/// A creature that was sent has arrived within this share of its height.
+/// Distance within which a sent creature has arrived, as a share of its height.
 const WITHIN: f64 = 0.1;
 
-/// Where a game has sent a creature.
+/// The place to which the game has sent a creature.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Errand {
     pub(super) to: DVec3,
     pub(super) has_begun: bool,
 }
 
-/// It can be sent no farther from the origin, metres.
+/// Largest coordinate of a place to which a creature can be sent, metres.
 const MOST_SENT: f64 = 1e12;
 
 impl Creature {
-    /// Puts the creature somewhere else, at rest, as if it had begun there: its home is there, too. What its brain
-    /// thinks, its clips and its wounds stay, and so does what its attacks have thrown and sent out, where that is. Its
-    /// skin stands there without motion, so that whoever is on it is left behind.
+    /// Puts the creature somewhere else, at rest, as if it had begun there; its home moves there, too. Its brain, clips
+    /// and wounds stay as they are, and its waves and shots stay where they are. The skin is placed there without
+    /// motion, so that riders are left behind.
     ///
     /// # Errors
-    /// [`ColossusError::OutOfRange`] for a place that is not finite or beyond 1e12 m, or a heading beyond 1e6, and those of
-    /// posing. Nothing is changed then.
+    /// [`ColossusError::OutOfRange`] if the place is not finite or beyond 1e12 m, or the heading is beyond 1e6 radians;
+    /// also the errors of posing the skin. The creature is unchanged then.
     pub fn put(&mut self, position: DVec3, yaw: f64) -> Result<(), ColossusError> {
         let config = CreatureConfig {
             position,
@@ -71,12 +71,14 @@ impl Creature {
         self.swap_state(&mut state)
     }
 
-    /// Sends the creature to a place, whatever its brain wants; `None` calls it back. The act that it is at ends at
-    /// once. It walks round obstacles, and may leave its arena; the height of the place does not count. Its brain still
-    /// changes states on the way, but their acts begin only at the end, of which [`CreatureEvent::Arrived`] or
-    /// [`CreatureEvent::Stopped`] tells. One that is under way may be sent elsewhere in each tick: it goes on, and looks
-    /// for a way no more often than it does anyway. Returns false, and nothing is changed, if it cannot walk, if its
-    /// brain is in a final state, or if the place is not finite or beyond 1e12 m.
+    /// Sends the creature to a place, regardless of its brain; `None` calls it back. Its current act ends at once. It
+    /// walks around obstacles and may leave its arena; the height of the place does not count. Its brain still changes
+    /// states on the way, but their acts begin only after the errand, whose end [`CreatureEvent::Arrived`] or
+    /// [`CreatureEvent::Stopped`] reports.
+    ///
+    /// A creature on its way may be sent elsewhere in each tick: it goes on, and searches for a way no more often than
+    /// otherwise. Returns false and changes nothing if the creature cannot walk, if its brain is in a final state, or
+    /// if the place is not finite or beyond 1e12 m.
     pub fn send(&mut self, to: Option<DVec3>) -> bool {
         let is_far = |place: DVec3| !place.is_finite() || place.abs().max_element() > MOST_SENT;
         let is_over = self.kind.brain().is_final(self.state.brain.current());
@@ -117,13 +119,13 @@ impl Creature {
         true
     }
 
-    /// Where it was sent; `None` once it is there, or does not get on.
+    /// The place to which the creature was sent; `None` once it has arrived or given up.
     pub fn sent_to(&self) -> Option<DVec3> {
         self.state.errand.map(|errand| errand.to)
     }
 
-    /// Puts its brain into a state, by its name in the file, as if a transition that interrupts led there. Returns
-    /// false, and nothing is changed, if there is no such state.
+    /// Puts the brain into a state, by the state's name in the file, as an interrupting transition would. Returns false
+    /// and changes nothing if there is no such state.
     pub fn enter(&mut self, state: &str) -> bool {
         let brain = self.kind.brain();
         let Some(to) = brain.find(state) else {
@@ -143,9 +145,9 @@ impl Creature {
         true
     }
 
-    /// Does damage to a weak point, open or not, by its index, as a fall onto a rock or a fire does. Returns the
-    /// damage done, which is what it had left at most; `None`, and nothing is changed, if there is no such weak point,
-    /// or for a damage that is negative or not finite.
+    /// Damages a weak point, open or not, by its index: for example by a fall onto a rock, or by fire. Returns the
+    /// damage done, which is at most the hit points that were left. Returns `None` and changes nothing if there is no
+    /// such weak point, or if the damage is negative or not finite.
     pub fn harm(&mut self, weak_point: usize, damage: f64) -> Option<f64> {
         let left = *self.state.hit_points.get(weak_point)?;
         if !(0.0..=f64::MAX).contains(&damage) {
@@ -163,14 +165,14 @@ impl Creature {
         self.state.struck.clear();
         self.state.ranged.begin();
         self.state.aim = DVec3::ZERO;
-        // An errand goes on.
+        // An errand keeps its way.
         if self.state.errand.is_none() {
             self.state.walked = Walked::default();
         }
         self.state.senses.begin_act();
     }
 
-    /// Where it goes: where it was sent, or where its act leads it.
+    /// The way that the creature goes: to the place where it was sent, or as its act leads it.
     pub(super) fn current_way(&self) -> Option<Way> {
         if let Some(errand) = self.state.errand {
             return errand.has_begun.then_some(Way {
@@ -185,7 +187,7 @@ impl Creature {
         self.way(state).filter(|_| self.state.acting == Some(state))
     }
 
-    /// Ends its errand if it is there, or does not get on.
+    /// Ends the errand if the creature has arrived or is blocked.
     pub(super) fn end_errand(&mut self, is_there: bool, is_blocked: bool) {
         let Some(errand) = self.state.errand.filter(|errand| errand.has_begun) else {
             return;
@@ -200,7 +202,7 @@ impl Creature {
         }
     }
 
-    /// It gives its errand up, if it is on one.
+    /// Gives the errand up, if there is one.
     pub(super) fn drop_errand(&mut self) {
         if let Some(errand) = self.state.errand.take() {
             let place = errand.to;

@@ -1,4 +1,4 @@
-//! Feet whose skin also follows the shin: they stand on their skin as it is posed, not as it was at rest.
+//! Feet whose skin also follows the shin: they stand on their skin as it is posed, not as it is at rest.
 
 use clamber_surface::geometry::Similarity;
 use glam::DVec3;
@@ -7,13 +7,15 @@ use super::Creature;
 use super::legs::PutLeg;
 use crate::kind::Leg;
 
-/// Rounds in which a foot is moved until its skin is on the ground, and how near it has to come, as a share of the leg's
-/// length.
+/// Most iterations in which a foot is moved until its skin is on the ground.
 const ROUNDS: u32 = 4;
+
+/// Distance from the ground at which the iterations end, as a share of the leg's length.
 const NEAR: f64 = 2e-4;
 
 impl Creature {
-    /// Moves a planted foot of the pose along the ground's normal until its lowest skin is where its sole was at rest.
+    /// Moves a planted foot of the pose along the ground's normal, until its lowest skin is at the height of the sole
+    /// at rest.
     pub(super) fn press_foot(&mut self, world: &Similarity, leg: &Leg, put: &PutLeg) {
         let blended = &leg.sole.blended;
         if blended.is_empty() || !put.is_planted {
@@ -33,7 +35,7 @@ impl Creature {
             put.ankle -= normal * (off * put.flat);
             self.bend_leg(leg, &put);
             if put.flat < 1.0 - 1e-3 {
-                // It is still coming down: once will do.
+                // The foot is still coming down: one iteration is enough.
                 break;
             }
         }

@@ -3,133 +3,135 @@ use serde::{Deserialize, Serialize};
 
 use crate::brain::StateId;
 
-/// What happened in a creature's step.
+/// Report of one step of a creature.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CreatureReport {
-    /// What happened, in order.
+    /// Events of the step, in order.
     pub events: Vec<CreatureEvent>,
-    /// Whom it struck. Give each to its climber with the next tick's input.
+    /// Blows that the creature dealt to people. Give each one to its climber with the next tick's input.
     pub blows: Vec<Blow>,
-    /// The beam of its attack, if there is one in this tick.
+    /// Beam of the creature's attack, if there is one in this tick.
     pub beam: Option<ActiveBeam>,
 }
 
 /// A beam, in world space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ActiveBeam {
-    /// The state whose attack it is of.
+    /// State whose attack sends the beam.
     pub state: StateId,
-    /// Where it goes out from.
+    /// Start of the beam.
     pub from: DVec3,
-    /// Where it ends: at its length, or at what stops it.
+    /// End of the beam: at its full length, or at the obstacle that stops it.
     pub to: DVec3,
-    /// Metres.
+    /// Radius, metres.
     pub radius: f64,
 }
 
-/// Something that a creature did, or that happened to it.
+/// An event of a creature's step: an action of the creature, or an effect on it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum CreatureEvent {
-    /// It went from one state to another.
+    /// The brain went from one state to another.
     Entered {
         /// The state that was left.
         from: StateId,
         /// The state that was entered.
         to: StateId,
     },
-    /// Its clip passed a marker.
+    /// The creature's clip passed a marker.
     Marker {
         /// The marker's name.
         name: String,
     },
-    /// It is where the game had sent it, and does what its brain wants again.
+    /// The creature has arrived where the game had sent it, and follows its brain again.
     Arrived {
-        /// Where it was sent.
+        /// The place to which the creature was sent.
         place: DVec3,
     },
-    /// It does not get on to where the game had sent it, and does what its brain wants again.
+    /// The creature has given up its errand, since it is blocked or its brain is in a final state. It follows its brain
+    /// again.
     Stopped {
-        /// Where it was sent.
+        /// The place to which the creature was sent.
         place: DVec3,
     },
     /// A foot came down.
     Plant {
-        /// The leg, by its index in the file.
+        /// Index of the leg in the file.
         leg: usize,
-        /// Where its ball is, in world space.
+        /// Position of the ball of the foot, in world space.
         place: DVec3,
     },
-    /// An attack threw something: [`Creature::shots`](super::Creature::shots) has it as long as it flies.
+    /// An attack released a shot: [`Creature::shots`](super::Creature::shots) lists it while it flies.
     Threw {
-        /// The state whose attack it is of.
+        /// State whose attack released the shot.
         state: StateId,
-        /// Its number.
+        /// Number of the shot.
         number: u64,
-        /// From where, in world space.
+        /// Start of the shot, in world space.
         place: DVec3,
-        /// Metres a second.
+        /// Initial velocity, metres a second.
         velocity: DVec3,
     },
-    /// What it threw has struck somebody, or met terrain or another creature. No event tells of a shot that ends
-    /// otherwise: since its time is over, it is too far away, or there are too many.
+    /// A shot struck a person, or met terrain or another creature. There is no event for a shot that ends because its
+    /// time is over, it is too far away, or there are too many shots.
     Burst {
-        /// The state whose attack it was of.
+        /// State whose attack released the shot.
         state: StateId,
-        /// Its number.
+        /// Number of the shot.
         number: u64,
-        /// Where, in world space.
+        /// Position of the shot's centre, in world space.
         place: DVec3,
     },
-    /// A wave goes out: [`Creature::waves`](super::Creature::waves) has it as long as it spreads.
+    /// An attack sent out a wave: [`Creature::waves`](super::Creature::waves) lists it while it spreads.
     Wave {
-        /// The state whose attack it is of.
+        /// State whose attack sent out the wave.
         state: StateId,
-        /// From where, in world space.
+        /// Origin of the wave, in world space.
         place: DVec3,
-        /// How far, metres.
+        /// Final radius, metres.
         radius: f64,
     },
-    /// A weak point was hurt.
+    /// A weak point took damage.
     Hurt {
-        /// The weak point, by its index.
+        /// Index of the weak point.
         weak_point: usize,
         /// The damage done.
         damage: f64,
-        /// True if it is used up by that.
+        /// True if the weak point has no hit points left.
         used_up: bool,
     },
-    /// A plate took a blow too many.
+    /// A plate staggered under a blow.
     Staggered {
-        /// The plate, by its index.
+        /// Index of the plate.
         plate: usize,
-        /// True if it breaks off: its triangles are hidden from queries, and people on them fall.
+        /// True if the plate breaks off: its triangles are hidden from queries, and people on them fall.
         breaks: bool,
     },
 }
 
-/// A blow that a limb, a wave, a shot or a beam dealt somebody.
+/// A blow that a limb, a wave, a shot or a beam dealt to a person.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Blow {
-    /// Whom: [`Person::id`](super::Person::id).
+    /// [`Person::id`](super::Person::id) of the person.
     pub person: u64,
-    /// Change of velocity, metres a second: along the motion of what struck; of a wave, away from where it began and up.
+    /// Change of the person's velocity, metres a second: along the motion of the limb or the shot, along the beam, or
+    /// up and away from the origin of the wave.
     pub velocity: DVec3,
-    /// Hit points, 0 to 1.
+    /// Hit points that the blow costs, 0 to 1.
     pub damage: f64,
-    /// Where it struck, in world space.
+    /// Point of impact, in world space.
     pub place: DVec3,
-    /// The state whose attack it was.
+    /// State whose attack dealt the blow.
     pub state: StateId,
 }
 
-/// Where an attack is.
+/// Phase of an attack.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum AttackPhase {
-    /// The limb is raised: the time to get away.
+    /// The limb is raised: time to get away.
     WindUp,
-    /// The limb hurts whom it touches.
+    /// The limb hurts people that it touches.
     Active,
-    /// The limb goes back, and hurts nobody. What the attack has thrown or sent out still does.
+    /// The limb goes back, and hurts nobody. Waves and shots of the attack still do.
     Recovery,
 }

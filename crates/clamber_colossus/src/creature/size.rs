@@ -1,24 +1,25 @@
-//! How large a creature is, and how fast things of its size are.
+//! The size of a creature, and the durations and rates that follow from it.
 
 use super::{Creature, CreatureConfig};
 use crate::kind::CreatureKind;
 
-/// Times and angular accelerations of this module are those of a creature of this height, metres: the giant on which they
-/// were tuned.
+/// Reference height for the durations and angular accelerations in this module, metres. They were tuned on a giant of
+/// this height.
 pub(super) const GIANT: f64 = 41.0;
 
-/// How large a creature is, and how fast.
+/// Size of a creature, and how its size scales rates and durations.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Size {
     /// Metres per unit of the model.
     pub(super) scale: f64,
-    /// Metres.
+    /// Height at rest, metres.
     pub(super) height: f64,
-    /// Half its width on the ground, metres.
+    /// Half the width of the body on the ground, metres.
     pub(super) girth: f64,
-    /// How fast its clips are played.
+    /// Playback rate of the clips.
     pub(super) rate: f64,
-    /// How long things take that need some time for a giant of [`GIANT`] metres, as a share of that: by Froude's law.
+    /// Factor on durations that are given for a creature of [`GIANT`] height: the square root of the height ratio, by
+    /// Froude's law.
     pub(super) pace: f64,
 }
 
@@ -29,7 +30,7 @@ impl Size {
         let scale = unit * config.scale;
         let height = kind.height() * scale;
         let made_for = config.made_for.or(body.made_for);
-        // A skin without height has no size to go by.
+        // A skin without height cannot be compared with `made_for`.
         let known = made_for.filter(|_| height > 0.0);
         Self {
             scale,
@@ -42,17 +43,17 @@ impl Size {
 }
 
 impl Creature {
-    /// Metres per unit of its model.
+    /// Metres per unit of the creature's model.
     pub fn scale(&self) -> f64 {
         self.size.scale
     }
 
-    /// Its height at rest, metres.
+    /// Height of the creature at rest, metres.
     pub fn height(&self) -> f64 {
         self.size.height
     }
 
-    /// How fast its clips are played: 1 as they are in the file, less for a creature that is larger than they were made
+    /// Playback rate of the creature's clips: 1 as in the file, less if the creature is larger than the clips were made
     /// for ([`BodyFile::made_for`](crate::BodyFile::made_for)).
     pub fn rate(&self) -> f64 {
         self.size.rate

@@ -17,39 +17,42 @@ use crate::feet::Foot;
 use crate::kind::CreatureKind;
 use crate::senses::Senses;
 
-/// All that changes in a creature: a plain value, to be saved and restored.
+/// Everything of a creature that has to be saved: a plain value.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CreatureState {
-    /// The kind of whose creature it is known to be a state: those that were read are checked.
+    /// The kind of creature for which this state is known to be valid. A state that was deserialised is checked
+    /// instead.
     #[serde(skip)]
     pub(super) sound: Sound,
     pub(super) brain: BrainState,
     pub(super) senses: Senses,
     pub(super) animator: Animator,
     pub(super) playing: Playing,
-    /// The state whose act has begun; another one than the brain's while the creature still comes to a stand.
+    /// State whose act has begun. It differs from the brain's state while the creature still comes to a stop.
     pub(super) acting: Option<StateId>,
-    /// Where the game has sent it: acts wait meanwhile.
+    /// Where the game has sent the creature. Acts wait for the end of the errand.
     pub(super) errand: Option<Errand>,
-    /// True if it stops abruptly.
+    /// True while the creature stops abruptly.
     pub(super) halts: bool,
-    /// Where the model's origin is. Its height follows the ground.
+    /// Position of the model's origin, in world space. Its height follows the ground.
     pub(super) position: DVec3,
+    /// Vertical velocity of the origin from following the ground, metres a second.
     pub(super) climb: f64,
-    /// Heights of the ground along its heading, from behind to ahead, and to the left and right; one is looked for in
-    /// each tick.
+    /// Heights of the ground: along the heading, from behind to ahead, then to the left and to the right. Each tick
+    /// measures one of them.
     pub(super) ground: [f64; GROUND],
-    /// The point of the ground that it goes with, if that moves.
+    /// The remembered point of the ground, whose motion carries the creature.
     pub(super) stands_on: Option<GroundPoint>,
-    /// How that has moved it in the last tick.
+    /// How the ground carried the creature in the last tick.
     pub(super) carried: Drift,
-    /// What it knows of the way that it is on.
+    /// Knowledge about the current way.
     pub(super) walked: Walked,
-    /// How steep the ground ahead is, as a tangent.
+    /// Steepness of the ground ahead, as a tangent.
     pub(super) steepness: f64,
     pub(super) yaw: f64,
-    /// Along its heading, metres a second, and radians a second to the left.
+    /// Speed along the heading, metres a second.
     pub(super) speed: f64,
+    /// Radians a second, positive to the left.
     pub(super) yaw_rate: f64,
     pub(super) feet: Vec<Foot>,
     pub(super) hips: Hips,
@@ -57,41 +60,42 @@ pub struct CreatureState {
     pub(super) gaze: Spring<DVec3>,
     pub(super) gaze_weight: Spring<f64>,
     pub(super) home: DVec3,
-    /// Where it goes on patrol.
+    /// Place to which the creature walks on patrol.
     pub(super) patrol: DVec3,
-    /// Where prey was seen last, and who it was.
+    /// Id of the last visible prey, and where it was seen last.
     pub(super) prey: Option<(u64, DVec3)>,
     pub(super) unseen: u32,
     pub(super) noise: DVec3,
     pub(super) rides: Vec<Ride>,
-    /// Distances to walls around it, one looked for in each tick.
+    /// Distances to walls around the creature, metres. The directions are measured in turn.
     pub(super) walls: [f32; WALLS],
     /// Hit points left of each weak point.
     pub(super) hit_points: Vec<f64>,
-    /// Of each plate, what it has taken and how often it still staggers.
+    /// State of each plate.
     pub(super) plates: Vec<PlateState>,
     /// Plates that staggered since the last step.
     pub(super) staggered: u32,
-    /// What happened since the last step, for the next report.
+    /// Events since the last step, for the next report.
     pub(super) told: Vec<CreatureEvent>,
     /// Wounds since the last step.
     pub(super) wounds: Vec<Felt>,
-    /// Whom the attack has struck already: by its limb, its beam, or the wave of its limb.
+    /// Ids of the people that the current attack has already struck: by its limb, its beam, or the wave of its limb.
     pub(super) struck: Vec<u64>,
-    /// From where the clip strikes to where this attack does, in world space.
+    /// Vector from the place where the clip strikes to the place where this attack does, in world space.
     pub(super) aim: DVec3,
     pub(super) lean: Lean,
     pub(super) ranged: Ranged,
     /// The pose of the last step, with feet and head.
     pub(super) pose: Pose,
-    /// Markers that were passed in the last step: clips, and indices in them.
+    /// Markers that the clips passed in the last step: index of the clip, and of the marker in the clip.
     pub(super) passed: Vec<[u32; 2]>,
-    /// Ticks for which it has been asleep and still.
+    /// Ticks for which the creature has been asleep without moving.
     pub(super) sleeps: u32,
     pub(super) ticks: u64,
 }
 
-/// The number of a kind, or 0. It is not part of the state: whoever compares or saves that does not see it.
+/// Number of a kind, or 0 if the state is unchecked. It is not part of the state: comparing and saving a state ignore
+/// it.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Sound(pub(super) u64);
 
@@ -101,35 +105,37 @@ impl PartialEq for Sound {
     }
 }
 
-/// A creature is no further from the origin than this, metres, and nothing of it moves faster than this, metres a second,
-/// in a state that is restored: what was changed to more could not be stepped. It is twice as far as one can be put, so that
-/// it can walk on from there.
+/// Largest coordinate in a restored state, metres. A creature farther away could not be stepped. It is twice the
+/// largest coordinate of a place where a creature can be put, so that the creature can walk on from there.
 pub(super) const FARTHEST: f64 = 2e12;
+
+/// Largest speed in a restored state, metres a second. A faster creature could not be stepped. It also bounds the
+/// heading, rates of turning and steepness.
 const FASTEST: f64 = 1e6;
 
-/// A way has no more corners.
+/// Most corners of a way in a restored state.
 const MOST_CORNERS: usize = 512;
 
-/// Stands for no wall in reach: JSON has no infinity.
+/// Distance that stands for no wall in reach, because JSON has no infinity.
 pub(super) const NO_WALL: f32 = f32::MAX;
 
-/// Stands for no ground below: JSON has no infinity.
+/// Height that stands for no ground below, because JSON has no infinity.
 pub(super) const NO_GROUND: f64 = f64::MAX;
 
-/// Places at which the ground is looked for.
+/// Number of places where the ground height is measured.
 pub(super) const GROUND: usize = 9;
 
-/// Directions in which walls are looked for.
+/// Number of directions in which walls are measured.
 pub(super) const WALLS: usize = 8;
 
-/// What the creature plays.
+/// The clip that the creature plays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) enum Playing {
-    /// Stands.
+    /// The clip of standing.
     Idle,
-    /// Walks.
+    /// The clip of walking.
     Walk,
-    /// Turns to the left (0) or right (1).
+    /// The clip of turning to the left (0) or to the right (1).
     Turn(u8),
     /// The clip of a state's act.
     Act(StateId),
@@ -138,76 +144,81 @@ pub(super) enum Playing {
 /// A point of the ground.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct GroundPoint {
-    /// The obstacle, by its place among the terrain of the last step.
+    /// Index of the obstacle in the terrain of the last step.
     pub(super) obstacle: u32,
-    /// How many obstacles there were.
+    /// Number of obstacles in that terrain.
     pub(super) among: u32,
     pub(super) material: MaterialPoint,
-    /// Where it was at the end of the last step, in world space.
+    /// Position of the point at the end of the last step, in world space.
     pub(super) at: DVec3,
 }
 
-/// How moving ground takes a creature along.
+/// Velocity with which moving ground carries a creature.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Drift {
     /// Metres a second, in world space.
     pub(super) velocity: DVec3,
-    /// Radians a second to the left.
+    /// Radians a second, positive to the left.
     pub(super) yaw_rate: f64,
 }
 
-/// What a creature knows of the way that it is on.
+/// Knowledge of a creature about its current way.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Walked {
-    /// Places on the way to its goal, the next one first; none if it goes straight there.
+    /// Corners on the way to the goal, the next one first; empty if the way is straight.
     pub(super) corners: Vec<DVec3>,
-    /// Ticks until it looks for them anew.
+    /// Ticks until the next search for corners.
     pub(super) ticks_left: u32,
-    /// How often it found no way, one after the other.
+    /// Number of searches in a row that found no way.
     pub(super) failed: u32,
-    /// True if the following was looked for.
+    /// True if `ahead`, `turn` and `faces` were measured.
     pub(super) is_known: bool,
-    /// How far ahead its way is free, metres; much further than it looks if it is free as far as that.
+    /// Free distance ahead, metres. If the way is free as far as the creature looks, it is a much larger number.
     pub(super) ahead: f64,
-    /// How far it may turn, radians: to the side that its sign tells, positive to the left.
+    /// Free angle to turn, radians; its sign is the side, positive to the left.
     pub(super) turn: f64,
-    /// True if its goal was ahead when it looked last.
+    /// True if the goal was ahead at the last check.
     pub(super) faces: bool,
-    /// To which side it turns the long way round, since the short one is blocked: -1 to the right, 1 to the left, or 0.
+    /// Side to which the creature turns the long way round because the short way is blocked: -1 right, 1 left, 0
+    /// neither.
     pub(super) round: i8,
-    /// True if it has turned the long way round since it began to turn.
+    /// True if the creature has chosen the long way round since it began to turn.
     pub(super) has_gone_round: bool,
-    /// True if it has looked for room for the whole of its turn since it began to turn, and if it has gone back since.
+    /// True if the creature has checked the room for the whole turn since it began to turn.
     pub(super) has_looked_round: bool,
+    /// True if the creature has begun a retreat since it began to turn.
     pub(super) has_gone_back: bool,
-    /// How far it still goes back, since it could neither turn nor go on, and how far it has gone so, metres.
+    /// How far the creature still walks backwards, metres.
     pub(super) back: f64,
+    /// Length of the retreat so far, metres.
     pub(super) gone_back: f64,
-    /// Whether it looks for ways on which it can turn everywhere.
+    /// Whether the creature looks for ways on which it can turn everywhere.
     pub(super) wide: Wide,
-    /// Where it did not get on, how often it stood before something about there, and how often it went back.
+    /// Place where the creature got stuck.
     pub(super) stuck_at: DVec3,
+    /// Number of stops before an obstacle near that place.
     pub(super) stops: u8,
+    /// Number of retreats from near that place.
     pub(super) retreats: u8,
-    /// True if it does not get on.
+    /// True if the creature cannot get on.
     pub(super) is_blocked: bool,
-    /// Ticks since it began its act or its errand.
+    /// Ticks since the act or the errand began.
     pub(super) tried: u32,
 }
 
-/// Whether a creature looks for ways on which it can turn everywhere, as it does once it got stuck on one that is just wide
-/// enough to walk.
+/// Whether a creature looks for ways on which it can turn everywhere. It does so once it got stuck on a way that is
+/// only wide enough to walk.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) enum Wide {
     #[default]
     No,
     Looks,
-    /// There was none.
+    /// No such way was found.
     Failed,
 }
 
 impl Walked {
-    /// True if all its numbers are some that a creature reaches.
+    /// True if all numbers are within the range that a creature reaches.
     fn is_within(&self, most: f64) -> bool {
         let places = self.corners.iter().flat_map(|corner| corner.to_array());
         let numbers = [self.ahead, self.turn, self.back, self.gone_back];
@@ -217,35 +228,35 @@ impl Walked {
     }
 }
 
-/// How far a neck or an arm leans out to whom it strikes.
+/// How far a neck or an arm leans towards the target that it strikes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Lean {
-    /// From where the clip has its end, in world space.
+    /// Offset from the end of the limb in the clip, in world space.
     pub(super) spring: Spring<DVec3>,
-    /// The state whose attack leans; `None` if nothing does.
+    /// State whose attack leans; `None` if no limb leans.
     pub(super) with: Option<StateId>,
 }
 
-/// Somebody's time on the creature.
+/// The time that a person has been on the creature.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Ride {
     pub(super) person: u64,
     pub(super) ticks: u32,
     pub(super) joint: u32,
-    /// Ticks since it was on the creature last: a short leap does not end a ride.
+    /// Ticks since the person was last on the creature. A short leap does not end a ride.
     pub(super) off: u32,
 }
 
-/// A plate of a creature.
+/// State of a plate.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct PlateState {
-    /// Damage since it staggered last.
+    /// Damage since the last stagger.
     pub(super) strain: f64,
-    /// How often it still staggers; 0 if it is broken.
+    /// Number of staggers until the plate breaks; 0 if it is broken.
     pub(super) left: u32,
 }
 
-/// What struck it, and where.
+/// A hit on the creature: the joint of the skin, and the damage done.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Felt {
     pub(super) joint: u32,
@@ -268,7 +279,7 @@ impl CreatureState {
             });
         }
         let mut animator = Animator::new(layers);
-        // Cannot fail for a finite rate.
+        // Cannot fail, since the rate is finite.
         let _ = animator.set_rate(rate);
         Self {
             sound: Sound(kind.number()),
@@ -328,9 +339,10 @@ impl CreatureState {
         }
     }
 
-    /// This state of a creature of the kind `from`, for one of the kind `to`, which has the same skeleton and another
-    /// brain. All that it does goes on. States and moods are found by their names, and so are weak points and plates: new
-    /// ones are unhurt. With another number of legs its feet begin anew. `None` if this state is not of `from`.
+    /// Converts this state of a creature of the kind `from` for a creature of the kind `to`, which has the same
+    /// skeleton and another brain. The creature goes on with everything that it does. States, moods, weak points and
+    /// plates are matched by name, and new weak points and plates are unhurt. If the number of legs differs, all feet
+    /// start again. `None` if this state is not of `from`.
     pub fn carry_over(&self, from: &CreatureKind, to: &CreatureKind) -> Option<Self> {
         let brain = to.brain().carry_over(from.brain(), &self.brain)?;
         let same = |state: StateId| {
@@ -388,7 +400,7 @@ impl CreatureState {
                 to.brain().no_senses()
             },
             told: {
-                // States had other numbers.
+                // The ids of states differ between brains.
                 let mut told = self.told.clone();
                 told.retain(|event| !matches!(event, CreatureEvent::Entered { .. }));
                 told
@@ -397,42 +409,42 @@ impl CreatureState {
         })
     }
 
-    /// The brain's state.
+    /// State of the brain.
     pub fn brain(&self) -> &BrainState {
         &self.brain
     }
 
-    /// What it sensed last.
+    /// Senses of the last step.
     pub fn senses(&self) -> &Senses {
         &self.senses
     }
 
-    /// Its clips, as they play: without feet on the ground and without a gaze.
+    /// The clips as they play, before the corrections of feet and gaze.
     pub fn animator(&self) -> &Animator {
         &self.animator
     }
 
-    /// The state that it is in: the innermost one.
+    /// The current state of the brain: the innermost one.
     pub fn current(&self) -> StateId {
         self.brain.current()
     }
 
-    /// Where its model's origin is, in world space.
+    /// Position of the model's origin, in world space.
     pub fn position(&self) -> DVec3 {
         self.position
     }
 
-    /// Its heading, radians about Y.
+    /// Heading, radians about Y.
     pub fn yaw(&self) -> f64 {
         self.yaw
     }
 
-    /// Speed along its heading, metres a second; negative while it goes back.
+    /// Speed along the heading, metres a second; negative during a retreat.
     pub fn speed(&self) -> f64 {
         self.speed
     }
 
-    /// True if a foot stands, by its index in the file.
+    /// True if a foot stands, by the index of the leg in the file.
     pub fn is_planted(&self, leg: usize) -> bool {
         self.feet.get(leg).is_some_and(Foot::is_planted)
     }
@@ -442,12 +454,12 @@ impl CreatureState {
         &self.hit_points
     }
 
-    /// How often a plate still staggers before it breaks; 0 if it is broken, or if there is none.
+    /// Number of staggers until a plate breaks; 0 if it is broken or does not exist.
     pub fn plate(&self, index: usize) -> u32 {
         self.plates.get(index).map_or(0, |plate| plate.left)
     }
 
-    /// Ticks since it began, or was put somewhere.
+    /// Ticks since the creature was created or last put somewhere.
     pub fn ticks(&self) -> u64 {
         self.ticks
     }
@@ -460,14 +472,14 @@ impl CreatureState {
         }
     }
 
-    /// Its heading as a unit vector.
+    /// The heading as a unit vector.
     pub(super) fn heading(&self) -> DVec3 {
         let (sin, cos) = libm::sincos(self.yaw);
         DVec3::new(sin, 0.0, cos)
     }
 
-    /// Refuses what a creature of this kind cannot be in. What one of it has been in needs no check, which costs more than
-    /// all else of going back to it.
+    /// Refuses a state that a creature of this kind cannot be in. A state that comes from a creature of this kind is
+    /// not checked: the check costs more than the rest of a restore.
     pub(super) fn check(&self, kind: &CreatureKind) -> Result<(), ColossusError> {
         if self.sound.0 == kind.number() {
             return Ok(());
@@ -584,7 +596,7 @@ impl CreatureState {
                 "what is left of its last clip is no number that a pose has",
             ));
         }
-        // Clips that cannot pose it now never can.
+        // The clips must be able to pose the creature, and to go on.
         let mut pose = Pose::default();
         let mut buffers = PoseBuffers::default();
         self.animator
@@ -596,8 +608,8 @@ impl CreatureState {
     }
 }
 
-/// What parts of the same names had with another brain, as far as they can have it now, or what they begin with. Names
-/// need not be unique: the second of a name is the second of it there.
+/// Carries values over to the parts with the same names, limited by `limit`. Parts without a namesake get their fresh
+/// value. Names need not be unique: the second part of a name matches the second part of that name.
 fn kept<T, S: Copy>(
     (from, to): (&[T], &[T]),
     name: impl Fn(&T) -> &str,

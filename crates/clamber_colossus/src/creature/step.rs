@@ -1,4 +1,4 @@
-//! One step of a creature, in the order in which it happens.
+//! One step of a creature, in the order of its phases.
 
 use clamber_animation::rig::Playback;
 use clamber_animation::{Animator, ClipId, LayerKind};
@@ -12,22 +12,24 @@ use crate::brain::{Act, StateId};
 use crate::error::ColossusError;
 use crate::feet::Ground;
 
-/// An act of another kind begins when the creature has come to a stand: below this share of its walking speed.
+/// Share of the walking speed below which the creature has come to a stand, so that an act of another kind can begin.
 const STANDS: f64 = 0.12;
 
-/// Seconds that a giant needs to come to rest when it falls asleep.
+/// Time that a creature of `GIANT` height needs to come to rest when it falls asleep, seconds.
 const SETTLES: f64 = 0.8;
 
-/// It waits longer than that, but no longer than this, for its feet to stand and for its head to be less than the second
-/// of its way aside.
+/// Longest time that a creature of `GIANT` height waits for its feet to stand and its gaze to end when it falls asleep,
+/// seconds.
 const MOST_SETTLES: f64 = 16.0;
+
+/// Weight of the gaze below which the head is at rest.
 const AWAY: f64 = 0.01;
 
 impl Creature {
-    /// Lets a tick pass, of the length that its brain was made for: [`Creature::step_itself`], then
-    /// [`Creature::step_from_afar`]. Where several creatures are, let all of them do the first before any does the second:
-    /// then what one of them has thrown meets the others where they are in this tick. Step creatures before the climbers
-    /// on them.
+    /// Advances the creature by one tick of its brain: [`Creature::step_itself`], then [`Creature::step_from_afar`].
+    ///
+    /// With several creatures, call the first function for all of them before the second one for any. Then the shots of
+    /// one creature meet the others where they are in this tick. Step creatures before the climbers on them.
     ///
     /// # Errors
     /// As [`Creature::step_itself`].
@@ -36,14 +38,16 @@ impl Creature {
         Ok(self.step_from_afar(around))
     }
 
-    /// Lets a tick pass for the creature, but not for what its attacks have thrown and sent out.
+    /// Advances the creature by one tick, without its waves, shots and beam.
     ///
-    /// In this order: ground that has moved carries it; senses of what was around it at the end of the last tick; the brain;
-    /// the act that it chose begins or goes on; clips; the place in the world; the pose, with feet on the ground and the
-    /// head turned; the skin; whom limbs strike. A creature that is asleep only feels and thinks.
+    /// The order is: moving ground carries the creature; it senses its surroundings at the end of the last tick; the
+    /// brain takes its step; the act of the brain's state begins or goes on; the clips advance; the creature moves; it
+    /// is posed, with feet on the ground and the head turned; the skin follows; limbs strike people. For a creature
+    /// that sleeps and is still, the step ends after the brain.
     ///
     /// # Errors
-    /// [`ColossusError::Surface`] if the skin cannot be posed, for example since the creature has left the range of numbers.
+    /// [`ColossusError::Surface`] if the skin cannot be posed, for example because the creature has left the range of
+    /// numbers.
     pub fn step_itself(&mut self, around: &Surroundings<'_>) -> Result<(), ColossusError> {
         let dt = self.kind.brain().tick();
         self.report.events.clear();
@@ -67,9 +71,11 @@ impl Creature {
         Ok(())
     }
 
-    /// Lets the same tick pass for what its attacks have thrown and sent out, which goes on and strikes, whatever the
-    /// creature does; then come the beam, and what is thrown and sent out in this tick. To be called once after each
-    /// [`Creature::step_itself`]; the other creatures in `around` have to be where they are at the end of this tick.
+    /// Advances the creature's waves and shots by the same tick; they strike people even if the creature does something
+    /// else by now. Then the current attack's beam strikes, and its new waves and shots start.
+    ///
+    /// Call it once after each [`Creature::step_itself`]. The other creatures in `around` have to be where they are at
+    /// the end of this tick.
     pub fn step_from_afar(&mut self, around: &Surroundings<'_>) -> &CreatureReport {
         let dt = self.kind.brain().tick();
         self.go_on_from_afar(around, dt);
@@ -91,7 +97,7 @@ impl Creature {
         index.is_some()
     }
 
-    /// The brain takes its step, with the markers that the clips passed in the last one.
+    /// Steps the brain, with the markers that the clips passed in the last tick.
     fn think(&mut self) {
         let kind = &self.kind;
         let passed: Vec<&str> = self
@@ -130,8 +136,8 @@ impl Creature {
         }
     }
 
-    /// Begins the current state's act, as soon as the creature stands, or goes on with it. An act that interrupts
-    /// another one begins at once: giants may stop abruptly.
+    /// Begins the act of the current state once the creature stands, or continues it. A walk begins at once, and so
+    /// does an act after an interrupting transition, for which the creature stops abruptly.
     fn act(&mut self, around: &Surroundings<'_>) -> Result<(), ColossusError> {
         if let Some(errand) = &mut self.state.errand {
             errand.has_begun = true;
@@ -147,13 +153,13 @@ impl Creature {
         let walks = matches!(act, Some(Act::Walk(_)));
         let speed = kind.gait().map_or(0.0, |gait| self.full_speed(gait));
         let is_moving = self.state.speed.abs() > STANDS * speed;
-        // An attack aims once, and would strike elsewhere if it turned on.
+        // An attack aims once, and would strike elsewhere if the creature turned on.
         let turns = matches!(act, Some(Act::Attack(_))) && self.is_turning();
         if !walks && !self.state.halts && (is_moving || turns) {
             return Ok(());
         }
         self.state.acting = Some(state);
-        // What is left of a walk ends under the act.
+        // The creature stops abruptly while the act already plays.
         self.state.halts = !walks && self.state.speed != 0.0;
         self.state.struck.clear();
         self.state.ranged.begin();
@@ -167,7 +173,7 @@ impl Creature {
             Some(Act::Sleep) => self.fall_asleep(),
             None => self.play(Playing::Idle, 1.0, kind.brain().fade(state))?,
         }
-        // What goes to another clip fades from how it stood still.
+        // Clips that sleep has stopped go on only now, so that the fade to the new clip begins without motion.
         let is_way = matches!(act, Some(Act::Walk(_) | Act::Turn(_))) && kind.gait().is_some();
         if !is_way && !matches!(act, Some(Act::Sleep)) {
             self.wake();
@@ -175,7 +181,7 @@ impl Creature {
         Ok(())
     }
 
-    /// True if its act is to sleep.
+    /// True if the current act is to sleep.
     pub(super) fn is_put_to_sleep(&self) -> bool {
         let act = self
             .state
@@ -184,7 +190,7 @@ impl Creature {
         matches!(act, Some(Act::Sleep))
     }
 
-    /// Begins an attack, unless anything of it would go through rock or another creature.
+    /// Begins an attack, unless a part of the creature would go through rock or another creature in it.
     fn begin_attack(
         &mut self,
         state: StateId,
@@ -205,7 +211,7 @@ impl Creature {
         self.begin(state, Playback::Clamp)
     }
 
-    /// True if it is asleep, and so still that nothing of it has to be posed.
+    /// True if the creature is asleep, and so still that nothing has to be posed.
     fn sleeps(&mut self, is_carried: bool) -> Result<bool, ColossusError> {
         let state = self.state.brain.current();
         let sleeps = self.is_put_to_sleep() && self.state.acting == Some(state);
@@ -226,7 +232,7 @@ impl Creature {
         if since <= SETTLES || since <= MOST_SETTLES && !is_quiet {
             return Ok(false);
         }
-        // From the second still tick on it is known to be still.
+        // The first still tick poses the skin again, so that it has no motion.
         if self.is_still && !is_carried {
             return Ok(true);
         }
@@ -251,14 +257,14 @@ impl Creature {
         )
     }
 
-    /// Clips stop where they are.
+    /// Stops the clips at their current times.
     pub(super) fn fall_asleep(&mut self) {
         for layer in self.state.animator.layers_mut() {
             layer.speed = 0.0;
         }
     }
 
-    /// Clips that have stopped go on.
+    /// Lets stopped clips go on.
     pub(super) fn wake(&mut self) {
         for layer in self.state.animator.layers_mut() {
             if layer.speed == 0.0 {
@@ -267,7 +273,7 @@ impl Creature {
         }
     }
 
-    /// Plays a clip of the gait, unless it is being played.
+    /// Plays a clip of the gait, unless it already plays.
     pub(super) fn play(
         &mut self,
         playing: Playing,
@@ -282,7 +288,7 @@ impl Creature {
             (Playing::Turn(side), Some(turn)) => turn[usize::from(side.min(1))],
             _ => gait.idle,
         };
-        // With another brain it may still play what that does not have.
+        // After a change of the brain, a clip that is not in this gait may still play.
         let layer = self.state.animator.layers().first();
         let is_played =
             matches!(playing, Playing::Act(_)) || layer.is_some_and(|layer| layer.clip == clip);
@@ -300,7 +306,7 @@ impl Creature {
         )
     }
 
-    /// Poses the creature where it is, without motion.
+    /// Poses the creature at its place, without motion.
     pub(super) fn place(&mut self) -> Result<(), ColossusError> {
         let (skeleton, pose) = (self.kind.skeleton(), &self.state.pose);
         skeleton.palette_into(pose, &mut self.palette)?;
@@ -336,7 +342,7 @@ impl Creature {
 
 use super::CreatureReport;
 
-/// Plays a clip on the lowest layer from a time on, at a speed: a fade has to know how fast what it goes to moves.
+/// Plays a clip on the lowest layer from a time on, at a speed. The fade has to know the speed of the new clip.
 fn change(
     animator: &mut Animator,
     kind: &crate::kind::CreatureKind,
@@ -345,7 +351,7 @@ fn change(
     fade: f64,
 ) -> Result<(), ColossusError> {
     animator.change(kind.clips(), fade, |layers| {
-        // It holds its breath while it does something once.
+        // The breathing layer is off while a clip plays once.
         let breath = if playback == Playback::Loop { 1.0 } else { 0.0 };
         for layer in layers.iter_mut() {
             layer.speed = 1.0;

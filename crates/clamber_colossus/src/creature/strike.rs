@@ -1,4 +1,4 @@
-//! Whom an attack strikes: whoever the skin of its limb touches while it hurts.
+//! Strikes with limbs: an attack strikes people that the skin of its limb touches in the active phase.
 
 use clamber_animation::rig::JointId;
 use clamber_surface::geometry::{Similarity, WorldCapsule};
@@ -14,20 +14,25 @@ use super::{Creature, Person, Surroundings};
 use crate::brain::{Act, StateId};
 use crate::kind::Strike;
 
-/// A limb strikes whoever is this close to its skin, metres: a climber that it pushes stays at about that distance.
+/// Distance from the skin within which a limb strikes, metres. A climber that the limb pushes stays at about this
+/// distance.
 const REACH: f64 = 0.05;
 
-/// A neck has half of its way to whom it bites behind it after this share of the time until it hurts, which is no less
-/// than `QUICKEST` seconds of the clip: nine tenths are behind it then. A giant's goes back in `RETURNS` seconds.
+/// Half time in which a neck or an arm leans towards its target, as a share of the time until the active phase. More
+/// than nine tenths of the lean are done by then.
 const SETTLED: f64 = 0.3;
+
+/// Lower bound for that time, seconds of the clip.
 const QUICKEST: f64 = 0.15;
+
+/// Half time in which a neck or an arm leans back, seconds for a creature of `GIANT` height.
 const RETURNS: f64 = 0.4;
 
-/// It is back when it is nearer than this, in heights of the creature.
+/// A lean is over when its offset is below this, in heights of the creature, and its speed is below this a second.
 const LEAST: f64 = 1e-4;
 
 impl Creature {
-    /// The attack that it is at, and where in it; `None` while it does not attack.
+    /// State and phase of the current attack; `None` while the creature does not attack.
     pub fn attack(&self) -> Option<(StateId, AttackPhase)> {
         let Playing::Act(state) = self.state.playing else {
             return None;
@@ -35,7 +40,7 @@ impl Creature {
         let Some(Act::Attack(_)) = self.kind.brain().act(state) else {
             return None;
         };
-        // Its clip may still be seen when the creature does something else by now.
+        // The clip may still play when the creature already does something else.
         if self.state.acting != Some(state) {
             return None;
         }
@@ -52,7 +57,8 @@ impl Creature {
         Some((state, phase))
     }
 
-    /// Its attack has struck somebody, whom no other part of it strikes again: nor the wave that its limb has sent out.
+    /// Records that the attack has struck a person. No other part of it strikes this person again, nor does the wave
+    /// that its limb has sent out.
     pub(super) fn mark_struck(&mut self, person: u64) {
         self.state.struck.push(person);
         self.state.ranged.mark_struck(person);
@@ -95,15 +101,15 @@ impl Creature {
         }
     }
 
-    /// True if no rock and no other creature is between somebody's skin and the joint that moves what touches it, nor
-    /// between that and the body: along the limb, from joint to joint.
+    /// True if no rock and no other creature is between a person and the limb: from the person to the joint of the skin
+    /// that touches it, and from there along the limb, from joint to joint.
     fn reaches(&self, hit: &SweepContact, person: &Person, around: &Surroundings<'_>) -> bool {
         let Some(joint) = self.joint_at(&hit.contact.material) else {
             return true;
         };
         let joints = self.kind.skeleton().joints();
         let parent = |joint: &JointId| joints.get(joint.0 as usize)?.parent;
-        // A root may be anywhere.
+        // The root is left out, since it may be anywhere.
         let limb = std::iter::successors(Some(joint), parent);
         let limb = limb.filter(|joint| parent(joint).is_some());
         let world = self.surface.world_from_model();
@@ -128,7 +134,7 @@ impl Creature {
         self.surface.mesh().joint_of(triangle)
     }
 
-    /// The first touch of the limb's skin with a body in this tick.
+    /// First contact of the limb's skin with a body in this tick.
     fn touch(&self, strike: &Strike, body: &WorldCapsule) -> Option<SweepContact> {
         let (center, radius) = self.surface.bounding_ball()?;
         let middle = 0.5 * (body.ends[0] + body.ends[1]);
@@ -145,7 +151,7 @@ impl Creature {
             .cast_capsule_where(body, still, TargetMotion::Moving, &mut is_limb)
     }
 
-    /// Brings a neck or an arm to where its attack aims, until it stops to hurt, and back.
+    /// Leans a neck or an arm towards the target of its attack until the active phase ends, then back.
     pub(super) fn lean(&mut self, world: &Similarity, dt: f64) {
         let kind = std::sync::Arc::clone(&self.kind);
         let chain_of = |state: StateId| kind.act(state).strike.as_ref()?.chain.as_ref();
@@ -156,7 +162,7 @@ impl Creature {
         let least = LEAST * self.size.height;
         let aim = self.state.aim;
         let Lean { spring, with } = &mut self.state.lean;
-        // What it leans with goes back before something else is used.
+        // A lean ends before another attack leans.
         if let Some((state, _)) = strikes.filter(|_| with.is_none()) {
             *with = Some(state);
         }
@@ -178,26 +184,26 @@ impl Creature {
         let skeleton = kind.skeleton();
         if let Ok(end) = chain.end(skeleton, &self.state.pose) {
             let target = end + world.rotation.conjugate() * leans / self.size.scale;
-            // What cannot be reached is gone for as far as it goes; what cannot be bent stays.
+            // A chain stretches towards a target out of reach. A chain that cannot be bent keeps its pose.
             let _ = chain.solve(skeleton, &mut self.state.pose, target);
         }
     }
 
-    /// Decides where this attack strikes: at its prey, if that is near enough to where the clip does.
+    /// Decides where this attack strikes: at the prey, if it is near enough to the place where the clip strikes.
     pub(super) fn aim(&mut self, strike: &Strike) {
         let Some((_, prey)) = self.state.prey.filter(|_| self.state.unseen == 0) else {
             return;
         };
         let world = self.state.world_from_model(self.size.scale);
         let way = prey - world.transform_point(strike.spot);
-        // A foot comes down on the ground where it is; a mouth goes down to whom it bites.
+        // A foot comes down at the height of the ground; a neck or an arm also moves up or down to the prey.
         let way = if strike.chain.is_some() {
             way
         } else {
             DVec3::new(way.x, 0.0, way.z)
         };
         let length = way.length();
-        // Further away than it can aim, it goes as far as it can: it shows what it means.
+        // If the prey is too far away, the limb goes as far towards it as it can, which shows the target.
         let aim = if length > strike.attack.aim {
             way * (strike.attack.aim / length)
         } else {
@@ -208,7 +214,7 @@ impl Creature {
     }
 }
 
-/// True if no rock and no other creature is between two places, but for so many metres after the first one.
+/// True if no rock and no other creature is between two places, apart from the first `skips` metres.
 fn is_free(from: DVec3, to: DVec3, skips: f64, around: &Surroundings<'_>) -> bool {
     let way = to - from;
     let length = way.length() - skips;
@@ -216,7 +222,7 @@ fn is_free(from: DVec3, to: DVec3, skips: f64, around: &Surroundings<'_>) -> boo
         return true;
     };
     let from = from + along * skips;
-    // What it begins in is ground, or was met on the way there.
+    // Terrain in which the ray begins is ground, or the ray before has already met it.
     let mut is_rock = |hit: &Contact| hit.normal.y < STEEP && hit.distance > 0.0;
     let mut rocks = around.terrain.iter();
     let mut others = around.creatures.iter();

@@ -1,4 +1,4 @@
-//! Where a creature goes: the places of its acts.
+//! Ways of a creature: the goals of its walks and turns.
 
 use glam::DVec3;
 
@@ -6,23 +6,25 @@ use super::Creature;
 use super::state::{NO_WALL, WALLS, Walked};
 use crate::brain::{Act, Place, StateId, Walk};
 
-/// Where to go, and how.
+/// A goal, and when the creature has arrived there.
 pub(super) struct Way {
     pub(super) goal: DVec3,
-    /// Bearing that the goal should have in the end, radians; `None` if any will do.
+    /// Bearing of the goal on arrival, radians; `None` if any bearing will do.
     pub(super) bearing: Option<f64>,
-    /// Level distance at which it has arrived, metres.
+    /// Horizontal distance within which the creature has arrived, metres.
     pub(super) within: f64,
-    /// Angle within which it has turned, radians.
+    /// Angle to that bearing within which the turn is done, radians.
     pub(super) within_angle: f64,
+    /// True if the creature walks to the goal; false if it only turns towards it.
     pub(super) walks: bool,
 }
 
-/// It walks no nearer to a place than this, in heights: within less it would walk to and fro over it.
+/// Shortest distance within which a walk arrives, in heights. With less, the creature would walk to and fro over the
+/// place.
 const NEAREST: f64 = 0.015;
 
 impl Creature {
-    /// Begins a walk or a turn: draws a place, if it goes on patrol.
+    /// Begins a walk or a turn, and draws a new place for patrols.
     pub(super) fn begin_way(&mut self) {
         let reach = self.config.arena.min(4.0 * self.size.height);
         let mut lot = || (self.state.brain.draw() >> 11) as f64 / (1u64 << 53) as f64;
@@ -76,7 +78,7 @@ impl Creature {
         }
     }
 
-    /// Beside the nearest wall.
+    /// A place beside the nearest wall; the creature's own place if no wall is in reach.
     fn wall(&self) -> DVec3 {
         let walls = self.state.walls.iter().enumerate();
         let Some((index, distance)) = walls.min_by(|a, b| a.1.total_cmp(b.1)) else {

@@ -1,15 +1,15 @@
-//! How a value reaches its goal at rest, at a given time and with a bounded acceleration.
+//! Moves a value to its goal, at rest, in a given time and with a bounded acceleration.
 
 use clamber_animation::Spring;
 use glam::DVec3;
 
-/// The acceleration with which [`arrive`] begins.
+/// Initial acceleration of [`arrive`].
 pub(super) fn pull([value, velocity]: [f64; 2], goal: f64, left: f64) -> f64 {
     (goal - value) * (6.0 / (left * left)) - velocity * (4.0 / left)
 }
 
-/// The least time of at least `left` seconds in which [`arrive`] needs no more than an acceleration, at its beginning
-/// and its end.
+/// Shortest of the times `left`, 1.2 `left`, 1.2² `left`, ... for which [`arrive`] needs at most the acceleration
+/// `most` at its beginning and at its end, seconds.
 pub(super) fn unhurried(spring: &Spring<DVec3>, goal: DVec3, left: f64, most: f64) -> f64 {
     let (away, velocity) = (goal - spring.value, spring.velocity);
     let mut left = left;
@@ -24,8 +24,8 @@ pub(super) fn unhurried(spring: &Spring<DVec3>, goal: DVec3, left: f64, most: f6
     left
 }
 
-/// Moves a value so that it is at its goal, at rest, in `left` seconds, by a cubic in time; or as far as an
-/// acceleration allows.
+/// Moves a value by one tick along a cubic in time that brings the value to rest at its goal in `left` seconds. The
+/// acceleration is at most `most`, even if the value then arrives later.
 pub(super) fn arrive<T: Bounded>(spring: &mut Spring<T>, goal: T, left: f64, most: f64, dt: f64) {
     let away = goal - spring.value;
     let acceleration = away * (6.0 / (left * left)) - spring.velocity * (4.0 / left);
@@ -35,7 +35,7 @@ pub(super) fn arrive<T: Bounded>(spring: &mut Spring<T>, goal: T, left: f64, mos
     spring.velocity = spring.velocity + acceleration * dt;
 }
 
-/// What has a length that can be bounded.
+/// A value whose length can be limited.
 pub(super) trait Bounded: clamber_animation::Springy {
     fn within(self, most: f64) -> Self;
 }

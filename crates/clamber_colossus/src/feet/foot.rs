@@ -7,24 +7,25 @@ use super::arrive::{arrive, pull, unhurried};
 use super::{Carried, Footing, Sole};
 use crate::angle::nearest_turn;
 
-/// How a foot is held.
+/// Whether a foot stands, or how it moves.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 enum Hold {
-    /// It stands here, on ground that was at this height below its ball, if there was any.
+    /// The foot stands at `at`, on ground that was at the height `below` under the ball, or `NO_GROUND`.
     Planted {
         at: Footing,
         heading: f64,
         below: f64,
     },
-    /// It is where its clip has it, but for an offset that goes to where it lands.
+    /// The foot follows its clip with an offset, which changes to the offset of the landing place.
     Swings,
-    /// It comes down where its clip stands, although it was in the air when that clip began; seconds until then.
+    /// The foot comes down in `left` seconds where its clip stands. It was in the air when the clip already stood, or
+    /// its ground has moved away.
     Lands {
         ball: Spring<DVec3>,
         to: Footing,
         left: f64,
     },
-    /// It takes a step that is not in its clip.
+    /// The foot takes a step that is not in its clip.
     Steps(Step),
 }
 
@@ -33,16 +34,16 @@ enum Hold {
 struct Step {
     from: DVec3,
     to: Footing,
-    /// How high it goes, metres.
+    /// Height of the step, metres.
     lift: f64,
     passed: f64,
     lasts: f64,
 }
 
-/// What the offset of a swinging foot goes to.
+/// The target of the vertical offset of a swinging foot.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Path {
-    /// Up, metres.
+    /// Vertical offset to reach, metres.
     offset: f64,
     /// Seconds until then.
     left: f64,
@@ -54,128 +55,140 @@ struct Path {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Foot {
     hold: Hold,
-    /// Where its clip had the ball in the last tick.
+    /// Position of the ball in the clip in the last tick.
     clip: DVec3,
-    /// From where the clip has the ball to where it is.
+    /// Vector from the ball in the clip to the ball of the foot.
     offset: Spring<DVec3>,
-    /// How far the foot is turned against its clip about up, radians.
+    /// Yaw of the foot relative to its clip, radians.
     yaw: Spring<f64>,
-    /// How flat it is on the ground: from 0, as its clip has it, to 1.
+    /// How flat the foot is on the ground: from 0, as in its clip, to 1.
     flat: Spring<f64>,
-    /// How firmly it stands: from 0, in flight, to 1.
+    /// How firmly the foot stands: from 0, in flight, to 1.
     firm: Spring<f64>,
-    /// Normal of the ground that it leans to.
+    /// Normal of the ground to which the foot leans.
     normal: DVec3,
-    /// How far a planted ball still is from its place.
+    /// Offset of a planted ball from its exact place.
     settling: Spring<DVec3>,
-    /// What its offset goes to.
+    /// The target of the vertical offset.
     path: Path,
-    /// Where it comes down, as looked for last.
+    /// The last predicted landing place.
     landing: Option<Footing>,
-    /// True if it stands where it should not.
+    /// True if the foot stands too far from its place in the clip.
     wants_step: bool,
-    /// True if its leg did not reach it in the last tick.
+    /// True if the leg was stretched in the last tick.
     is_stretched: bool,
 }
 
-/// What a foot should do in a tick, in world space.
+/// The goal of a foot in a tick, in world space.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FootGoal {
-    /// Where the clip has the ball.
+    /// Position of the ball in the clip.
     pub(crate) clip: DVec3,
-    /// Where it will have it once it has faded in.
+    /// Position of the ball in the clip once the clip has faded in.
     pub(crate) settled: DVec3,
-    /// Whether the clip stands on it, for how many seconds yet, and seconds until it does next.
+    /// True if the foot stands in the clip.
     pub(crate) stands: bool,
+    /// Seconds for which the foot still stands in the clip.
     pub(crate) stands_for: f64,
+    /// Seconds until the foot next stands in the clip.
     pub(crate) lands_in: f64,
-    /// Where the clip's ball will be then.
+    /// Position of the ball in the clip at that time, for ground at the height of the creature's origin.
     pub(crate) lands_at: DVec3,
-    /// From there to where it is to land, level; and with how much acceleration it may go there, metres a second
-    /// squared.
+    /// Horizontal vector from `lands_at` to the place where the foot is to land.
     pub(crate) aside: DVec3,
+    /// Largest horizontal acceleration of the offset, metres a second squared.
     pub(crate) most_aside: f64,
-    /// With how much it may go up and down in a swing.
+    /// Largest vertical acceleration of the offset in a swing, metres a second squared.
     pub(crate) most_up: f64,
-    /// Height of the clip's ball at [`SHARES`] of the time until then.
+    /// Height of the ball in the clip at [`SHARES`] of the time until it lands.
     pub(crate) ahead: [f64; 3],
-    /// Where the clip's foot points to, radians about up.
+    /// Yaw of the foot in the clip, radians.
     pub(crate) heading: f64,
-    /// Height of a ball above the ground, and the leg's length, metres.
+    /// Height of the ball of a standing foot above the ground, metres.
     pub(crate) ball_height: f64,
+    /// Length of the leg, metres.
     pub(crate) leg: f64,
     /// True if the foot may take a step of its own.
     pub(crate) may_step: bool,
-    /// True if it looks whether what it stands on is still there.
+    /// True if the foot checks in this tick whether its ground is still there.
     pub(crate) looks: bool,
-    /// True if the clip walks or turns: it brings steps of its own.
+    /// True if the clip walks or turns, so that it has steps of its own.
     pub(crate) is_gait: bool,
-    /// True if the clip lifts the foot by itself before it ends.
+    /// True if the clip lifts the foot before it ends.
     pub(crate) is_lifted: bool,
 }
 
-/// A foot that stands further from where its clip does takes a step: a share of the leg's length, and radians.
+/// Distance from its place in the clip beyond which a standing foot takes a step, as a share of the leg's length.
 const STEPS_BEYOND: f64 = 0.12;
+
+/// Yaw relative to the clip beyond which a standing foot takes a step, radians.
 const STEPS_TURNED: f64 = 0.45;
 
-/// A leg that is too short for its foot takes no step if that would bring it less far than this share of its length: its
-/// hips come down instead.
+/// Distance to its place in the clip up to which a foot takes no step although its leg is stretched, as a share of the
+/// leg's length. The hips come down instead.
 const NO_STEP: f64 = 0.02;
 
-/// The least time of a step of its own, as a share of `sqrt(leg / g)`, and how high it goes at least, as a share of the
-/// leg's length.
+/// Shortest duration of a step that is not in a clip, as a multiple of `sqrt(leg / g)`.
 pub(crate) const STEP_TIME: f64 = 1.5;
+
+/// Least height of a step that is not in a clip, as a share of the leg's length.
 const STEP_HEIGHT: f64 = 0.04;
 
-/// The most acceleration of an offset up and down, and to the sides, metres a second squared, and of a foot's turn,
-/// radians a second squared. Together the first two are 5.6: below 6, which skin below the knee may have in a swing.
+/// Largest vertical acceleration of an offset, metres a second squared. The vector sum with `MOST_ASIDE` is 5.6, below
+/// the limit of 6 for skin below the knee in a swing.
 pub(crate) const MOST_UP: f64 = 4.4;
+
+/// Largest horizontal acceleration of an offset, metres a second squared.
 pub(crate) const MOST_ASIDE: f64 = 3.4;
+
+/// Largest angular acceleration of a foot's yaw, radians a second squared.
 const MOST_TURN: f64 = 3.0;
 
-/// Shares of a swing at which the ground on its way is looked at.
+/// Shares of a swing at which the ground on its way is checked.
 pub(crate) const SHARES: [f64; 3] = [0.25, 0.5, 0.75];
 
-/// The least time in which an offset goes to where it should, seconds.
+/// Shortest time in which an offset reaches its target, seconds.
 const LEAST: f64 = 0.15;
 
 /// Time constant with which a foot leans to the ground, seconds.
 const LEANS: f64 = 0.1;
 
-/// A foot that is higher than this above the ground when its clip stands comes down first, and ground that moves by
-/// more than that carries it no longer, as shares of the leg's length.
+/// A foot higher than this above the ground comes down before it is planted, as a share of the leg's length.
 const HIGH: f64 = 0.03;
+
+/// Height by which the ground below a foot may change and still carry it, as a share of the leg's length.
 const GONE: f64 = 0.003;
 
-/// A foot that its clip does not lift is lifted while it walks or turns if it is further than this from where its clip
-/// stands, as a share of the leg's length.
+/// Distance from its place in the clip beyond which a standing foot lifts in a walk or a turn although its clip stands,
+/// as a share of the leg's length.
 const LEFT_BEHIND: f64 = 0.3;
 
-/// A foot was left behind if it is further than this from where its clip stands, as a share of the leg's length.
+/// Distance from its place in the clip beyond which a foot is left behind, as a share of the leg's length.
 const LATE: f64 = 0.06;
 
-/// A foot that was left behind does not come down for less than this, as a share of the time of a step.
+/// A swinging foot does not come down if its clip stands for less than this, as a share of the duration of a step.
 const TOO_SHORT: f64 = 0.2;
 
-/// A foot has come down when it is as near as this to where it should, as a share of the leg's length.
+/// Distance from its landing place within which a foot has come down, as a share of the leg's length.
 const ARRIVED: f64 = 0.01;
 
-/// Stands for no ground below: JSON has no infinity.
+/// Height that stands for no ground below, because JSON has no infinity.
 const NO_GROUND: f64 = f64::MIN;
 
-/// A place to land on is looked for anew when it has moved by this share of the leg's length.
+/// Distance by which a landing place may move before the ground is looked for again, as a share of the leg's length.
 const SAME: f64 = 0.03;
 
 /// Half time in which a foot that has come down reaches its exact place, seconds.
 const SETTLES: f64 = 0.08;
 
-/// Half time in which a foot that was lifted loses its hold, as a share of the time of a step.
+/// Half time in which a lifted foot loses its hold, as a share of the duration of a step.
 const LETS_GO: f64 = 0.25;
 
+/// Gravitational acceleration, metres a second squared. It sets the duration of steps.
 pub(crate) const GRAVITY: f64 = 9.81;
 
 impl Foot {
-    /// A foot that is where its clip has it.
+    /// A foot at its place in the clip.
     pub(crate) fn new() -> Self {
         Self {
             hold: Hold::Swings,
@@ -193,7 +206,7 @@ impl Foot {
         }
     }
 
-    /// True if no number of it is larger than this, or none at all.
+    /// True if no number of the foot is larger than `most`, and none is NaN.
     pub(crate) fn is_within(&self, most: f64) -> bool {
         let spring = |spring: &Spring<f64>| spring.value.abs() + spring.velocity.abs();
         let moving = |spring: &Spring<DVec3>| spring.value.length() + spring.velocity.length();
@@ -210,7 +223,7 @@ impl Foot {
                 step.from.length() + footing(&step.to) + times
             }
         };
-        // A clip may never land, and below it may be no ground.
+        // A clip may never land, and there may be no ground below.
         let is_path = self.path.offset.abs() <= most && self.path.left > -most;
         let is_floor = self.path.floor == NO_GROUND || self.path.floor.abs() <= most;
         let all = [
@@ -224,51 +237,51 @@ impl Foot {
             moving(&self.settling),
             self.landing.as_ref().map_or(0.0, footing),
         ];
-        // No comparison with what is no number is true.
+        // Comparisons with NaN are false.
         is_path && is_floor && all.iter().all(|size| *size <= most)
     }
 
-    /// True if it stands.
+    /// True if the foot stands.
     pub(crate) fn is_planted(&self) -> bool {
         matches!(self.hold, Hold::Planted { .. })
     }
 
-    /// True if it stands where it should not, and waits for its turn to step.
+    /// True if the foot stands in the wrong place, and waits for its turn to step.
     pub(crate) fn wants_step(&self) -> bool {
         self.wants_step
     }
 
-    /// Says whether its leg reaches it.
+    /// Sets whether the leg is stretched.
     pub(crate) fn set_stretched(&mut self, is_stretched: bool) {
         self.is_stretched = is_stretched;
     }
 
-    /// From where the clip has the ball to where it is, metres.
+    /// Vector from the ball in the clip to the ball of the foot, metres.
     pub(crate) fn offset(&self) -> DVec3 {
         self.offset.value
     }
 
-    /// How far it is turned against its clip about up, radians.
+    /// Yaw of the foot relative to its clip, radians.
     pub(crate) fn yaw(&self) -> f64 {
         self.yaw.value
     }
 
-    /// How flat it is on the ground: from 0, as its clip has it, to 1.
+    /// How flat the foot is on the ground: from 0, as in its clip, to 1.
     pub(crate) fn flat(&self) -> f64 {
         self.flat.value.clamp(0.0, 1.0)
     }
 
-    /// How firmly it stands: from 0, in flight, to 1. It lets go less fast than it gets a hold.
+    /// How firmly the foot stands: from 0, in flight, to 1. A foot loses its hold more slowly than it gains it.
     pub(crate) fn firm(&self) -> f64 {
         self.firm.value.clamp(0.0, 1.0)
     }
 
-    /// Normal of the ground that it leans to.
+    /// Normal of the ground to which the foot leans.
     pub(crate) fn normal(&self) -> DVec3 {
         self.normal
     }
 
-    /// Stands on the ground where its clip has it, at once.
+    /// Puts the foot on the ground at its place in the clip, at once.
     pub(crate) fn place(&mut self, goal: &FootGoal, sole: &Sole<'_>) {
         self.plant(goal, sole);
         self.settling = Spring::default();
@@ -279,7 +292,7 @@ impl Foot {
         }
     }
 
-    /// Goes with ground that has moved.
+    /// Moves the foot with ground that has moved.
     pub(crate) fn be_carried(&mut self, carried: &Carried) {
         let footing = |at: &mut Footing| {
             at.ball = carried.place(at.ball);
@@ -323,7 +336,7 @@ impl Foot {
         }
     }
 
-    /// Lets a tick of `dt` seconds pass. Returns true if the foot has just come down.
+    /// Advances the foot by a tick of `dt` seconds. Returns true if the foot has just come down.
     pub(crate) fn step(&mut self, goal: &FootGoal, sole: &Sole<'_>, dt: f64) -> bool {
         let was_up = !self.is_planted();
         self.decide(goal, sole, dt);
@@ -346,7 +359,7 @@ impl Foot {
         was_up && self.is_planted()
     }
 
-    /// Goes from one way of being held to another one.
+    /// Decides whether the foot goes on as it does, lifts, lands or steps.
     fn decide(&mut self, goal: &FootGoal, sole: &Sole<'_>, dt: f64) {
         self.wants_step = false;
         match self.hold {
@@ -385,8 +398,8 @@ impl Foot {
                 if ball.y - sole.at(ball).ball.y > HIGH * goal.leg {
                     let velocity = (goal.clip - self.clip) / dt + self.offset.velocity;
                     let to = sole.at(goal.settled);
-                    // The end of a kick stops the clip's foot at once. The speed that is left must not carry this foot
-                    // past where it lands.
+                    // The end of a kick stops the clip's foot at once. The remaining speed must not carry this foot
+                    // past its landing place.
                     let most = (MOST_UP * ball.distance(to.ball)).sqrt();
                     self.hold = Hold::Lands {
                         ball: Spring {
@@ -404,13 +417,13 @@ impl Foot {
         }
     }
 
-    /// A step from a place to where its clip has it, over what lies between.
+    /// A step from a place to the foot's place in the clip, over the ground between them.
     fn step_from(&mut self, from: DVec3, goal: &FootGoal, sole: &Sole<'_>) -> Step {
         let to = sole.at(goal.settled);
         let level = (to.ball - from).with_y(0.0).length();
         let over = SHARES.into_iter().filter_map(|share| {
             let place = from.lerp(to.ball, share);
-            // The hump of a step is that high at a share of its way.
+            // At this share of its way, the foot is raised by the step's lift times the cube of `hump`.
             let hump = 4.0 * share * (1.0 - share);
             let rise = sole.highest(place, to.normal)? + goal.ball_height - place.y;
             Some(rise / (hump * hump * hump))
@@ -418,7 +431,7 @@ impl Foot {
         let lift = over
             .fold(STEP_HEIGHT * goal.leg, f64::max)
             .min(0.5 * goal.leg);
-        // The peaks of a quintic from rest to rest, and of the hump: 5.77 d / T^2, 24 h / T^2.
+        // The peak accelerations of a quintic from rest to rest, and of the hump: 5.77 d / T^2, 24 h / T^2.
         let lasts = (5.77 * level / MOST_ASIDE)
             .max(24.0 * lift / MOST_UP)
             .sqrt();
@@ -431,12 +444,12 @@ impl Foot {
         }
     }
 
-    /// True for a foot that was left behind: its clip walks on and stands, but not there.
+    /// True if the foot was left behind in a walk or a turn: it is too far from its place in the clip.
     fn is_late(&self, goal: &FootGoal) -> bool {
         goal.is_gait && self.offset.value.with_y(0.0).length() > LATE * goal.leg
     }
 
-    /// Hurries after its clip, above the ground.
+    /// Moves the foot quickly towards its place in the clip, above the ground.
     fn catch_up(&mut self, goal: &FootGoal, sole: &Sole<'_>, dt: f64) {
         let up = DVec3::Y * (STEP_HEIGHT * goal.leg);
         let goal = FootGoal {
@@ -448,7 +461,7 @@ impl Foot {
         self.swing(&goal, sole, goal.step_time(), dt);
     }
 
-    /// Comes down where it is.
+    /// Puts the foot down where it is.
     fn plant(&mut self, goal: &FootGoal, sole: &Sole<'_>) {
         let ball = goal.clip + self.offset.value;
         let at = sole.at_exactly(ball);
@@ -473,8 +486,8 @@ impl Foot {
         self.lean(at.normal, LEANS, dt);
     }
 
-    /// Flies as its clip does, but for an offset that goes to where it comes down in `left` seconds, over what lies
-    /// between.
+    /// Swings with the clip and an offset, which reaches the landing place in `left` seconds and clears the ground on
+    /// the way.
     fn swing(&mut self, goal: &FootGoal, sole: &Sole<'_>, left: f64, dt: f64) {
         let lands = self.landing(goal.lands_at + goal.aside, goal, sole);
         if goal.looks || self.path.left <= 0.0 {
@@ -504,7 +517,7 @@ impl Foot {
         };
         arrive(&mut self.yaw, 0.0, left, MOST_TURN, dt);
         self.lean(lands.normal, LEANS.min(0.3 * left), dt);
-        // Out of the ground, as fast as may be felt.
+        // A foot in the ground moves up, as fast as the limit of the acceleration allows.
         let ball = goal.clip.y + self.offset.value.y;
         let least = self.path.floor + goal.ball_height;
         if ball < least {
@@ -515,8 +528,8 @@ impl Foot {
         }
     }
 
-    /// Where an offset has to be, and when: where the foot lands, or over what lies between, if that takes more
-    /// acceleration.
+    /// The target of the vertical offset: the landing place, or ground on the way that needs more acceleration to
+    /// clear.
     fn path_over(&self, goal: &FootGoal, sole: &Sole<'_>, lands: &Footing, left: f64) -> Path {
         let ball = goal.clip + self.offset.value;
         let way = goal.lands_at + goal.aside - ball;
@@ -540,7 +553,7 @@ impl Foot {
         path
     }
 
-    /// Comes down where its clip stands.
+    /// Comes down where the clip stands.
     fn land(
         &mut self,
         goal: &FootGoal,
@@ -548,7 +561,7 @@ impl Foot {
         (mut ball, to, left): (Spring<DVec3>, Footing, f64),
         dt: f64,
     ) {
-        // It takes longer than planned if it is too fast for that.
+        // A foot that is too fast takes longer than planned.
         let left = unhurried(&ball, to.ball, left.max(LEAST), MOST_UP);
         arrive(&mut ball, to.ball, left, MOST_UP, dt);
         self.set(ball.value - goal.clip, dt);
@@ -585,7 +598,7 @@ impl Foot {
         }
     }
 
-    /// Where it would stand at a place, looked for anew only when that has moved on.
+    /// How the foot would stand at a place. The ground is looked for again only when the place has moved.
     fn landing(&mut self, place: DVec3, goal: &FootGoal, sole: &Sole<'_>) -> Footing {
         let is_near = |known: &Footing| {
             let way = place - known.ball;
@@ -607,7 +620,7 @@ impl Foot {
         self.offset.value = offset;
     }
 
-    /// Leans to a normal, with a time constant.
+    /// Leans to a normal, with the time constant `time`, seconds.
     fn lean(&mut self, normal: DVec3, time: f64, dt: f64) {
         let share = 1.0 - libm::exp(-dt / time.max(1e-3));
         self.normal = (self.normal + (normal - self.normal) * share).normalize_or(DVec3::Y);
@@ -615,12 +628,12 @@ impl Foot {
 }
 
 impl FootGoal {
-    /// True if the clip lifts the foot so soon that it need not come down before.
+    /// True if the clip lifts the foot so soon that the foot need not come down before.
     fn is_lifted_soon(&self) -> bool {
         self.is_gait && self.stands_for < TOO_SHORT * self.step_time()
     }
 
-    /// How long a step of its own lasts at least, seconds.
+    /// Shortest duration of a step that is not in the clip, seconds.
     fn step_time(&self) -> f64 {
         STEP_TIME * (self.leg / GRAVITY).sqrt()
     }

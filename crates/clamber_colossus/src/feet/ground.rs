@@ -1,23 +1,23 @@
 use clamber_world::Obstacle;
 use glam::DVec3;
 
-/// The ground, as feet look for it: by rays down.
+/// The ground, which feet find by rays down.
 #[derive(Clone, Copy)]
 pub(crate) struct Ground<'a> {
     pub(crate) terrain: &'a [&'a dyn Obstacle],
-    /// How far above and below a place the ground is looked for, metres.
+    /// Distance above and below a place within which the ground is found, metres.
     pub(crate) reach: f64,
 }
 
-/// A ray that finds no ground is cast again so far aside, as a share of its reach.
+/// Sideways offset of the rays that are cast if the first one finds no ground, as a share of the reach.
 const SLIPS: f64 = 1e-4;
 
 impl Ground<'_> {
-    /// Height of the ground below a place, and its normal; `None` if there is none in reach.
+    /// Height of the ground below a place, and its normal, which points up; `None` if no ground is in reach.
     pub(crate) fn below(&self, place: DVec3) -> Option<(f64, DVec3)> {
-        // Rapier's rays may slip through where two triangles meet.
+        // Rapier's rays may slip through the edge between two triangles.
         let aside = SLIPS * self.reach;
-        // Along neither side nor diagonal of a cell.
+        // The offset is along neither the sides nor the diagonals of a height field's cells.
         let places = [0.0, aside, -aside].map(|aside| place + DVec3::new(aside, 0.0, 0.6 * aside));
         places.into_iter().find_map(|place| self.cast(place))
     }
@@ -45,10 +45,11 @@ mod tests {
     use clamber_world::rapier3d::prelude::{ColliderBuilder, PhysicsWorld};
     use clamber_world::{BodyPoses, RapierTerrain};
 
-    /// Rays slip through a height field beside the lines of its cells, by as much as numbers are rounded. There is ground
-    /// for all that.
+    /// Rays slip through a height field beside the lines of its cells, within rounding errors. The ground is found
+    /// nevertheless.
     #[test]
     fn no_ray_slips_through_the_ground() {
+        /// Number of heights along each side of the height field.
         const LINES: usize = 401;
         let heights = Array2::new(LINES, LINES, vec![0.0; LINES * LINES]);
         let field = ColliderBuilder::heightfield(heights, Vector::new(400.0, 1.0, 400.0));

@@ -1,9 +1,9 @@
-//! Feet on the ground: planted where they came down, and put where the ground will be.
+//! Feet on the ground: a planted foot stays where it came down, and a swinging foot goes to its landing place.
 //!
-//! A clip shows when a foot stands ([`Contacts`](crate::kind::Contacts)). While it does, its ball stays where it came
-//! down; while it swings, the difference to the clip goes to that of the place where it will land, by a cubic in time,
-//! which takes the least acceleration for given ends. When the clip stands elsewhere than the foot, it takes a step of
-//! its own. Speeds that decide scale with the square root of the leg's length (Froude's law).
+//! A clip shows when a foot stands ([`Contacts`](crate::kind::Contacts)). While it does, the ball of the foot stays
+//! where it came down. While the foot swings, its offset from the clip changes to the offset of the landing place, by a
+//! cubic in time: this needs the least acceleration between given ends. If a foot stands elsewhere than in its clip, it
+//! takes a step of its own. Thresholds of speed scale with the square root of the leg's length (Froude's law).
 
 mod arrive;
 mod foot;
@@ -17,29 +17,31 @@ pub(crate) use sole::{Footing, Sole};
 use clamber_surface::geometry::rotation_from_axis_angle;
 use glam::{DQuat, DVec3};
 
-/// How ground below a creature has moved in a tick.
+/// How the ground below a creature has moved in a tick.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Carried {
-    /// Where a point of it was, and is now.
+    /// Position of a point of the ground before the tick, in world space.
     pub(crate) from: DVec3,
+    /// Position of this point after the tick, in world space.
     pub(crate) to: DVec3,
-    /// How it has turned, and how far about up, radians.
+    /// Rotation of the ground in the tick.
     pub(crate) turn: DQuat,
+    /// Yaw of this rotation, radians.
     pub(crate) yaw: f64,
 }
 
 impl Carried {
-    /// Where a place is that goes with the ground.
+    /// New position of a place that moves with the ground.
     pub(crate) fn place(&self, place: DVec3) -> DVec3 {
         self.to + self.turn * (place - self.from)
     }
 
-    /// The same for a place that stays as high above the ground: it turns about up alone.
+    /// The same with only the yaw of the ground, so that the place stays as high above the ground's point.
     pub(crate) fn level_place(&self, place: DVec3) -> DVec3 {
         self.to + self.vector(place - self.from)
     }
 
-    /// A vector of the creature, turned with its heading: what stands upright stays so.
+    /// Turns a vector of the creature by the yaw of the ground, so that upright vectors stay upright.
     pub(crate) fn vector(&self, vector: DVec3) -> DVec3 {
         rotation_from_axis_angle(DVec3::Y, self.yaw) * vector
     }

@@ -4,41 +4,43 @@ use serde::{Deserialize, Serialize};
 use super::Ground;
 use crate::kind::SoleShape;
 
-/// The most that a foot leans on the ground, as a tangent: 30 degrees.
+/// Largest slope of a sole along each of its sides, as a tangent: 30 degrees.
 const MOST_LEAN: f64 = 0.577;
 
-/// So many points of a sole are enough to foresee where it will stand.
+/// Number of a sole's points that are enough to predict where it will stand.
 const FEW: usize = 12;
 
 /// The sole of a foot above the ground.
 pub(crate) struct Sole<'a> {
     pub(crate) ground: &'a Ground<'a>,
     pub(crate) shape: &'a SoleShape,
-    /// From the model's axes at rest to the foot's heading in the world; and metres per unit.
+    /// Rotation from the model's axes at rest to the foot's heading in the world.
     pub(crate) turn: DQuat,
+    /// Metres per unit of the model.
     pub(crate) scale: f64,
-    /// Ground that is more than this above the foot counts as a wall, metres.
+    /// Ground higher than this above the foot counts as a wall, metres.
     pub(crate) wall: f64,
 }
 
-/// Where a foot stands.
+/// Position and tilt of a standing foot.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Footing {
-    /// The ball of the foot.
+    /// The ball of the foot, in world space.
     pub(crate) ball: DVec3,
-    /// Normal of the ground that carries it.
+    /// Normal of the ground that carries the foot.
     pub(crate) normal: DVec3,
 }
 
 impl Sole<'_> {
-    /// Height of the ground below a place; `None` if there is none, or a wall.
+    /// Height of the ground below a place; `None` if there is no ground, or a wall.
     pub(crate) fn below(&self, place: DVec3) -> Option<f64> {
         let height = self.ground.below(place).map(|(height, _)| height);
         height.filter(|height| height - place.y < self.wall)
     }
 
-    /// Height of the ground that a foot has to pass over at a place of its ball, if it leans to a normal: the highest
-    /// of those below ball, heel and toe. `None` if there is none.
+    /// Height of the ground that a foot has to clear when its ball is at a place and its sole leans to a normal. It is
+    /// the maximum of the ground heights below ball, heel and toe, each less the height of that point above the ball.
+    /// `None` if there is no ground.
     pub(crate) fn highest(&self, place: DVec3, normal: DVec3) -> Option<f64> {
         let [back_right, back_left, front_right, front_left] = self.shape.corners;
         let ends = [
@@ -54,13 +56,14 @@ impl Sole<'_> {
         heights.max_by(f64::total_cmp)
     }
 
-    /// False in empty space, where feet stand on nothing.
+    /// True if there is any terrain. In empty space, feet stand on nothing.
     pub(crate) fn has_ground(&self) -> bool {
         !self.ground.terrain.is_empty()
     }
 
-    /// About where a foot stands with its ball above or below a place; at that place if there is no ground. It leans as
-    /// the ground below its corners does, and is lowered until it touches.
+    /// Predicts how a foot stands with its ball above or below a place; at the place itself if there is no ground. The
+    /// foot leans as the ground below the corners of its sole does, and is moved up or down until the sole touches.
+    /// Only a few points of the sole are checked.
     pub(crate) fn at(&self, place: DVec3) -> Footing {
         let points = &self.shape.points;
         self.lowered(
@@ -69,7 +72,7 @@ impl Sole<'_> {
         )
     }
 
-    /// The same, to the last bump: for the moment in which it comes down.
+    /// The same with all points of the sole, for the tick in which the foot comes down.
     pub(crate) fn at_exactly(&self, place: DVec3) -> Footing {
         self.lowered(place, self.shape.points.iter())
     }
@@ -86,7 +89,7 @@ impl Sole<'_> {
         let normal = lean(&corners, heights);
         let turn = DQuat::from_rotation_arc(DVec3::Y, normal);
         let ball = place.with_y(middle + self.shape.ball_height * self.scale);
-        // The point that stands deepest in the ground, or least above it, decides.
+        // The point that is deepest in the ground, or nearest to it, decides.
         let rises = points.filter_map(|point| {
             let place = ball + turn * self.in_world(*point);
             Some(self.below(place)? - place.y)
@@ -107,8 +110,8 @@ impl Sole<'_> {
     }
 }
 
-/// The normal of the plane through heights below the corners, by least squares over a rectangle: differences of the
-/// means of its sides.
+/// Normal of the plane through the ground heights below the corners of a rectangle, by least squares: its slopes are
+/// the differences between the mean heights of opposite sides.
 fn lean(corners: &[DVec3; 4], heights: [f64; 4]) -> DVec3 {
     let [back_right, back_left, front_right, front_left] = heights;
     let [a, b, c, _] = *corners;

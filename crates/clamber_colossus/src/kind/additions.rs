@@ -1,4 +1,4 @@
-//! What the brain's file says about a creature's own file: markers and ends of clips, fur, and weak points.
+//! Additions of the brain's file to a creature's own file: markers and closed ends of clips, fur, and weak points.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -14,7 +14,7 @@ use super::file::{BodyFile, FurFile, WeakPointFile};
 use super::{Names, whole};
 use crate::brain::{BrainError, BrainProblem, list};
 
-/// Adds the brain's file's markers to clips, and leads their ends back to their beginnings.
+/// Adds the brain file's markers to the clips, and extends clips that have a `close` there.
 pub(crate) fn changed(clips: Vec<Clip>, body: &BodyFile) -> Result<Vec<Clip>, BrainError> {
     for name in body.clips.keys() {
         if !clips.iter().any(|clip| clip.name == *name) {
@@ -27,7 +27,7 @@ pub(crate) fn changed(clips: Vec<Clip>, body: &BodyFile) -> Result<Vec<Clip>, Br
     }
     let mut seen = BTreeSet::new();
     let marked = clips.into_iter().map(|clip| {
-        // A name means the first clip that has it.
+        // If several clips have the same name, only the first one is changed.
         let is_first = seen.insert(clip.name.clone());
         let Some(file) = body.clips.get(&clip.name).filter(|_| is_first) else {
             return Ok(clip);
@@ -62,17 +62,17 @@ pub(crate) fn changed(clips: Vec<Clip>, body: &BodyFile) -> Result<Vec<Clip>, Br
     marked.collect()
 }
 
-/// The longest time in which a clip is led back to its beginning, seconds.
+/// The longest time that [`ClipFile::close`](super::ClipFile::close) may add to a clip, seconds.
 const LONGEST: f64 = 10.0;
 
-/// A clip that goes from its end back to its beginning in so many seconds more.
+/// Extends a clip by `seconds`, in which it returns from its end to its first pose.
 fn closed(clip: &Clip, seconds: f64) -> Result<Clip, RigError> {
     let spans = || clip.channels().iter().map(Channel::span);
     let end = spans().map(|span| span.1).fold(f32::NEG_INFINITY, f32::max);
     let back = (f64::from(end) + seconds) as f32;
     let channels = clip.channels().iter().map(|channel| {
         let (mut times, interpolation) = (channel.times().to_vec(), channel.interpolation());
-        // It holds its last value until the clip ends.
+        // A channel that ends before the clip holds its last value until the clip's end.
         let is_held = channel.span().1 < end;
         times.extend(is_held.then_some(end));
         times.push(back);
@@ -84,7 +84,8 @@ fn closed(clip: &Clip, seconds: f64) -> Result<Clip, RigError> {
             Keyframes::Rotation(values) => {
                 let still = Quat::from_xyzw(0.0, 0.0, 0.0, 0.0);
                 let mut values = extended(values, spline, still, is_held);
-                // The same rotation, on the side of the one before it: a spline would go round otherwise.
+                // The same rotation with the sign that is nearer to the value before it; otherwise a spline takes the
+                // long way round.
                 let last = values.len() - 1 - usize::from(spline);
                 let before = last.checked_sub(if spline { 3 } else { 1 });
                 if before.is_some_and(|before| {
@@ -103,8 +104,8 @@ fn closed(clip: &Clip, seconds: f64) -> Result<Clip, RigError> {
         .with_ground_speed(clip.ground_speed())
 }
 
-/// The values of a channel, with its first one once more at the end, and before that its last one if it `is_held`.
-/// Splines stand still there.
+/// The values of a channel, followed by its last value once more if it `is_held`, and by its first value. `still` are
+/// the tangents of splines at these values.
 fn extended<T: Copy>(values: &[T], is_spline: bool, still: T, is_held: bool) -> Vec<T> {
     let mut values = values.to_vec();
     let middle = usize::from(is_spline);
@@ -125,7 +126,7 @@ fn extended<T: Copy>(values: &[T], is_spline: bool, still: T, is_held: bool) -> 
     values
 }
 
-/// The skin with the fur of the brain's file.
+/// The mesh with the fur of the brain's file.
 pub(crate) fn furred(
     names: &Names<'_>,
     fur: &FurFile,
@@ -168,7 +169,7 @@ pub(crate) fn furred(
     Ok(Arc::new(furred))
 }
 
-/// A weak point of the brain's file, for a creature of a height in the model's units.
+/// A weak point of the brain's file, for a creature whose height in the model's units is `height`.
 pub(crate) fn weak_point(
     names: &Names<'_>,
     file: &WeakPointFile,

@@ -4,13 +4,13 @@ use clamber_surface::geometry::Affine;
 use clamber_surface::mesh::{ColliderMesh, VertexId};
 use glam::{DAffine3, DVec3};
 
-/// The skin of a sole that also follows the shin: where it is depends on how the leg is bent. Its vertices are skinned as
-/// the surface skins them, in f64.
+/// The vertices of a sole that also follow the shin, so that their places depend on how the leg is bent. They are
+/// skinned in f64 by the same method as the surface.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BlendedSole {
-    /// Joints that move it, with their inverse bind matrices.
+    /// The joints that move it, with their inverse bind matrices.
     joints: Vec<(JointId, DAffine3)>,
-    /// Where each vertex is in mesh space, and its influences: indices of joints, with weights.
+    /// Per vertex: its place in mesh space, and its influences as indices into `joints` with weights.
     vertices: Vec<(DVec3, Vec<(usize, f64)>)>,
 }
 
@@ -38,12 +38,12 @@ impl BlendedSole {
         sole
     }
 
-    /// True if all of the sole follows the foot alone.
+    /// True if the sole is taken to move with the foot alone.
     pub(crate) fn is_empty(&self) -> bool {
         self.vertices.is_empty()
     }
 
-    /// Where its vertices are in a pose, in model space, in the memory of `places`.
+    /// Writes the places of the vertices in a pose, in model space, into `places`.
     pub(crate) fn skin(&self, skeleton: &Skeleton, pose: &Pose, places: &mut Vec<DVec3>) {
         let palette: Vec<DAffine3> = (self.joints.iter())
             .map(|(joint, inverse_bind)| {

@@ -8,23 +8,24 @@ use glam::DVec3;
 use super::{Gait, RestSkin};
 use crate::error::ColossusError;
 
-/// Where bands of height begin and end, as shares of the height. What is lower belongs to the first one, what is higher
-/// to the last.
+/// Edges of the bands of height, as shares of the creature's height. Skin below the first edge belongs to the first
+/// band, skin above the last edge to the last one.
 pub(crate) const EDGES: [f64; BANDS + 1] = [0.08, 0.16, 0.32, 0.56, 0.8, 1.04];
+/// Number of bands of height.
 pub(crate) const BANDS: usize = 5;
 
-/// Each clip is looked at in so many phases.
+/// Number of evenly spread times at which a clip is measured.
 const PHASES: u32 = 16;
 
-/// The room that a kind of creature takes up beside and before its origin in some clips, in model space: a box for each
-/// band of height, around the skin in all phases of those clips.
+/// The room around its origin that a kind of creature takes up in some clips, in model space. Per band of height it is
+/// a box around the origin and the band's skin at all measured times of these clips.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Extent {
-    /// From low to high. A band without skin has a box without width.
+    /// From low to high. The box of a band without skin has no width.
     pub(crate) bands: [Band; BANDS],
 }
 
-/// The box of one band: from right to left (X) and from back to front (Z).
+/// The box of one band: from right to left along X, and from back to front along Z.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Band {
     pub(crate) right: f64,
@@ -33,8 +34,8 @@ pub(crate) struct Band {
     pub(crate) front: f64,
 }
 
-/// The room that a kind of creature takes up in its clips of moving, and while it turns on the spot: with its feet where
-/// they stand and turn, and not where they walk.
+/// The room that a kind of creature takes up on the spot, and while it walks. On the spot the lowest band holds only
+/// the feet in the clips that stand and turn; the other bands hold the walk as well.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Extents {
     pub(crate) on_spot: Extent,
@@ -52,7 +53,7 @@ impl Extents {
         let on_spot = Extent::new(skeleton, clips, mesh, rest, gait.on_spot())?;
         let walk = core::iter::once(gait.walk);
         let walking = on_spot.and(&Extent::new(skeleton, clips, mesh, rest, walk)?);
-        // Its body may still swing from its walk.
+        // The body may still swing from the walk.
         let mut bands = walking.bands;
         bands[0] = on_spot.bands[0];
         let on_spot = Extent { bands };
@@ -97,14 +98,14 @@ impl Extent {
 }
 
 impl Extent {
-    /// The room of both.
+    /// The union of both rooms.
     pub(crate) fn and(&self, other: &Self) -> Self {
         let bands = core::array::from_fn(|index| self.bands[index].and(other.bands[index]));
         Self { bands }
     }
 
-    /// What takes up as much room to both sides as the widest band, and none before and behind: enough to walk along a
-    /// way, if it turns where that is wide enough.
+    /// A room without length that is as wide to both sides as the widest band. It is enough for walking along a path
+    /// that has wide places to turn in.
     pub(crate) fn slim(&self) -> Self {
         let sides = self.bands.iter().map(|band| band.left.max(-band.right));
         let half = sides.fold(0.0, f64::max);
@@ -121,7 +122,7 @@ impl Extent {
 }
 
 impl Extent {
-    /// The room that it needs to turn anywhere: in each band as much to all sides as its corner that is furthest out.
+    /// The room for turning to any heading: per band a square whose half side is the distance of the furthest corner.
     pub(crate) fn stout(&self) -> Self {
         let bands = self.bands.map(|band| {
             let aside = band.left.max(-band.right);
@@ -136,7 +137,7 @@ impl Extent {
         Self { bands }
     }
 
-    /// How far its corner that is furthest out is from its origin.
+    /// Distance of the furthest corner from the origin.
     pub(crate) fn farthest(&self) -> f64 {
         self.stout()
             .bands
@@ -145,7 +146,7 @@ impl Extent {
             .fold(0.0, f64::max)
     }
 
-    /// Its room as seen looking back.
+    /// The same room after half a turn about Y, for going backward.
     pub(crate) fn behind(&self) -> Self {
         let bands = self.bands.map(|band| Band {
             right: -band.left,
@@ -176,7 +177,7 @@ impl Band {
     }
 }
 
-/// The band of a height, as a share of the creature's.
+/// The band at a height, which is a share of the creature's height.
 fn band_of(share: f64) -> usize {
     let inner = &EDGES[1..BANDS];
     inner.iter().filter(|edge| share > **edge).count()

@@ -1,11 +1,11 @@
-//! Turns a creature whose file looks another way than along +Z.
+//! Turns a model that does not look along +Z in its file.
 
 use clamber_animation::rig::{Channel, Clip, Joint, Keyframes, RigError, Skeleton};
 use glam::DQuat;
 
 use super::file::Facing;
 
-/// The same creature, looking along +Z: its root joints are turned about Y, at rest and in all clips.
+/// The skeleton and the clips, turned to look along +Z: the root joints are turned about Y, at rest and in all clips.
 pub(crate) fn turned(
     skeleton: Skeleton,
     clips: Vec<Clip>,
@@ -32,7 +32,7 @@ pub(crate) fn turned(
                 return Ok(channel.clone());
             }
             let mut values = channel.values().clone();
-            // Tangents of splines are turned as their values are.
+            // Tangents of splines are turned like values.
             match &mut values {
                 Keyframes::Translation(values) => {
                     for value in values {

@@ -4,50 +4,51 @@ use serde::{Deserialize, Serialize};
 
 use crate::brain::unique;
 
-/// What a brain file says about the body: which joints are legs and head, and which clips walk. All names are those of
-/// the creature's file. A body without legs keeps its feet where its clips have them, one without a gait does not walk.
+/// The body in a brain file: legs, head, gait and additions to the creature's own file. Joints, clips and materials
+/// have their names in the creature's file. Without legs, feet stay where clips have them. Without a gait the creature
+/// does not walk.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BodyFile {
-    /// Where the model looks in its file; `+z` by default. Everything else is about the model as it is then turned, so
-    /// that it looks along +Z.
+    /// The direction in which the model looks in its file; `+z` by default. The model is turned to look along +Z, and
+    /// all other values are about the turned model.
     #[serde(default, skip_serializing_if = "Facing::is_forward")]
     pub facing: Facing,
-    /// What the file does not say about its clips, by their names.
+    /// Additions to clips, by the clips' names.
     #[serde(default, with = "unique", skip_serializing_if = "BTreeMap::is_empty")]
     pub clips: BTreeMap<String, ClipFile>,
-    /// Weak points, after those of the creature's own file.
+    /// Weak points in addition to the ones in the creature's own file.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub weak_points: Vec<WeakPointFile>,
     /// The legs.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub legs: Vec<LegFile>,
-    /// The clips that move it from place to place.
+    /// The clips that the creature stands, walks and turns with.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gait: Option<GaitFile>,
-    /// Its head and neck.
+    /// The head and the neck, which turn to look at things.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub head: Option<HeadFile>,
-    /// A clip that is added to all others, over and over.
+    /// A clip of breathing. It is played in a loop and added to clips that are played in a loop.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub breathe: Option<String>,
     /// Pieces of armour that break off.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub plates: Vec<PlateFile>,
-    /// Which of its skin is fur, which a climber holds on to, beside what its own file says.
+    /// Skin that is fur, in addition to the fur of the creature's own file. A climber holds on to fur.
     #[serde(default, skip_serializing_if = "FurFile::is_empty")]
     pub fur: FurFile,
-    /// How tall it is, metres, at [`CreatureConfig::scale`](crate::CreatureConfig) 1; `None` for as tall as its file
-    /// makes it.
+    /// Height of the creature, metres, at [`CreatureConfig::scale`](crate::CreatureConfig) 1. `None` keeps the size of
+    /// its file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub height: Option<f64>,
-    /// The height for which its clips were made, metres: they look right at that height. A taller creature of the same
-    /// shape moves slower, by the square root of how much taller it is (Froude's law), as gravity is the same at any
-    /// size; so do its turns. `None` plays them as they are at any size.
+    /// The height for which the clips were made, metres: they look right at that height. A taller creature plays its
+    /// clips and turns slower, by the square root of the ratio of heights (Froude's law), since gravity is the same at
+    /// any size. `None` plays clips at their own speed at any size.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub made_for: Option<f64>,
-    /// How much the body trembles when a clip passes its marker `impact`: the largest acceleration at the hips, metres
-    /// a second squared. A step gives 15 % of it.
+    /// Largest acceleration at the hips when a clip passes its marker `impact`, metres a second squared: from 0 to 20,
+    /// 2.5 by default. A step gives 15 % of it.
     #[serde(default = "tremor")]
     pub tremor: f64,
 }
@@ -75,10 +76,10 @@ fn tremor() -> f64 {
     2.5
 }
 
-/// Where a model looks in its file.
+/// The direction in which a model looks in its file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Facing {
-    /// Along +Z, as glTF wants it.
+    /// Along +Z, as in glTF.
     #[default]
     #[serde(rename = "+z")]
     PlusZ,
@@ -99,34 +100,34 @@ impl Facing {
     }
 }
 
-/// What a creature's own file does not say about one of its clips.
+/// Additions to a clip of the creature's own file.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ClipFile {
-    /// Markers by name, with their times, seconds after the clip's first key frame: `active` and `recovery` of an
-    /// attack, `impact`, and those that transitions wait for. They replace those of the same name in the file.
+    /// Markers by name, with their times in seconds after the clip's first key frame: `active` and `recovery` of an
+    /// attack, `impact`, and markers that transitions wait for. They replace the clip's own markers of the same name.
     #[serde(default, with = "unique", skip_serializing_if = "BTreeMap::is_empty")]
     pub markers: BTreeMap<String, Times>,
-    /// Seconds in which it goes back from its end to its beginning, which are added to it: more than 0, at most 10. For
-    /// a clip that is played again and again, but ends in another pose than it begins with; give the time of a frame
-    /// where only the last key frame is missing. Without it such a clip jumps, and throws off who rides. Markers are
-    /// within the clip as it is in its file.
+    /// Seconds that are added to the clip, in which it returns from its end to its first pose: more than 0, at most 10.
+    /// It is for a clip that is played in a loop but ends in another pose than it begins with: without it the skin
+    /// jumps at the seam, and throws off riders. If only the last key frame is missing, give the time of a frame.
+    /// Markers stay within the clip as it is in its file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub close: Option<f64>,
 }
 
-/// One time, or several.
+/// One time or several times.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Times {
-    /// One.
+    /// A single time.
     One(f64),
-    /// Several.
+    /// Any number of times.
     Several(Vec<f64>),
 }
 
 impl Times {
-    /// All of them.
+    /// All its times.
     pub fn all(&self) -> &[f64] {
         match self {
             Self::One(time) => core::slice::from_ref(time),
@@ -139,11 +140,11 @@ impl Times {
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FurFile {
-    /// Joints whose skin is fur: each triangle belongs to the joint that moves it most. `"spine.*"` names all joints that
-    /// begin with `spine.`, `"*"` all. Stone stays stone.
+    /// Joints whose skin is fur. Each triangle belongs to the joint that moves it most. `"spine.*"` names all joints
+    /// that begin with `spine.`, `"*"` all joints. Triangles of stone stay stone.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub joints: Vec<String>,
-    /// Materials of the creature's file that are fur, by their names, whatever the file says of them.
+    /// Names of materials of the creature's file that are fur, also if the file gives them another surface.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub materials: Vec<String>,
 }
@@ -154,25 +155,26 @@ impl FurFile {
     }
 }
 
-/// A weak point that a creature's own file does not have. Lengths are in heights of the creature.
+/// A weak point in addition to the ones in a creature's own file. Lengths are in heights of the creature.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct WeakPointFile {
-    /// Its name.
+    /// Name of the weak point.
     pub name: String,
     /// The joint that moves it.
     pub joint: String,
-    /// Its place at rest, as seen from the joint: along the model's axes (+X is its left, +Y up, +Z ahead).
+    /// Place at rest relative to the joint, along the model's axes: +X to the creature's left, +Y up, +Z ahead.
     #[serde(default)]
     pub at: [f64; 3],
-    /// Its radius.
+    /// Radius of the weak point.
     pub radius: f64,
-    /// Damage that it takes, more than 0.
+    /// Damage that uses it up, more than 0.
     pub hit_points: f64,
-    /// True if the creature dies when it is used up.
+    /// True if the creature dies when the weak point is used up.
     #[serde(default, skip_serializing_if = "is_false")]
     pub major: bool,
-    /// It is hidden until all of lower order are used up: 0 without one, and 1 for a major one.
+    /// The weak point is hidden until all weak points of lower order are used up. `None` means 0, and 1 for a major
+    /// one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub order: Option<u32>,
 }
@@ -185,30 +187,31 @@ fn is_false(value: &bool) -> bool {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LegFile {
-    /// Two to five joints from the hip down. The last is the foot. A person's are hip, knee and ankle; an animal's hind
-    /// leg has more. Each is below the one before it, but for the foot: it may hang elsewhere, as a control that was
-    /// baked into the file does, and is carried along then. The joint that divides the leg most evenly is its knee; others
-    /// keep their pose.
+    /// Two to five joints from the hip down to the foot, each below the one before in the skeleton: hip, knee and ankle
+    /// of a human, more in an animal's hind leg. Only the foot may be elsewhere in the skeleton, like a control that
+    /// was baked into the file; it then moves to where the leg ends. The knee is the joint that divides the leg most
+    /// evenly; other joints keep their pose.
     pub joints: Vec<String>,
     /// The joint at the ball of the foot; `None` if the foot is one piece.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub toe: Option<String>,
-    /// To which side the knee points; `None` for the side to which it is bent at rest, or forward if it is straight.
+    /// The side to which the knee points. `None` takes the side to which it is bent at rest, or forward if it is
+    /// straight.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub knee: Option<Knee>,
 }
 
-/// To which side a knee points.
+/// The side to which a knee points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Knee {
-    /// Forward, as a human's.
+    /// Forward, like a human's.
     Forward,
-    /// Backward, as a bird's ankle that is used as a knee.
+    /// Backward, like a bird's ankle that is used as a knee.
     Backward,
 }
 
-/// The clips of walking and turning. The walk is a loop on the spot.
+/// The clips of standing, walking and turning. The walk is a loop on the spot.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GaitFile {
@@ -216,46 +219,49 @@ pub struct GaitFile {
     pub idle: String,
     /// The clip of walking.
     pub walk: String,
-    /// Its speed over ground: how far it goes in a second of the clip, in heights of the creature, so that neither its
-    /// size nor the unit of its file matters. `None` for the speed in the clip's extras, or without one for that of the
-    /// feet while they stand in the clip.
+    /// Speed over ground: how far it walks in a second of the clip, in heights of the creature, so that neither its
+    /// size nor the unit of its file matters. `None` takes the speed in the clip's extras, or without one the speed of
+    /// the feet while they stand in the clip.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub speed: Option<f64>,
-    /// Clips of turning on the spot to the left and to the right; `None` to turn with the idle clip.
+    /// Clips of turning on the spot to the left and to the right. `None` turns with the idle clip, and the feet follow
+    /// by steps.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub turn: Option<[String; 2]>,
-    /// How fast it turns on the spot, degrees a second of the clip.
+    /// Rate of turning on the spot, degrees a second at the clips' own speed.
     pub turn_deg: f64,
-    /// How fast it turns while it walks, degrees a second of the clip.
+    /// Rate of turning while it walks, degrees a second at the clips' own speed.
     pub steer_deg: f64,
 }
 
-/// A piece of armour that staggers the creature when it has taken a blow too many, and breaks off after some of those.
+/// A piece of armour. It staggers each time that the damage since the last stagger reaches `stagger`, and breaks off at
+/// the last of `count` staggers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PlateFile {
-    /// Its name, for the game.
+    /// Name of the plate, for the game.
     pub name: String,
-    /// Its triangles: those with this number in `SurfaceTag::user`, `"user"` in a material's extras. More than 0.
+    /// The plate's triangles are those with this number in `SurfaceTag::user`, which is `"user"` in a material's
+    /// extras. More than 0.
     pub user: u32,
-    /// Damage after which it staggers, more than 0.
+    /// Damage that makes it stagger, more than 0.
     pub stagger: f64,
-    /// How often it staggers before it breaks, at least 1.
+    /// Number of staggers after which it breaks off, at least 1.
     pub count: u32,
 }
 
-/// The joints that look at something.
+/// The joints of head and neck, which turn to look at things.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HeadFile {
-    /// From the head down, with the share of the turn that each one takes of what the joints above it leave, 0 to 1.
-    /// The last one takes the rest.
+    /// Joints from the head down. Each has a share, from 0 to 1, of the turn that the joints before it leave; the last
+    /// joint takes all of the rest.
     pub joints: Vec<(String, f64)>,
-    /// The eye at rest, as seen from the head's joint: along the model's axes (+X is its left, +Y up, +Z ahead), in
-    /// heights of the creature.
+    /// The eye at rest relative to the head's joint, along the model's axes: +X to the creature's left, +Y up, +Z
+    /// ahead, in heights of the creature.
     #[serde(default)]
     pub eye: [f64; 3],
-    /// How far it turns to either side, and up and down, degrees.
+    /// Largest turns to either side, and up and down, degrees; 80 and 60 by default.
     #[serde(default = "limits")]
     pub limits_deg: [f64; 2],
 }

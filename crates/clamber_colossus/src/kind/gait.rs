@@ -7,25 +7,26 @@ use super::{Contacts, Leg, Names, whole};
 use crate::brain::BrainProblem;
 use crate::error::ColossusError;
 
-/// Feet that move less than this many heights a second do not walk.
+/// Below this speed of the feet, in heights a second, the direction of the walk is unknown.
 const STILL: f64 = 0.02;
 
-/// How a kind of creature walks.
+/// The clips of a kind of creature that stand, walk and turn.
 #[derive(Clone, Debug)]
 pub(crate) struct Gait {
     pub(crate) idle: ClipId,
     pub(crate) walk: ClipId,
-    /// Speed of the walk, the model's units a second, and whether it was measured.
+    /// Speed of the walk over ground, the model's units a second of the clip, and whether it was measured at the feet.
     pub(crate) speed: f64,
     pub(crate) is_measured: bool,
-    /// How far aside of +Z the feet walk in the clip, degrees; `None` if they do not.
+    /// Direction in which the feet walk in the clip, degrees to the left of +Z; `None` if they hardly move or there are
+    /// no legs.
     pub(crate) walks_aside: Option<f64>,
-    /// To the left, to the right.
+    /// The clips of turning to the left and to the right.
     pub(crate) turn: Option<[ClipId; 2]>,
-    /// Radians a second.
+    /// Rates of turning on the spot and while walking, radians a second at the clips' own speed.
     pub(crate) turn_rate: f64,
     pub(crate) steer_rate: f64,
-    /// Of each leg, when it stands in the clips of standing, walking and turning.
+    /// Per leg, when it stands in the clips of standing, walking and turning.
     pub(crate) idle_contacts: Vec<Contacts>,
     pub(crate) walk_contacts: Vec<Contacts>,
     pub(crate) turn_contacts: [Vec<Contacts>; 2],
@@ -104,15 +105,15 @@ impl Gait {
 }
 
 impl Gait {
-    /// All clips that it plays on the spot: all but the walk.
+    /// All clips that are played on the spot: all but the walk.
     pub(crate) fn on_spot(&self) -> impl Iterator<Item = ClipId> {
         let turns = self.turn.into_iter().flatten();
         core::iter::once(self.idle).chain(turns)
     }
 }
 
-/// How fast the ground passes below a walk on the spot, by the feet that stand: the mean of all legs, in the model's
-/// units a second; `None` without legs.
+/// Velocity of the ground below a walk on the spot, the model's units a second: the mean over all legs of the velocity
+/// of the standing foot. `None` without legs.
 fn ground(names: &Names<'_>, clip: &Clip, legs: &[Leg]) -> Result<Option<DVec3>, ColossusError> {
     let mut sum = DVec3::ZERO;
     for leg in legs {

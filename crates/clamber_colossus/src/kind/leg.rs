@@ -9,19 +9,19 @@ use super::sole::SoleShape;
 use super::{Names, RestSkin, whole};
 use crate::error::ColossusError;
 
-/// How far above its lowest point in a clip a foot still stands, as a share of the leg's length, and how fast its ball
-/// may move against the ground for it, as a share of `sqrt(g * leg)`: 0.6 m/s on a human's leg, as in Unreal's foot
-/// placement, and as much for any size by Froude's law.
+/// Height above its lowest point in a clip up to which a foot may stand, as a share of the leg's length.
 const STANDS_BELOW: f64 = 0.012;
+/// Largest speed of a standing foot's ball against the ground, as a share of `sqrt(g * leg)`: 0.6 m/s on a human's leg,
+/// as in Unreal's foot placement. By Froude's law the share is the same at any size.
 const STANDS_SLOWER: f64 = 0.2;
 
-/// A foot's joint that is further above the lowest skin than this share of the leg's length is not its ball.
+/// A foot's joint that is higher above the lowest skin than this share of the leg's length is not the ball of the foot.
 const HIGH: f64 = 0.2;
 
 /// Samples a second in which a clip is searched for contacts.
 const SAMPLES: f64 = 60.0;
 
-/// A clip is looked at so often at most: a file may claim that it lasts for years.
+/// Most samples of a clip, an hour at [`SAMPLES`]: a file may claim that a clip lasts for years.
 const MOST_SAMPLES: f64 = 216_000.0;
 
 /// A leg of a kind of creature, in the model's units.
@@ -30,27 +30,27 @@ pub(crate) struct Leg {
     pub(crate) limb: Limb,
     pub(crate) hip: JointId,
     pub(crate) ankle: JointId,
-    /// The ball of the foot: the toe joint, or the ankle; and where it is in the joint's space. It is the joint itself,
-    /// unless that is far above the ground, as in a leg that ends in its last bone.
+    /// The joint of the ball of the foot, toe or ankle, and the ball's place in the joint's space. The ball is at the
+    /// joint's origin, unless the joint is far above the ground, as in a leg that ends in its last bone.
     pub(crate) ball: JointId,
     ball_at: DVec3,
-    /// Where the ball is at rest, in model space.
+    /// Place of the ball at rest, in model space.
     pub(crate) stands_at: DVec3,
-    /// Length of its bones together, at rest.
+    /// Length of both bones together, at rest.
     pub(crate) length: f64,
-    /// Rotation of the ankle at rest, in model space, when the sole is level; and from the ball to the ankle, in the
-    /// ankle's space.
+    /// Rotation of the ankle at rest, in model space, when the sole is level; and the vector from the ball to the
+    /// ankle, in the ankle's space.
     pub(crate) level: DQuat,
     pub(crate) from_ball: DVec3,
     pub(crate) sole: SoleShape,
 }
 
-/// When a foot stands in a clip: from and to, seconds, in ascending order. In a loop the last may end after the clip's
-/// end, which then is a time in its next round.
+/// Spans of time in which a foot stands in a clip, seconds, in ascending order. In a loop the last span may end after
+/// the clip's end, in the next round.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Contacts {
     spans: Vec<[f64; 2]>,
-    /// Where the ball is, in model space, at times that are evenly spread from the clip's beginning to its end.
+    /// Places of the ball, in model space, at times that are evenly spread from the clip's beginning to its end.
     balls: Vec<DVec3>,
     duration: f64,
     loops: bool,
@@ -111,13 +111,13 @@ impl Leg {
         })
     }
 
-    /// Where the ball of the foot is, for the frame of its joint in model space.
+    /// Place of the ball of the foot in model space, when the ball's joint has this frame in model space.
     pub(crate) fn ball_in(&self, frame: &DAffine3) -> DVec3 {
         frame.transform_point3(self.ball_at)
     }
 
-    /// Where the ball of the foot is, in model space, at times that are evenly spread from the beginning of a clip to its
-    /// end, and the time between two of them.
+    /// Places of the ball of the foot, in model space, at times that are evenly spread from the beginning of a clip to
+    /// its end, and the time between two of them.
     fn balls(
         &self,
         names: &Names<'_>,
@@ -139,8 +139,8 @@ impl Leg {
         Ok((places?, step))
     }
 
-    /// How fast the ground passes below a walk on the spot, level, in the model's units a second: the median motion of
-    /// the foot where it is as low as one that stands.
+    /// Level velocity of the ground below a walk on the spot, the model's units a second: the median velocity of the
+    /// ball where it is low enough to stand.
     pub(crate) fn ground(&self, names: &Names<'_>, clip: &Clip) -> Result<DVec3, ColossusError> {
         let (places, step) = self.balls(names, clip, Playback::Loop)?;
         let lowest = places.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
@@ -155,8 +155,8 @@ impl Leg {
         Ok(DVec3::new(median(|way| way.x), 0.0, median(|way| way.z)))
     }
 
-    /// When the foot stands in a clip. `speed` is how fast the ground passes below the model, along -Z, and `turn` how
-    /// fast the model turns, radians a second. `scale` is metres per unit.
+    /// When the foot stands in a clip. `speed` is the speed of the ground below the model, along -Z, in the model's
+    /// units a second. `turn` is the rate at which the model turns, radians a second.
     pub(crate) fn contacts(
         &self,
         names: &Names<'_>,
@@ -173,7 +173,7 @@ impl Leg {
             let (a, b) = (places[sample], places[sample + 1]);
             let way = (b - a) / step.max(1e-9);
             let middle = 0.5 * (a + b);
-            // The ground below a model that walks along +Z and turns about +Y.
+            // Velocity of the ground below a model that walks along +Z and turns about +Y.
             let ground = DVec3::new(-turn * middle.z, 0.0, turn * middle.x) - DVec3::Z * speed;
             let slip = DVec3::new(way.x - ground.x, 0.0, way.z - ground.z).length();
             middle.y < lowest + STANDS_BELOW * self.length && slip < most
@@ -185,7 +185,7 @@ impl Leg {
             }
             let (from, to) = (sample as f64 * step, (sample + 1) as f64 * step);
             match spans.last_mut() {
-                // A few samples that do not stand are noise, as are a few that do.
+                // Gaps of a few samples are noise, as are spans of a few samples.
                 Some(last) if from - last[1] <= 4.5 * step => last[1] = to,
                 _ => spans.push([from, to]),
             }
@@ -209,13 +209,13 @@ impl Leg {
     }
 }
 
-/// The rotation of a frame, whatever its scale.
+/// The rotation of a frame, without its scale.
 pub(crate) fn rotation_of(frame: &DAffine3) -> DQuat {
     frame.to_scale_rotation_translation().1
 }
 
 impl Contacts {
-    /// For how long the foot still stands at a time, seconds; `None` if it does not stand.
+    /// Seconds for which the foot still stands at a time; `None` if it does not stand.
     pub(crate) fn left(&self, time: f64) -> Option<f64> {
         let times = [time, time + self.duration];
         let times = &times[..if self.loops { 2 } else { 1 }];
@@ -229,7 +229,8 @@ impl Contacts {
         left.max_by(f64::total_cmp)
     }
 
-    /// For how long the foot still stands at a time, seconds: infinite if it does so when the clip ends and is held.
+    /// Seconds for which the foot still stands at a time: 0 if it does not stand, infinite if it is not lifted before
+    /// the end of a clip that is played once, since the last pose is held.
     pub(crate) fn stands_for(&self, time: f64) -> f64 {
         let is_held = !self.loops && !self.lifts_after(time);
         let left = self.left(time).unwrap_or(0.0);
@@ -240,7 +241,7 @@ impl Contacts {
         }
     }
 
-    /// True if the foot stands at a time, and is lifted before the clip ends, once at least.
+    /// True if the foot stands at a time, and is lifted before the clip ends.
     pub(crate) fn lifts_after(&self, time: f64) -> bool {
         let end = self.duration - 2.0 / SAMPLES;
         self.left(time).is_some_and(|left| time + left < end)
@@ -259,8 +260,8 @@ impl Contacts {
         inside(time) || inside(time + self.duration)
     }
 
-    /// Seconds from a time until the foot stands next, and where its ball is then, in model space; `None` if it does
-    /// not.
+    /// Seconds from a time until the foot stands next, and the place of its ball then, in model space; `None` if it
+    /// does not stand again.
     pub(crate) fn next(&self, time: f64) -> Option<(f64, DVec3)> {
         let ahead = |from: f64| {
             let wait = from - time;
@@ -278,7 +279,7 @@ impl Contacts {
             .map(|(wait, [from, _])| (wait, self.ball(*from)))
     }
 
-    /// Where the ball is at a time of the clip, in model space, to the nearest sample.
+    /// Place of the ball at a time of the clip, in model space, to the nearest sample.
     pub(crate) fn ball(&self, time: f64) -> DVec3 {
         let last = self.balls.len().saturating_sub(1);
         let index = (time / self.duration.max(1e-9) * last as f64).round() as usize;

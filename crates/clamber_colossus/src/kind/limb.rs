@@ -1,4 +1,4 @@
-//! The bones of a leg, and how they are bent.
+//! The bones of a leg, and how they bend.
 
 use clamber_animation::ik::{Chain, IkError, TwoBone, TwoBoneGoal};
 use clamber_animation::joint_in_model;
@@ -10,39 +10,40 @@ use super::{Names, whole};
 use crate::brain::BrainProblem;
 use crate::error::ColossusError;
 
-/// A leg does not fold further than to this angle between its bones, radians: 20 degrees, a deep squat.
+/// Smallest angle between the two bones of a leg, radians: 20 degrees, a deep squat.
 const LEAST_KNEE: f64 = 0.349;
 
-/// Scales that differ by more than this share are uneven.
+/// Scales along the axes that differ by more than this share of the largest one are uneven.
 const UNEVEN: f32 = 1e-5;
 
-/// A knee is bent at rest if it is this far from the line between hip and foot, as a share of the leg's length.
+/// A knee is bent at rest if its distance from the line between hip and foot is more than this share of the leg's
+/// length.
 const BENT: f64 = 0.02;
 
 /// The bones of a leg, from its hip to its foot.
 #[derive(Clone, Debug)]
 pub(crate) struct Limb {
     pub(crate) hip: JointId,
-    /// The joint that bends; the foot in a leg of one bone.
+    /// The joint that bends. In a leg of one bone it is the foot.
     pub(crate) knee: JointId,
     pub(crate) foot: JointId,
-    /// Where the leg ends: a point in the space of a joint.
+    /// End of the leg: a point in the space of a joint.
     pub(crate) end: (JointId, DVec3),
-    /// All joints from the hip down to where it ends, foot and toe.
+    /// All joints from the hip down to the end of the leg, foot and toe included.
     path: Vec<JointId>,
     bones: Bones,
 }
 
 #[derive(Clone, Debug)]
 enum Bones {
-    /// They bend at the knee. Joints between keep their pose.
+    /// Two bones that bend at the knee. Joints between keep their pose.
     Two(TwoBone),
-    /// There is only one, which can be turned.
+    /// A single bone that is turned.
     One(Chain),
 }
 
 impl Limb {
-    /// The limb of a leg's file; `toe` is the joint at the ball of its foot, if it has one.
+    /// Finds the leg's joints in the skeleton. `toe` is the joint at the ball of its foot, if it has one.
     pub(crate) fn new(
         names: &Names<'_>,
         file: &LegFile,
@@ -139,13 +140,13 @@ impl Limb {
         })
     }
 
-    /// True if the foot does not hang below the leg.
+    /// True if the foot is not below the leg in the skeleton.
     fn is_beside(&self) -> bool {
         self.end.0 != self.foot
     }
 
-    /// Takes uneven scales from the leg's joints in a pose: exporters bake a leg that was stretched along its bones, which
-    /// cannot be turned as a rigid one can. Such a joint is as large as at rest.
+    /// Makes uneven scales of the leg's joints in a pose uniform, with the volume that the joint has at rest. Exporters
+    /// bake legs that were stretched along their bones, and the solvers turn only rigid bones.
     pub(crate) fn make_rigid(&self, skeleton: &Skeleton, pose: &mut Pose) {
         let is_even = |scale: &Vec3| {
             scale.max_element() - scale.min_element() <= UNEVEN * scale.max_element()
@@ -160,13 +161,13 @@ impl Limb {
         }
     }
 
-    /// Length of both bones, when hip, knee and end are at these places.
+    /// Length of both bones together, with hip, knee and end at these places.
     pub(crate) fn length(&self, [hip, knee, end]: [DVec3; 3]) -> f64 {
         hip.distance(knee) + knee.distance(end)
     }
 
-    /// Bends the leg of a pose so that it ends at a place in model space. Returns false if it cannot be bent, and stays
-    /// as it is then.
+    /// Bends the leg of a pose so that it ends at a place in model space. Returns false, and leaves the pose, if the
+    /// leg cannot be bent.
     pub(crate) fn bend(&self, skeleton: &Skeleton, pose: &mut Pose, to: DVec3, soft: f64) -> bool {
         let goal = TwoBoneGoal {
             soft,
@@ -182,7 +183,7 @@ impl Limb {
         bent
     }
 
-    /// Puts a foot that hangs elsewhere to where the leg ends.
+    /// Puts a foot that is not below the leg in the skeleton to the end of the leg.
     fn carry_foot(&self, skeleton: &Skeleton, pose: &mut Pose) {
         let (joint, point) = self.end;
         let parent = skeleton.joints()[self.foot.index()].parent;

@@ -7,15 +7,15 @@ use glam::{DVec3, Vec3};
 
 use crate::error::ColossusError;
 
-/// The skin of a kind of creature, posed at rest, in model space. All sizes come from it: positions of a mesh in its
-/// file may have another scale, and lie elsewhere.
+/// The skin of a kind of creature, posed at rest, in model space. All sizes come from it, since the positions of a mesh
+/// in its file may have another scale and another origin.
 #[derive(Clone, Debug)]
 pub(crate) struct RestSkin {
     pub(crate) positions: Vec<Vec3>,
     /// Least and largest coordinates of all triangles.
     pub(crate) low: DVec3,
     pub(crate) high: DVec3,
-    /// Half the width, on the ground, of what is under it: the largest `min(|x|, |z|)`, so that arms that are held
+    /// Half the width of the body on the ground: the largest `min(|x|, |z|)` of the skin, so that arms that are held
     /// aside do not count.
     pub(crate) girth: f64,
 }
@@ -44,7 +44,7 @@ impl RestSkin {
         self.high.y - self.low.y
     }
 
-    /// A ball in the skin of each joint that moves some.
+    /// One ball for each joint that moves some vertices by at least half.
     pub(crate) fn balls(&self, skeleton: &Skeleton, mesh: &ColliderMesh) -> Vec<JointBall> {
         let joints = skeleton.joints().len();
         let mut ours: Vec<Vec<DVec3>> = vec![Vec::new(); joints];
@@ -73,12 +73,12 @@ impl RestSkin {
     }
 }
 
-/// A ball in the skin that follows a joint by half at least: its radius is the root mean square of the distances from
-/// the middle.
+/// A ball that approximates the vertices that follow a joint by at least half. The radius is the root mean square of
+/// their distances from the middle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct JointBall {
     pub(crate) joint: JointId,
-    /// In the joint's space.
+    /// Centre of the ball, in the joint's space.
     pub(crate) middle: DVec3,
     pub(crate) radius: f64,
 }

@@ -1,4 +1,4 @@
-//! What all creatures of one kind share.
+//! The data that all creatures of one kind share.
 
 mod additions;
 mod blended;
@@ -42,13 +42,14 @@ pub(crate) use strikes::{Strike, Swept};
 use crate::brain::{Act, Attack, Brain, BrainError, BrainProblem, BrainReport, StateId, list};
 use crate::error::ColossusError;
 
+/// Gravity, metres a second squared. The speed up to which a foot counts as standing depends on it.
 const GRAVITY: f64 = 9.81;
 
-/// Human height, metres. If nothing says for which height clips were made, they are taken for those of a creature of it,
-/// where a foot is looked for that stands. The file's unit says nothing: many are in centimetres.
+/// Height of a human, metres. If a brain file gives neither `made_for` nor `height`, standing feet are found in clips
+/// as for a creature of this height. The unit of a file tells no height, since many files are in centimetres.
 pub(crate) const HUMAN: f64 = 1.75;
 
-/// A kind of creature: its skeleton, clips and skin, its brain, and how its body is used. It never changes, and many
+/// A kind of creature: its skeleton, clips, skin and brain, and the use of its body. It never changes, and many
 /// creatures share it.
 #[derive(Clone, Debug)]
 pub struct CreatureKind {
@@ -57,44 +58,44 @@ pub struct CreatureKind {
     mesh: Arc<ColliderMesh>,
     weak_points: Vec<WeakPoint>,
     brain: Brain,
-    /// Of each state, what its act plays.
+    /// Per state, the data of its act.
     acts: Vec<CompiledAct>,
-    /// Of each joint, the regions that it belongs to, one bit each.
+    /// Per joint, the regions that it belongs to, one bit each.
     regions: Vec<u64>,
     legs: Vec<Leg>,
-    /// The joint that all legs hang from.
+    /// The innermost joint that all legs hang from.
     hips: Option<JointId>,
     gait: Option<Gait>,
-    /// The room that it takes up while it stands, walks and turns; `None` without a gait, as it goes nowhere.
+    /// The room that it takes up while it stands, walks and turns; `None` without a gait, since it stays in place.
     extents: Option<Extents>,
     look: Option<LookAt>,
-    /// The head's joint, and the eye in its space.
+    /// The head's joint, and the eye in that joint's space.
     head: Option<(JointId, DVec3)>,
     breathe: Option<ClipId>,
     plates: Vec<Plate>,
-    /// Of each triangle of a plate, in ascending order, the plate's index.
+    /// The triangles of plates in ascending order, each with its plate's index.
     plate_of: Vec<(TriangleId, u32)>,
-    /// Radius, on the ground, of what is under the creature at rest, in the model's units.
+    /// Half the width of the body on the ground, at rest, in the model's units.
     girth: f64,
     /// Height of the skin at rest, in the model's units.
     height: f64,
-    /// Its own in this process, to know states of it again.
+    /// A number that no other kind in this process has. A state keeps it, so that it is checked only once for a kind.
     number: u64,
 }
 
-/// The number of the next kind.
+/// The `number` of the next kind.
 static NEXT: AtomicU64 = AtomicU64::new(1);
 
-/// The clip of a state's act, and what it strikes with.
+/// The clip of a state's act, and its strike.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct CompiledAct {
     pub(crate) clip: Option<ClipId>,
     pub(crate) strike: Option<Strike>,
-    /// Of each leg, when it stands in the clip.
+    /// Per leg, when it stands in the clip.
     pub(crate) contacts: Vec<Contacts>,
 }
 
-/// What a creature's file brings: see `clamber_gltf::Rig`, whose fields these are.
+/// The parts of a creature's file. They have the names of the fields of `clamber_gltf::Rig`.
 #[derive(Clone, Debug)]
 pub struct CreatureParts {
     /// The skeleton.
@@ -103,18 +104,19 @@ pub struct CreatureParts {
     pub clips: Vec<Clip>,
     /// The skin that people touch.
     pub mesh: Arc<ColliderMesh>,
-    /// Of each material that the brain's file may name ([`FurFile::materials`]), the triangles of the skin that have it.
+    /// Per material name, the triangles of the skin that have it; [`FurFile::materials`] names them.
     pub materials: BTreeMap<String, Vec<TriangleId>>,
-    /// Where it can be wounded.
+    /// The weak points of the file.
     pub weak_points: Vec<WeakPoint>,
 }
 
 impl CreatureKind {
-    /// Puts a body and a brain together.
+    /// Combines a creature's parts with a brain.
     ///
     /// # Errors
-    /// [`ColossusError::Brain`] if the brain names a clip, joint or weak point that the parts do not have, with the state and
-    /// its line, or if legs or head cannot be moved; [`ColossusError::Animation`] if the parts do not fit each other.
+    /// [`ColossusError::Brain`] if the brain names a clip, joint or weak point that the parts do not have, with the
+    /// state and its line, or if legs or head cannot be moved; [`ColossusError::Animation`] if the parts do not fit
+    /// each other.
     pub fn new(parts: CreatureParts, brain: Brain) -> Result<Self, ColossusError> {
         let CreatureParts {
             skeleton,
@@ -127,7 +129,7 @@ impl CreatureKind {
         let (skeleton, clips) = facing::turned(skeleton, clips, body.facing)?;
         let mut clips = additions::changed(clips, body)?;
         let mut weak_points = weak_points;
-        // A copy: the clip itself may be played as well.
+        // A copy, since the clip itself may be played as well.
         let breath = brain.file().body.breathe.as_ref();
         let breath = breath.and_then(|name| clips.iter().find(|clip| clip.name == *name));
         let breath = breath.map(breath_of).map(|breath| {
@@ -240,18 +242,18 @@ impl CreatureKind {
         })
     }
 
-    /// Another one for each kind that was made in this process; not 0.
+    /// A number that no other kind in this process has; not 0.
     pub(crate) fn number(&self) -> u64 {
         self.number
     }
 
-    /// True if it walks: its brain's file names the clips of a gait.
+    /// True if it can walk: the body in the brain's file has a gait.
     pub fn can_walk(&self) -> bool {
         self.gait.is_some()
     }
 
-    /// A 64-bit hash of all that the kind consists of, for comparing peers and saved states: skeleton, clips, skin,
-    /// weak points, and the brain's file.
+    /// A 64-bit hash of the skeleton, clips, skin, weak points, brain file and tick length, for comparing peers and
+    /// saved states.
     pub fn fingerprint(&self) -> u64 {
         let body = creature_fingerprint(&self.skeleton, self.clips.clips(), &self.mesh);
         let mut hash = body ^ self.brain.tick().to_bits();
@@ -267,7 +269,7 @@ impl CreatureKind {
             add(point.hit_points.to_bits());
             add(u64::from(point.order) << 1 | u64::from(point.major));
         }
-        // A file that was read can be written.
+        // A brain file that was read can always be written.
         let file = serde_json::to_string(self.brain.file()).unwrap_or_default();
         file.bytes().for_each(|byte| add(u64::from(byte)));
         hash
@@ -283,12 +285,12 @@ impl CreatureKind {
         &self.clips
     }
 
-    /// The skin that people touch: that of the creature's file, with the fur of the brain's file.
+    /// The skin that people touch: the mesh of the creature's file, with the fur of the brain's file.
     pub fn mesh(&self) -> &Arc<ColliderMesh> {
         &self.mesh
     }
 
-    /// Where it can be wounded.
+    /// The weak points: first the ones in the creature's file, then the ones in the brain's file.
     pub fn weak_points(&self) -> &[WeakPoint] {
         &self.weak_points
     }
@@ -298,7 +300,7 @@ impl CreatureKind {
         &self.brain
     }
 
-    /// The brain's states and transitions as text, and what can never happen.
+    /// The brain's states and transitions as text, and those that can never happen.
     pub fn report(&self) -> BrainReport {
         self.brain.report_with(&|clip, marker| {
             let clip = self.clips.find(clip);
@@ -312,35 +314,37 @@ impl CreatureKind {
         self.height
     }
 
-    /// Half the width, on the ground, of what is under the creature at rest, in the model's units: the largest
-    /// `min(|x|, |z|)` of its skin, so that arms that are held aside do not count.
+    /// Half the width of the body on the ground, at rest, in the model's units: the largest `min(|x|, |z|)` of its
+    /// skin, so that arms that are held aside do not count.
     pub fn girth(&self) -> f64 {
         self.girth
     }
 
-    /// Where its eye is at rest, in model space: that of [`BodyFile::head`], or 0.9 of its height above the origin.
+    /// Place of the eye at rest, in model space: from [`BodyFile::head`], or without a head 0.9 of the height above the
+    /// origin.
     pub fn eye(&self) -> DVec3 {
         self.eye_in(|joint| joint_in_model(&self.skeleton, self.clips.rest(), joint))
     }
 
-    /// Speed of its walk over ground, in the model's units a second of the clip; `None` if it does not walk.
+    /// Speed of the walk over ground, the model's units a second of the clip; `None` if it does not walk.
     pub fn walking_speed(&self) -> Option<f64> {
         self.gait.as_ref().map(|gait| gait.speed)
     }
 
-    /// True if the speed of its walk was measured, since neither its file nor its brain's says it.
+    /// True if the walk's speed was measured at the feet, because neither the creature's file nor the brain's file
+    /// gives it.
     pub fn is_speed_measured(&self) -> bool {
         self.gait.as_ref().is_some_and(|gait| gait.is_measured)
     }
 
-    /// How far aside of where the model looks (+Z) its feet walk in the walk's clip, degrees to the left: around 0 as it
-    /// should be, around 180 for a model that looks backward, which [`BodyFile::facing`] mends. `None` if it has no legs,
-    /// does not walk, or its feet hardly move.
+    /// Direction of the feet's motion over ground in the walk's clip, degrees to the left of +Z: about 0 for a model
+    /// that looks along +Z, about 180 for a model that looks backward. [`BodyFile::facing`] corrects such a model.
+    /// `None` if it has no legs, does not walk, or its feet hardly move.
     pub fn walks_aside(&self) -> Option<f64> {
         self.gait.as_ref()?.walks_aside
     }
 
-    /// Where its eye is when its joints are at these frames, in model space.
+    /// Place of the eye in model space, when joints have these frames in model space.
     pub(crate) fn eye_in(&self, frame: impl Fn(JointId) -> Option<DAffine3>) -> DVec3 {
         let head = self
             .head
@@ -348,12 +352,12 @@ impl CreatureKind {
         head.unwrap_or(DVec3::Y * (0.9 * self.height))
     }
 
-    /// Its pieces of armour, in the order of the file.
+    /// The plates, in the order of the brain's file.
     pub fn plates(&self) -> &[Plate] {
         &self.plates
     }
 
-    /// The plate that a triangle belongs to, by its index.
+    /// The index of the plate that a triangle belongs to.
     pub fn plate_of(&self, triangle: TriangleId) -> Option<usize> {
         let found = self
             .plate_of
@@ -406,7 +410,7 @@ impl CreatureKind {
     }
 }
 
-/// An error that no state is at fault for.
+/// An error of the whole brain, without a state and a line.
 pub(crate) fn whole(problem: BrainProblem) -> BrainError {
     BrainError {
         line: None,
@@ -415,7 +419,7 @@ pub(crate) fn whole(problem: BrainProblem) -> BrainError {
     }
 }
 
-/// A clip of breathing without what does not move in it: it is added to others in every tick.
+/// A clip of breathing without its constant channels, since it is added to other clips in every tick.
 fn breath_of(clip: &Clip) -> Clip {
     let moves = |channel: &&Channel| match channel.values() {
         Keyframes::Translation(values) | Keyframes::Scale(values) => {
@@ -472,7 +476,7 @@ fn compile(
                 let (owner, attack) = attack_with(brain, clip)
                     .ok_or_else(|| here(BrainProblem::NoAttack { clip: clip.clone() }))?;
                 let there = |problem| brain.error_in(owner, problem);
-                // It only goes there.
+                // A walk does not strike, so it needs no balls.
                 Some(strike(names, attack, legs, &[]).map_err(there)?)
             }
             None => None,
@@ -519,9 +523,9 @@ fn attack_with<'a>(brain: &'a Brain, clip: &str) -> Option<(StateId, &'a Attack)
     })
 }
 
-/// How fast the turning of a head changes, radians a second squared, for a creature of human size; larger ones take
-/// longer, by the square root of their height. Whoever rides on it feels two fifths of it in metres a second squared,
-/// at any size.
+/// Largest angular acceleration of the head, radians a second squared, for a creature of human height. Larger creatures
+/// turn the head slower: times grow with the square root of the height. At any size a rider on the head feels two
+/// fifths of this number in metres a second squared.
 const TURNS_HEAD: f64 = 20.0;
 
 fn look(

@@ -1,4 +1,4 @@
-//! Clips and joints by their names in a brain file.
+//! Finds clips and joints by their names in a brain file.
 
 use clamber_animation::ik::IkError;
 use clamber_animation::rig::{JointId, Skeleton};
@@ -7,16 +7,16 @@ use clamber_animation::{AnimationSet, ClipId};
 use super::whole;
 use crate::brain::{BrainError, BrainProblem, list};
 
-/// Looks names up, and says what there is if one is unknown.
+/// Looks names up. Errors list the known names.
 pub(crate) struct Names<'a> {
     pub(crate) skeleton: &'a Skeleton,
     pub(crate) clips: &'a AnimationSet,
-    /// Gravity as the clips were made for it, in the model's units a second squared.
+    /// Gravity for which the clips were made, in the model's units a second squared.
     pub(crate) gravity: f64,
 }
 
 impl Names<'_> {
-    /// An error of inverse kinematics, with names of joints.
+    /// An error of inverse kinematics, with the joints' names.
     pub(crate) fn limb_error<'n>(
         &self,
         limb: &'static str,
@@ -48,7 +48,7 @@ impl Names<'_> {
         self.limb_fault(limb, joints, fault)
     }
 
-    /// An error of a limb that is told in words.
+    /// An error of a leg or a head, with its cause in words.
     pub(crate) fn limb_fault<'n>(
         &self,
         limb: &'static str,
@@ -76,7 +76,8 @@ impl Names<'_> {
         self.skeleton.find(name).ok_or_else(|| self.no_joint(name))
     }
 
-    /// The joints that a pattern names: one, or all that begin and end with what is before and after its `*`.
+    /// The joints that a pattern names: one joint, or all joints that begin with the text before `*` and end with the
+    /// text after it.
     pub(crate) fn joints(&self, pattern: &str) -> Result<Vec<JointId>, BrainProblem> {
         let Some((start, end)) = pattern.split_once('*') else {
             return Ok(vec![self.joint(pattern)?]);

@@ -6,13 +6,13 @@ use crate::brain::{BrainError, BrainProblem, list};
 /// A piece of armour of a kind of creature.
 #[derive(Clone, Debug)]
 pub struct Plate {
-    /// Its name.
+    /// Name of the plate, from the brain's file.
     pub name: String,
-    /// Damage after which it staggers.
+    /// Damage that makes it stagger.
     pub stagger: f64,
-    /// How often it staggers before it breaks.
+    /// Number of staggers after which it breaks off.
     pub count: u32,
-    /// Its triangles, in ascending order: hidden from queries once it is broken.
+    /// The plate's triangles, in ascending order. They are hidden from queries once it is broken.
     pub triangles: Vec<TriangleId>,
 }
 

@@ -4,44 +4,46 @@ use glam::DVec3;
 
 use super::{BlendedSole, RestSkin};
 
-/// How far above the lowest skin of a foot its sole reaches, as a share of the leg's length.
+/// Thickness of a sole above the lowest skin of its foot, as a share of the leg's length.
 const THICK: f64 = 0.03;
 
-/// A sole is skinned in each tick, unless this share of its vertices follows the foot alone.
+/// A sole is skinned in each tick if less than this share of its low vertices follow the foot alone.
 const MOST: f64 = 0.6;
 
-/// Skin that follows the shin too may be the lowest one in another pose if it is no further above the lowest skin at rest
-/// than this share of the leg's length.
+/// Height above the lowest skin at rest up to which vertices that also follow the shin may become the lowest ones in
+/// another pose, as a share of the leg's length.
 const FOOT: f64 = 0.15;
 
-/// Skin of the sole moves with the foot by at least this share: what follows the shin as well leaves the ground with
-/// it. In coarse meshes most of it may do so: the first share is taken whose lowest skin is no further above that of the
-/// last one than this share of the leg's length.
+/// Lower bounds of the foot's weight in a vertex of the sole, from the strictest to the laxest. A vertex that also
+/// follows the shin leaves the ground with the shin, but in a coarse mesh most vertices may do so. The strictest bound
+/// is taken with which the lowest skin is within [`AS_LOW`] of the lowest skin with the laxest bound.
 const RIGID: [f32; 3] = [0.99, 0.9, 0.5];
+/// Heights that differ by no more than this share of the leg's length count as equally low; see [`RIGID`].
 const AS_LOW: f64 = 0.01;
 
-/// Rows and columns of points on a sole, of which those at the edge lie within it by a share of its size.
+/// Rows along X and columns along Z of the grid of points on a sole.
 const POINTS: [usize; 2] = [17, 25];
+/// Distance of the grid from the edge of the sole, as a share of the sole's size.
 const EDGE: f64 = 0.01;
 
-/// Points along the rim lie this share of the sole's diagonal apart, at most: one over it.
+/// Points along the rim are at most the sole's diagonal divided by this apart.
 const RIM: f64 = 50.0;
 
-/// The sole of a foot at rest, in the model's axes and units, relative to the foot's ball, level.
+/// The sole of a foot at rest, level, relative to the ball of the foot, in the model's axes and units.
 #[derive(Clone, Debug)]
 pub(crate) struct SoleShape {
-    /// Heel and toe, right and left, of a rectangle around it.
+    /// Corners of a rectangle around the sole: right heel, left heel, right toe, left toe.
     pub(crate) corners: [DVec3; 4],
-    /// Points of its skin, evenly spread.
+    /// Points of the sole's skin, evenly spread, with its vertices and rim.
     pub(crate) points: Vec<DVec3>,
     /// Height of the ball above the lowest skin.
     pub(crate) ball_height: f64,
-    /// Its vertices, if some of them follow the shin too.
+    /// Vertices that also follow the shin; empty if most of the sole follows the foot alone.
     pub(crate) blended: BlendedSole,
 }
 
 impl SoleShape {
-    /// The sole of the skin that moves with an ankle; `None` if none does. `ball` is the ball's place at rest.
+    /// The sole of the skin that moves with an ankle; `None` if no skin does. `ball` is the ball's place at rest.
     pub(crate) fn new(
         (skeleton, mesh, skin): (&Skeleton, &ColliderMesh, &RestSkin),
         ankle: JointId,
@@ -124,19 +126,19 @@ impl SoleShape {
         })
     }
 
-    /// The middle of a rectangle around it, on the ground.
+    /// Centre of the rectangle around the sole, on the ground.
     pub(crate) fn middle(&self) -> DVec3 {
         0.5 * (self.corners[0] + self.corners[3]) - DVec3::Y * self.ball_height
     }
 
-    /// Width and length.
+    /// Width and length of the sole.
     pub(crate) fn size(&self) -> [f64; 2] {
         let way = self.corners[3] - self.corners[0];
         [way.x, way.z]
     }
 }
 
-/// The vertices of a sole, and points on its triangles, in rows and columns over X and Z; of several triangles there, on
+/// The vertices of a sole, and points of its triangles on a grid over X and Z. Where triangles overlap, the point is on
 /// the lowest one.
 fn spread(
     triangles: &[[DVec3; 3]],
@@ -159,7 +161,7 @@ fn spread(
             }
         }
     }
-    // Corners of triangles stand out between the rows, and the sole's rim beside them.
+    // Vertices may be lower than the grid's points beside them, and the rim is outside the grid.
     points.extend(vertices);
     let gap = (high - low).with_y(0.0).length() / RIM;
     for [from, to] in rim(triangles) {
@@ -175,7 +177,7 @@ fn spread(
     points
 }
 
-/// The sides of triangles that no other one shares.
+/// Edges that belong to a single triangle.
 fn rim(triangles: &[[DVec3; 3]]) -> Vec<[DVec3; 2]> {
     let sides =
         |corners: &[DVec3; 3]| [0, 1, 2].map(|side| [corners[side], corners[(side + 1) % 3]]);
@@ -186,7 +188,7 @@ fn rim(triangles: &[[DVec3; 3]]) -> Vec<[DVec3; 2]> {
     all.iter().filter(is_alone).copied().collect()
 }
 
-/// Height of a triangle above X and Z; `None` beside it.
+/// Height of a triangle at X and Z; `None` outside the triangle.
 fn height_at([a, b, c]: &[DVec3; 3], x: f64, z: f64) -> Option<f64> {
     let side = |p: &DVec3, q: &DVec3| (q.x - p.x) * (z - p.z) - (q.z - p.z) * (x - p.x);
     let (u, v, w) = (side(b, c), side(c, a), side(a, b));

@@ -6,54 +6,55 @@ use glam::DVec3;
 use super::{JointBall, Leg, Names};
 use crate::brain::{Attack, BrainProblem};
 
-/// An attack of a kind of creature.
+/// The strike of an attack of a kind of creature.
 #[derive(Clone, Debug)]
 pub(crate) struct Strike {
     /// Joints whose skin hurts.
     pub(crate) limb: Vec<JointId>,
-    /// Seconds of the clip: from here on it hurts, and until here.
+    /// Begin and end of the time in which the limb hurts: the markers `active` and `recovery`, seconds of the clip.
     pub(crate) active: [f64; 2],
-    /// What it does to people, and where it aims.
+    /// The attack in the brain's file.
     pub(crate) attack: Attack,
-    /// Seconds of the clip when its wave goes out.
+    /// Time at which its wave goes out: the marker `impact` or else `recovery`, seconds of the clip.
     pub(crate) impact: f64,
-    /// Where the limb's last joint is when it stops to hurt, in model space.
+    /// Place of the limb's last joint at `recovery`, in model space.
     pub(crate) spot: DVec3,
-    /// The leg that strikes, if one does: its index.
+    /// Index of the leg that strikes; `None` if the limb is no leg.
     pub(crate) leg: Option<usize>,
-    /// The neck or arm that brings its limb to whom it strikes, if it aims with something else than a leg.
+    /// The neck or arm that moves the limb's end to the prey; `None` if a leg strikes, or if the attack does not aim.
     pub(crate) chain: Option<Chain>,
-    /// From its hip to where its ankle comes down, in model space, as the hip moves on while the foot stands there; from
-    /// the first joint of a neck to where its end strikes.
+    /// Vectors that the leg or the chain has to span, in model space. For a leg they lead from the hip to the place
+    /// where the ankle comes down, at several times, since the hip moves on while the foot stands. For a chain, one
+    /// vector leads from its first joint to `spot`.
     reaches: Vec<DVec3>,
-    /// Length of that leg, or neck, that is used.
+    /// Length of the leg or the chain.
     length: f64,
-    /// Balls in the skin of all joints.
+    /// Balls around the skin of all joints; empty if the strike is only the goal of a walk.
     pub(crate) swept: Vec<Swept>,
 }
 
-/// A ball in the skin of a joint, on its way in a clip.
+/// The path of a ball around a joint's skin in a clip.
 #[derive(Clone, Debug)]
 pub(crate) struct Swept {
     pub(crate) radius: f64,
-    /// True if it goes to where the attack aims.
+    /// True if the ball moves to where the attack aims.
     pub(crate) aims: bool,
-    /// Its middle in model space, at times that are evenly spread until the limb stops to hurt.
+    /// Places of its centre in model space, at times that are evenly spread from the clip's beginning to `recovery`.
     pub(crate) way: Vec<DVec3>,
 }
 
-/// Times at which a body is looked at on its way.
+/// Number of steps in which the path of a ball is sampled.
 const SWEPT: u32 = 16;
 
-/// A leg that strikes is stretched to this share of its length at most.
+/// Largest length to which a striking leg, neck or arm is stretched, as a share of its length.
 const STRETCH: f64 = 0.97;
 
-/// The hip is looked at so often in a second; the foot has left its place when its ankle is further from it than this
-/// share of the leg's length.
+/// Samples of the hip and the ankle of a striking leg a second.
 const LOOKS: f64 = 20.0;
+/// A foot has left its place when its ankle is further from it than this share of the leg's length.
 const LEFT: f64 = 0.03;
 
-/// A neck or an arm is so many bones at most: more would bend the body.
+/// Most bones of a neck or an arm that aims: with more bones the body would bend as well.
 const BONES: usize = 3;
 
 impl Strike {
@@ -111,7 +112,7 @@ impl Strike {
                 let place = |joint| Some(joint_in_model(names.skeleton, &pose, joint)?.translation);
                 Some([place(leg.hip)?, place(leg.ankle)?])
             };
-            // It stands since shortly before it stops to hurt.
+            // The foot stands from some time before `to` until some time after it.
             let step = |steps: f64, way: f64| {
                 let steps = (steps * LOOKS).max(0.0) as u32;
                 (0..=steps).map(move |step| to + way * f64::from(step) / LOOKS)
@@ -157,12 +158,11 @@ impl Strike {
         })
     }
 
-    /// How much of a way the spot can be moved along it, as a share: a leg or a neck does not reach everywhere. The way is
-    /// in model space.
+    /// The share of a displacement of the spot, in model space, that the leg or the chain can reach: from 0 to 1.
     pub(crate) fn reach(&self, way: DVec3) -> f64 {
         let length = STRETCH * self.length;
         let share = |from: &DVec3| {
-            // Where |from + share * way| is the leg's length.
+            // The share at which |from + share * way| is the leg's length.
             let (a, b) = (way.length_squared(), from.dot(way));
             let c = from.length_squared() - length * length;
             let root = (b * b - a * c).max(0.0).sqrt();
@@ -172,18 +172,18 @@ impl Strike {
         shares.fold(1.0, f64::min).max(0.0)
     }
 
-    /// The joint at its limb's end.
+    /// The joint at the end of the limb.
     pub(crate) fn end(&self) -> Option<JointId> {
         self.limb.last().copied()
     }
 
-    /// True for skin of a joint that hurts.
+    /// True if skin of this joint hurts.
     pub(crate) fn hurts(&self, joint: JointId) -> bool {
         self.limb.contains(&joint)
     }
 }
 
-/// The neck or arm above the end of a limb: joints that no leg hangs from.
+/// The neck or arm above the end of a limb: at most [`BONES`] bones, from joints that no leg hangs from.
 fn chain_to(names: &Names<'_>, end: JointId, legs: &[Leg]) -> Option<Chain> {
     let skeleton = names.skeleton;
     let parent = |joint: &JointId| skeleton.joints()[joint.index()].parent;

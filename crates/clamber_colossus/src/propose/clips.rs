@@ -1,9 +1,8 @@
-//! Finds out by their names what clips are for.
+//! Finds the use of clips by their names.
 
 use clamber_animation::rig::Clip;
 
-/// Words in the names of clips of somebody who waits, walks, shakes somebody off, attacks, and dies. Those that come
-/// first are preferred.
+/// Words in the names of clips that can serve as the idle clip. Earlier words are preferred.
 const WAITS: [&str; 13] = [
     "idle",
     "survey",
@@ -19,29 +18,33 @@ const WAITS: [&str; 13] = [
     "fly",
     "flying",
 ];
+/// Words in the names of clips that can serve as the walk. Earlier words are preferred.
 const WALKS: [&str; 7] = [
     "walk", "walks", "walking", "move", "moves", "run", "running",
 ];
+/// Words in the names of clips that can serve for shaking off riders. Earlier words are preferred.
 const SHAKES: [&str; 11] = [
     "shake", "shrug", "hit", "react", "recieve", "impact", "hurt", "roar", "dance", "jump",
     "attack",
 ];
+/// Words in the names of clips that can serve as the attack. Earlier words are preferred.
 const ATTACKS: [&str; 9] = [
     "headbutt", "bite", "attack", "stomp", "swipe", "punch", "kick", "slash", "strike",
 ];
+/// Words in the names of clips that can serve as the death. Earlier words are preferred.
 const DIES: [&str; 5] = ["death", "die", "dies", "dying", "dead"];
 
-/// Words in the names of clips that are neither waiting nor walking.
+/// A clip with one of these words in its name is neither the idle clip nor the walk.
 const ACTS: [&str; 22] = [
     "death", "die", "dies", "dying", "dead", "attack", "headbutt", "bite", "punch", "kick",
     "slash", "shoot", "hit", "jump", "hold", "holding", "gun", "sword", "sit", "sitting", "fast",
     "impulse",
 ];
 
-/// A clip that lasts longer than this is none of them, seconds.
+/// Longest clip that is used, seconds.
 const LONGEST: f64 = 600.0;
 
-/// What a creature's clips are for, as far as their names tell.
+/// The clips of a creature by their use, as far as their names tell.
 pub(super) struct Clips {
     pub(super) idle: Option<String>,
     pub(super) walk: Option<String>,
@@ -52,7 +55,7 @@ pub(super) struct Clips {
 
 impl Clips {
     pub(super) fn of(clips: &[Clip]) -> Self {
-        // A name means the first clip that has it.
+        // A name refers to the first clip that has it.
         let is_first = |index: usize, clip: &Clip| {
             let same = clips.iter().position(|other| other.name == clip.name);
             same == Some(index) && clip.duration() <= LONGEST
@@ -64,11 +67,11 @@ impl Clips {
         let known: Vec<(&Clip, Vec<String>)> =
             known.map(|(_, clip)| (clip, words(&clip.name))).collect();
         let is_act = |words: &[String]| words.iter().any(|word| ACTS.contains(&word.as_str()));
-        // Of several the one of the shortest name: longer ones tell what else it does.
+        // The clip with the shortest name: longer names tell of something else that the clip does.
         let plainest = |wanted: &[&str], is_calm: bool| {
             wanted.iter().find_map(|word| {
                 let fits = known.iter().filter(|(clip, words)| {
-                    // Who only stands may do so in a single pose.
+                    // A standing clip may be a single pose.
                     let lasts = clip.duration() > 0.0 || is_calm && WAITS.contains(word);
                     let is_named = words.iter().any(|own| own == word);
                     lasts && is_named && !(is_calm && is_act(words))
@@ -90,8 +93,8 @@ impl Clips {
     }
 }
 
-/// The words of a name in lower case: of `Rhino|Idle_HitReact.001` they are idle, hit and react. What is before the last
-/// `|` names the armature.
+/// The words of a name in lower case: idle, hit and react for `Rhino|Idle_HitReact.001`. The part before the last `|`
+/// names the armature.
 pub(super) fn words(name: &str) -> Vec<String> {
     let name = name.rsplit('|').next().unwrap_or(name);
     let mut words: Vec<String> = Vec::new();
@@ -161,7 +164,7 @@ mod tests {
 
     #[test]
     fn words_within_words_mean_nothing() {
-        // White, soldier, undead, armature action, trunk, parasite.
+        // `White` contains `hit`, `Soldier` `die`, `Undead` `dead`, `Trunk` `run`, and `ArmatureAction` `react`.
         let all = found(&[("WhiteRhino|Idle", 1.0), ("WhiteRhino|Walk", 1.0)]);
         assert_eq!(
             all,

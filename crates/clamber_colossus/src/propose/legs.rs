@@ -1,4 +1,5 @@
-//! Finds the legs of a creature: chains of joints whose last one moves skin on the ground.
+//! Finds the legs of a creature: chains of joints that end in a joint with skin on the ground. A foot is detached if it
+//! is not below its leg in the skeleton, like a control that was baked into the file.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -7,48 +8,50 @@ use clamber_animation::rig::JointId;
 use super::look::Look;
 use crate::kind::LegFile;
 
-/// Skin that is no higher above the lowest than this share of the height stands on the ground. A joint whose skin is
-/// nearer to the middle of the creature than `MIDDLE` heights is no foot.
+/// Skin touches the ground if it is no higher above the lowest skin than this share of the creature's height.
 const LOW: f64 = 0.04;
+/// A joint nearer to the plane X = 0 than this share of the creature's height is no foot.
 const MIDDLE: f64 = 0.01;
 
-/// An ankle is no higher above the lowest skin than this share of the height.
+/// An ankle is no higher above the lowest skin than this share of the creature's height.
 const ANKLE: f64 = 0.15;
 
-/// Skin of a foot that hangs elsewhere is no further from its leg's than this share of the height.
+/// Largest gap between the skin of a detached foot and the skin of its leg, as a share of the creature's height.
 const NEAR: f64 = 0.1;
 
-/// A joint at the top of a leg that moves less than `LIGHT` of the leg's skin, and is nearer to the middle than `INNER`
-/// of how far the next one is, holds the leg at the body and is no part of it.
+/// The top joint of a leg is dropped if it moves less than this share of the leg's skin, and the condition of [`INNER`]
+/// holds: it only connects the leg to the body.
 const LIGHT: f64 = 0.15;
+/// See [`LIGHT`]: the top joint is nearer to the plane X = 0 than this share of the next joint's distance.
 const INNER: f64 = 0.75;
 
-/// Feet of a pair differ by no more heights than this in how far aside they are. Of several that may be a pair the most
-/// alike are; how far one is before the other counts only this share of other distances, as they may be in a stride.
+/// Largest difference between the distances of a pair's feet from the plane X = 0, as a share of the creature's height.
 const ASIDE: f64 = 0.1;
+/// Weight of the feet's distance along Z in the cost of a pair, against 1 for other distances: the feet may be in a
+/// stride. Pairs of the least cost are taken first.
 const STRIDE: f64 = 0.3;
 
-/// The most joints of a leg.
+/// Most joints of a leg, the limit of [`LegFile::joints`].
 const MOST: usize = 5;
 
-/// What has more ends on the ground than this stands on none of them. Gaps between pieces of skin are measured up to so
-/// many pairs of vertices.
+/// Most ends of chains on the ground. A creature with more of them gets no legs.
 const MOST_LEGS: usize = 64;
+/// Most pairs of vertices between which gaps of skin are measured. This limits the time of a proposal.
 const MOST_PAIRS: usize = 4_000_000;
 
 /// A leg under construction.
 struct Found {
     foot: JointId,
     toe: Option<JointId>,
-    /// The lowest joint of the chain that carries the foot: the foot itself, or, if that hangs elsewhere, the joint whose
-    /// skin is nearest to its skin.
+    /// The lowest joint of the chain that carries the foot: the foot itself, or for a detached foot the joint whose
+    /// skin is connected or nearest to the foot's skin.
     base: JointId,
 }
 
 /// The legs that a creature seems to have.
 pub(super) fn find(look: &Look<'_>) -> Vec<LegFile> {
     let mut found = feet(look);
-    // Feet that hang elsewhere are carried by what would be feet without them.
+    // The joint that carries a detached foot may look like a foot itself. Such joints are removed.
     let carried: BTreeSet<JointId> = found
         .iter()
         .filter(|leg| leg.base != leg.foot)
@@ -80,7 +83,7 @@ pub(super) fn find(look: &Look<'_>) -> Vec<LegFile> {
     legs.collect()
 }
 
-/// The legs of which there is one on either side: a tail that lies on the ground is no leg.
+/// Keeps the feet that have a partner on the other side: a tail that lies on the ground is no leg.
 fn paired(look: &Look<'_>, mut found: Vec<Found>) -> Vec<Found> {
     let place = |leg: &Found| look.place(leg.foot);
     let mut pairs = Vec::new();
@@ -89,7 +92,7 @@ fn paired(look: &Look<'_>, mut found: Vec<Found>) -> Vec<Found> {
             let (a, b) = (place(left), place(right));
             let aside = (a.x + b.x).abs();
             if a.x * b.x < 0.0 && aside < ASIDE * look.height {
-                // They may be in the middle of a stride.
+                // The feet may be in the middle of a stride.
                 pairs.push((
                     aside + (a.y - b.y).abs() + STRIDE * (a.z - b.z).abs(),
                     index,
@@ -110,7 +113,7 @@ fn paired(look: &Look<'_>, mut found: Vec<Found>) -> Vec<Found> {
     found
 }
 
-/// All that may be feet.
+/// All joints that may be feet.
 fn feet(look: &Look<'_>) -> Vec<Found> {
     let is_low = |joint: &JointId| {
         let heights = look.skin(*joint).iter().map(|place| place.y);
@@ -132,7 +135,7 @@ fn feet(look: &Look<'_>) -> Vec<Found> {
     for joint in ends.iter().flat_map(|end| look.upward(*end)) {
         *passed.entry(joint).or_default() += 1;
     }
-    // From the end up to the ankle.
+    // Joints from the end of the chain up to the ankle.
     let mut feet: BTreeMap<JointId, Vec<JointId>> = BTreeMap::new();
     for end in &ends {
         let is_foot = |joint: &JointId| {
@@ -147,7 +150,8 @@ fn feet(look: &Look<'_>) -> Vec<Found> {
     }
     let all: BTreeSet<JointId> = feet.keys().copied().collect();
     let found = feet.iter().map(|(foot, toes)| {
-        // A foot hangs in its leg, unless other feet hang from the same joint: then it is a control below the root.
+        // A foot is part of its leg unless other feet hang from the same parent joint, too. Such a foot is a control
+        // below the root, and detached.
         let is_held = look
             .parent(*foot)
             .is_some_and(|parent| passed.get(&parent) == Some(&1));
@@ -164,13 +168,14 @@ fn feet(look: &Look<'_>) -> Vec<Found> {
     found.collect()
 }
 
-/// True if a joint is not in the middle of the creature.
+/// True if a joint is further from the plane X = 0 than [`MIDDLE`].
 fn is_aside(look: &Look<'_>, joint: JointId) -> bool {
     look.place(joint).x.abs() > MIDDLE * look.height
 }
 
-/// Of the joints on the same side that are neither feet nor below this one, the one whose skin hangs together with its
-/// skin most; where the foot is a piece of its own, the one whose skin comes nearest. `None` if that is not near.
+/// The joint that carries a detached foot, among joints with skin on the same side that are neither detached feet nor
+/// below the foot: the joint that shares most triangles with the foot, or else the joint whose skin is nearest to the
+/// foot's. `None` if no skin is near.
 fn nearest(look: &Look<'_>, foot: JointId, feet: &BTreeSet<JointId>) -> Option<JointId> {
     let gap = |joint: JointId| {
         let of_foot = look.skin(foot).iter();
@@ -205,7 +210,7 @@ fn nearest(look: &Look<'_>, foot: JointId, feet: &BTreeSet<JointId>) -> Option<J
         .map(|(_, joint)| joint)
 }
 
-/// Takes joints from the top of a leg that only hold it at the body.
+/// Removes joints from the top of a leg that only connect it to the body, and joints over [`MOST`].
 fn trim(look: &Look<'_>, chain: &mut Vec<JointId>) {
     let count = |joint: &JointId| look.skin(*joint).len() as f64;
     let all: f64 = chain.iter().map(count).sum();

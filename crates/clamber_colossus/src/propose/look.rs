@@ -1,4 +1,4 @@
-//! What a creature's own file shows of its body: where its joints are at rest, and the skin that each of them moves.
+//! A creature's body at rest: the places of its joints, and the skin that each joint moves.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -14,13 +14,13 @@ use crate::kind::{CreatureKind, RestSkin};
 pub(super) struct Look<'a> {
     pub(super) skeleton: &'a Skeleton,
     mesh: &'a ColliderMesh,
-    /// Of each vertex, the joint that moves it most.
+    /// Per vertex, the joint that moves it most.
     movers: Vec<Option<JointId>>,
-    /// Where each joint is.
+    /// Per joint, its place.
     pub(super) places: Vec<DVec3>,
-    /// Where the vertices are that each joint moves more than any other one does.
+    /// Per joint, the places of the vertices that it moves more than any other joint does.
     pub(super) skin: Vec<Vec<DVec3>>,
-    /// Height of the lowest skin, and of all of it together; in the model's units, as everything here.
+    /// Height of the lowest skin, and height of the whole skin. All lengths here are in the model's units.
     pub(super) low: f64,
     pub(super) height: f64,
 }
@@ -60,7 +60,8 @@ impl<'a> Look<'a> {
         &self.skeleton.joints()[joint.index()].name
     }
 
-    /// True if the joint's name means it: names may be doubled, and `*` stands for any text in some places.
+    /// True if the joint's name, as a pattern in a brain file, names only this joint: names may repeat, and `*` stands
+    /// for any text.
     pub(super) fn is_named(&self, joint: JointId) -> bool {
         let name = self.name(joint);
         self.skeleton.find(name) == Some(joint) && !name.contains('*')
@@ -70,7 +71,7 @@ impl<'a> Look<'a> {
         self.skeleton.joints()[joint.index()].parent
     }
 
-    /// A joint and those above it.
+    /// A joint and all joints above it.
     pub(super) fn upward(&self, joint: JointId) -> impl Iterator<Item = JointId> {
         core::iter::successors(Some(joint), |joint| self.parent(*joint))
     }
@@ -83,14 +84,14 @@ impl<'a> Look<'a> {
         &self.skin[joint.index()]
     }
 
-    /// The middle of a joint's skin, as seen from the joint, along the model's axes; `None` if it moves none.
+    /// Centre of a joint's skin relative to the joint, along the model's axes; `None` if it moves no skin.
     pub(super) fn middle(&self, joint: JointId) -> Option<DVec3> {
         let skin = self.skin(joint);
         let sum: DVec3 = skin.iter().sum();
         (!skin.is_empty()).then(|| sum / skin.len() as f64 - self.place(joint))
     }
 
-    /// The joints whose skin hangs together with that of a joint, each with the number of triangles that are of both.
+    /// The joints that share triangles of the skin with a joint, each with the number of those triangles.
     pub(super) fn neighbours(&self, joint: JointId) -> BTreeMap<JointId, usize> {
         let mut found = BTreeMap::new();
         for corners in self.mesh.triangles() {
@@ -105,7 +106,8 @@ impl<'a> Look<'a> {
         found
     }
 
-    /// The joint of the head: of those with `head` in their names that move skin, the one of the shortest name.
+    /// The joint of the head: the joint with the shortest name among those that move skin and have `head` in their
+    /// names.
     pub(super) fn head(&self) -> Option<JointId> {
         let named = self.joints().filter(|joint| {
             let name = self.name(*joint).to_lowercase();
@@ -114,7 +116,7 @@ impl<'a> Look<'a> {
         named.min_by_key(|joint| self.name(*joint).len())
     }
 
-    /// A length in heights of the creature, as brain files have them: to a thousandth.
+    /// A length in heights of the creature, as in brain files, rounded to a thousandth.
     pub(super) fn in_heights(&self, length: f64) -> f64 {
         rounded(length / self.height, 1e3)
     }
@@ -124,12 +126,12 @@ fn joints(skeleton: &Skeleton) -> impl Iterator<Item = JointId> + use<> {
     (0..skeleton.joints().len() as u32).map(JointId)
 }
 
-/// Where a joint is in a pose.
+/// Place of a joint in a pose, in model space.
 pub(super) fn place(skeleton: &Skeleton, pose: &Pose, joint: JointId) -> DVec3 {
     joint_in_model(skeleton, pose, joint).map_or(DVec3::ZERO, |frame| frame.translation)
 }
 
-/// A number with so many steps to 1; never -0, which looks odd in a file.
+/// A number rounded to a multiple of 1 / `steps`; never -0, which looks odd in a file.
 pub(super) fn rounded(number: f64, steps: f64) -> f64 {
     (number * steps).round() / steps + 0.0
 }

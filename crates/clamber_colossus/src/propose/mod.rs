@@ -1,5 +1,5 @@
-//! Proposes a brain file for a creature from elsewhere, as far as its own file shows what there is: to begin with, and
-//! to be changed.
+//! Proposes a brain file for a creature from elsewhere, from its own file alone. The proposal is a start that its user
+//! edits.
 
 mod clips;
 mod legs;
@@ -21,48 +21,52 @@ use crate::kind::{
 use clips::Clips;
 use look::{Look, rounded};
 
-/// Length of ticks, seconds: nothing that is proposed depends on it.
+/// Length of a tick, seconds. The proposal does not depend on it.
 const TICK: f64 = 1.0 / 60.0;
 
-/// How fast a creature turns on the spot, and while it walks, degrees a second at the height for which its clips were
-/// made.
+/// Proposed rate of turning on the spot, degrees a second at the height for which the clips were made.
 const TURNS: f64 = 90.0;
+/// Proposed rate of turning while walking, degrees a second at the height for which the clips were made.
 const STEERS: f64 = 40.0;
 
-/// Feet that go slower than this, in heights a second of the clip, do not walk; it goes at `STROLLS` then.
+/// If the measured speed of the feet is below this, in heights a second of the clip, [`STROLLS`] is proposed.
 const SLOWEST: f64 = 0.1;
+/// Proposed speed of a walk if the feet give none, heights a second of the clip.
 const STROLLS: f64 = 0.4;
 
-/// How far an attack goes for its prey from where its clip strikes, heights.
+/// Proposed `aim` of an attack, in heights.
 const AIM: f64 = 0.1;
 
-/// A limb passes over people that stays higher than this share of a human.
+/// A limb that stays higher than this share of a human's height passes over people, and gets a shock wave.
 const HIGH: f64 = 0.8;
 
-/// It comes so near before it attacks, in heights; and its limb passes by people if that is more than this, metres.
+/// Proposed `within` of a walk to the prey before an attack, in heights.
 const NEAR: f64 = 0.15;
+/// If [`NEAR`] is more than this in metres, the limb is taken to pass beside people, and gets a shock wave.
 const ASIDE: f64 = 5.0;
 
-/// How much further the shock wave of a limb goes that is high above people than that is high, heights.
+/// Proposed radius of a limb's shock wave beyond the height of the limb's end, in heights.
 const WAVE: f64 = 0.3;
 
-/// Radius of the weak point in heights, and its hit points: three charged stabs of a sword.
+/// Proposed radius of the weak point, in heights.
 const WEAK: f64 = 0.05;
+/// Proposed hit points of the weak point: three charged stabs of a sword.
 const HIT_POINTS: f64 = 3.0;
 
 impl BrainFile {
-    /// A brain for a creature from elsewhere that lives by it at once: it looks about, wanders, sleeps, notices people,
-    /// goes to them, attacks and shakes off who rides, as far as its clips go, and dies when its weak point is used up.
+    /// Proposes a brain for a creature from elsewhere. With it the creature looks about, wanders, sleeps, notices
+    /// people, walks to them, attacks and shakes off riders, as far as its clips go. It dies when its weak point is
+    /// used up.
     ///
-    /// It is `height` metres tall, 0.001 to 100,000. Clips are told apart by their names, such as `Walk` and
-    /// `Attack_Headbutt`. Legs are the pairs of chains of joints whose ends move the lowest skin. The limb of an attack is
-    /// what goes ahead fastest in its clip, and hurts while it does; where it passes over people or by them, a shock wave
-    /// goes out from it. All of its skin is fur unless its file has some, and its weak point is on top of its head. Whatever
-    /// does not fit the creature is left out, so that [`CreatureKind::new`] takes it. It is a file to begin with, not to
-    /// keep: `clamber inspect --propose-brain` writes it as text.
+    /// The creature is `height` metres tall, from 0.001 to 100,000. Clips are told apart by their names, such as `Walk`
+    /// and `Attack_Headbutt`. Legs are pairs of chains of joints whose ends move the lowest skin. The limb of an attack
+    /// is the one that moves ahead fastest in its clip, and it hurts while it is fast. If it passes over people or
+    /// beside them, it sends out a shock wave. All skin is fur unless the file has some fur, and the weak point is on
+    /// top of the head. Proposals that do not fit the creature are left out, so that [`CreatureKind::new`] accepts the
+    /// brain. The result is a start, to be edited: `clamber inspect --propose-brain` writes it as text.
     ///
     /// # Errors
-    /// As [`CreatureKind::new`] for a brain that names nothing of the creature, with this height.
+    /// The errors of [`CreatureKind::new`] for a brain that names nothing of the creature, with this height.
     pub fn propose(parts: &CreatureParts, height: f64) -> Result<Self, ColossusError> {
         let mut proposal = Proposal {
             parts,
@@ -73,7 +77,7 @@ impl BrainFile {
                 ..BodyFile::default()
             },
         };
-        // Parts that do not fit each other are refused here.
+        // This refuses parts that do not fit each other.
         proposal.kind()?;
         proposal.walk()?;
         proposal.repeat()?;
@@ -87,14 +91,14 @@ impl BrainFile {
         if fits(&file).is_ok() {
             return Ok(file);
         }
-        // The file's own markers may stand in no order.
+        // The attack may not fit: the file's own markers may be in the wrong order. This leaves the attack out.
         let file = states::file(&proposal, None)?;
         fits(&file)?;
         Ok(file)
     }
 }
 
-/// A proposal under construction. Its body fits the creature at any time.
+/// A proposal under construction. At any time its body fits the creature.
 struct Proposal<'a> {
     parts: &'a CreatureParts,
     clips: Clips,
@@ -105,17 +109,17 @@ struct Proposal<'a> {
 struct Strikes {
     clip: String,
     limb: Vec<String>,
-    /// How far its shock wave goes, in heights, if its limb passes over people on the ground, or by them.
+    /// Radius of its shock wave, in heights, if the limb passes over people on the ground or beside them.
     wave: Option<f64>,
 }
 
 impl Proposal<'_> {
-    /// How tall it is, metres.
+    /// Height of the creature, metres.
     fn height(&self) -> f64 {
         self.body.height.unwrap_or(1.0)
     }
 
-    /// The creature with what is proposed.
+    /// The creature with the body that is proposed so far.
     fn kind(&self) -> Result<CreatureKind, ColossusError> {
         self.kind_with(self.body.clone())
     }
@@ -130,7 +134,7 @@ impl Proposal<'_> {
         CreatureKind::new(self.parts.clone(), Brain::new(file, TICK)?)
     }
 
-    /// Takes a change of the body if the creature fits it then.
+    /// Makes a change to the body, unless the creature does not fit the changed body.
     fn take(&mut self, change: impl FnOnce(&mut BodyFile)) -> Option<CreatureKind> {
         let mut body = self.body.clone();
         change(&mut body);
@@ -139,7 +143,7 @@ impl Proposal<'_> {
         Some(kind)
     }
 
-    /// Legs, gait, and where it looks: along its walk.
+    /// Proposes legs, a gait, and a direction to look in, which is the direction of the walk.
     fn walk(&mut self) -> Result<(), ColossusError> {
         let (Some(idle), Some(walk)) = (self.clips.idle.clone(), self.clips.walk.clone()) else {
             return Ok(());
@@ -158,7 +162,7 @@ impl Proposal<'_> {
         if legs.len() > 1 {
             self.take(|body| body.legs = legs);
         }
-        // Without legs only a walk is one: fans run, too.
+        // Without legs, only a clip with `walk` in its name is a walk: a fan may have a clip `fanRunning`.
         if self.body.legs.is_empty() && !walk.to_lowercase().contains("walk") {
             return Ok(());
         }
@@ -179,13 +183,13 @@ impl Proposal<'_> {
                 _ => Facing::MinusZ,
             };
             let turned = self.take(|body| body.facing = facing);
-            // Feet that stand in no part of the clip do not tell where it goes.
+            // Feet that stand in no part of the clip do not tell its direction.
             let ahead = turned.and_then(|kind| kind.walks_aside());
             if ahead.is_none_or(|aside| aside.abs() > 45.0) {
                 self.body.facing = Facing::PlusZ;
             }
         }
-        // The speed of its feet, if they have one.
+        // Prefers the measured speed of the feet.
         let measured = GaitFile {
             speed: None,
             ..gait.clone()
@@ -198,7 +202,7 @@ impl Proposal<'_> {
         Ok(())
     }
 
-    /// Closes clips that are played again and again, but do not end as they begin.
+    /// Proposes `close` for clips that are played in a loop but do not end as they begin.
     fn repeat(&mut self) -> Result<(), ColossusError> {
         let kind = self.kind()?;
         let probe = SeamProbe::new(kind.skeleton(), kind.mesh(), kind.height());
@@ -209,11 +213,11 @@ impl Proposal<'_> {
             let Some(clip) = kind.clips().clips().iter().find(|clip| clip.name == name) else {
                 continue;
             };
-            // A clip that cannot be posed somewhere cannot be closed.
+            // A clip that cannot be posed at some time is not closed.
             let Some(seam) = probe.measure(clip).ok().filter(|seam| !seam.is_loop()) else {
                 continue;
             };
-            // As fast as skin is in the clip.
+            // The skin returns at its largest speed within the clip.
             let seconds = seam.speed * TICK / seam.within.max(1e-6);
             let close = rounded(seconds.clamp(0.04, 1.0), 1e2);
             self.take(|body| body.clips.entry(name).or_default().close = Some(close));
@@ -221,7 +225,7 @@ impl Proposal<'_> {
         Ok(())
     }
 
-    /// Its attack, with the times at which its limb hurts.
+    /// Proposes an attack, with the times at which its limb hurts.
     fn attack(&mut self) -> Result<Option<Strikes>, ColossusError> {
         let kind = self.kind()?;
         let look = Look::at(&kind)?;
@@ -264,7 +268,7 @@ impl Proposal<'_> {
         Ok(self.take(marks).map(|_| strikes))
     }
 
-    /// Head and neck.
+    /// Proposes a head and a neck.
     fn head(&mut self) -> Result<(), ColossusError> {
         let kind = self.kind()?;
         let look = Look::at(&kind)?;
@@ -296,7 +300,7 @@ impl Proposal<'_> {
         Ok(())
     }
 
-    /// Fur, and a weak point on top of the head, or of what is highest.
+    /// Proposes fur, and a weak point on top of the head, or without a head at the highest skin.
     fn skin(&mut self) -> Result<(), ColossusError> {
         let mut tags = self.parts.mesh.tags().iter();
         if !tags.any(|tag| tag.kind == SurfaceKind::Fur) {
@@ -311,7 +315,7 @@ impl Proposal<'_> {
         }
         let kind = self.kind()?;
         let look = Look::at(&kind)?;
-        // Between its ears rather than on one of them.
+        // Prefers a point between the ears to one on an ear.
         let is_middle = |joint: JointId, place: &DVec3| {
             (place.x - look.place(joint).x).abs() < WEAK * look.height
         };

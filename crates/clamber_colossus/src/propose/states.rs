@@ -1,4 +1,4 @@
-//! States for a creature, of the clips that it has.
+//! Proposes the states of a brain from a creature's clips.
 
 use serde_json::{Map, Value, json};
 
@@ -7,7 +7,7 @@ use crate::brain::{BrainFile, BrainProblem};
 use crate::error::ColossusError;
 use crate::kind::{HUMAN, whole};
 
-/// The brain file of a body.
+/// The brain file with the proposed body and states.
 pub(super) fn file(
     proposal: &Proposal<'_>,
     strikes: Option<&Strikes>,
@@ -29,7 +29,7 @@ pub(super) fn file(
     Ok(file)
 }
 
-/// A state in which it waits.
+/// A state that stands, with the idle clip if there is one.
 fn waits(proposal: &Proposal<'_>, transitions: Value) -> Value {
     match &proposal.clips.idle {
         Some(idle) => json!({ "act": { "play": idle }, "transitions": transitions }),
@@ -37,21 +37,20 @@ fn waits(proposal: &Proposal<'_>, transitions: Value) -> Value {
     }
 }
 
-/// A number of metres for so many heights.
+/// A length in metres for a number of heights, rounded to two digits.
 fn metres(proposal: &Proposal<'_>, heights: f64) -> f64 {
     let metres = heights * proposal.height();
-    // Two digits are enough.
     let steps = libm::exp10(1.0 - libm::floor(libm::log10(metres.max(1e-9))));
     super::rounded(metres, steps)
 }
 
-/// A number of seconds for so many of a human, by Froude's law: what is larger takes more time.
+/// A time in whole seconds for a time at human height, by Froude's law: larger creatures take more time.
 fn seconds(proposal: &Proposal<'_>, human: f64) -> u32 {
     let seconds = human * (proposal.height() / HUMAN).sqrt();
     seconds.round().clamp(1.0, 3600.0) as u32
 }
 
-/// It looks about, wanders, and sleeps.
+/// The state `calm`: the creature looks about, wanders, and sleeps.
 fn calm(proposal: &Proposal<'_>) -> Value {
     let mut states = Map::new();
     let mut leaves = vec![json!({ "to": "sleeps", "after": [6, 15] })];
@@ -80,7 +79,7 @@ fn calm(proposal: &Proposal<'_>) -> Value {
     json!({ "start": "rests", "transitions": notices, "states": states })
 }
 
-/// It turns to who it sees, goes there, and attacks.
+/// The state `alert`: the creature turns to its prey, walks there, and attacks.
 fn alert(proposal: &Proposal<'_>, strikes: Option<&Strikes>) -> Value {
     let mut states = Map::new();
     let walks = proposal.body.gait.is_some();
@@ -139,13 +138,13 @@ fn alert(proposal: &Proposal<'_>, strikes: Option<&Strikes>) -> Value {
         "states": states
     });
     if !walks {
-        // It looks elsewhere from time to time.
+        // The creature looks elsewhere from time to time.
         alert["cooldown"] = 3.into();
     }
     alert
 }
 
-/// A state in which it turns to a place, for some seconds at least, until another state.
+/// A state that turns to a place for at least some seconds, and then leads to another state.
 fn turns(place: &str, then: &str, seconds: u32) -> Value {
     let mut done = json!({ "to": then, "when": ["done"] });
     if seconds > 0 {
@@ -157,7 +156,7 @@ fn turns(place: &str, then: &str, seconds: u32) -> Value {
     })
 }
 
-/// It bears who rides for a while, then shakes.
+/// The state `ridden`: the creature bears its riders for a while, then shakes.
 fn ridden(proposal: &Proposal<'_>) -> Value {
     let mut states = Map::new();
     let shakes = match (&proposal.clips.shake, &proposal.body.gait) {

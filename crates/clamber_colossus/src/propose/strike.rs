@@ -1,4 +1,4 @@
-//! Finds out which limb strikes in a clip, and when.
+//! Finds the limb that strikes in a clip, and the time in which it strikes.
 
 use clamber_animation::rig::{Clip, JointId, Playback};
 use glam::DVec3;
@@ -7,44 +7,47 @@ use super::clips::words;
 use super::look::{Look, place, rounded};
 use crate::error::ColossusError;
 
-/// Looks a second at a clip.
+/// Samples of a clip a second.
 const LOOKS: f64 = 60.0;
 
-/// A limb hurts while it is faster than this share of its largest speed, and for `SHORTEST` seconds at least.
+/// A limb hurts while it is faster than this share of its speed at the strike.
 const FAST: f64 = 0.4;
+/// Shortest time in which a limb hurts, seconds.
 const SHORTEST: f64 = 0.15;
 
-/// Limbs that have this share of the largest speed are as fast.
+/// Limbs that reach this share of the largest speed count as equally fast.
 const ALIKE: f64 = 0.9;
 
-/// The most joints below the one that strikes which hurt as well.
+/// Most joints below the striking joint that hurt as well.
 const MOST: usize = 3;
 
 /// A limb that strikes in a clip.
 pub(super) struct Struck {
-    /// Joints whose skin hurts; the last is its end.
+    /// Joints whose skin hurts. The last one is the limb's end.
     pub(super) limb: Vec<String>,
-    /// From when to when it hurts, seconds of the clip.
+    /// Begin and end of the time in which it hurts, seconds of the clip.
     pub(super) active: [f64; 2],
 }
 
-/// How high a limb is, above what the creature stands on at rest, in heights.
+/// Heights of a limb above the creature's lowest skin at rest, in heights of the creature.
 pub(super) struct Above {
-    /// Its lowest skin while it hurts.
+    /// Lowest skin of the limb while it hurts.
     pub(super) lowest: f64,
-    /// Its end when it stops to hurt.
+    /// The limb's end when it stops hurting.
     pub(super) end: f64,
 }
 
-/// Words in the names of clips in which legs strike, and the head.
+/// Words in the names of clips in which a leg strikes.
 const LEGS: [&str; 2] = ["kick", "stomp"];
+/// Words in the names of clips in which the head strikes.
 const HEADS: [&str; 2] = ["bite", "headbutt"];
 
-/// A leg strikes only if it is so many times as fast as anything else: most legs only step meanwhile.
+/// A leg is the striking limb only if it is this many times as fast as all other joints, since most legs only step
+/// during an attack. Clips with a word of [`LEGS`] are exempt.
 const FASTER: f64 = 2.0;
 
-/// The limb in the front half of the creature that goes ahead fastest in a clip, until its marker `recovery` if it has
-/// one; `None` if none does. `legs` are the joints of legs.
+/// The limb in the front half of the creature that moves ahead fastest in a clip, before the clip's marker `recovery`
+/// if it has one; `None` if no limb moves ahead. `legs` are the joints of legs.
 pub(super) fn find(
     look: &Look<'_>,
     clip: &Clip,
@@ -55,7 +58,7 @@ pub(super) fn find(
     let is_leg = |joint: JointId| legs.iter().any(|leg| *leg == look.name(joint));
     let head = look.head().filter(|_| is_of(&HEADS));
     let kicks = is_of(&LEGS) && !legs.is_empty();
-    // How much a joint's speed counts.
+    // Weight of a joint's speed.
     let counts = |joint: JointId| {
         let is_none = kicks && !is_leg(joint)
             || head.is_some_and(|head| look.upward(joint).all(|above| above != head));
@@ -103,7 +106,8 @@ pub(super) fn find(
         [low.min(z), high.max(z)]
     });
     let middle = 0.5 * (back + front);
-    // What strikes is before it and goes ahead, as a tail that swings meanwhile does not; a leg may come down.
+    // The striking limb is in the front half and moves ahead, unlike a tail that swings. A kick or a stomp may go in
+    // any direction.
     let strikes = |index: usize, at: usize| {
         let (before, after) = (ways[index][at], ways[index][at + 1]);
         let goes = if kicks {
@@ -130,7 +134,7 @@ pub(super) fn find(
     let (fastest, Some(at)) = fastest else {
         return Ok(None);
     };
-    // Of what is as fast, where the whole body goes ahead, what is foremost.
+    // Among equally fast joints, as when the whole body lunges, the foremost one strikes.
     let alike = (0..ways.len()).filter(|index| strikes(*index, at) > ALIKE * fastest);
     let foremost = alike.max_by(|a, b| ways[*a][at].z.total_cmp(&ways[*b][at].z));
     let Some(index) = foremost else {
@@ -161,7 +165,7 @@ pub(super) fn find(
     }))
 }
 
-/// How high a limb is between two times of a clip.
+/// Heights of a limb between two times of a clip.
 pub(super) fn above(
     look: &Look<'_>,
     clip: &Clip,

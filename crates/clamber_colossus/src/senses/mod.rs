@@ -1,4 +1,4 @@
-//! What a creature senses, as numbers that its brain compares.
+//! A creature's senses: numbers that its brain compares.
 
 mod sense;
 
@@ -6,21 +6,21 @@ use serde::{Deserialize, Serialize};
 
 pub use sense::{RegionSense, Sense};
 
-/// All that a creature senses in a tick.
+/// All senses of a creature in a tick.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Senses {
     #[serde(with = "bits")]
     numbers: Vec<f64>,
-    /// Of each region, one number for each [`RegionSense`].
+    /// Per region, one number for each [`RegionSense`].
     #[serde(with = "bits")]
     regions: Vec<f64>,
-    /// The game's own.
+    /// The game's own senses.
     #[serde(with = "bits")]
     own: Vec<f64>,
 }
 
 impl Senses {
-    /// Nothing sensed, for a brain with this many regions and senses of the game's own.
+    /// The senses of a creature that senses nothing, for a brain with this many regions and senses of the game's own.
     pub(crate) fn nothing(regions: usize, own: usize) -> Self {
         let mut senses = Self {
             numbers: vec![0.0; Sense::COUNT],
@@ -31,7 +31,8 @@ impl Senses {
         senses
     }
 
-    /// Nothing is sensed any more; the game's own senses stay, and how its act ended in the last tick.
+    /// Resets all senses to the values of a creature that senses nothing. The game's own senses, [`Sense::Done`] and
+    /// [`Sense::Blocked`] stay.
     pub(crate) fn forget(&mut self) {
         let ends = [Sense::Done, Sense::Blocked];
         let kept = ends.map(|end| self.numbers[end as usize]);
@@ -50,13 +51,13 @@ impl Senses {
         }
     }
 
-    /// Another act begins: it is neither done nor blocked.
+    /// Resets [`Sense::Done`] and [`Sense::Blocked`] when another act begins.
     pub(crate) fn begin_act(&mut self) {
         self.set(Sense::Done, 0.0);
         self.set(Sense::Blocked, 0.0);
     }
 
-    /// A sense.
+    /// The value of a sense.
     pub fn get(&self, sense: Sense) -> f64 {
         self.numbers[sense as usize]
     }
@@ -66,7 +67,8 @@ impl Senses {
         self.numbers[sense as usize] = value;
     }
 
-    /// A sense of a region, by the region's index in [`Brain::regions`](crate::Brain::regions); 0 if there is none.
+    /// The value of a region's sense, by the region's index in [`Brain::regions`](crate::Brain::regions); 0 if there is
+    /// no such region.
     pub fn in_region(&self, sense: RegionSense, region: usize) -> f64 {
         let index = region * RegionSense::ALL.len() + sense as usize;
         self.regions.get(index).copied().unwrap_or(0.0)
@@ -82,8 +84,8 @@ impl Senses {
         }
     }
 
-    /// One of the game's own senses, by its index in [`Brain::own_senses`](crate::Brain::own_senses); 0 if there is
-    /// none.
+    /// The value of one of the game's own senses, by its index in [`Brain::own_senses`](crate::Brain::own_senses); 0 if
+    /// there is no such sense.
     pub fn own(&self, index: usize) -> f64 {
         self.own.get(index).copied().unwrap_or(0.0)
     }
@@ -95,7 +97,7 @@ impl Senses {
         }
     }
 
-    /// True if it has the numbers that a brain reads.
+    /// True if the senses have the sizes that a brain with these counts needs, and no value is NaN.
     pub(crate) fn fits(&self, regions: usize, own: usize) -> bool {
         let per_region = RegionSense::ALL.len();
         (self.numbers.len(), self.regions.len(), self.own.len())
@@ -107,7 +109,7 @@ impl Senses {
     }
 }
 
-/// Numbers as their bits: JSON has no infinity.
+/// Serialises numbers as their bits, since JSON has no infinity.
 mod bits {
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 

@@ -1,28 +1,28 @@
 use std::fmt;
 
-/// A number that a creature senses. All are one tick old when the brain reads them.
+/// A number that a creature senses. The brain reads values that are one tick old.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Sense {
     /// Number of people on the creature.
     Riders,
-    /// Seconds for which the one who has been on it longest has been there.
+    /// Time on the creature of the rider that has been there longest, seconds.
     RiderSeconds,
-    /// Height of the highest rider above the creature's feet, metres.
+    /// Height of the highest rider's middle above the creature's origin, metres.
     RiderHeight,
     /// Number of riders that hang, rather than stand or grip.
     RidersHanging,
-    /// 1 if somebody is seen who is not on the creature, else 0.
+    /// 1 if a person is in view that is not on the creature, else 0.
     PreySeen,
-    /// Level distance to the prey from the creature's middle, metres; infinite before any was seen.
+    /// Level distance to the prey from the creature's origin, metres; infinite before prey was first seen.
     PreyDistance,
-    /// Bearing of the prey, degrees: 0 ahead, positive to the left, to 180 on either side.
+    /// Bearing of the prey, degrees, from -180 to 180: 0 ahead, positive to the left.
     PreyBearingDeg,
-    /// Seconds since prey was seen last; infinite before any was.
+    /// Seconds since prey was last seen; infinite before prey was first seen.
     PreyUnseenSeconds,
     /// Hit points that the creature lost in the last tick.
     Hurt,
-    /// Number of blows and arrows that struck it in the last tick, whether they hurt or not.
+    /// Number of blows and arrows that struck it in the last tick, harmless ones included.
     Struck,
     /// Share of its hit points that is left, 1 to 0.
     Health,
@@ -34,24 +34,24 @@ pub enum Sense {
     Plates,
     /// Number of people under its feet.
     Underfoot,
-    /// Loudest noise of the last tick at the creature, as the game counts it.
+    /// Loudness of the loudest noise of the last tick, as heard by the creature, in the game's unit.
     Noise,
-    /// Bearing of that noise, degrees, as [`Sense::PreyBearingDeg`].
+    /// Bearing of that noise, degrees, as for [`Sense::PreyBearingDeg`].
     NoiseBearingDeg,
     /// Distance to the nearest wall, metres; infinite if none is within the creature's height.
     WallDistance,
-    /// Level distance to where the creature was placed first, metres.
+    /// Level distance to the place where the creature was first put, metres.
     HomeDistance,
-    /// 1 if the current act is over: the clip at its end, the place reached; else 0. A walk or a turn that is blocked is
-    /// over as well.
+    /// 1 if the current act is over, else 0: its clip has ended, or its goal is reached. A blocked walk or turn is over
+    /// as well.
     Done,
-    /// 1 if the creature cannot do its current act: it does not get on in a walk or a turn, or a blow would go through
-    /// rock and is not begun; else 0. It tries for a while before it says so: for a second if it is 41 m high, and else by
-    /// the square root of its height.
+    /// 1 if the creature cannot do its current act, else 0: a walk or a turn does not get on, or an attack is not begun
+    /// because it would go through terrain or another creature. The sense stays 0 in the first second of an act of a
+    /// creature of 41 m. This time grows with the square root of the height.
     Blocked,
 }
 
-/// All senses, with their names in brain files.
+/// All senses with their names in brain files, in the order of the enum: [`Sense::name`] indexes it by the variant.
 const NAMES: [(Sense, &str); 21] = [
     (Sense::Riders, "riders"),
     (Sense::RiderSeconds, "rider_seconds"),
@@ -85,13 +85,13 @@ impl Sense {
         NAMES.iter().map(|(sense, _)| *sense)
     }
 
-    /// The sense with this name in brain files; `None` if there is none.
+    /// The sense with this name in brain files; `None` if no sense has it.
     pub fn find(name: &str) -> Option<Self> {
         let known = NAMES.iter().find(|(_, known)| *known == name);
         known.map(|(sense, _)| *sense)
     }
 
-    /// Its name in brain files.
+    /// The sense's name in brain files.
     pub fn name(self) -> &'static str {
         NAMES[self as usize].1
     }
@@ -107,25 +107,26 @@ impl fmt::Display for Sense {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum RegionSense {
-    /// Number of people on it.
+    /// Number of people on the region.
     Riders,
-    /// Seconds for which the one who has been on it longest has been there.
+    /// Time on the creature of the rider in the region that has been there longest, seconds.
     RiderSeconds,
-    /// Hit points lost through it in the last tick.
+    /// Hit points lost through the region in the last tick.
     Hurt,
-    /// Number of blows and arrows that struck it in the last tick.
+    /// Number of blows and arrows that struck the region in the last tick.
     Struck,
 }
 
 impl RegionSense {
+    /// All senses of a region, in the order of the enum: a sense is an index into a region's numbers.
     pub(crate) const ALL: [Self; 4] = [Self::Riders, Self::RiderSeconds, Self::Hurt, Self::Struck];
 
-    /// The sense with this name in brain files; `None` if there is none.
+    /// The sense with this name in brain files; `None` if no sense has it.
     pub fn find(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|sense| sense.name() == name)
     }
 
-    /// Its name in brain files, before `@` and the region's name.
+    /// The sense's name in brain files, before `@` and the region's name.
     pub fn name(self) -> &'static str {
         match self {
             Self::Riders => "riders",

@@ -1,4 +1,5 @@
-//! Feet of animals from elsewhere: two, four and eight legs, of two to five joints, with feet below the leg or beside it.
+//! Feet of third-party animals: two, four and eight legs, of three and four joints, with feet below the leg or beside
+//! it.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
@@ -26,11 +27,11 @@ pub(crate) struct Animal {
     pub(crate) legs: Vec<Value>,
     idle: &'static str,
     walk: &'static str,
-    /// The height for which its clips were made, metres: of a real one, roughly.
+    /// Height for which the clips were made, metres: roughly the height of a real animal.
     made_for: f64,
 }
 
-/// A leg for each side, with `L` and `R` for `*`.
+/// A left and a right leg. `*` in the names of their joints stands for `L` and `R`.
 fn both(joints: &[&str], toe: Option<&str>) -> Vec<Value> {
     let side = |side: &str| {
         let joints: Vec<String> = joints.iter().map(|name| name.replace('*', side)).collect();
@@ -74,7 +75,7 @@ pub(crate) fn animals() -> Vec<Animal> {
         for side in ["L", "R"] {
             let joints = ["", "2", "3"].map(|number| format!("{name}{number}.{side}"));
             let foot = name.replace("Leg", "Foot");
-            // The file's own slip.
+            // The file itself misnames this foot.
             let foot = match (name, side) {
                 ("FrontLeg", "R") => "FrontFoot2.R".to_owned(),
                 _ => format!("{foot}.{side}"),
@@ -167,7 +168,7 @@ pub(crate) fn kind(animal: &Animal, height: f64) -> Option<Arc<CreatureKind>> {
     kind_with(animal, height, |clips, _| clips)
 }
 
-/// The kind of an animal whose clips were changed.
+/// The kind of an animal, with its clips replaced by `change`.
 fn kind_with(
     animal: &Animal,
     height: f64,
@@ -198,7 +199,7 @@ fn kind_with(
     });
     let mut clips = change(rig.clips, &rig.skeleton);
     if animal.walk == "stands" {
-        // It has one clip, which shows all that it can do but walk; from 2.3 to 3.4 s it stands still.
+        // The file has one clip with all of its motions except a walk. The spider stands still in it from 2.3 to 3.4 s.
         clips.push(still(&clips[0], &rig.skeleton, 3.0));
         brain["body"]["gait"]["speed"] = json!(0.3);
     }
@@ -213,7 +214,7 @@ fn kind_with(
     Some(Arc::new(CreatureKind::new(parts, brain).unwrap()))
 }
 
-/// A clip of a second that holds another one's pose at a time.
+/// A clip of one second that holds the pose of another clip at a time.
 fn still(clip: &Clip, skeleton: &Skeleton, time: f64) -> Clip {
     let pose = clip
         .sample(&skeleton.rest_pose(), time, Playback::Clamp)
@@ -231,14 +232,17 @@ fn still(clip: &Clip, skeleton: &Skeleton, time: f64) -> Clip {
     Clip::new("stands".to_owned(), channels.collect())
 }
 
-/// What feet do that stand.
+/// Measurements of feet that stand.
 #[derive(Debug, Default)]
 struct Figures {
-    /// Most that a sole is above or in the ground, and slides, as a share of what is allowed.
+    /// Largest height of a settled sole above the ground, as a share of the tolerance: the larger of 1 % of the foot's
+    /// length and 0.1 % of the height.
     gap: f64,
+    /// Largest depth of a settled sole in the ground, as a share of the same tolerance.
     depth: f64,
+    /// Largest level distance that a settled sole slides, as a share of the same tolerance.
     slide: f64,
-    /// The mean share of the feet that are planted while it stands, once it has come to rest.
+    /// Mean share of planted feet while the animal stands, after it has come to rest.
     standing: f64,
     plants: usize,
     walked: f64,
@@ -261,7 +265,7 @@ fn live(kind: &Arc<CreatureKind>, height: f64) -> Figures {
     let seconds = 6.0 * lap;
     let settled = (0.6 * slow / TICK) as u32;
     for tick in 0..(seconds / TICK) as u32 {
-        // Now and then it hears something elsewhere.
+        // In each lap it hears a noise at another place.
         let turn = (f64::from(tick) * TICK / lap) as u32;
         let angle = f64::from(turn) * 2.4;
         let place = DVec3::new(libm::sin(angle), 0.0, libm::cos(angle)) * (3.0 * height);
@@ -335,7 +339,7 @@ fn live(kind: &Arc<CreatureKind>, height: f64) -> Figures {
     figures
 }
 
-/// Skin that moves with a foot alone, or nearly.
+/// The vertices that follow a foot with more than half of their weight.
 fn foot(kind: &CreatureKind, leg: usize) -> Vec<VertexId> {
     let skeleton = kind.skeleton();
     let file = &kind.brain().file().body.legs[leg];
@@ -350,7 +354,8 @@ fn foot(kind: &CreatureKind, leg: usize) -> Vec<VertexId> {
     all().filter(|vertex| share(vertex) > 0.5).collect()
 }
 
-/// Standing, walking and turning, feet are on the ground to 1 % of their soles or 0.1 % of the height.
+/// While an animal stands, walks and turns, its planted feet are on the ground within 1 % of the foot's length or 0.1 %
+/// of the animal's height.
 #[test]
 fn feet_stand_on_the_ground() {
     let mut worst = Vec::new();
@@ -375,7 +380,7 @@ fn feet_stand_on_the_ground() {
     assert!(worst.is_empty(), "{worst:?}");
 }
 
-/// Exporters bake legs that were stretched along their bones: they stand as others do.
+/// Some exporters bake legs that are stretched along their bones. The feet of such legs stand on the ground, too.
 #[test]
 fn stretched_legs_stand_too() {
     for file in ["Fox.glb", "Bull.glb"] {
@@ -417,7 +422,7 @@ fn stretched_legs_stand_too() {
     }
 }
 
-/// Legs that cannot be are refused, with the names of their joints.
+/// Invalid legs are refused with the names of their joints.
 #[test]
 fn legs_that_cannot_be_are_refused_by_name() {
     let leg = |joints: &[&str]| {
@@ -429,7 +434,7 @@ fn legs_that_cannot_be_are_refused_by_name() {
             .unwrap_err()
             .to_string()
     };
-    // The giant's soles are skin of its feet; nothing hangs from a joint that is no more than a helper.
+    // Legs of the giant with too few or too many joints, in the wrong order, or with a joint that does not exist.
     for (joints, text) in [
         (
             &["thigh.L"][..],
@@ -455,7 +460,7 @@ fn legs_that_cannot_be_are_refused_by_name() {
     let Some(root) = std::env::var_os("CLAMBER_TEST_DATA") else {
         return;
     };
-    // A pole target moves no skin.
+    // A pole target is a helper joint: no skin moves with it.
     let rig = load(PathBuf::from(root).join("models/Stag.glb")).unwrap();
     let joints = ["BackLeg.L", "BackUpperLeg.L", "PoleTarget.L"];
     let brain = json!({

@@ -1,4 +1,4 @@
-//! Attacks of the giant: readable, by touch, in their window only. Scenes B39 and B40.
+//! The giant's attacks leave time to run away, strike by touch, and strike only in their window. Scenes B39 and B40.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
@@ -12,7 +12,7 @@ use clamber_world::rapier3d::prelude::{ColliderBuilder, PhysicsWorld, Pose};
 use clamber_world::{BodyPoses, HalfSpace, Obstacle, RapierTerrain};
 use glam::DVec3;
 
-/// The states of the giant's own brain that attack, each with its act as text.
+/// The attack states of the giant's own brain, each with its act as JSON.
 pub(crate) fn attacks() -> Vec<(String, serde_json::Value)> {
     fn collect(states: &serde_json::Value, found: &mut Vec<(String, serde_json::Value)>) {
         for (name, state) in states.as_object().into_iter().flatten() {
@@ -28,12 +28,12 @@ pub(crate) fn attacks() -> Vec<(String, serde_json::Value)> {
     found
 }
 
-/// The giant, standing, a second before an attack.
+/// The giant, standing, one second before an attack.
 pub(crate) fn before(act: &serde_json::Value) -> Creature {
     before_at(act, TICK, CreatureConfig::default())
 }
 
-/// [`before`] with ticks of another length, and a giant of another size.
+/// [`before`] with ticks of another length, and a config with another size.
 pub(crate) fn before_at(act: &serde_json::Value, tick: f64, config: CreatureConfig) -> Creature {
     let states = serde_json::json!({
         "waits": { "transitions": [{ "to": "attacks", "after": 1 }] },
@@ -44,17 +44,17 @@ pub(crate) fn before_at(act: &serde_json::Value, tick: f64, config: CreatureConf
     creature(&kind, config)
 }
 
-/// What came of one attack on one person.
+/// The result of one attack on one person.
 #[derive(Clone, Copy, Debug)]
 struct Outcome {
     hits: usize,
-    /// Seconds from the beginning of the attack's clip to the blow.
+    /// Seconds from the start of the attack's clip to the blow.
     time: f64,
-    /// Angle between the blow and the limb's velocity there, degrees.
+    /// Angle between the blow's velocity and the limb's velocity at the place of the blow, degrees.
     aside: f64,
 }
 
-/// Lets an attack happen to somebody who stands at a place, and perhaps runs away after 0.3 s.
+/// Runs an attack on a person at a place. If `flees`, the person runs away at 3 m/s from 0.3 s on.
 fn attack(before: &Creature, at: DVec3, flees: bool) -> Outcome {
     let mut giant = before.clone();
     let ground = HalfSpace::below(0.0);
@@ -71,7 +71,7 @@ fn attack(before: &Creature, at: DVec3, flees: bool) -> Outcome {
     let Some(Act::Attack(act)) = brain.act(brain.find("attacks").unwrap()) else {
         unreachable!("the state attacks");
     };
-    // The limb alone: some joint or other moves in any direction.
+    // Only the joints of the limb count: some joint of the whole body would move along any blow.
     let is_limb = |name: &str| {
         act.limb
             .iter()
@@ -107,7 +107,8 @@ fn attack(before: &Creature, at: DVec3, flees: bool) -> Outcome {
         if let (Some(begun), Some(blow)) = (begun, report.blows.first()) {
             outcome.hits += report.blows.len();
             outcome.time = (tick - begun) as f64 * TICK;
-            // The joint whose rigid motion is nearest to the blow's: that of the skin there, but for blending.
+            // The skin at the blow moves rigidly with a joint of the limb, apart from blending. Takes the joint that
+            // fits best.
             let world = giant.surface().world_from_model();
             let motion = |joint: &JointId| {
                 let now = giant.palette().model_from_joint(*joint).unwrap();
@@ -140,7 +141,8 @@ fn angle(a: DVec3, b: DVec3) -> f64 {
     )
 }
 
-/// Where an attack strikes: the end of its limb when it stops to hurt.
+/// The place in model space where an attack strikes: the end of its limb at the marker `recovery`, when it stops
+/// hurting.
 pub(crate) fn spot(giant: &Creature, act: &serde_json::Value) -> DVec3 {
     let kind = giant.kind();
     let attack = &act["attack"];
@@ -173,6 +175,7 @@ fn a_stomp_hits_who_stays_and_spares_who_runs() {
         let aim = act["attack"]["aim"].as_f64().unwrap();
         let mut random = fastrand::Rng::with_seed(1);
         let (mut hit, mut escaped) = (0, 0);
+        /// Number of people around the spot. Each is attacked twice: once it stays, and once it runs away.
         const COUNT: usize = 500;
         for _ in 0..COUNT {
             let (angle, reach) = (
@@ -239,7 +242,7 @@ fn blows_come_in_the_window_and_along_the_limb() {
     }
 }
 
-/// The foot that stomped stands where it came down until its clip lifts it, wherever its prey was.
+/// The foot that stomped stands where it came down until its clip lifts it, wherever the prey is.
 #[test]
 fn a_stomp_stands_where_it_came_down() {
     let (_, act) = attacks()
@@ -274,7 +277,7 @@ fn a_stomp_stands_where_it_came_down() {
                 down = Some((tick, place));
                 furthest = furthest.max(place.with_y(0.0).length());
             }
-            // It is lifted a second after it came down.
+            // The clip lifts the foot one second after it came down.
             let Some((since, _)) = down.filter(|(since, _)| (6..54).contains(&(tick - since)))
             else {
                 continue;
@@ -288,11 +291,11 @@ fn a_stomp_stands_where_it_came_down() {
         }
         assert_eq!(stood, 48, "{distance} m, {degrees} degrees");
     }
-    // It does aim.
+    // The foot does aim: it comes down farther out than its clip has it.
     assert!(furthest > 9.5, "{furthest}");
 }
 
-/// An attack that is left for another act hurts nobody any more, whatever its clip's pose still is.
+/// An attack that is left for another act strikes nobody any more, even while the pose of its clip remains.
 #[test]
 fn an_attack_ends_with_its_act() {
     let ground = HalfSpace::below(0.0);
@@ -313,7 +316,7 @@ fn an_attack_ends_with_its_act() {
             let ends = giant.kind().brain().find("ends").unwrap();
             let (mut blows, mut left) = (0, 0);
             for _ in 0..600 {
-                // People stand everywhere about it.
+                // People stand all around the giant.
                 let place = |index: u64| {
                     let (x, z) = (index % 13, index / 13);
                     let at = DVec3::new(x as f64 * 3.0 - 18.0, 0.0, z as f64 * 3.0 - 10.0);
@@ -342,12 +345,12 @@ fn an_attack_ends_with_its_act() {
     }
 }
 
-/// A gate that closes once an attack has begun hides who is behind it: from a limb that goes through it, too. A low wall
-/// does so from limbs whose joints do not come over it.
+/// A gate that closes after an attack has begun protects the people behind it, even from a limb that passes through it.
+/// A low wall protects them from limbs whose joints do not come over it.
 #[test]
 fn nobody_is_struck_through_a_gate_that_closes() {
     let ground = HalfSpace::below(0.0);
-    // Ground that is solid is not in the way of a foot whose joints are in it.
+    // Solid ground does not block a foot whose joints are inside of it.
     let mut world = PhysicsWorld::default();
     let pose = Pose::translation(0.0, -1.0, 0.0);
     world.insert_collider(

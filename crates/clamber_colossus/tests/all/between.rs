@@ -1,4 +1,4 @@
-//! Where one act ends and another one begins: what of the one may not go on in the other.
+//! Transitions from one act to another: nothing of the old act may go on in the new one.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
@@ -14,6 +14,7 @@ use serde_json::Value;
 use crate::support::life::{Life, SETTINGS, Setting, at};
 use crate::support::{TICK, brain_with, creature, kind};
 
+/// The states that the tests enter, as JSON.
 const STATES: &str = r#"{
     "stands": {},
     "looks": { "gaze": "prey" },
@@ -49,7 +50,7 @@ fn live(one: &mut Creature, seconds: f64) {
     }
 }
 
-/// It comes to rest before it sleeps: its turn, its head, its feet.
+/// Before the giant sleeps, its turn, its head and its feet come to rest.
 #[test]
 fn who_falls_asleep_comes_to_rest_first() {
     let ground = HalfSpace::below(0.0);
@@ -85,7 +86,7 @@ fn who_falls_asleep_comes_to_rest_first() {
             (yaw, rate, first) = (now, turns, false);
         });
         println!("{setting:?}, {before}: turns change by {worst:.3} rad/s^2");
-        // What the gait's own turns change by.
+        // The limit is the largest change of the turn rate in the gait's own turns.
         assert!(worst < 0.3, "{setting:?}, {before}: {worst}");
         assert_eq!(life.yaw_rate(), 0.0, "{setting:?}, {before}");
         assert!(
@@ -105,7 +106,7 @@ fn who_falls_asleep_comes_to_rest_first() {
     }
 }
 
-/// Who sleeps is not foreseen to move, and begins to move from rest when it wakes.
+/// A sleeping creature is foreseen to stay still. When it wakes, it starts to move from rest.
 #[test]
 fn who_sleeps_is_still_until_it_wakes() {
     let ground = HalfSpace::below(0.0);
@@ -122,7 +123,7 @@ fn who_sleeps_is_still_until_it_wakes() {
             palette
         };
         assert_eq!(palette(0.0), palette(2.0), "{setting:?}");
-        // In the middle of a swipe.
+        // The giant falls asleep in the middle of a swipe.
         let mut life = giant_in(setting, &ground);
         assert!(life.one.enter("swipes"));
         life.live(&[], 0.9, |_| {});
@@ -146,7 +147,7 @@ fn who_sleeps_is_still_until_it_wakes() {
     }
 }
 
-/// An attack aims at where somebody is, and that has to be where it strikes: it does not turn on meanwhile.
+/// An attack strikes the place at which it has aimed, so the giant does not keep turning during it.
 #[test]
 fn who_attacks_has_ended_its_turn() {
     let ground = HalfSpace::below(0.0);
@@ -158,7 +159,7 @@ fn who_attacks_has_ended_its_turn() {
             assert!(life.yaw_rate().abs() > 0.05);
             let yaw = life.yaw();
             let mut from: Option<f64> = None;
-            // Not by an order, which interrupts.
+            // The state is changed in the saved data, since the order `enter` interrupts the turn.
             let mut state: Value = serde_json::to_value(life.one.state()).unwrap();
             let stomps = life.one.kind().brain().find("stomps").unwrap();
             state["brain"]["current"] = serde_json::to_value(stomps).unwrap();
@@ -181,7 +182,7 @@ fn who_attacks_has_ended_its_turn() {
     }
 }
 
-/// Who wakes does not see where somebody was before it slept.
+/// A creature that has slept does not know where a person was before.
 #[test]
 fn who_wakes_has_to_look_first() {
     let ground = HalfSpace::below(0.0);
@@ -195,7 +196,7 @@ fn who_wakes_has_to_look_first() {
     }
 }
 
-/// When the nearest person gets on it, the next one is in view at once.
+/// When the nearest person begins to ride the giant, the next one is in view at once.
 #[test]
 fn another_person_is_seen_at_once() {
     let ground = HalfSpace::below(0.0);
@@ -222,7 +223,7 @@ fn another_person_is_seen_at_once() {
     }
 }
 
-/// What turns to the right never plays the turn to the left, however fast it walked before.
+/// A turn to one side never plays the clip of a turn to the other side, however fast the giant walked before.
 #[test]
 fn a_turn_is_played_to_its_own_side() {
     let ground = HalfSpace::below(0.0);
@@ -249,7 +250,7 @@ fn a_turn_is_played_to_its_own_side() {
     }
 }
 
-/// With a brain that does not have its act it stands as the new one says.
+/// If the new brain lacks the current act, the creature stands, as the new brain says.
 #[test]
 fn what_the_new_brain_does_not_play_ends() {
     let old = kind(&brain_with(
@@ -268,7 +269,7 @@ fn what_the_new_brain_does_not_play_ends() {
     assert_eq!(one.state().animator().layers()[0].clip, idle);
 }
 
-/// States that are entered on an errand do not make it begin anew.
+/// An errand does not restart when states are entered during it.
 #[test]
 fn an_errand_that_is_blocked_is_told_whatever_is_entered() {
     let poses = clamber_world::BodyPoses::default();
@@ -293,7 +294,7 @@ fn an_errand_that_is_blocked_is_told_whatever_is_entered() {
     assert_eq!(stopped, 1);
 }
 
-/// A walk to within nothing ends.
+/// A walk with `within` 0 ends.
 #[test]
 fn a_walk_to_a_point_ends() {
     let states = r#"{
@@ -320,7 +321,7 @@ fn a_walk_to_a_point_ends() {
     }
 }
 
-/// No event tells of a damage of 0.
+/// A damage of 0 reports no event.
 #[test]
 fn no_damage_is_no_hurt() {
     let mut one = giant();

@@ -1,11 +1,14 @@
-//! Brain files: what is refused and where, and what a brain does tick by tick (scenes B37, B38 and B48).
+//! Brain files: mistakes are refused with their place in the file, and valid brains run tick by tick (scenes B37, B38
+//! and B48).
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
 use clamber_colossus::{Brain, BrainFile, BrainProblem, BrainState, Sense, Senses};
 
+/// Tick length, seconds.
 const TICK: f64 = 1.0 / 60.0;
 
+/// A brain with nested states, a mood, a region and a sense of the game's own, as JSON.
 const FILE: &str = r#"{
   "start": "calm",
   "moods": { "anger": { "fades": 10, "raised": [{ "when": ["struck >= 1"], "to": 1 }] } },
@@ -35,7 +38,7 @@ const FILE: &str = r#"{
   }
 }"#;
 
-/// The first file that the documentation shows is whole.
+/// The first file in the documentation is complete.
 #[test]
 fn the_file_of_the_documentation_loads() {
     let form = include_str!("../../src/brain/form.md");
@@ -49,7 +52,7 @@ fn brain() -> Brain {
     Brain::from_json(FILE, TICK).unwrap()
 }
 
-/// The state after some ticks of the same senses.
+/// Steps the brain several times with the same senses. Returns the path of its state after that.
 fn after(brain: &Brain, state: &mut BrainState, senses: &Senses, ticks: u32) -> String {
     for _ in 0..ticks {
         brain.step(state, senses, &[], |_| {});
@@ -91,7 +94,7 @@ fn what_does_not_exist_is_refused_with_line_and_state() {
         if !state.is_empty() {
             assert_eq!(error.state.as_deref(), Some(state), "{wrong}: {error}");
         }
-        // The line is told once.
+        // The message names the line only once.
         assert!(!error.to_string().contains(" at line "), "{error}");
     }
     let text = FILE.replacen(r#""start": "idle""#, r#""start": "dead""#, 1);
@@ -180,8 +183,8 @@ fn lots_decide_when_the_first_shake_comes() {
     assert!(times.len() > 20, "{times:?}");
 }
 
-/// Random senses for many ticks: few transitions a tick, every state is seen, the end is final, and a state that was
-/// saved and loaded goes on with the same bits. It stays below 1 KB.
+/// Random senses for many ticks: each tick has few transitions, every state is reached, and the final state is never
+/// left. A state that was saved and loaded continues with the same bits. It stays below 1 KB.
 #[test]
 fn a_brain_lives_through_anything() {
     let brain = brain();
@@ -195,10 +198,10 @@ fn a_brain_lives_through_anything() {
                     senses.set(sense, f64::from(random.u32(..3)));
                 }
             }
-            // A blow comes seldom, and the end even less often.
+            // Blows are rare, and death is even rarer.
             senses.set(Sense::Struck, f64::from(u8::from(random.u32(..900) == 0)));
             senses.set(Sense::Health, f64::from(random.u32(..5_000).min(1)));
-            // Quiet for a while, so that it stays where it is.
+            // Quiet phases let the brain stay in a state.
             let is_quiet = tick % 1_000 < 500;
             senses.set_own(0, f64::from(u8::from(!is_quiet) * random.u8(..2)));
             if is_quiet {
@@ -248,7 +251,7 @@ fn a_report_tells_what_can_never_happen() {
             .any(|never| never.contains("nothing leads here")),
         "{never:?}"
     );
-    // What is played again and again is never over.
+    // An act that plays in a loop never ends.
     for (done, is_told) in [("done", true), ("done >= 1", true), ("!done", false)] {
         let text = FILE.replace(
             r#"[2, 6] }"#,
@@ -263,7 +266,7 @@ fn a_report_tells_what_can_never_happen() {
     }
 }
 
-/// Every region has senses of its own, and more than there can be are refused.
+/// Every region has its own senses. A file with more than 64 regions is refused.
 #[test]
 fn more_regions_than_can_be_told_apart_are_refused() {
     let file = |count: usize| {
@@ -279,7 +282,7 @@ fn more_regions_than_can_be_told_apart_are_refused() {
     assert_eq!(error, "there are 65 regions; a brain has at most 64");
 }
 
-/// A mood or a sense of the game's own that has the name of another one would never be read.
+/// A mood or a sense of the game's own may not have the name of another sense or mood, as it would never be read.
 #[test]
 fn names_that_hide_each_other_are_refused() {
     let refused = |moods: &str, senses: &str| {
@@ -303,7 +306,7 @@ fn names_that_hide_each_other_are_refused() {
     }
 }
 
-/// Weights whose sum would be infinite are refused; large ones decide as they should.
+/// Weights whose sum could be infinite are refused. Large ones still decide in proportion.
 #[test]
 fn weights_add_up() {
     let file = |weight: &str| {
@@ -330,7 +333,7 @@ fn weights_add_up() {
     assert!(seen.iter().all(|count| *count > 60), "{seen:?}");
 }
 
-/// Long files are read or refused in a time that grows with their length: nothing here takes seconds.
+/// Long files are read or refused quickly: the time grows with their length only.
 #[test]
 fn long_files_are_read_or_refused_at_once() {
     let states = |count: usize, transitions: usize| {
@@ -352,21 +355,21 @@ fn long_files_are_read_or_refused_at_once() {
     assert_eq!(brain.len(), 2);
     let brain = Brain::from_json(&states(160, 100), TICK).unwrap();
     assert_eq!(brain.len(), 160);
-    // The old way took more than a minute for each.
+    // An earlier implementation took more than a minute for each file.
     assert!(begin.elapsed().as_secs() < 20, "{:?}", begin.elapsed());
-    // Lines are right in long files too.
+    // Line numbers are right in long files, too.
     let text = states(100, 50).replacen(r#""to": "s0""#, r#""to": "nowhere""#, 2);
     let error = Brain::from_json(&text, TICK).unwrap_err();
     assert_eq!(error.line, Some(1), "{error}");
 }
 
-/// A brain's file that was read again goes on by names: a state of the old one is refused as it is.
+/// The state of a changed brain is carried over by names. A brain ignores a state that belongs to another brain.
 #[test]
 fn a_changed_brain_goes_on_by_names() {
     let old = brain();
     let mut senses = old.no_senses();
     let mut state = BrainState::new(&old, 5);
-    // It gets angry, roars, and shakes no more for a while.
+    // A blow makes it angry.
     senses.set(Sense::Struck, 1.0);
     assert_eq!(after(&old, &mut state, &senses, 2), "angry");
     let text = FILE
@@ -380,7 +383,7 @@ fn a_changed_brain_goes_on_by_names() {
         );
     let new = Brain::from_json(&text, TICK).unwrap();
     assert_eq!(new.len(), old.len() + 1);
-    // As it is, it would be in another state.
+    // Without `carry_over`, the saved number would mean another state of the new brain.
     let mut raw = state.clone();
     let before = raw.clone();
     new.step(&mut raw, &new.no_senses(), &[], |_| {});
@@ -396,7 +399,7 @@ fn a_changed_brain_goes_on_by_names() {
     let mut senses = new.no_senses();
     senses.set(Sense::Done, 1.0);
     after(&new, &mut carried, &senses, 100);
-    // Without the state that it was in, it begins anew.
+    // If the new brain lacks the current state, it starts anew.
     let text = FILE.replace("angry", "furious");
     let other = Brain::from_json(&text, TICK).unwrap();
     let carried = other.carry_over(&old, &state).unwrap();
@@ -405,7 +408,7 @@ fn a_changed_brain_goes_on_by_names() {
     assert_eq!(other.carry_over(&other, &state), None);
 }
 
-/// A circle that is taken since it goes before what leads out of it.
+/// A circle is refused if its transitions have priority over the one that leads out of it.
 #[test]
 fn a_circle_of_higher_priority_is_refused() {
     let file = |priority: i32| {
@@ -420,7 +423,7 @@ fn a_circle_of_higher_priority_is_refused() {
     assert!(Brain::from_json(&file(-1), TICK).is_ok());
 }
 
-/// A state that is entered anew enters all that is in it anew: times begin anew, too.
+/// When a state is entered anew, all states inside of it are entered anew, and their times restart.
 #[test]
 fn what_is_inside_begins_anew_as_well() {
     let file = r#"{ "start": "c", "senses": ["bell"], "states": {

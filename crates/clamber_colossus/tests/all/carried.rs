@@ -1,4 +1,4 @@
-//! Ground that moves carries who stands and walks on it: ships that turn, lifts that rise.
+//! Moving ground, such as ships that turn and lifts that rise, carries the creatures that stand and walk on it.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
@@ -17,7 +17,7 @@ use glam::{DVec3, Vec3};
 use crate::support::TICK;
 use crate::walls::{config, creatures};
 
-/// A deck without an end that moves, to the last bit as it is told. It turns about up alone.
+/// An endless level deck with an exact motion. It turns about the vertical axis only.
 #[derive(Clone, Copy)]
 pub(crate) struct Deck {
     pub(crate) before: Similarity,
@@ -74,15 +74,16 @@ impl Obstacle for Deck {
     }
 }
 
-/// Places of a creature that lives on a deck, and of its soles above it, in each second, on the deck.
+/// The life of a creature on a deck: its states and its places relative to the deck, in each tick.
 struct Life {
     states: Vec<usize>,
     places: Vec<DVec3>,
-    /// The most that a sole that stands for long was above or in the deck, as a share of its length.
+    /// Largest distance of a settled sole from the deck, as a share of the tolerance: the larger of 1 % of the foot's
+    /// length and 0.1 % of the height.
     gap: f64,
 }
 
-/// It turns and walks to a noise on the deck, stands there, and hears another one.
+/// In each lap the creature turns and walks to another noise on the deck, and stands there.
 fn live(kind: &Arc<CreatureKind>, moves: &dyn Fn(f64) -> Similarity) -> Life {
     let mut creature = Creature::new(Arc::clone(kind), config()).unwrap();
     let height = creature.height();
@@ -173,7 +174,7 @@ fn on_a_deck_that_moves_it_lives_as_on_one_that_does_not() {
     assert!(failed.is_empty(), "{}", failed.join("\n"));
 }
 
-/// Two triangles that move as one.
+/// A plate of two triangles on one joint.
 pub(crate) fn plate(corners: [Vec3; 4]) -> SkinnedSurface {
     let bone = Influence {
         joint: JointId(0),
@@ -190,7 +191,7 @@ pub(crate) fn plate(corners: [Vec3; 4]) -> SkinnedSurface {
     SkinnedSurface::new(Arc::new(mesh))
 }
 
-/// A plate of 3 m that slides through between a giant's feet does not take it along; nor does one that spins.
+/// A plate of 3 m that slides and spins between the giant's feet does not carry it.
 #[test]
 fn what_moves_between_its_feet_does_not_carry_it() {
     let (_, kind, _) = creatures().remove(0);

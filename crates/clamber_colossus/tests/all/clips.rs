@@ -1,4 +1,4 @@
-//! The giant's clips: what riders feel, and how limbs start. Scenes B42, B43 and B46.
+//! The giant's clips: the shakes that riders feel, and the starts of limbs. Scenes B42, B43 and B46.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
@@ -12,6 +12,7 @@ use clamber_surface::surface::SkinnedSurface;
 use clamber_world::{MaterialPoint, Obstacle, ObstacleId};
 use glam::DVec3;
 
+/// Clips that play in a loop. They do not start from rest, so the test of abrupt starts leaves them out.
 const LOOPS: [&str; 6] = [
     "idle",
     "walk",
@@ -21,7 +22,7 @@ const LOOPS: [&str; 6] = [
     "shake_loop",
 ];
 
-/// Of each shake, the weak point that it is meant for.
+/// The shakes, each with the weak point that it is meant for.
 const SHAKES: [(&str, &str); 4] = [
     ("shake", "weak_point_nape"),
     ("rage", "weak_point_nape"),
@@ -34,7 +35,7 @@ fn clip<'a>(kind: &'a CreatureKind, name: &str) -> &'a Clip {
     kind.clips().clip(id).unwrap()
 }
 
-/// Lets a clip play on a skin, from rest to rest; calls `look` after every tick.
+/// Plays a clip and half a second more on a skin. Calls `look` after every tick.
 fn play(kind: &CreatureKind, clip: &Clip, mut look: impl FnMut(&SkinnedSurface)) {
     let rest = kind.skeleton().rest_pose();
     let mut surface = SkinnedSurface::new(std::sync::Arc::clone(kind.mesh()));
@@ -51,13 +52,13 @@ fn play(kind: &CreatureKind, clip: &Clip, mut look: impl FnMut(&SkinnedSurface))
     }
 }
 
-/// A weak point by its name.
+/// The weak point with this name.
 fn find<'a>(kind: &'a CreatureKind, weak_point: &str) -> &'a WeakPoint {
     let mut all = kind.weak_points().iter();
     all.find(|one| one.name == weak_point).unwrap()
 }
 
-/// Points of the skin around a weak point that can be held, by their distance from it.
+/// Points of fur and stone around a weak point, each with its distance from it, nearest first.
 fn spots(kind: &CreatureKind, weak_point: &str) -> Vec<(f64, MaterialPoint)> {
     let point = find(kind, weak_point);
     let rest = kind.skeleton().rest_pose();
@@ -88,17 +89,20 @@ fn spots(kind: &CreatureKind, weak_point: &str) -> Vec<(f64, MaterialPoint)> {
         .collect()
 }
 
-/// What is felt at a point of the skin over a shake.
+/// The shake that is felt at a point of the skin.
 #[derive(Clone, Copy, Debug, Default)]
 struct Felt {
     feel: Feel,
-    /// Seconds above 15 m/s^2, the sum of what is above 4 m/s^2, in m/s, and the most, in m/s^2.
+    /// Time above 15 m/s^2, seconds.
     thrown: f64,
+    /// Time integral of the acceleration above 4 m/s^2, m/s.
     excess: f64,
+    /// Largest acceleration, m/s^2.
     most: f64,
 }
 
-/// Within a weak point there is skin on which one is thrown but not worn out, and beside it some to hold out on.
+/// Within a weak point there is skin where a shake throws a climber but does not wear it out. Near it there is skin
+/// where a climber can hold out.
 #[test]
 fn shakes_throw_and_can_be_held_out() {
     let kind = kind(&brain_file());
@@ -141,8 +145,8 @@ fn shakes_throw_and_can_be_held_out() {
     }
 }
 
-/// A climber on the nape holds on through shakes with rests of three seconds: wherever it holds through one, where it
-/// holds out best through two and more, and nowhere through six.
+/// A climber on the nape holds on through shakes with rests of three seconds between them. It survives at least one
+/// shake at every point, two or more at a third of the points at least, and six at no point.
 #[test]
 fn a_fresh_climber_survives_two_shakes_and_not_six() {
     let kind = kind(&brain_file());
@@ -206,7 +210,7 @@ fn a_fresh_climber_survives_two_shakes_and_not_six() {
     assert!(3 * two >= survived.len(), "{two} of {}", survived.len());
 }
 
-/// Nothing that was at rest starts with more than half of gravity within a tenth of a second.
+/// No joint that is at rest starts with more than half of gravity within a tenth of a second.
 #[test]
 fn giants_never_start_abruptly() {
     let kind = kind(&brain_file());
@@ -226,7 +230,7 @@ fn giants_never_start_abruptly() {
         if LOOPS.contains(&clip.name.as_str()) {
             continue;
         }
-        // From rest: the speed after a tenth of a second tells the mean acceleration.
+        // The clip starts from rest, so the speed after a tenth of a second gives the mean acceleration.
         let (a, b) = (at(0.1 - 0.5 * TICK), at(0.1 + 0.5 * TICK));
         for (joint, (a, b)) in a.iter().zip(&b).enumerate() {
             let pull = (*b - *a).length() / TICK / 0.1;

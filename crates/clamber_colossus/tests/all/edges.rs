@@ -11,8 +11,8 @@ use glam::{DVec3, Vec3};
 use crate::support::TICK;
 use crate::walls::{config, creatures, reach};
 
-/// Ground of strips across the way: from each of these distances on it has a height, metres; a slope between two that
-/// differ, or a vertical face between two of one distance.
+/// Ground of strips across the path. Each pair is a distance along +Z and the height of the ground there, metres.
+/// Between two distances there is a slope. Two heights at the same distance make a vertical face.
 fn strips(profile: &[[f64; 2]]) -> TriangleTerrain {
     let wide = 4000.0;
     let mut corners = Vec::new();
@@ -28,15 +28,17 @@ fn strips(profile: &[[f64; 2]]) -> TriangleTerrain {
     TriangleTerrain::new(&corners, &triangles, &[], DVec3::ZERO).unwrap()
 }
 
-/// What became of a walk across such ground.
+/// The result of a walk across such ground.
 #[derive(Clone, Copy, Debug, Default)]
 struct Walk {
-    /// How far it came, metres along +Z, and how high.
+    /// Largest distance along +Z, metres.
     far: f64,
+    /// Largest height of the creature's origin, metres.
     high: f64,
-    /// The most that a sole that stands was above the ground, and in it, as a share of what is allowed: 1 % of its
-    /// length or 0.1 % of the height.
+    /// Largest height of a settled sole above the ground, as a share of the tolerance: the larger of 1 % of the foot's
+    /// length and 0.1 % of the creature's height.
     gap: f64,
+    /// Largest depth of a settled sole in the ground, as a share of the same tolerance.
     depth: f64,
     blocked: bool,
     arrived: bool,
@@ -80,10 +82,10 @@ fn walk(kind: &Arc<CreatureKind>, height: f64, terrain: &[&dyn Obstacle], goal: 
     walk
 }
 
-/// Ground of some kind, and whether it walks on over it.
+/// A kind of ground: its name, its profile, and true if a creature walks on over its edge.
 type Ground = (&'static str, fn(f64, f64) -> Vec<[f64; 2]>, bool);
 
-/// Kinds of ground, whose edge is that far away, for a creature of a height.
+/// The kinds of ground. A profile depends on the distance to the edge and on the creature's height, metres.
 const GROUNDS: [Ground; 12] = [
     ("step of 0.02", |away, tall| step(away, 0.02 * tall), true),
     ("drop of 0.02", |away, tall| step(away, -0.02 * tall), true),
@@ -123,8 +125,9 @@ const GROUNDS: [Ground; 12] = [
     ),
 ];
 
-/// Where ground begins and ends.
+/// Distance along +Z at which the ground begins, metres.
 const NEAR: f64 = -2000.0;
+/// Distance along +Z at which the ground ends, metres.
 const FAR: f64 = 4000.0;
 
 fn step(away: f64, rise: f64) -> Vec<[f64; 2]> {
@@ -165,7 +168,8 @@ fn to_edge(
     } else {
         walk.blocked && walk.far < away
     };
-    // Where it walks on and its front legs stand far from its hind legs, some are too short: bodies do not pitch.
+    // Bodies do not pitch. Where a creature walks over an edge and its front legs are far from its hind legs, some legs
+    // are too short.
     let pitches = passes && ["Apatosaurus.glb", "Triceratops.glb"].contains(name);
     let stands = walk.gap <= 1.0 && walk.depth <= 1.0;
     if !is_right || !(stands || pitches) {
@@ -173,8 +177,8 @@ fn to_edge(
     }
 }
 
-/// What is too high, too deep or too steep stops it, before its feet are off the ground: one kind of ground for each
-/// creature.
+/// An edge that is too high, too deep or too steep stops a creature before its feet leave the ground. Each creature
+/// walks to one kind of ground.
 #[test]
 fn edges_stop_it() {
     let mut failed = Vec::new();
@@ -196,7 +200,7 @@ fn all_edges_stop_it() {
     assert!(failed.is_empty(), "{}", failed.join("\n"));
 }
 
-/// Two that walk to each other, and two that want to go where the other one comes from, stop before their skins meet.
+/// Two creatures that walk towards each other, or to places behind each other, stop before their skins touch.
 #[test]
 fn two_creatures_do_not_walk_into_each_other() {
     let mut failed = Vec::new();
@@ -243,7 +247,7 @@ fn two_creatures_do_not_walk_into_each_other() {
                 let world = a.surface().world_from_model();
                 for place in skin.iter().step_by(3) {
                     let place = world.transform_point(place.as_dvec3());
-                    // A ray that leaves a closed skin from within meets its back.
+                    // A ray that starts inside a closed skin hits a back face.
                     let up = b.surface().cast_ray(place, DVec3::Y, 4.0 * height);
                     let inside = up.filter(|hit| hit.normal.y > 0.0);
                     let out = b.surface().closest_point(place, height);
@@ -265,7 +269,7 @@ fn two_creatures_do_not_walk_into_each_other() {
     assert!(failed.is_empty(), "{}", failed.join("\n"));
 }
 
-/// Who is small and fast sees far enough, in steps that are small enough, to stop as well as who is large and slow.
+/// A small and fast creature looks far enough ahead, in small enough steps, to stop as well as a large and slow one.
 #[test]
 fn edges_stop_who_runs() {
     let mut failed = Vec::new();
@@ -303,7 +307,8 @@ fn edges_stop_who_runs() {
     assert!(failed.is_empty(), "{}", failed.join("\n"));
 }
 
-/// How far it came in a minute on its way to a noise, or until it was stopped or far enough, whether it was stopped, and how fast it was.
+/// A walk to a noise of at most a minute, which ends when the creature is blocked or far enough. `far` is its largest
+/// distance, metres, and `fastest` its highest speed, m/s.
 #[derive(Debug, Default)]
 struct Run {
     far: f64,

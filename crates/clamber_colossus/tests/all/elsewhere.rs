@@ -1,4 +1,4 @@
-//! Files from elsewhere: what they do not say, the brain's file does.
+//! Third-party files: the brain's file adds the facts that they lack.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
@@ -41,7 +41,7 @@ fn try_kind(rig: &Rig, brain: &Value) -> Result<Arc<CreatureKind>, String> {
     Ok(Arc::new(kind))
 }
 
-/// A Trex that bites, by a file that tells when its jaws hurt, and where it is weak.
+/// A Trex that bites. Its brain's file gives the window in which its jaws hurt, and its weak points.
 fn trex() -> Value {
     json!({
         "body": {
@@ -74,7 +74,7 @@ fn markers_and_weak_points_of_the_brains_file_are_as_good_as_the_files_own() {
     let orders: Vec<u32> = kind.weak_points().iter().map(|point| point.order).collect();
     assert_eq!(orders, [1, 0]);
     let mut creature = Creature::new(Arc::clone(&kind), CreatureConfig::default()).unwrap();
-    // At rest it is a fifth of its height ahead of the head's joint.
+    // At rest the weak point is a fifth of the creature's height ahead of the head's joint.
     let head = kind.skeleton().find("Head").unwrap();
     let rest = kind
         .skeleton()
@@ -150,7 +150,7 @@ fn skin_is_fur_by_joint_and_by_material() {
     // Each triangle has one material.
     let sum: usize = rig.collider_materials.values().map(Vec::len).sum();
     assert_eq!(sum, all.len());
-    // What is stone stays stone where a joint has fur, and becomes fur where its own material is.
+    // Stone stays stone if `fur` lists its joint, and becomes fur if `fur` lists its material.
     let stone = rig.collider.with_tags(|triangle, tag| SurfaceTag {
         kind: if wanted(triangle.index()) {
             SurfaceKind::Stone
@@ -176,7 +176,7 @@ fn skin_is_fur_by_joint_and_by_material() {
         all.clone()
             .all(|triangle| kind.mesh().tags()[triangle].user == 7)
     );
-    // The creature's own surface has it, where climbers are.
+    // The creature's own surface, on which climbers are, has this fur, too.
     let creature = Creature::new(kind, CreatureConfig::default()).unwrap();
     assert!(
         creature
@@ -201,7 +201,7 @@ fn skin_is_fur_by_joint_and_by_material() {
     );
 }
 
-/// A clip whose channels begin and end at different times, of each way to interpolate.
+/// A clip whose channels begin and end at different times, with one channel for each interpolation.
 fn ragged(joint: JointId) -> Clip {
     let vectors = |xs: &[f32]| xs.iter().map(|x| Vec3::splat(*x)).collect::<Vec<_>>();
     let turns = |angles: &[f32]| {
@@ -273,7 +273,7 @@ fn a_clip_that_is_closed_goes_back_to_its_beginning_and_is_as_before_until_then(
         assert!(gap(at(closed, 0.0), at(&clip, 0.0)) < 1e-6);
         assert!(gap(at(closed, ends), at(&clip, ends)) < 1e-3);
         assert!(gap(at(closed, closed.duration()), at(&clip, 0.0)) < 1e-6);
-        // Half way back it is half way there: what is linear, and what is stepped stays.
+        // Half the closing time after the end, a linear channel is half way back, and a step channel has not changed.
         let half = at(closed, ends + 0.5 * seconds);
         assert!((half.translation.x - 2.5).abs() < 1e-4, "{half:?}");
         assert!(half.rotation.angle_between(at(&clip, ends).rotation) < 1e-3);
@@ -289,7 +289,7 @@ fn a_spline_of_rotations_closes_the_short_way() {
     let still = Quat::from_xyzw(0.0, 0.0, 0.0, 0.0);
     let turn =
         |angle: f32| Quat::from_xyzw(libm::sinf(angle / 2.0), 0.0, 0.0, libm::cosf(angle / 2.0));
-    // Nearly the same, with the other sign.
+    // The two rotations are nearly equal, but the signs of their quaternions differ.
     let values = [still, turn(0.1), still, still, -turn(0.2), still].to_vec();
     let spline = Channel::new(
         joint,
@@ -317,7 +317,7 @@ fn a_spline_of_rotations_closes_the_short_way() {
 #[test]
 fn a_clip_that_jumps_does_so_no_more_when_it_is_closed() {
     let Some(rig) = rig("Trex.glb") else { return };
-    // It ends on its back.
+    // At the end of this clip the Trex lies on its back.
     let death = "Armature|TRex_Death";
     let seam = |close: Option<f64>| {
         let mut brain = trex();
@@ -394,7 +394,7 @@ fn what_cannot_be_is_refused_by_name() {
     assert!(error.contains("`+z`, `-z`, `+x`, `-x`"), "{error}");
 }
 
-/// The rig as it would be in a file that looks another way: everything is turned about Y.
+/// The rig as in a file whose model faces another way: everything is turned about Y.
 fn turned(rig: &Rig, turn: Quat) -> Rig {
     let mut rig = rig.clone();
     let mut joints = rig.skeleton.joints().to_vec();
@@ -422,7 +422,7 @@ fn turned(rig: &Rig, turn: Quat) -> Rig {
     rig
 }
 
-/// A file that looks another way lives as one that looks along +Z, once the brain's file says where it looks.
+/// A model that faces another way lives like one that faces +Z, if the brain's file says which way it faces.
 #[test]
 fn a_file_that_looks_another_way_lives_alike() {
     let Some(rig) = rig("Fox.glb") else { return };
@@ -457,7 +457,7 @@ fn a_file_that_looks_another_way_lives_alike() {
         let half = 0.5 * f64::from(turn);
         let turn = Quat::from_xyzw(0.0, libm::sin(half) as f32, 0.0, libm::cos(half) as f32);
         let rig = turned(&rig, turn);
-        // Untold, it would walk another way than it looks, and says so.
+        // Without the right `facing`, the creature would not walk the way it faces, and `walks_aside` reports that.
         let untold = try_kind(&rig, &brain("+z"));
         if let Ok(untold) = &untold {
             let aside = untold.walks_aside().unwrap();

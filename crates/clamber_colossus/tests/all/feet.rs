@@ -13,6 +13,7 @@ use clamber_world::rapier3d::prelude::{ColliderBuilder, PhysicsWorld};
 use clamber_world::{BodyPoses, Obstacle, RapierTerrain};
 use glam::DVec3;
 
+/// States in which the giant rests and walks about, as JSON.
 const WALKS: &str = r#"{
     "rests": { "act": { "play": "idle" }, "transitions": [{ "to": "roams", "after": 3 }] },
     "roams": { "act": { "walk": { "to": "patrol", "within": 10 } }, "transitions": [
@@ -20,25 +21,28 @@ const WALKS: &str = r#"{
     ] }
 }"#;
 
-/// Ticks after which a foot that came down has settled.
+/// Number of ticks after which a foot that came down counts as settled.
 const SETTLED: usize = 30;
 
 #[derive(Debug, Default)]
 struct Figures {
     walked: f64,
     plants: usize,
-    /// The most height of a settled sole's lowest skin above the ground, and the most depth in it, metres.
+    /// Largest height of a settled sole's lowest skin above the ground, metres.
     gap: f64,
+    /// Largest depth of a settled sole's lowest skin in the ground, metres.
     depth: f64,
-    /// The most way of a settled ball, metres.
+    /// Largest distance that the ball of a settled foot moves, metres.
     drift: f64,
-    /// What feet on the ground add to the felt acceleration at hips and head, at most; and at swinging toes, at most
-    /// and the share of ticks with more than 6 m/s^2.
+    /// Largest felt acceleration that the feet add to the clip at the hips, m/s^2.
     hips: f64,
+    /// Largest felt acceleration that the feet add to the clip at the head, m/s^2.
     head: f64,
+    /// Largest felt acceleration that the feet add at swinging toes, m/s^2.
     toes: f64,
+    /// Share of the ticks of swinging toes in which that is above 6 m/s^2.
     jerks: f64,
-    /// Length of the foot.
+    /// Length of the foot, metres.
     foot: f64,
 }
 
@@ -80,7 +84,7 @@ fn walk(world: &PhysicsWorld, config: CreatureConfig, seconds: f64) -> Figures {
             place(&giant, joint) - world.transform_point(frame.translation) + height
         });
         let mut felt: Vec<f64> = (0..2).map(|at| feels[at].step(added[at])).collect();
-        // A foot that does not follow its clip is judged by its own motion alone.
+        // A foot need not follow its clip, so the smaller one counts: the added acceleration or the foot's own.
         for foot in 2..4 {
             let over_clip = feels[foot].raw(added[foot]);
             let all = feels[2 + foot].raw(place(&giant, watched[foot]));
@@ -131,8 +135,9 @@ fn place(creature: &Creature, joint: JointId) -> DVec3 {
     world.transform_point(frame.translation)
 }
 
-/// The least height of a sole's skin above the ground, looked for at points of its triangles.
+/// The least height of a sole's skin above the ground, at sampled points of its triangles.
 fn lowest(giant: &Creature, skin: &[glam::Vec3], sole: &Sole, terrain: &RapierTerrain<'_>) -> f64 {
+    /// Intervals between the sampled points along each side of a triangle.
     const CUTS: u32 = 4;
     let world = giant.surface().world_from_model();
     let mut lowest = f64::INFINITY;
@@ -151,7 +156,7 @@ fn lowest(giant: &Creature, skin: &[glam::Vec3], sole: &Sole, terrain: &RapierTe
     lowest
 }
 
-/// What holds on any ground.
+/// The limits for every ground.
 fn check(figures: &Figures) {
     assert!(figures.walked > 100.0 && figures.plants > 25, "{figures:?}");
     let most = 0.01 * figures.foot;
@@ -180,7 +185,8 @@ fn on_a_slope_of_25_degrees() {
     let slope = libm::tan(25f64.to_radians());
     let figures = walk(&ground(|_, z| slope * z), config(), 120.0);
     check(&figures);
-    // 6 is wanted for all of them: uphill a leg may be too short for its step, and then pulls the foot off the ground.
+    // The goal is 6 m/s^2 in all ticks. Uphill, a leg may be too short for its step, and then pulls the foot off the
+    // ground.
     assert!(figures.jerks <= 0.01, "{figures:?}");
 }
 
@@ -190,13 +196,13 @@ fn on_boulders_of_2_m() {
     strew_boulders(&mut world, 3);
     let figures = walk(&world, config(), 120.0);
     check(&figures);
-    // As uphill, where it comes down from a boulder.
+    // As uphill, a leg may be too short when the giant comes down from a boulder.
     assert!(figures.jerks <= 0.015, "{figures:?}");
 }
 
 #[test]
 fn at_other_sizes() {
-    // Several of each: at which phase a walk begins decides how far its feet have to go.
+    // Several similar sizes, as the phase at which a walk begins decides how far the feet have to go.
     for scale in [0.1, 0.11, 1.9, 1.99, 2.0, 2.001] {
         let config = CreatureConfig { scale, ..config() };
         let figures = walk(&ground(|_, _| 0.0), config, 60.0);
@@ -215,7 +221,7 @@ fn at_other_sizes() {
     }
 }
 
-/// What a foot stands on is taken away from below it.
+/// The block below a foot is removed, and the foot comes down to the ground.
 #[test]
 fn a_foot_comes_down_where_its_ground_is_gone() {
     let mut world = ground(|_, _| 0.0);
@@ -256,7 +262,7 @@ fn a_foot_comes_down_where_its_ground_is_gone() {
     assert!(down < 240 + 240 && giant.state().is_planted(0));
 }
 
-/// A foot beside a wall, into which its sole reaches, is not put onto it.
+/// A foot beside a wall is not put onto the wall, even if its sole reaches into it.
 #[test]
 fn a_wall_is_not_stepped_on() {
     let kind = support::kind(&support::brain_with(
@@ -267,7 +273,7 @@ fn a_wall_is_not_stepped_on() {
     let mut world = ground(|_, _| 0.0);
     let alone = support::creature(&kind, config());
     let ball = place(&alone, left);
-    // Right below the outer half of its foot.
+    // The wall begins 1 m beside the ball of the left foot, below the outer half of that foot.
     let wall = ColliderBuilder::cuboid(10.0, 10.0, 40.0)
         .translation((ball.with_y(10.0) + DVec3::X * 11.0).as_vec3());
     world.insert_collider(wall, None);

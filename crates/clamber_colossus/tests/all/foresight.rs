@@ -1,4 +1,4 @@
-//! How a creature will stand is what comes, as long as its brain decides on nothing else.
+//! `foresee` predicts the coming pose of a creature, as long as its brain decides nothing else.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
@@ -10,7 +10,7 @@ use clamber_surface::geometry::{Similarity, rotation_from_axis_angle};
 use clamber_world::{HalfSpace, Obstacle};
 use glam::DVec3;
 
-/// It turns to a noise, then walks there.
+/// States in which the giant turns to a noise and then walks there, as JSON.
 const HUNTS: &str = r#"{
     "waits": { "transitions": [{ "to": "turns", "when": ["noise > 0"] }] },
     "turns": { "act": { "turn": { "to": "noise", "within_deg": 10 } }, "transitions": [
@@ -19,13 +19,13 @@ const HUNTS: &str = r#"{
         { "to": "waits", "when": ["done"] }] }
 }"#;
 
-/// Walking, turning and coming to a stand, a hand is foreseen to 0.3 m two seconds ahead.
+/// While the giant walks, turns and stops, a hand is foreseen two seconds ahead to 0.3 m.
 #[test]
 fn a_hand_is_foreseen_walking_and_turning() {
     let ground = HalfSpace::below(0.0);
     let terrain: [&dyn Obstacle; 1] = [&ground];
     for scale in [1.0, 0.1, 4.0] {
-        // Times go with the square root of sizes.
+        // Times scale with the square root of the size.
         let slow = f64::sqrt(scale);
         let ahead = 2.0 * slow.min(1.0);
         let ticks = (ahead / TICK) as usize;
@@ -44,7 +44,7 @@ fn a_hand_is_foreseen_walking_and_turning() {
         let mut worst = [0f64; 2];
         let mut judged = [0; 2];
         for tick in 0..5 * round {
-            // Now and then it hears something elsewhere.
+            // In each round it hears a noise at another place.
             let angle = (tick / round) as f64 * 2.2 + 0.7;
             let place = DVec3::new(libm::sin(angle), 0.0, libm::cos(angle)) * (70.0 * scale);
             let noises = [Noise {
@@ -64,11 +64,11 @@ fn a_hand_is_foreseen_walking_and_turning() {
                 .transform_point(frame.translation);
             let state = giant.state().current();
             let key = (state, giant.state().animator().layers()[0].clip);
-            // What it hears meanwhile changes where it goes.
+            // A noise within the foreseen time changes its goal, so such ticks are skipped.
             if tick >= ticks && tick % round > ticks + 5 {
                 let (before, seen): (DVec3, bool) = foreseen[tick - ticks];
                 let same = states[tick - ticks..].iter().all(|known| *known == key);
-                // That its gait goes from one clip to another is not foreseen.
+                // A change of the gait's clip is not foreseen, so such ticks are skipped.
                 if same && seen {
                     let kind_of = usize::from(kind.brain().path(state) == "turns");
                     worst[kind_of] = worst[kind_of].max(before.distance(now));
@@ -86,7 +86,7 @@ fn a_hand_is_foreseen_walking_and_turning() {
             worst[0], worst[1]
         );
         assert!(judged.iter().all(|count| *count > 15), "{judged:?}");
-        // In metres, and 1 % of its height for who is larger.
+        // The limit is 0.3 m, or 1 % of the height of a larger giant.
         let most = if scale > 1.0 {
             0.01 * giant.height()
         } else {
@@ -94,7 +94,7 @@ fn a_hand_is_foreseen_walking_and_turning() {
         };
         assert!(worst.iter().all(|off| *off <= most), "{scale}: {worst:?}");
     }
-    // Times that are none are refused.
+    // Invalid times are refused.
     let giant = creature(
         &kind(&brain_with("waits", HUNTS)),
         CreatureConfig::default(),
@@ -106,7 +106,7 @@ fn a_hand_is_foreseen_walking_and_turning() {
     assert!(giant.foresee(1e9, &mut memory, &mut palette).is_ok());
 }
 
-/// On a ship that sails, turns and rises, standing and walking, as on ground at rest.
+/// On a ship that sails, turns and rises, the hand of a standing or walking giant is foreseen as on ground at rest.
 #[test]
 fn on_moving_ground_a_hand_is_foreseen_too() {
     let kind = kind(&brain_with("waits", HUNTS));
@@ -124,7 +124,7 @@ fn on_moving_ground_a_hand_is_foreseen_too() {
             let (mut foreseen, mut worst, mut judged) = (Vec::new(), 0f64, 0);
             for tick in 0..600 {
                 let before = at;
-                // It sails where it looks.
+                // The ship sails along its own heading.
                 let turn = rotation_from_axis_angle(DVec3::Y, turns * TICK);
                 at.rotation = turn * at.rotation;
                 at.translation += at.rotation * velocity * TICK;
@@ -145,7 +145,7 @@ fn on_moving_ground_a_hand_is_foreseen_too() {
                     world.transform_point(frame.translation)
                 };
                 let now = place(giant.palette(), giant.surface().world_from_model());
-                // It has begun to walk by then.
+                // When this tick was foreseen, the giant had already begun to walk.
                 if tick >= 420 {
                     let before: DVec3 = foreseen[tick - 120];
                     worst = worst.max(before.distance(now));

@@ -1,4 +1,4 @@
-//! The giant lives by its own brain: its brain is sound, and the same life comes out on any thread and after a load.
+//! The giant lives by its own brain. The brain is sound, and its life is the same on any thread and after a load.
 //! Scenes B38 and B48.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
@@ -19,7 +19,7 @@ use clamber_world::rapier3d::prelude::PhysicsWorld;
 use clamber_world::{BodyPoses, HalfSpace, MaterialPoint, Obstacle, RapierTerrain, WorldCapsule};
 use glam::DVec3;
 
-/// The file that the documentation shows lives on the giant.
+/// The brain file in the documentation fits the giant.
 #[test]
 fn the_brain_of_the_documentation_fits_the_giant() {
     let form = include_str!("../../src/brain/form.md");
@@ -94,7 +94,8 @@ fn acts_that_cannot_be_are_refused_where_they_stand() {
     );
 }
 
-/// Random senses for a million ticks: few transitions in each, all states are seen, death comes from all, and is final.
+/// Random senses for a million ticks: each tick has few transitions, all states are reached, and death is reached from
+/// every state and is final.
 #[test]
 fn its_brain_lives_through_anything() {
     let brain = Brain::from_json(&brain_file(), TICK).unwrap();
@@ -122,7 +123,7 @@ fn its_brain_lives_through_anything() {
             senses.set(Sense::Staggered, 0.0);
             senses.set(Sense::Struck, 0.0);
         }
-        // Nobody for a while, and then somebody again.
+        // Phases without prey, riders and noises take turns with phases with them.
         if tick % 4_000 < 1_500 {
             senses.set(Sense::PreySeen, 0.0);
             senses.set(Sense::Riders, 0.0);
@@ -153,7 +154,7 @@ fn its_brain_lives_through_anything() {
             let longest = if random.bool() { 5 } else { 800 };
             dies = i64::from(random.u32(2..longest));
             state = BrainState::new(&brain, tick);
-            // Death finds it in any state.
+            // The giant may die in any state.
             let all: Vec<_> = brain.states().collect();
             brain.go_to(&mut state, all[random.usize(..all.len())]);
         }
@@ -173,7 +174,7 @@ fn its_brain_lives_through_anything() {
     }
 }
 
-/// A life among people who come, ride and go; with arrows and noises.
+/// A life among people that come, ride and leave, with arrows and noises.
 struct Life {
     world: PhysicsWorld,
     kind: Arc<CreatureKind>,
@@ -187,7 +188,7 @@ impl Life {
         }
     }
 
-    /// The states of the life after every so many ticks. Where told so, the state is saved and loaded on the way.
+    /// The states of the life after every 1000 ticks. If `loads`, the state is also saved and loaded at random ticks.
     fn live(&self, ticks: u64, loads: bool) -> Vec<CreatureState> {
         let poses = BodyPoses::default();
         let terrain = RapierTerrain::of_world(&self.world, &poses);
@@ -256,6 +257,7 @@ impl Life {
 
 #[test]
 fn the_same_life_comes_out_on_any_thread_and_after_any_load() {
+    /// Number of ticks of each long life.
     const TICKS: u64 = 100_000;
     let life = Life::new();
     let (one, two) = std::thread::scope(|scope| {
@@ -283,7 +285,7 @@ fn a_state_of_another_kind_is_refused_and_changes_nothing() {
     assert_eq!(giant.state(), &before);
 }
 
-/// Numbers of a saved state that somebody changed: what is restored can be stepped, and all else is refused.
+/// A saved state with a changed number is either refused, or restored and then stepped without an error.
 #[test]
 fn a_forged_state_is_refused_or_steps() {
     let kind = support::kind(&support::brain_file());
@@ -298,7 +300,7 @@ fn a_forged_state_is_refused_or_steps() {
         giant.step(&around).unwrap();
     }
     let quiet = giant.clone();
-    // In the middle of a fade.
+    // The second creature is in the middle of a fade.
     assert!(giant.enter("swipe_left"));
     for _ in 0..6 {
         giant.step(&around).unwrap();
@@ -311,7 +313,7 @@ fn a_forged_state_is_refused_or_steps() {
         let mut places = Vec::new();
         numbers(saved, String::new(), &mut places);
         for (index, place) in places.iter().enumerate() {
-            // Of a pose's many numbers, some.
+            // A pose has many numbers, so only some of them are changed.
             let many = ["/pose", "/animator/offsets"]
                 .iter()
                 .any(|many| place.starts_with(many));
@@ -350,7 +352,7 @@ fn a_forged_state_is_refused_or_steps() {
     assert!(refused[1] > 20 && stepped[1] > 20);
 }
 
-/// The places of all numbers in a value.
+/// The JSON pointers of all numbers in a value.
 fn numbers(value: &serde_json::Value, at: String, places: &mut Vec<String>) {
     match value {
         serde_json::Value::Array(items) => {

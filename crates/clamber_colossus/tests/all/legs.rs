@@ -14,7 +14,7 @@ use clamber_world::rapier3d::prelude::{PhysicsWorld, Pose};
 use clamber_world::{BodyPoses, Obstacle, RapierTerrain};
 use glam::{DQuat, DVec3, Vec3};
 
-/// It walks about, and kicks and stomps in between.
+/// States in which the giant walks about, kicks and stomps, as JSON.
 const LIVES: &str = r#"{
     "roams": { "act": { "walk": { "to": "patrol", "within": 10 } }, "transitions": [
         { "to": "kicks", "when": ["done"] }, { "to": "kicks", "after": 20 }] },
@@ -24,7 +24,7 @@ const LIVES: &str = r#"{
         "transitions": [{ "to": "roams" }] }
 }"#;
 
-/// The hull of the skin that moves with joints alone, in the space of the first one at rest.
+/// The convex hull of the skin that moves with these joints alone, in the space of the first joint.
 struct Part {
     joint: JointId,
     hull: ConvexPolyhedron,
@@ -62,12 +62,13 @@ impl Part {
 
 #[derive(Debug)]
 struct Figures {
-    /// The least angle of a knee, radians; and how far a knee is in front of the line from hip to ankle, at least, as a
-    /// share of the leg.
+    /// Least angle of a knee, radians.
     knee: f64,
+    /// Least distance of a knee in front of the line from hip to ankle, as a share of the leg's length.
     front: f64,
-    /// How deep a leg is in the other one at most, metres, and when.
+    /// Largest depth of one leg in the other, metres.
     depth: f64,
+    /// Time of that depth, seconds.
     at: f64,
 }
 
@@ -108,7 +109,7 @@ fn live(world: &PhysicsWorld, seed: u64, seconds: f64) -> Figures {
         giant.step(&around).unwrap();
         let frame = |joint| giant.palette().model_from_joint(joint).unwrap();
         let pelvis = frame(find("pelvis")).to_scale_rotation_translation().1;
-        // As far as the pelvis is turned against its rest, forward is elsewhere.
+        // Forward turns with the pelvis, relative to its rest pose.
         let at_rest = kind.skeleton().joints()[find("pelvis").index()]
             .inverse_bind
             .to_f64();
@@ -149,7 +150,7 @@ fn angle(a: DVec3, b: DVec3) -> f64 {
 }
 
 fn check(figures: &Figures) {
-    // Within what rounding a pose to f32 leaves.
+    // The limits leave room for the rounding of poses to f32.
     assert!(figures.knee > 19.9f64.to_radians(), "{figures:?}");
     assert!(figures.front > -0.005, "{figures:?}");
     assert!(figures.depth < 0.02, "{figures:?}");

@@ -1,4 +1,4 @@
-//! A creature and its brain, seen from outside.
+//! Tests of creatures and their brains through the public interface.
 
 mod animals;
 mod attacks;

@@ -1,4 +1,4 @@
-//! Mouths and hands aim as feet do: they go to whom they strike, and back.
+//! Mouths and hands aim as feet do: they move to the person that they strike, and back.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
@@ -14,7 +14,8 @@ use clamber_world::{HalfSpace, Obstacle};
 use glam::DVec3;
 use serde_json::{Value, json};
 
-/// An animal that waits for a second, attacks as is proposed for it, and dies if its one weak point is gone.
+/// An animal that waits for a second and then runs the attack that is proposed for it. It dies if its only weak point
+/// is used up.
 fn animal(file: &str, height: f64, aim: f64) -> Option<Arc<CreatureKind>> {
     let Some(root) = std::env::var_os("CLAMBER_TEST_DATA") else {
         eprintln!("SKIPPED {file}: set CLAMBER_TEST_DATA to the folder that holds models/Trex.glb");
@@ -33,7 +34,7 @@ fn animal(file: &str, height: f64, aim: f64) -> Option<Arc<CreatureKind>> {
     let mut act: Value =
         proposed["states"]["alive"]["states"]["alert"]["states"]["strikes"]["act"].clone();
     act["attack"]["aim"] = aim.into();
-    // The mouth alone, without the shock wave of one that is high above people.
+    // Removes the shock wave that is proposed for a mouth high above people.
     act["attack"].as_object_mut().unwrap().remove("wave");
     let brain = json!({
         "body": proposed["body"],
@@ -50,7 +51,8 @@ fn animal(file: &str, height: f64, aim: f64) -> Option<Arc<CreatureKind>> {
     Some(Arc::new(CreatureKind::new(parts, brain).unwrap()))
 }
 
-/// Where the attack strikes without an aim: the middle of the limb's end while it hurts, in world space.
+/// The place in the world where the attack strikes without an aim: the last position of the joint at the limb's end
+/// while it hurts.
 fn spot(kind: &Arc<CreatureKind>) -> DVec3 {
     let mut creature = Creature::new(Arc::clone(kind), CreatureConfig::default()).unwrap();
     let brain = kind.brain();
@@ -83,7 +85,7 @@ fn spot(kind: &Arc<CreatureKind>) -> DVec3 {
     last
 }
 
-/// Of people at 48 places around the spot, up to `within` metres away, how many are struck.
+/// Counts the struck people among 48 at places up to `within` metres around the spot. Each is attacked alone.
 fn struck(kind: &Arc<CreatureKind>, spot: DVec3, within: f64) -> usize {
     let mut count = 0;
     for place in 0..48 {
@@ -129,7 +131,7 @@ fn a_mouth_goes_to_whom_it_bites() {
             "{file} at {height} m: {} of 48 without an aim, {} with one",
             counts[0], counts[1]
         );
-        // As far as its neck reaches.
+        // The neck does not reach all 48 people.
         assert!(
             counts[1] >= 24 && counts[1] >= counts[0] + 8,
             "{file}: {counts:?}"
@@ -137,8 +139,8 @@ fn a_mouth_goes_to_whom_it_bites() {
     }
 }
 
-/// The largest acceleration of a head in a tick, metres a second squared, over an attack on somebody, which ends by death
-/// after some ticks.
+/// The largest acceleration of the head in a tick, metres a second squared, and its place in each tick, over an attack
+/// on a person. If `dies` is given, the animal dies in that tick.
 fn jerk(kind: &Arc<CreatureKind>, at: DVec3, dies: Option<usize>) -> (f64, Vec<DVec3>) {
     let mut creature = Creature::new(Arc::clone(kind), CreatureConfig::default()).unwrap();
     let ground = HalfSpace::below(0.0);
@@ -189,7 +191,7 @@ fn a_neck_goes_out_and_back_without_a_jump() {
         );
         assert!(aimed < plain + 3.0 * 9.81, "{dies:?}: {plain} {aimed}");
         assert!(most > 0.3, "{dies:?}: {most}");
-        // It is back in the end.
+        // In the end the head is back where the clip has it.
         let end = clip[399].distance(leant[399]);
         assert!(end < 1e-3 * height, "{end}");
     }

@@ -1,4 +1,4 @@
-//! What a game makes a creature do: to be put somewhere, to go somewhere, to be in a state, to be hurt.
+//! Orders of a game to a creature: to be put somewhere, to go somewhere, to enter a state, and to be hurt.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
@@ -23,7 +23,7 @@ fn level(a: DVec3, b: DVec3) -> f64 {
     (a - b).with_y(0.0).length()
 }
 
-/// Steps a creature until it says that it arrived or stopped, or for so many ticks. Returns that event and the ticks.
+/// Steps a creature until it arrives or stops, for at most `most` ticks. Returns the event and the number of ticks.
 fn go(one: &mut Creature, terrain: &dyn Obstacle, most: u32) -> (Option<CreatureEvent>, u32) {
     let terrain = [terrain];
     let around = Surroundings {
@@ -45,7 +45,7 @@ fn go(one: &mut Creature, terrain: &dyn Obstacle, most: u32) -> (Option<Creature
     (None, most)
 }
 
-/// The giant in its own brain's state, and animals, at their heights.
+/// The giant with its own brain, and animals that go to noises, each with its height.
 fn walkers() -> Vec<(&'static str, Arc<CreatureKind>, f64)> {
     let mut all = creatures();
     all[0].1 = giant(&brain_file());
@@ -66,7 +66,7 @@ fn goes_where_it_is_sent_whatever_its_brain_wants() {
     for (name, kind, height) in walkers() {
         for (angle, far) in [(0.3, 2.0), (2.5, 1.5), (-1.6, 4.0)] {
             let mut one = creature(&kind, at(DVec3::new(7.0, 0.0, -3.0), 0.4));
-            // In the middle of what it does.
+            // The order comes in the middle of the creature's own act.
             go(&mut one, &ground, 40);
             let (sin, cos) = libm::sincos(angle);
             let to = one.state().position() + DVec3::new(sin, 0.0, cos) * (far * height);
@@ -80,14 +80,14 @@ fn goes_where_it_is_sent_whatever_its_brain_wants() {
                 "{name}: {off} m off after {ticks} ticks"
             );
             assert_eq!(one.sent_to(), None);
-            // Its own act goes on.
+            // After the errand, the creature's own act goes on.
             go(&mut one, &ground, 60);
             assert_ne!(one.state().ticks(), 0);
         }
     }
 }
 
-/// A state that interrupts does not make it glide on its way: its clip of walking goes on.
+/// On an errand, a state that interrupts does not make the giant glide: its walking clip goes on.
 #[test]
 fn walks_on_when_its_brain_is_interrupted() {
     let ground = HalfSpace::below(0.0);
@@ -107,7 +107,8 @@ fn walks_on_when_its_brain_is_interrupted() {
     }
 }
 
-/// Who sleeps and is put on other ground lies there as whoever began there, at any height above it.
+/// A sleeping creature that is put on other ground lies there like one that began there, even if it is put above the
+/// ground.
 #[test]
 fn put_asleep_it_lies_on_its_new_ground() {
     let ground = HalfSpace::below(3.0);
@@ -115,7 +116,7 @@ fn put_asleep_it_lies_on_its_new_ground() {
     let mut began = creature(&kind, at(DVec3::new(40.0, 5.0, 0.0), 1.0));
     let mut one = creature(&kind, at(DVec3::ZERO, 0.0));
     go(&mut one, &HalfSpace::below(0.0), 600);
-    // Turned round many times: its heading is kept small.
+    // The yaw has 1000 extra full turns, which the creature removes.
     one.put(
         DVec3::new(40.0, 5.0, 0.0),
         1.0 + core::f64::consts::TAU * 1000.0,
@@ -200,12 +201,13 @@ fn put_somewhere_it_lives_as_if_it_had_begun_there() {
         one.put(place, yaw).unwrap();
         go(&mut began, &ground, 300);
         go(&mut one, &ground, 300);
-        // A noise that was never heard is remembered where it began: that alone differs.
+        // The states differ in the remembered place of a noise alone, which starts at the place where the creature
+        // began.
         let position = |one: &Creature| (one.state().position(), one.state().current());
         assert_eq!(position(&began), position(&one), "{name}");
         let palette = |one: &Creature| one.palette().matrices().to_vec();
         assert!(palette(&began) == palette(&one), "{name}");
-        // In the middle of something.
+        // The creature is put there again in the middle of an errand.
         one.send(Some(DVec3::ZERO));
         go(&mut one, &ground, 200);
         one.put(place, yaw).unwrap();
@@ -260,7 +262,8 @@ fn states_are_entered_by_name_and_weak_points_are_hurt_by_number() {
     assert_eq!(one.state().hit_points()[0], 0.0);
 }
 
-/// Calling back who was not sent changes nothing: what it is at goes on, and strikes once.
+/// Calling back a creature that was not sent changes nothing: its act goes on, and it strikes as often as one that is
+/// not called.
 #[test]
 fn calling_back_who_was_not_sent_changes_nothing() {
     let ground = HalfSpace::below(0.0);
@@ -294,8 +297,8 @@ fn calling_back_who_was_not_sent_changes_nothing() {
     assert_eq!(blows[0], blows[1]);
 }
 
-/// Somebody for whom a game sends it in each tick is reached, round a wall, and costs about as much to look for as
-/// somebody who stands.
+/// A giant that is sent to its goal anew in each tick reaches it, round a wall, even if the goal moves. The queries for
+/// its way are at most about twice as many as for an errand that is given once.
 #[test]
 fn who_is_sent_in_each_tick_gets_there_and_looks_no_more_often() {
     let kind = giant(&brain_file());
@@ -337,7 +340,7 @@ fn who_is_sent_in_each_tick_gets_there_and_looks_no_more_often() {
     );
 }
 
-/// Level ground and a wall that count what they are asked.
+/// Level ground and a wall that count their queries.
 struct Counting<'a> {
     ground: HalfSpace,
     wall: RapierTerrain<'a>,
@@ -403,7 +406,7 @@ fn who_has_come_to_its_end_is_not_sent() {
     assert!(one.send(Some(DVec3::Z * 50.0)));
 }
 
-/// Who dies on an errand gives it up, by its own brain or by an order.
+/// A creature that dies on an errand gives the errand up, whether its own brain or an order makes it die.
 #[test]
 fn who_dies_on_the_way_stays_there() {
     let states = r#"{
@@ -443,7 +446,8 @@ fn who_dies_on_the_way_stays_there() {
     }
 }
 
-/// A brain whose weak points, plates and legs are others takes over what has the same name.
+/// A brain whose body has other weak points or legs, or no gait, keeps the hit points of weak points with the same
+/// name.
 #[test]
 fn another_body_keeps_what_it_knows_by_name() {
     let mut file: serde_json::Value = serde_json::from_str(&brain_file()).unwrap();
@@ -453,7 +457,7 @@ fn another_body_keeps_what_it_knows_by_name() {
     let mut one = creature(&giant(&file.to_string()), at(DVec3::ZERO, 0.0));
     let ground = HalfSpace::below(0.0);
     go(&mut one, &ground, 30);
-    // Those of the file are before them.
+    // The weak points of the model's file come first.
     let first = one.state().hit_points().len() - 3;
     for (index, damage) in [(0, 4.0), (1, 1.0), (2, 7.0)] {
         assert_eq!(one.harm(first + index, damage), Some(damage));
@@ -495,7 +499,7 @@ fn another_body_keeps_what_it_knows_by_name() {
     }
 }
 
-/// Hit points, wounds, distances and senses that are no numbers are refused.
+/// Saved states with invalid hit points, wall distances, senses or turn rates are refused.
 #[test]
 fn forged_wounds_are_refused() {
     let kind = giant(&brain_file());
@@ -519,7 +523,8 @@ fn forged_wounds_are_refused() {
     }
 }
 
-/// Put elsewhere in the middle of an attack, it strikes where it did, seen from itself; and nothing carries it there yet.
+/// A giant that is put elsewhere in the middle of an attack keeps its aim relative to itself. It loses the velocity of
+/// the ground that carried it.
 #[test]
 fn put_in_an_attack_it_aims_as_before() {
     let deck = |time: f64| Deck {

@@ -1,4 +1,4 @@
-//! Plates stagger, break, and drop who stands on them; weak points open in their order. Scene B47.
+//! Plates stagger the creature, break, and drop the climbers on them. Weak points open in their order. Scene B47.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
@@ -17,11 +17,13 @@ use clamber_surface::mesh::{
 use clamber_world::{MaterialPoint, Obstacle, ObstacleId};
 use glam::{DVec3, Vec3};
 
+/// Tick length, seconds.
 const TICK: f64 = 1.0 / 60.0;
 
-/// Cells of the plate along each side: 2 * 32 * 32 triangles.
+/// Cells of the plate along each side: it has 2 * 32 * 32 triangles.
 const CELLS: u32 = 32;
 
+/// A brain whose plate staggers the creature at a damage of 2 and breaks after three staggers, as JSON.
 const BRAIN: &str = r#"{
   "body": { "plates": [{ "name": "shell", "user": 7, "stagger": 2, "count": 3 }] },
   "start": "lies",
@@ -31,7 +33,7 @@ const BRAIN: &str = r#"{
   }
 }"#;
 
-/// A level slab of fur, and a plate of stone half a metre above it, on one joint, with three weak points.
+/// A level slab of fur, and a plate of stone half a metre above it, on one joint, with two weak points.
 fn slab() -> Creature {
     let (mut positions, mut triangles, mut tags) = (Vec::new(), Vec::new(), Vec::new());
     for (height, kind, user) in [(0.0, SurfaceKind::Fur, 0), (0.5, SurfaceKind::Stone, 7)] {
@@ -96,7 +98,7 @@ fn blow(triangle: u32, at: DVec3, damage: f64) -> Wound {
     }
 }
 
-/// The first triangle of the plate.
+/// Index of the plate's first triangle: the triangles of the slab come before it.
 const PLATE: u32 = 2 * CELLS * CELLS;
 
 #[test]
@@ -120,7 +122,7 @@ fn a_plate_breaks_after_three_staggers_and_drops_who_stands_on_it() {
     }
     assert_eq!(step(&mut slab, false).1, ClimberMode::Standing);
     for stagger in 1..=3 {
-        // One blow of three is too little, and what is too much is not kept.
+        // A damage of 1.5 is too little for a stagger, and damage beyond a stagger is not kept for the next one.
         assert_eq!(slab.hurt(&blow(PLATE, DVec3::Y * 0.5, 1.5)), 0.0);
         let (events, ..) = step(&mut slab, false);
         assert!(events.is_empty(), "{events:?}");
@@ -137,7 +139,7 @@ fn a_plate_breaks_after_three_staggers_and_drops_who_stands_on_it() {
             assert_eq!(mode, ClimberMode::Standing);
         }
     }
-    // It falls within two ticks, and lands on the fur below, which can be gripped.
+    // The climber falls within two ticks. It lands on the fur below, which it can grip.
     let (_, mode, _) = step(&mut slab, true);
     assert_ne!(
         mode,
@@ -171,7 +173,7 @@ fn a_restored_plate_is_whole_again() {
 #[test]
 fn weak_points_open_in_their_order() {
     let mut slab = slab();
-    // A blow at the skin that is nearest to a place.
+    // A wound at the point of the skin that is nearest to a place.
     let at = |slab: &Creature, place: DVec3, damage: f64| {
         let hit = slab.surface().in_world().closest_point(place, 1.0).unwrap();
         Wound {
@@ -186,12 +188,12 @@ fn weak_points_open_in_their_order() {
     };
     assert!(slab.is_open(0) && !slab.is_open(1));
     assert_eq!(hurt(&mut slab, second, 1.0), 0.0);
-    // What is too much for one is not passed on to the next.
+    // Damage beyond the hit points of one weak point is not passed on to the next.
     assert_eq!(hurt(&mut slab, first, 5.0), 2.0);
     assert!(!slab.is_open(0) && slab.is_open(1));
     assert_eq!(hurt(&mut slab, second, 1.0), 1.0);
     assert_eq!(slab.state().hit_points(), [0.0, 1.0]);
-    // Numbers that are none change nothing.
+    // Invalid damage changes nothing.
     for damage in [f64::NAN, f64::INFINITY, -1.0] {
         assert_eq!(hurt(&mut slab, second, damage), 0.0);
     }

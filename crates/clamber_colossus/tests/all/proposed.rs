@@ -1,4 +1,4 @@
-//! Brains that are proposed for creatures from elsewhere.
+//! Brains that are proposed for third-party creatures.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
@@ -37,14 +37,14 @@ fn name(path: &Path) -> String {
 }
 
 fn kind(parts: &CreatureParts, file: &BrainFile) -> Arc<CreatureKind> {
-    // As people have it: from text.
+    // The brain is read from text, as in a game.
     let text = serde_json::to_string(file).unwrap();
     let brain = Brain::from_json(&text, TICK).unwrap();
     assert_eq!(brain.file(), file);
     Arc::new(CreatureKind::new(parts.clone(), brain).unwrap())
 }
 
-/// What a creature did.
+/// Records of a creature's life.
 #[derive(Default)]
 struct Life {
     visited: BTreeSet<String>,
@@ -52,13 +52,13 @@ struct Life {
     longest: (f64, String),
     lasted: f64,
     home: Option<DVec3>,
-    /// How far it has been from where it began.
+    /// Largest distance from the place where it began, metres.
     farthest: f64,
     turned: f64,
 }
 
 impl Life {
-    /// Lets some seconds pass.
+    /// Steps the creature for some seconds.
     fn pass(&mut self, creature: &mut Creature, seconds: f64, people: &[Person], noises: &[Noise]) {
         let ground = HalfSpace::below(0.0);
         let terrain: [&dyn Obstacle; 1] = [&ground];
@@ -93,8 +93,8 @@ impl Life {
     }
 }
 
-/// Ten minutes of each creature, of which `share` is played: alone, with somebody before it and behind it, with a rider,
-/// and with noises.
+/// Plays a share of a life of ten minutes for each creature: alone, with a person before it and behind it, with a
+/// rider, and with noises.
 fn lives(height: f64, share: f64) {
     let mut count = 0;
     for path in models() {
@@ -120,7 +120,7 @@ fn lives(height: f64, share: f64) {
         let has = |life: &Life, state: &str| life.visited.iter().any(|path| path.contains(state));
         assert!(has(&life, "sleeps"), "{}", says("it never slept", &life));
         let walks = kind.can_walk();
-        // Somebody shows up before it, and later behind it.
+        // A person shows up in front of the creature, and later behind it.
         let world = creature.state().position();
         for (way, seconds) in [(1.0, 90.0), (-1.0, 90.0)] {
             let yaw = creature.state().yaw();
@@ -162,7 +162,7 @@ fn lives(height: f64, share: f64) {
             "{:<32} at {height} m: {longest:>5.1} s in {state}",
             name(&path)
         );
-        // Everything takes longer for what is larger, by Froude's law.
+        // By Froude's law, everything takes longer for a larger creature.
         let most = 60.0 * (height / 20.0).sqrt().max(1.0);
         assert!(
             *longest < most,
@@ -170,10 +170,10 @@ fn lives(height: f64, share: f64) {
             says(&format!("{longest} s in {state}"), &life)
         );
         if file.body.weak_points.is_empty() {
-            // The giant has its own, in an order.
+            // The giant has its own weak points, which open in an order.
             continue;
         }
-        // A stab of its skin where the weak point is.
+        // A stab into the skin at the weak point.
         let place = creature.weak_point(0).unwrap();
         let skin = creature.surface().in_world();
         let hit = skin.closest_point(place, height).unwrap();
@@ -199,7 +199,7 @@ fn creatures_from_elsewhere_live_by_what_is_proposed() {
     lives(20.0, 0.3);
 }
 
-/// Somebody who stands before a creature that attacks is struck by what is proposed.
+/// A proposed attack strikes a person that stands in front of the creature.
 #[test]
 fn attacks_that_are_proposed_strike_who_stays() {
     let (mut count, mut missed) = (0, Vec::new());
@@ -229,7 +229,7 @@ fn attacks_that_are_proposed_strike_who_stays() {
                 };
                 !creature.step(&around).unwrap().blows.is_empty()
             });
-            // One that cannot walk strikes whom it reaches.
+            // A creature that cannot walk counts only if the person is within its reach.
             if struck || kind.can_walk() {
                 count += 1;
             }
@@ -239,7 +239,7 @@ fn attacks_that_are_proposed_strike_who_stays() {
         }
     }
     println!("{count} attack, without a blow: {missed:#?}");
-    // The frog cannot walk to anybody. At 60 m a limb may come down too far away.
+    // The frog cannot walk to the person. At 60 m a limb may come down too far away.
     let near = missed
         .iter()
         .filter(|name| !name.contains("Frog") && !name.contains("60 m"));
@@ -251,8 +251,8 @@ fn attacks_that_are_proposed_strike_who_stays() {
     );
 }
 
-/// While a creature with legs attacks, nothing of it goes far into the ground, although its clip lifts feet faster than
-/// they may be put elsewhere, and puts them down again.
+/// While a creature with legs attacks, neither its feet nor its skin go far into the ground. Its clip lifts feet and
+/// puts them down again faster than feet may be moved to another place.
 #[test]
 fn attacks_that_are_proposed_stay_above_the_ground() {
     let ground = HalfSpace::below(0.0);
@@ -300,7 +300,7 @@ fn attacks_that_are_proposed_stay_above_the_ground() {
     println!("{count}: feet and skin at most {worst:.3?} of the height in the ground");
     let is_there = std::env::var_os("CLAMBER_TEST_DATA").is_some();
     assert!(!is_there || count > 20, "{count}");
-    // A head may strike into the ground as its clip has it.
+    // A head may strike into the ground if its clip does so.
     assert!(worst[0] < 0.065 && worst[1] < 0.1, "{worst:?}");
 }
 
@@ -312,7 +312,7 @@ fn creatures_from_elsewhere_live_for_ten_minutes() {
     }
 }
 
-/// Legs that people found in these files, with the feet and toes that they name.
+/// The proposed legs have the same feet and toes as the legs that were chosen by hand for these files.
 #[test]
 fn legs_are_those_that_people_find() {
     let Some(root) = std::env::var_os("CLAMBER_TEST_DATA") else {
@@ -320,7 +320,7 @@ fn legs_are_those_that_people_find() {
         return;
     };
     for animal in animals() {
-        // It has no walk, so it needs no legs.
+        // This file has no walk, so its creature needs no legs.
         if animal.file == "gltf_spider_animated.gltf" {
             continue;
         }
@@ -349,7 +349,7 @@ fn legs_are_those_that_people_find() {
                 .iter()
                 .map(|joint| joint.as_str().unwrap())
                 .collect();
-            // At most one joint more or less: where the leg begins is a matter of taste.
+            // At most one joint more or less, as the joint at which a leg begins is a matter of taste.
             let same = leg
                 .joints
                 .iter()
@@ -431,7 +431,7 @@ fn what_is_no_height_is_refused() {
     }
 }
 
-/// A creature of the test data, with clips and a skeleton that were changed.
+/// The Trex of the test data with changed parts.
 fn changed(change: impl FnOnce(&mut CreatureParts)) -> Option<CreatureParts> {
     let Some(root) = std::env::var_os("CLAMBER_TEST_DATA") else {
         eprintln!("SKIPPED files: set CLAMBER_TEST_DATA to the folder that holds models/Trex.glb");
@@ -467,7 +467,7 @@ fn clips_without_end_take_no_time() {
 
 #[test]
 fn what_does_not_fit_is_left_out() {
-    // Its own markers, in the wrong order.
+    // The file's own markers are in the wrong order.
     let parts = changed(|parts| {
         let marker = |name: &str, time| Marker {
             name: name.into(),
@@ -488,7 +488,7 @@ fn what_does_not_fit_is_left_out() {
         "{text}"
     );
     kind(&parts, &file);
-    // Names that two joints have mean the first one only.
+    // If two joints have the same name, the name stands for the first one only.
     let twice = |name: &'static str, other: &'static str| {
         changed(move |parts| {
             let mut joints = parts.skeleton.joints().to_vec();
@@ -501,7 +501,7 @@ fn what_does_not_fit_is_left_out() {
         })
         .unwrap()
     };
-    // The root comes before the head.
+    // The root gets the head's name, and comes before the head.
     let parts = twice("root", "Head");
     let file = BrainFile::propose(&parts, 20.0).unwrap();
     let kind = kind(&parts, &file);

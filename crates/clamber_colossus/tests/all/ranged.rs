@@ -1,5 +1,5 @@
-//! Attacks that strike from afar: waves, shots, beams. Nobody is struck behind rock, who runs gets away, and what falls
-//! off does so as is stated.
+//! Attacks from afar: waves, shots and beams. No person behind rock is struck, people that run get away, and the
+//! strength of waves falls off as documented.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
@@ -15,7 +15,8 @@ use clamber_world::{HalfSpace, Obstacle, TriangleTerrain};
 use glam::DVec3;
 use serde_json::{Value, json};
 
-/// An attack of the giant whose limb itself hurts nobody, with these additions.
+/// The act of an attack state of the giant with these additions. Its limb has no damage, no throw and no aim, unless
+/// they are added.
 pub(crate) fn act(state: &str, with: Value) -> Value {
     let (_, mut act) = attacks()
         .into_iter()
@@ -29,7 +30,7 @@ pub(crate) fn act(state: &str, with: Value) -> Value {
     act
 }
 
-/// A wall of triangles, in the plane of its corner, up and along, which stops from both sides.
+/// A vertical wall of two triangles that is solid from both sides. Its lower edge goes from `corner` along `along`.
 pub(crate) fn wall(corner: DVec3, along: DVec3, height: f64) -> TriangleTerrain {
     let up = DVec3::Y * height;
     let places = [corner, corner + along, corner + along + up, corner + up];
@@ -37,15 +38,16 @@ pub(crate) fn wall(corner: DVec3, along: DVec3, height: f64) -> TriangleTerrain 
     TriangleTerrain::new(&places, &[[0, 1, 2], [0, 2, 3]], &[], DVec3::ZERO).unwrap()
 }
 
-/// What happened in an attack.
+/// The blows and events of an attack.
 #[derive(Debug, Default)]
 pub(crate) struct Seen {
-    /// Ticks since it began, and whom it struck.
+    /// Blows, with the number of ticks since the attack began.
     pub(crate) blows: Vec<(usize, Blow)>,
+    /// Events, with the number of ticks since the attack began.
     pub(crate) events: Vec<(usize, CreatureEvent)>,
 }
 
-/// Lets an attack happen to people whose bodies depend on the seconds since it began, among obstacles that do too.
+/// Runs an attack on people among obstacles. Both are functions of the seconds since the attack began.
 pub(crate) fn attack<'a>(
     before: &Creature,
     people: impl Fn(f64) -> Vec<Person>,
@@ -54,7 +56,7 @@ pub(crate) fn attack<'a>(
     attack_among(before, people, |since| [terrain(since), Vec::new()])
 }
 
-/// [`attack`] among terrain and other creatures.
+/// [`attack`] with two lists of obstacles: terrain and other creatures.
 pub(crate) fn attack_among<'a>(
     before: &Creature,
     people: impl Fn(f64) -> Vec<Person>,
@@ -87,7 +89,7 @@ pub(crate) fn attack_among<'a>(
             }
             seen.events.push((ticks, event));
         }
-        // What flies and spreads goes on after the attack, and a shot that has burst is its end.
+        // Shots and waves go on after the attack has ended. The burst of a shot counts as the end of the attack, too.
         let burst = |event: &(usize, CreatureEvent)| matches!(event.1, CreatureEvent::Burst { .. });
         has_ended |= seen.events.iter().any(burst);
         if has_ended && giant.shots().next().is_none() && giant.waves().next().is_none() {
@@ -98,12 +100,12 @@ pub(crate) fn attack_among<'a>(
     seen
 }
 
-/// Somebody with an id.
+/// A person with an id.
 pub(crate) fn somebody(id: u64, at: DVec3) -> Person {
     Person { id, ..person(at) }
 }
 
-/// A thousand places around another one, within a radius, with a way to run from there.
+/// A thousand random places within a radius around a place, each with a direction to run away from there.
 pub(crate) fn places(around: DVec3, radius: f64, seed: u64) -> Vec<(DVec3, DVec3)> {
     let mut random = fastrand::Rng::with_seed(seed);
     let place = |_| {
@@ -114,7 +116,7 @@ pub(crate) fn places(around: DVec3, radius: f64, seed: u64) -> Vec<(DVec3, DVec3
     (0..1000).map(place).collect()
 }
 
-/// Of a thousand people, who is struck when all stay, and when all run away from 0.30 s on at 3 m/s.
+/// Counts the struck people among a thousand: if all stay, and if all run away from 0.30 s on at 3 m/s.
 fn stay_and_run(before: &Creature, all: &[(DVec3, DVec3)]) -> [usize; 2] {
     let ground = HalfSpace::below(0.0);
     [0.0, 3.0].map(|speed| {
@@ -180,12 +182,12 @@ fn waves_fall_off_as_stated() {
                 _ => None,
             })
             .unwrap();
-        // The clip's marker, by the giant's own time.
+        // The wave begins at the clip's marker, after 1.84 s of the giant's own time.
         assert!((began as f64 * TICK - 1.84).abs() < 3.0 * TICK, "{began}");
         let mut struck = 0;
         for (id, (at, _)) in (0..).zip(&all) {
             let level = (*at - from).with_y(0.0);
-            // The body's axis is from 0.3 to 1.45 m, and the wave begins between.
+            // The wave begins at a height between the ends of the body's axis, 0.3 and 1.45 m.
             assert!((0.3..1.45).contains(&from.y));
             let distance = (level.length() - 0.3).max(0.0);
             let blow = seen.blows.iter().find(|(_, blow)| blow.person == id);
@@ -202,7 +204,7 @@ fn waves_fall_off_as_stated() {
                 let direction = (level.normalize() + DVec3::Y).normalize();
                 assert!(blow.velocity.normalize().dot(direction) > 1.0 - 1e-9);
             }
-            // It comes when its front does.
+            // The blow comes in the tick in which the wave's front arrives.
             let after = (tick - began) as f64 * TICK;
             let due = speed.map_or(0.0, |speed| distance / speed);
             assert!(
@@ -214,7 +216,8 @@ fn waves_fall_off_as_stated() {
     }
 }
 
-/// Who is in the air when the front comes, or stands high, is spared; who comes down behind the front is, too.
+/// A wave along the ground spares a person that is in the air when its front arrives, or that stands high. A person
+/// that comes down behind the front is spared, too.
 #[test]
 fn waves_along_the_ground_are_jumped_over() {
     let ground = HalfSpace::below(0.0);
@@ -259,7 +262,7 @@ fn nobody_is_struck_by_a_wave_behind_rock() {
         let act = act("stomp_right", json!({ "wave": wave }));
         let giant = before(&act);
         let spot = spot(&giant, &act).with_y(0.0);
-        // A wall of 3 m, 6 m ahead of where the foot comes down, 30 m wide.
+        // A wall of 3 m height and 30 m width, 6 m ahead of the place where the foot comes down.
         let rock = wall(spot + DVec3::new(-15.0, 0.0, 6.0), DVec3::X * 30.0, 3.0);
         let all = places(spot, 18.0, 5);
         let people = |_| {
@@ -272,7 +275,7 @@ fn nobody_is_struck_by_a_wave_behind_rock() {
         let mut hidden = 0;
         for (id, (at, _)) in (0..).zip(&all) {
             let way = *at - spot;
-            // Where the straight way crosses the plane of the wall.
+            // The x at which the straight line to the person crosses the plane of the wall.
             let across = way.x * 6.0 / way.z;
             let is_behind = way.z > 6.3 && across.abs() < 14.0;
             let is_open = way.z < 5.4 || way.z > 6.3 && across.abs() > 16.0;
@@ -286,7 +289,7 @@ fn nobody_is_struck_by_a_wave_behind_rock() {
     }
 }
 
-/// What is thrown by the giant's hand.
+/// A shot from the giant's hand. If `wave`, it bursts into a wave.
 fn shot(gravity: f64, wave: bool) -> Value {
     let wave = wave.then(|| json!({ "radius": 3.0, "damage": 0.5, "throw": 6.0 }));
     let mut shot =
@@ -297,7 +300,7 @@ fn shot(gravity: f64, wave: bool) -> Value {
     json!({ "shot": shot })
 }
 
-/// Places in front of the giant, each with a way to run: away from it and aside.
+/// Random places in front of the giant, each with a direction to run: away from the giant or aside.
 fn ahead(count: usize, seed: u64) -> Vec<(DVec3, DVec3)> {
     let mut random = fastrand::Rng::with_seed(seed);
     let place = |_| {
@@ -310,7 +313,7 @@ fn ahead(count: usize, seed: u64) -> Vec<(DVec3, DVec3)> {
     (0..count).map(place).collect()
 }
 
-/// Of people who are attacked one by one, how many are struck when they stay, or run at a speed since a time.
+/// Counts the people that are struck if each is attacked alone. A person runs at `speed` from `since` seconds on.
 fn one_by_one(giant: &Creature, all: &[(DVec3, DVec3)], [since, speed]: [f64; 2]) -> usize {
     let ground = HalfSpace::below(0.0);
     let struck = all.iter().map(|(at, away)| {
@@ -343,7 +346,7 @@ fn shots_and_beams_strike_who_stays_and_spare_who_runs() {
     }
 }
 
-/// What follows its prey at a speed strikes who is slower, and not who is faster.
+/// An attack that follows its prey at a speed does not strike a faster person. A beam strikes all slower ones.
 #[test]
 fn what_follows_strikes_who_is_slower() {
     let mut with = shot(0.0, false);
@@ -351,7 +354,7 @@ fn what_follows_strikes_who_is_slower() {
     let beam = json!({ "beam": { "length": 80.0, "radius": 0.4, "damage": 0.6, "throw": 10.0 }, "follows": 4.0 });
     for (what, with) in [("bolt", with), ("beam", beam)] {
         let giant = before(&act("swipe_right", with));
-        // They go aside.
+        // The people run aside.
         let all = ahead(60, 11).into_iter().map(|(at, _)| {
             let to = at.normalize();
             (at.normalize() * 20.0, DVec3::new(to.z, 0.0, -to.x))
@@ -363,7 +366,7 @@ fn what_follows_strikes_who_is_slower() {
         assert_eq!(fast, 0, "{what}");
         if what == "beam" {
             assert_eq!(slow, 60);
-            // Who stops when it shines is overtaken.
+            // The beam overtakes a fast person that stops when it starts to shine.
             let ground = HalfSpace::below(0.0);
             let (at, away) = all[0];
             let people = |time: f64| vec![somebody(1, at + away * (time.min(1.4) * 7.0))];
@@ -371,7 +374,7 @@ fn what_follows_strikes_who_is_slower() {
             let since = seen.blows[0].0 as f64 * TICK;
             assert!((1.9..2.8).contains(&since), "{since} s");
         } else {
-            // A bolt is not led: who goes on while it flies is missed by as much.
+            // A bolt does not lead its target, so it misses a person that keeps running while it flies.
             assert_eq!(slow, 0);
         }
     }
@@ -391,7 +394,7 @@ fn shots_and_beams_end_at_rock_and_at_other_creatures() {
     ] {
         let giant = before(&act("swipe_right", with));
         for (at, _) in ahead(100, 13) {
-            // Rock rises in front of them once they were seen, out of the hand's reach.
+            // Rock rises in front of the people after they were seen, beyond the reach of the hand.
             let to = at.normalize();
             let at = to * (25.0 + 0.4 * at.length());
             let aside = DVec3::new(to.z, 0.0, -to.x);
@@ -417,7 +420,7 @@ fn shots_and_beams_end_at_rock_and_at_other_creatures() {
                 .iter()
                 .find(|(_, event)| matches!(event, CreatureEvent::Burst { .. }))
             {
-                // At the rock, or at the ground before that.
+                // The burst is at the rock, or at the ground in front of it.
                 let depth = place.dot(to) - (at - to * 4.0).dot(to);
                 let is_high = place.y > 1e-3;
                 assert!(
@@ -435,11 +438,11 @@ fn shots_and_beams_end_at_rock_and_at_other_creatures() {
         println!("{what}: of 500 people behind {rock} none is struck");
     }
     assert!(high > 100, "{high}");
-    // Without rock they are.
+    // Without rock the people are struck.
     assert!(struck > 450, "{struck}");
 }
 
-/// The giant with a wave that spreads and two stones in the air.
+/// The giant with a wave that spreads and a stone in the air, and two people ahead of it.
 fn under_way() -> (Creature, [Person; 2]) {
     let mut with = shot(9.81, true);
     with["shot"]["speed"] = 20.0.into();
@@ -480,14 +483,14 @@ fn step(giant: &mut Creature, people: &[Person], ground: &dyn Obstacle) -> Creat
     giant.step(&around).unwrap().clone()
 }
 
-/// What is in the air strikes although who threw it sleeps, and is part of what is saved.
+/// A stone and a wave that are under way strike even if the giant sleeps, and are part of the saved state.
 #[test]
 fn what_is_under_way_is_saved_and_goes_on() {
     let ground = HalfSpace::below(0.0);
     let (mut giant, people) = under_way();
     let mut blows = Vec::new();
     for tick in 0..1300 {
-        // A fresh creature goes on from here in the same way.
+        // A fresh creature with the saved state continues in the same way.
         let mut other = (tick % 30 == 0).then(|| {
             let text = serde_json::to_string(giant.state()).unwrap();
             let mut fresh = fresh_giant(giant.kind());
@@ -506,13 +509,13 @@ fn what_is_under_way_is_saved_and_goes_on() {
     }
     assert_eq!(giant.state().animator().layers()[0].speed, 0.0, "it sleeps");
     assert!(giant.shots().next().is_none() && giant.waves().next().is_none());
-    // The stone strikes one, what it bursts into the other, and the wave of the stomp both.
+    // The stone strikes one person, the wave of its burst the other one, and the wave of the stomp both.
     let of = |id| blows.iter().filter(|(person, _)| *person == id).count();
     assert_eq!([of(1), of(2)], [2, 2], "{blows:?}");
 }
 
 fn fresh_giant(kind: &Arc<CreatureKind>) -> Creature {
-    // Compiled anew: what it did not make itself is checked.
+    // The kind is built anew, so it checks a state that it did not make itself.
     let json = serde_json::to_string(kind.brain().file()).unwrap();
     creature(&crate::support::kind(&json), CreatureConfig::default())
 }
@@ -527,7 +530,7 @@ fn forged_shots_and_waves_are_refused() {
         change(&mut text["ranged"]);
         let state = serde_json::from_value(text).map_err(|error| error.to_string())?;
         fresh.restore(state).map_err(|error| error.to_string())?;
-        // It can be stepped.
+        // A state that is accepted can be stepped.
         for _ in 0..10 {
             step(&mut fresh, &people, &HalfSpace::below(0.0));
         }
@@ -562,13 +565,13 @@ fn forged_shots_and_waves_are_refused() {
         let error = restore(*change).unwrap_err();
         assert!(error.contains("attacks have let out"), "{index}: {error}");
     }
-    // What is old is at its end.
+    // Shots and waves past their end are accepted: they end in the next step.
     restore(&|ranged| ranged["waves"][0]["reach"] = 1e9.into()).unwrap();
     restore(&|ranged| ranged["shots"][0]["ticks"] = u32::MAX.into()).unwrap();
     assert_eq!((fresh.shots().count(), fresh.waves().count()), (0, 1));
 }
 
-/// Another brain keeps what it still knows.
+/// Another brain takes over the shots and waves of the attacks that it still has.
 #[test]
 fn another_brain_takes_over_what_it_knows() {
     let (giant, _) = under_way();
@@ -666,7 +669,7 @@ fn attacks_out_of_range_are_refused() {
     refused(json!({ "wave": wave, "aim": -1.0 }), "`aim`");
 }
 
-/// Of several people at the hand that throws a stone the nearest is struck, whatever their numbers are.
+/// A thrown stone strikes the nearest of several people at the hand, in any order of their ids.
 #[test]
 fn a_stone_strikes_the_nearest_of_those_at_the_hand() {
     let ground = HalfSpace::below(0.0);

@@ -1,5 +1,5 @@
-//! Attacks from afar where the scenes of `ranged` do not go: at other rates and sizes, on moving and steep ground, by
-//! clips with other markers, with riders, without prey, saved in their midst.
+//! Attacks from afar in the cases that `ranged` leaves out: other rates and sizes, moving and steep ground, clips with
+//! other markers, riders, no prey, and saves in the middle of an attack.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
@@ -15,7 +15,7 @@ use clamber_world::{HalfSpace, MaterialPoint, Obstacle, TriangleTerrain};
 use glam::{DVec3, Vec3};
 use serde_json::{Value, json};
 
-/// A wave, a shot and a beam that nobody escapes.
+/// A wave, a shot and a beam that reach every person in these tests.
 fn all_ways() -> [(&'static str, &'static str, Value); 3] {
     let blow = |mut way: Value| {
         (way["damage"], way["throw"]) = (0.5.into(), 5.0.into());
@@ -57,7 +57,7 @@ fn riders_are_spared() {
             at: MaterialPoint::on_triangle(TriangleId(0), [1.0, 0.0, 0.0]),
             hangs: false,
         };
-        // The rider is where the other one is, who is seen.
+        // The rider has the same body as the other person, which the giant sees.
         let people = |_| {
             let other = somebody(2, DVec3::new(2.0, 0.0, 20.0));
             let rider = Person {
@@ -108,7 +108,7 @@ fn other_rates_strike_the_same_people() {
     }
 }
 
-/// A beam that turns fast leaves nobody out between ticks.
+/// A beam that turns fast strikes all people that it passes between two ticks.
 #[test]
 fn a_beam_that_turns_strikes_all_it_passes() {
     let beam = json!({ "length": 90.0, "radius": 0.1, "damage": 0.1, "throw": 1.0 });
@@ -119,7 +119,8 @@ fn a_beam_that_turns_strikes_all_it_passes() {
             1.0 / rate,
             CreatureConfig::default(),
         );
-        // In the air, at the height of the hand: the prey goes aside, and many stand behind it, far away.
+        // The prey is in the air, at the height of the hand, and moves aside. Many people with tall bodies stand far
+        // behind it.
         let people = |time: f64| {
             let aside = ((time - 1.6).max(0.0) * 40.0).min(24.0);
             let prey = Person {
@@ -147,7 +148,7 @@ fn a_beam_that_turns_strikes_all_it_passes() {
     }
 }
 
-/// Waves begin above the ground below the limb, whatever the giant's size and the slope.
+/// Waves begin above the ground below the limb, at any size of the giant and on any slope.
 #[test]
 fn waves_begin_on_the_ground_at_every_size_and_on_slopes() {
     for scale in [0.05, 1.0, 10.0] {
@@ -188,7 +189,7 @@ fn waves_begin_on_the_ground_at_every_size_and_on_slopes() {
                 if state != "stomp_right" {
                     continue;
                 }
-                // Whoever stands about it is struck.
+                // All people around the place are struck.
                 let all = places(DVec3::ZERO, 10.0, 3);
                 let people = |_| {
                     let all = (0..).zip(&all).take(200);
@@ -206,7 +207,8 @@ fn waves_begin_on_the_ground_at_every_size_and_on_slopes() {
     }
 }
 
-/// A wave goes out at the first marker `impact`, also after `recovery`, and at `recovery` without one.
+/// A wave starts at the first marker `impact` of the clip, even after `recovery`. Without that marker it starts at
+/// `recovery`.
 #[test]
 fn waves_go_out_at_their_marker() {
     let ground = HalfSpace::below(0.0);
@@ -225,8 +227,8 @@ fn waves_go_out_at_their_marker() {
     }
 }
 
-/// Without prey in view it throws at the ground ahead, also if somebody was seen long ago; a creature that is put
-/// elsewhere throws there.
+/// Without prey in view, the giant throws at the ground ahead, even if it saw a person before. A creature that is put
+/// elsewhere throws ahead of its new place.
 #[test]
 fn without_prey_it_throws_ahead() {
     let ground = HalfSpace::below(0.0);
@@ -242,7 +244,7 @@ fn without_prey_it_throws_ahead() {
     let ahead = DVec3::Z * giant.height();
     let alone = burst(&attack(&giant, |_| Vec::new(), |_| vec![&ground]));
     assert!(alone.distance(ahead) < 0.01, "{alone} {ahead}");
-    // Who was seen, and is behind it since, is not thrown at.
+    // A person that was seen, and is behind the giant now, is not a target.
     let mut later = giant.clone();
     for tick in 0..50 {
         let z = if tick < 20 { 30.0 } else { -30.0 };
@@ -258,7 +260,7 @@ fn without_prey_it_throws_ahead() {
         |_| vec![&ground],
     ));
     assert!(behind.distance(ahead) < 0.01, "{behind} {ahead}");
-    // It is put elsewhere in its wind-up.
+    // The giant is put elsewhere in the wind-up of its attack.
     let mut put = giant.clone();
     let people = [somebody(1, DVec3::new(3.0, 0.0, 30.0))];
     for _ in 0..100 {
@@ -287,7 +289,8 @@ fn step(giant: &mut Creature, people: &[Person], terrain: &[&dyn Obstacle]) -> V
     giant.step(&around).unwrap().events.clone()
 }
 
-/// On a ship that turns, waves of limbs and places that are aimed at go with it; what flies does not.
+/// On a ship that sails and turns, the waves of limbs and the aimed places move with the deck. Shots and the waves of
+/// their bursts do not.
 #[test]
 fn on_a_ship_waves_go_with_it_and_stones_fly_straight() {
     let with = json!({
@@ -338,7 +341,7 @@ fn on_a_ship_waves_go_with_it_and_stones_fly_straight() {
     assert!(carried > 100 && flew > 20 && stayed > 100, "{told}");
 }
 
-/// Wherever an attack is saved, a fresh creature goes on with the same bits.
+/// Whenever an attack is saved, a fresh creature continues with the same bits.
 #[test]
 fn an_attack_is_saved_at_any_time() {
     let ground = HalfSpace::below(0.0);
@@ -383,7 +386,7 @@ fn an_attack_is_saved_at_any_time() {
     assert!(ways.iter().all(|ticks| *ticks > 10), "{ways:?}");
 }
 
-/// A beam ends in its report where it does in the world.
+/// The report of a beam gives the place where the beam ends in the world.
 #[test]
 fn beams_tell_where_they_end() {
     let ground = HalfSpace::below(0.0);
@@ -407,7 +410,7 @@ fn beams_tell_where_they_end() {
     }
 }
 
-/// Others' skins stop no wave, and are no ground.
+/// The skin of another creature neither stops a wave nor counts as ground.
 #[test]
 fn waves_pass_other_creatures() {
     let ground = HalfSpace::below(0.0);
@@ -427,7 +430,7 @@ fn waves_pass_other_creatures() {
     assert_eq!(struck, [1]);
 }
 
-/// A limb, its wave and its beam together strike a person once, in each of several stomps whose waves overlap.
+/// A limb, its wave and its beam strike a person once in each attack, also in several stomps with overlapping waves.
 #[test]
 fn limb_wave_and_beam_strike_once_in_each_attack() {
     let ground = HalfSpace::below(0.0);
@@ -446,7 +449,7 @@ fn limb_wave_and_beam_strike_once_in_each_attack() {
     });
     let kind = crate::support::kind(&crate::support::brain_with("stomps", &states.to_string()));
     let mut giant = Creature::new(kind, CreatureConfig::default()).unwrap();
-    // One at the foot, who is the prey of the beam, and others whom only waves reach, also while the foot is raised again.
+    // The beam's prey is at the foot. Only waves reach the other people, some of them while the foot is raised again.
     let far = (2..22u32).map(|id| somebody(id.into(), DVec3::new(-6.0 - f64::from(id), 0.0, 7.0)));
     let people: Vec<_> = far
         .chain([somebody(1, DVec3::new(-3.6, 0.0, 7.0))])
@@ -473,7 +476,7 @@ fn limb_wave_and_beam_strike_once_in_each_attack() {
     }
 }
 
-/// Nor does the wave strike whom the beam has struck after it left.
+/// A wave that has already left spares a person that the beam of the same attack strikes.
 #[test]
 fn a_wave_spares_whom_the_beam_strikes_after_it_left() {
     let ground = HalfSpace::below(0.0);
@@ -509,7 +512,7 @@ fn a_wave_spares_whom_the_beam_strikes_after_it_left() {
     assert!(blown >= 12, "{blown}");
 }
 
-/// What does nothing itself spares nobody from what does.
+/// A part of an attack with neither damage nor throw does not keep the other parts from striking a person.
 #[test]
 fn what_has_neither_damage_nor_throw_spares_nobody() {
     let ground = HalfSpace::below(0.0);
@@ -524,7 +527,7 @@ fn what_has_neither_damage_nor_throw_spares_nobody() {
         assert_eq!(struck, [1, 2]);
         let harm = seen.blows.iter().all(|(_, blow)| blow.damage > 0.1);
         assert!(harm, "{:?}", seen.blows);
-        // Also who only stands near where it bursts on the ground.
+        // The wave also strikes a person that only stands near the burst on the ground.
         let people = |time: f64| {
             let ran = if time > 0.3 { 2.0 } else { 0.0 };
             vec![somebody(1, at + DVec3::X * ran)]
@@ -546,7 +549,7 @@ fn what_has_neither_damage_nor_throw_spares_nobody() {
     assert_eq!(seen.blows.len(), 1);
 }
 
-/// On a slab that is closed below, also where it rises about the limb, and below a bridge, waves begin on the ground.
+/// Waves begin on the ground on a slab with a lower face, even if the slab rises around the limb, and below a bridge.
 #[test]
 fn waves_begin_on_slabs_and_below_bridges() {
     let slab = |heights: [f64; 2]| {
@@ -557,7 +560,7 @@ fn waves_begin_on_slabs_and_below_bridges() {
         TriangleTerrain::new(&places, &triangles, &[], DVec3::ZERO).unwrap()
     };
     let (floor, bridge) = (slab([0.0, -3.0]), slab([90.0, 80.0]));
-    // It rises by so much in the wind-up.
+    // The slab rises by `rise` metres during the wind-up.
     for (state, rise) in [
         ("stomp_right", 0.0),
         ("kick_left", 0.0),
@@ -580,7 +583,7 @@ fn waves_begin_on_slabs_and_below_bridges() {
     }
 }
 
-/// Who stands on an edge, or on a slope, stands on the ground.
+/// A person on an edge stands on the ground, so a low wave strikes it. A person in the air beside it is spared.
 #[test]
 fn low_waves_strike_who_stands_on_edges_and_slopes() {
     let wave = json!({ "radius": 40.0, "height": 0.05, "damage": 0.5, "throw": 5.0 });
@@ -590,7 +593,8 @@ fn low_waves_strike_who_stands_on_edges_and_slopes() {
     let places = quad.map(|(x, z)| DVec3::new(x, 0.0, z).as_vec3());
     let table = TriangleTerrain::new(&places, &[[0, 2, 1], [0, 3, 2]], &[], DVec3::ZERO);
     let table = table.unwrap();
-    // A ball of 0.3 m on the edge of the table, with its middle 0.1 m beyond it.
+    // The lower end of the body is a ball of 0.3 m. It rests on the table's edge, with its centre 0.1 m beyond the
+    // edge.
     let rise = 0.3 - (0.3f64 * 0.3 - 0.1 * 0.1).sqrt();
     let people = |_| {
         vec![
@@ -603,7 +607,7 @@ fn low_waves_strike_who_stands_on_edges_and_slopes() {
     assert_eq!(struck, [1]);
 }
 
-/// A sheet that comes towards a stone, however fast, stops it: no stone is ever behind it, at any rate.
+/// A sheet stops a stone, however fast the sheet moves towards it and at any rate: no stone is ever behind the sheet.
 #[test]
 fn stones_do_not_go_through_gates_that_move() {
     let ground = HalfSpace::below(0.0);

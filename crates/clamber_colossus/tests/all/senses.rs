@@ -1,4 +1,4 @@
-//! What the giant notices, and how soon: scenes B41 and B42.
+//! The giant's senses: the events that it notices, and how soon. Scenes B41 and B42.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
@@ -38,7 +38,7 @@ fn skin_of(kind: &CreatureKind, joint: &str) -> MaterialPoint {
     MaterialPoint::on_triangle(triangle.unwrap(), [1.0 / 3.0; 3])
 }
 
-/// The name of the state that is entered in each tick of some seconds, if any.
+/// The states that are entered within some seconds: the time of each, seconds, and its path.
 fn entered(giant: &mut Creature, around: &Surroundings<'_>, seconds: f64) -> Vec<(f64, String)> {
     let mut found = Vec::new();
     for tick in 0..(seconds / TICK) as usize {
@@ -93,7 +93,7 @@ fn an_arrow_alarms_it_within_half_a_second() {
         states.iter().any(|(_, name)| name == "alive/alert/notice"),
         "{states:?}"
     );
-    // The alarm fades in its time, to the tick.
+    // The alarm fades in its time, within two ticks.
     let moods: Vec<&str> = kind.brain().moods().collect();
     let alarm = moods.iter().position(|name| *name == "alarm").unwrap();
     let fades = kind.brain().file().moods["alarm"].fades;
@@ -169,7 +169,7 @@ fn a_rider_is_noticed_and_shaken_with_rests() {
             "first shake after {first} s"
         );
         firsts.push((first * 10.0) as i64);
-        // From the end of a shake to the next one.
+        // A rest is the time from the end of a shake to the next one.
         let mut ended: Option<f64> = None;
         for (time, name) in &states {
             if is_shake(name) {
@@ -187,7 +187,7 @@ fn a_rider_is_noticed_and_shaken_with_rests() {
     assert!(firsts.len() > 10, "{firsts:?}");
 }
 
-/// A noise is heard as loud as it is up to the creature's hearing, and falls off with the square of the distance beyond.
+/// A noise has its full loudness up to the distance `hearing`. Beyond, it falls off with the square of the distance.
 #[test]
 fn noises_fall_off_with_distance() {
     let states = r#"{ "waits": {} }"#;
@@ -221,7 +221,7 @@ fn noises_fall_off_with_distance() {
     }
     assert_eq!(heard(f64::INFINITY, &[at(1e5)]), 2.0);
     assert_eq!(heard(0.0, &[at(20.0)]), 0.0);
-    // What is heard loudest counts, not what is loudest.
+    // The noise that is loudest at the creature counts, not the one that is loudest at its source.
     let far = Noise {
         loudness: 5.0,
         ..at(500.0)
@@ -240,7 +240,7 @@ fn noises_fall_off_with_distance() {
     );
 }
 
-/// Who is not there any more, since it left or died, is no rider from then on; who hops is one still.
+/// A person that leaves or dies stops being a rider at once. A rider that hops stays one.
 #[test]
 fn who_is_gone_rides_no_longer() {
     let kind = kind(&brain_file());

@@ -1,4 +1,4 @@
-//! Sizes come from the skin posed at rest, and times from the size: whatever the unit of a file.
+//! Sizes come from the skin posed at rest, and times from the size, for any unit of length in a file.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
@@ -50,7 +50,7 @@ fn giant(height: Option<f64>, brain: &str) -> Arc<CreatureKind> {
     kind_of(rig(&path.into(), height).unwrap(), brain)
 }
 
-/// Least and largest height of the skin at rest, and its girth, by exact arithmetic for each vertex of a triangle.
+/// Least and largest height of the skin at rest, and its girth, by reference skinning of each vertex of a triangle.
 fn measured(rig: &Rig) -> [f64; 3] {
     let palette = rig.skeleton.palette(&rig.skeleton.rest_pose()).unwrap();
     let (mut low, mut high, mut girth) = (f64::INFINITY, f64::NEG_INFINITY, 0f64);
@@ -62,6 +62,7 @@ fn measured(rig: &Rig) -> [f64; 3] {
     [low, high, girth]
 }
 
+/// A brain with one state, as JSON. `BODY` is replaced by the body of a test.
 const RESTS: &str = r#"{ "body": BODY, "start": "rests", "states": { "rests": {} } }"#;
 
 #[test]
@@ -92,7 +93,7 @@ fn height_girth_and_eye_are_those_of_the_skin_at_rest() {
             }
             seen += 1;
         }
-        // The brain's file makes it as tall.
+        // The height in the brain's file sets the height of the creature.
         for height in [1.0, 20.0, 300.0] {
             let Some(rig) = rig(&path, None) else {
                 continue;
@@ -134,7 +135,7 @@ fn heights_out_of_range_and_skins_without_height_are_refused() {
     }
 }
 
-/// A creature's file in metres, in centimetres and scaled to its height lives the same life.
+/// A creature lives the same life from a file in metres, in centimetres, in another unit, or scaled to its height.
 #[test]
 fn the_unit_of_a_file_does_not_matter() {
     let natural = giant(None, &brain_file()).height();
@@ -160,7 +161,7 @@ fn the_unit_of_a_file_does_not_matter() {
         let terrain: [&dyn Obstacle; 1] = [&ground];
         for tick in 0..(120.0 / TICK) as u32 {
             let second = f64::from(tick) * TICK;
-            // Somebody runs about before it.
+            // A person runs about in front of the creatures.
             let at = DVec3::new(
                 30.0 * libm::sin(0.2 * second),
                 0.0,
@@ -194,7 +195,7 @@ fn the_unit_of_a_file_does_not_matter() {
     }
 }
 
-/// How long it takes to turn to a noise behind it, seconds; infinite if it never settles.
+/// The time that a creature takes to turn to a noise behind it, seconds; infinite if it never settles.
 fn half_turn(height: f64, turn_deg: f64, within_deg: f64, made_for: f64) -> f64 {
     let states = r#"{
         "waits": { "transitions": [{ "to": "turns", "when": ["noise > 0"] }] },
@@ -240,7 +241,7 @@ fn half_turn(height: f64, turn_deg: f64, within_deg: f64, made_for: f64) -> f64 
     f64::INFINITY
 }
 
-/// Half a turn takes as long as the square root of the height, and ends within its angle, at every speed.
+/// The time of a half turn grows with the square root of the height. The turn ends within its angle, at every speed.
 #[test]
 fn half_a_turn_takes_its_time_and_settles() {
     for turn_deg in [5.0, 20.0, 90.0, 360.0] {

@@ -1,4 +1,4 @@
-//! Who falls asleep stops where it is, and goes on when it wakes.
+//! A creature that falls asleep stops where it is, and continues when it wakes.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
@@ -6,7 +6,7 @@ use crate::support::{brain_with, creature, kind};
 use clamber_colossus::{Creature, CreatureConfig, Surroundings};
 use clamber_world::{HalfSpace, Obstacle};
 
-/// Steps it for so many ticks, and says at which times the layers of its clips are.
+/// Steps a creature for some ticks. Returns the times of the layers of its clips.
 fn live(one: &mut Creature, ticks: u32) -> Vec<f64> {
     let ground = HalfSpace::below(0.0);
     let terrain: [&dyn Obstacle; 1] = [&ground];
@@ -21,8 +21,8 @@ fn live(one: &mut Creature, ticks: u32) -> Vec<f64> {
     layers.map(|layer| layer.time).collect()
 }
 
-/// From standing, from a clip, and from a walk: nothing of it moves on once it sleeps; and when it wakes to a state
-/// without an act, and to one with a clip, all of it does.
+/// All clips stop in sleep, whether the creature stood, played a clip or walked before. When it wakes, all of them
+/// continue, with or without an act in the new state.
 #[test]
 fn clips_stop_in_sleep_and_go_on_after_it() {
     let states = r#"{
@@ -38,7 +38,7 @@ fn clips_stop_in_sleep_and_go_on_after_it() {
             assert!(one.enter(before));
             live(&mut one, 100);
             assert!(one.enter("sleeps"));
-            // What fades or walks comes to an end first.
+            // A fade or a walk comes to its end first.
             let at = live(&mut one, if before == "stands" { 2 } else { 200 });
             assert_eq!(live(&mut one, 30), at, "from {before}");
             let layers = one.state().animator().layers();

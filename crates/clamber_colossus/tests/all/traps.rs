@@ -1,4 +1,4 @@
-//! Where a creature walked in, and can't turn: blind alleys, and boulders all around.
+//! Places that a creature can walk into but not turn in: blind alleys, narrow lanes, and boulders all around.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
@@ -16,12 +16,12 @@ use crate::animals::{animals, kind as animal};
 use crate::support::{TICK, creature, ground};
 use crate::walls::{creatures, reach};
 
-/// How an errand ended, and after how many seconds.
+/// The end of an errand, with its time, seconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum End {
     Arrived(f64),
     Stopped(f64),
-    /// It went on for ever.
+    /// The errand did not end within its time limit.
     Never,
 }
 
@@ -34,17 +34,19 @@ impl End {
     }
 }
 
-/// A creature's errands in a world that rests.
+/// Errands of a creature in a world at rest.
 struct Errands<'a> {
     one: Creature,
     terrain: &'a dyn Obstacle,
-    /// The longest time for which it neither walked nor turned on an errand, seconds.
+    /// The longest time on an errand in which the creature neither walked nor turned, seconds.
     still: f64,
-    /// Half the width, the height and the length of an alley; and how deep its skin was in the walls, metres.
+    /// Half the width, the height and the length of an alley, metres.
     alley: [f64; 3],
+    /// Largest depth of the creature's skin in the walls of the alley, metres.
     deepest: f64,
-    /// True if it went back; and how far its place was then from where it was foreseen a second before, metres.
+    /// True if the creature walked backwards.
     backs: bool,
+    /// Largest distance, while it walked backwards, from the place that was foreseen a second before, metres.
     off: f64,
 }
 
@@ -116,14 +118,14 @@ impl<'a> Errands<'a> {
     }
 }
 
-/// Puts a box there, of these half sides.
+/// Adds a box with its centre at `at` and these half extents.
 fn put_wall(world: &mut PhysicsWorld, at: DVec3, half: DVec3) {
     let [x, y, z] = half.as_vec3().to_array();
     let wall = ColliderBuilder::cuboid(x, y, z).position(Pose::from_translation(at.as_vec3()));
     world.insert_collider(wall, None);
 }
 
-/// Two walls of half a creature's height beside each other, and one behind them.
+/// An alley of two parallel walls, half as high as the creature, with a third wall at its end.
 fn alley(half: f64, long: f64, height: f64) -> PhysicsWorld {
     let mut world = ground(|_, _| 0.0);
     let mut wall = |at: DVec3, half: DVec3| put_wall(&mut world, at, half);
@@ -138,7 +140,7 @@ fn alley(half: f64, long: f64, height: f64) -> PhysicsWorld {
     world
 }
 
-/// Two animals at other heights.
+/// Two animals at a height of 3 m and of 60 m.
 fn others() -> Vec<(&'static str, Arc<CreatureKind>, f64)> {
     let mut all = Vec::new();
     for height in [3.0, 60.0] {
@@ -206,8 +208,8 @@ fn who_walked_into_a_blind_alley_comes_out_again() {
     );
 }
 
-/// A lane that goes on, and another one to its side in which the goal is: too narrow to turn where they meet. Whoever is
-/// sent there is told that it does not get there, or gets there.
+/// The goal is in a lane that crosses the creature's lane, and the crossing may be too narrow to turn in. The errand
+/// still ends: the creature arrives, or reports that it stopped.
 #[test]
 fn lanes_in_which_it_cannot_turn_do_not_keep_it_for_ever() {
     for (name, kind, height) in creatures() {

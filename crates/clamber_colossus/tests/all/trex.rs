@@ -1,4 +1,4 @@
-//! Another creature, whose file was made by others, lives by a brain of some fifty lines at 20 m.
+//! A third-party creature lives at 20 m by a brain of some fifty lines.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
@@ -14,7 +14,7 @@ use clamber_surface::mesh::TriangleId;
 use clamber_world::{HalfSpace, MaterialPoint, Obstacle};
 use glam::DVec3;
 
-/// Height that it is scaled to, metres.
+/// Height to which the Trex is scaled, metres.
 const HEIGHT: f64 = 20.0;
 
 fn kind() -> Option<Arc<CreatureKind>> {
@@ -66,7 +66,7 @@ fn it_strolls_hunts_bites_and_shakes_its_rider() {
         }
     };
     live(&mut trex, &[], 40.0);
-    // In its view.
+    // The prey is in the view of the Trex.
     let yaw = trex.state().yaw() + 0.4;
     let ahead = DVec3::new(libm::sin(yaw), 0.0, libm::cos(yaw));
     let prey = trex.state().position() + ahead * 45.0;

@@ -1,4 +1,4 @@
-//! A brain, or a game, that changes its mind in each tick.
+//! A brain or a game that changes its decision in each tick.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
@@ -13,6 +13,7 @@ use glam::{DVec3, Vec3};
 use crate::support::life::{Guest, Life, SETTINGS, at};
 use crate::support::{all_cases, brain_with, ground};
 
+/// The states between which the tests switch, as JSON.
 const STATES: &str = r#"{
     "stands": { "fade": 0.8 },
     "swipes": { "act": { "play": "swipe" } },
@@ -23,7 +24,7 @@ const STATES: &str = r#"{
     "idles": { "act": { "play": "idle" }, "fade": 0.3 }
 }"#;
 
-/// How far its skin reaches up, and how wide it is metres.
+/// The height of the skin above the creature's origin, and its largest level distance from there, metres.
 fn size(life: &Life<'_>) -> [f64; 2] {
     let mut skin: Vec<Vec3> = Vec::new();
     life.one.surface().clone().skin_all(&mut skin);
@@ -35,8 +36,8 @@ fn size(life: &Life<'_>) -> [f64; 2] {
     ]
 }
 
-/// Fades that begin anew in each tick do not let its limbs fly away, wherever it was in its clips when that began, and
-/// its feet stay on the ground.
+/// Fades that restart in each tick do not stretch the giant's limbs, at any start time within its clips. Its planted
+/// feet stay on the ground.
 #[test]
 fn who_changes_states_in_each_tick_keeps_its_shape() {
     let ground = HalfSpace::below(0.0);
@@ -94,7 +95,7 @@ fn heading(one: &Creature) -> DVec3 {
     DVec3::new(libm::sin(yaw), 0.0, libm::cos(yaw))
 }
 
-/// A pen of rock around the origin, in which the giant cannot turn, for one that is larger by a factor.
+/// A pen of rock around the origin in which the giant cannot turn. `scale` is the giant's size relative to 41 m.
 pub(crate) fn pen(scale: f64) -> PhysicsWorld {
     let mut world = ground(|_, _| 0.0);
     for (x, z) in [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)] {
@@ -105,7 +106,7 @@ pub(crate) fn pen(scale: f64) -> PhysicsWorld {
     world
 }
 
-/// Adds rock, by its middle and half of its size.
+/// Adds a block of rock with its centre at `at` and the half extents `size`.
 fn add_block(world: &mut PhysicsWorld, at: DVec3, size: DVec3) {
     let [x, y, z] = size.as_vec3().to_array();
     let block = ColliderBuilder::cuboid(x, y, z);
@@ -113,7 +114,7 @@ fn add_block(world: &mut PhysicsWorld, at: DVec3, size: DVec3) {
     world.detect_collisions(&(), &());
 }
 
-/// How many states it enters in 20 s.
+/// The number of states that the giant enters in 20 s.
 fn entered(life: &mut Life<'_>, people: &[Guest]) -> usize {
     let mut entered = 0;
     for _ in 0..life.setting.ticks(20.0) {
@@ -124,7 +125,7 @@ fn entered(life: &mut Life<'_>, people: &[Guest]) -> usize {
     entered
 }
 
-/// Where it cannot turn to its prey, it tries for a while before its brain hears of it; and it is not foreseen to turn.
+/// If the giant cannot turn to its prey, it tries for a while before its brain is told. It is not foreseen to turn.
 #[test]
 fn who_cannot_turn_tries_for_a_while() {
     let states = r#"{
@@ -158,7 +159,7 @@ fn who_cannot_turn_tries_for_a_while() {
                     .foresee(seconds, &mut Foresight::default(), &mut palette)
                     .unwrap();
                 let ahead = then.rotation * DVec3::Z;
-                // The ship turns on meanwhile.
+                // The ship keeps turning in the foreseen time.
                 let carried = if setting.sails { 0.05 * seconds } else { 0.0 };
                 let turned = libm::atan2(ahead.x, ahead.z) - life.one.state().yaw() - carried;
                 assert!(
@@ -170,7 +171,7 @@ fn who_cannot_turn_tries_for_a_while() {
     }
 }
 
-/// An attack that is not begun since rock is in its way, in a brain without a pause.
+/// A brain without a pause asks for an attack again and again. The attack does not begin, as rock is in its way.
 #[test]
 fn who_cannot_strike_tries_for_a_while() {
     let states = r#"{
@@ -195,7 +196,7 @@ fn who_cannot_strike_tries_for_a_while() {
     }
 }
 
-/// A game that sends it again whenever it is told that it does not get there.
+/// A game sends the giant again whenever it reports that it cannot get there.
 #[test]
 fn who_is_sent_again_and_again_tries_for_a_while() {
     let poses = BodyPoses::default();
@@ -218,7 +219,7 @@ fn who_is_sent_again_and_again_tries_for_a_while() {
     }
 }
 
-/// Feet come under the body again, whatever it did before, and both at once if both are elsewhere.
+/// After a turn without a clip, the feet come back under the body from any position, even if both are out of place.
 #[test]
 fn feet_come_under_the_body_after_a_turn_without_a_clip() {
     let ground = HalfSpace::below(0.0);
@@ -226,7 +227,7 @@ fn feet_come_under_the_body_after_a_turn_without_a_clip() {
     let gait = file["body"]["gait"].as_object_mut().unwrap();
     gait.remove("turn");
     let brain = file.to_string();
-    // From heel to toe.
+    // The angle from the heading to the line from heel to toe, radians.
     let points = |one: &Creature, leg: usize| {
         let [heel, _, _, toe] = one.sole(leg).unwrap();
         let way = (toe - heel).with_y(0.0);
@@ -266,7 +267,7 @@ fn feet_come_under_the_body_after_a_turn_without_a_clip() {
     }
 }
 
-/// A foot beyond a cliff hangs there, and does not come down again and again.
+/// A foot beyond the edge of a cliff hangs in the air, and does not come down again and again.
 #[test]
 fn a_foot_over_nothing_stays_where_it_is() {
     let poses = BodyPoses::default();

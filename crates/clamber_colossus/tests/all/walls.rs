@@ -1,4 +1,4 @@
-//! What stands in a creature's way: walls, steps, cliffs and gullies, other creatures, and ground that moves.
+//! Walls in a creature's way: it stops at them, goes round them, and neither turns nor strikes into them.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
@@ -13,7 +13,7 @@ use glam::{DQuat, DVec3, Vec3};
 use crate::animals::{animals, kind as animal};
 use crate::support::{TICK, brain_with, kind as giant};
 
-/// It hears something, turns there and walks there.
+/// States in which a creature turns to a noise and walks there, as JSON.
 pub(crate) const HUNTS: &str = r#"{
     "stands": { "transitions": [{ "to": "turns", "when": ["noise > 0"], "after": 1 }] },
     "turns": { "act": { "turn": { "to": "noise", "within_deg": 5 } }, "transitions": [
@@ -36,7 +36,7 @@ pub(crate) fn creatures() -> Vec<(&'static str, Arc<CreatureKind>, f64)> {
     all
 }
 
-/// How far its skin is from its origin at rest, on the ground, metres.
+/// Largest level distance of the skin from the creature's origin at rest, for a creature of this height, metres.
 pub(crate) fn reach(kind: &Arc<CreatureKind>, height: f64) -> f64 {
     let creature = Creature::new(Arc::clone(kind), config()).unwrap();
     let mut skin: Vec<Vec3> = Vec::new();
@@ -50,11 +50,15 @@ pub(crate) fn reach(kind: &Arc<CreatureKind>, height: f64) -> f64 {
 /// A wall on level ground.
 #[derive(Clone, Copy, Debug)]
 struct Wall {
-    /// The middle of its foot, on the near side; where it looks, radians from -Z; half its width; height and thickness, metres.
+    /// Middle of the near side at ground level, in the world.
     at: DVec3,
+    /// Angle about Y from -Z to the normal of the near side, radians.
     turned: f64,
+    /// Half the width, metres.
     half: f64,
+    /// Height, metres.
     height: f64,
+    /// Thickness, metres; 0 for a sheet.
     thick: f64,
 }
 
@@ -63,7 +67,7 @@ impl Wall {
         rotation_from_axis_angle(DVec3::Y, self.turned)
     }
 
-    /// A box of triangles, or a sheet if it has no thickness.
+    /// A box of triangles, or a sheet of two triangles if the wall has no thickness.
     fn terrain(&self) -> TriangleTerrain {
         let corner = |x: f64, y: f64, z: f64| {
             let place = DVec3::new(x * self.half, y * self.height, z * self.thick);
@@ -99,8 +103,8 @@ impl Wall {
         TriangleTerrain::new(&corners, &triangles, &[], DVec3::ZERO).unwrap()
     }
 
-    /// How deep a place of the skin is in the wall: in one that is thick as far as it is to its next face, and beyond
-    /// a sheet as far as it is from it, seen from the creature's origin.
+    /// Depth of a point of the skin in the wall, metres. In a thick wall it is the distance to the nearest face. Behind
+    /// a sheet, seen from the creature's origin, it is the distance to the sheet.
     fn depth(&self, origin: DVec3, place: DVec3) -> f64 {
         let local = |place: DVec3| self.rotation().conjugate() * (place - self.at);
         let [from, at] = [origin, place].map(local);
@@ -116,19 +120,20 @@ impl Wall {
     }
 }
 
-/// What became of a walk.
+/// The result of a walk.
 #[derive(Clone, Copy, Debug, Default)]
 struct Walk {
-    /// The deepest that any skin was in rock, as a share of the height.
+    /// Largest depth of the skin in rock, as a share of the height.
     deepest: f64,
-    /// Seconds over the square root of the height until it was told that it is blocked, or had arrived.
+    /// Time until the creature was blocked, in seconds divided by the square root of its height in metres.
     blocked: Option<f64>,
+    /// Time until the creature arrived, in the same unit.
     arrived: Option<f64>,
     moved: f64,
     high: f64,
 }
 
-/// Lets a creature walk to a noise among obstacles, and looks how deep its skin comes.
+/// Lets a creature walk to a noise among obstacles, and measures how deep its skin gets into them.
 fn walk(
     kind: &Arc<CreatureKind>,
     config: CreatureConfig,
@@ -184,7 +189,7 @@ pub(crate) fn config() -> CreatureConfig {
     }
 }
 
-/// Walks to a wall that is too wide to go round.
+/// Lets a creature walk to a wall that is too wide to go round.
 fn to_wall(
     (name, kind, height): &(&'static str, Arc<CreatureKind>, f64),
     [tall, thick, turned]: [f64; 3],
@@ -213,7 +218,8 @@ fn to_wall(
     }
 }
 
-/// Walls of 0.2 to 2 heights, thin and thick, to which it walks at 0 to 80 degrees: one after the other for each creature.
+/// Walls of 0.2 to 2 heights, thin and thick, stop creatures that walk to them at 0 to 60 degrees. Each creature walks
+/// to one wall.
 #[test]
 fn walls_stop_it() {
     let mut failed = Vec::new();
@@ -236,7 +242,7 @@ fn walls_stop_it() {
     assert!(failed.is_empty(), "{}", failed.join("\n"));
 }
 
-/// The same wall as a half-space, and as a box of rapier's.
+/// The same wall stops the giant as a half-space and as a rapier box.
 #[test]
 fn walls_of_other_makes_stop_it() {
     let (_, kind, height) = creatures().remove(0);
@@ -276,7 +282,7 @@ fn all_walls_stop_it() {
     assert!(failed.is_empty(), "{}", failed.join("\n"));
 }
 
-/// A wall that ends is gone round.
+/// A creature goes round a wall that ends.
 #[test]
 fn walls_that_end_are_gone_round() {
     let ground = HalfSpace::below(0.0);
@@ -305,8 +311,8 @@ fn walls_that_end_are_gone_round() {
     assert!(failed.is_empty(), "{}", failed.join("\n"));
 }
 
-/// It turns to a noise behind it, beside a wall as near as it could walk along, and before one: to either side, or the
-/// long way round, or not at all.
+/// Close beside a wall and close in front of one, a creature turns to a noise behind it: to either side, the long way
+/// round, or not at all, but never into the wall.
 #[test]
 fn it_does_not_turn_into_walls() {
     let ground = HalfSpace::below(0.0);
@@ -328,7 +334,7 @@ fn it_does_not_turn_into_walls() {
             };
             let rock = wall.terrain();
             let terrain: [&dyn Obstacle; 2] = [&ground, &rock];
-            // What stands in it at first is not its fault.
+            // Skips a wall into which the creature's skin already reaches while it stands.
             let still = walk(
                 kind,
                 config(),
@@ -357,8 +363,7 @@ fn it_does_not_turn_into_walls() {
     assert!(failed.is_empty(), "{}", failed.join("\n"));
 }
 
-/// Attacks whose limb would go through a wall are not begun, and the brain is told; without the wall they are. What a
-/// limb strikes behind the wall is not struck.
+/// An attack does not begin if its limb would go through a wall, and the brain is told. Without the wall it begins.
 #[test]
 fn blows_do_not_go_through_walls() {
     let file: serde_json::Value = serde_json::from_str(&crate::support::brain_file()).unwrap();

@@ -1,4 +1,4 @@
-//! Where a stab would go.
+//! The point that a stab would hit.
 
 use clamber_world::{MaterialPoint, Obstacle, ObstacleId};
 use glam::DVec3;
@@ -7,24 +7,25 @@ use super::member::skins_of;
 use super::{Arena, CreatureId, Skins, creature_of};
 use crate::fighter::{Around, FighterId, Target};
 
-/// A point of a creature's skin.
+/// A point of a creature's skin at which a stab aims.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aimed {
     /// The creature.
     pub creature: CreatureId,
-    /// The point of its skin.
+    /// The point of the creature's skin.
     pub at: MaterialPoint,
-    /// Where that is, in world space.
+    /// The point's position, in world space.
     pub place: DVec3,
-    /// The open weak point that a hit there would hurt, by its index.
+    /// Index of the open weak point that a hit there would hurt.
     pub weak_point: Option<usize>,
-    /// The whole plate that would take the hit instead, by its index.
+    /// Index of the whole plate that would take the hit instead.
     pub plate: Option<usize>,
 }
 
 impl Arena {
-    /// Where a fighter's stab would go if it struck now, among the terrain of the last step: for a mark on the screen,
-    /// and for bots. `None` without a sword, and if no skin is in reach.
+    /// The point that a fighter's stab would hit if it struck now: for a mark on the screen, and for bots. Give it the
+    /// terrain of the last step. `None` without a sword, if no skin is in reach, or if terrain or another creature is
+    /// in between.
     pub fn stab_aim(
         &self,
         fighter: FighterId,

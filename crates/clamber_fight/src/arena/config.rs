@@ -3,20 +3,21 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{ArenaError, positive, within};
 
-/// What all in an arena share.
+/// Settings that all creatures, fighters and projectiles of an arena share.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ArenaConfig {
-    /// Length of a tick, seconds; 1/60 by default. Brains have to be made for the same one.
+    /// Length of a tick, seconds; 1/60 by default. Brains have to be made for the same tick.
     pub tick: f64,
     /// Gravity of projectiles, metres a second squared; 9.81 along -Y by default. Climbers have their own.
     pub gravity: DVec3,
-    /// Where the sun is: swords show the way only in its light. Any length; 45 degrees above +Z by default.
+    /// Direction to the sun, in world space, of any length; 45 degrees above +Z by default. A sword shows its light
+    /// only in the sun.
     pub sun: DVec3,
-    /// Arrows that may stick at the same time: of more, the oldest fall. 500 by default.
+    /// Greatest number of arrows that stick at the same time; 500 by default. When there are more, the oldest fall.
     pub stuck_arrows: u32,
-    /// Whoever is lower than this dies: it has fallen out of the world. 10 km below 0 by default.
+    /// A fighter below this height dies, since it has fallen out of the world. World Y, metres; -10,000 by default.
     pub floor: f64,
-    /// Seed of the fighters' random streams. Creatures have their own.
+    /// Seed of the fighters' random streams. Creatures have seeds of their own.
     pub seed: u64,
 }
 

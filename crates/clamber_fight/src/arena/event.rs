@@ -8,7 +8,7 @@ use super::CreatureId;
 use crate::fighter::FighterId;
 use crate::projectile::ProjectileId;
 
-/// What somebody struck with.
+/// How a fighter struck.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Weapon {
     /// A cut of the sword.
@@ -21,86 +21,86 @@ pub enum Weapon {
     Stone,
 }
 
-/// Something that happened in a step of an arena.
+/// An event of an arena's step.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ArenaEvent {
-    /// Something happened to a creature, or it did something.
+    /// An event of a creature.
     Creature {
         /// The creature.
         creature: CreatureId,
-        /// What happened.
+        /// The creature's own event.
         event: CreatureEvent,
     },
-    /// Something happened to a fighter's climber.
+    /// An event of a fighter's climber.
     Climber {
         /// The fighter.
         fighter: FighterId,
-        /// What happened.
+        /// The climber's own event.
         event: ClimberEvent,
     },
     /// A weapon struck a creature.
     Hit {
-        /// Who struck.
+        /// The fighter that struck.
         by: FighterId,
-        /// With what.
+        /// How it struck.
         weapon: Weapon,
-        /// The arrow or the stone, if it was one.
+        /// The arrow or stone; `None` for a cut or a stab.
         projectile: Option<ProjectileId>,
-        /// Whom.
+        /// The creature that was struck.
         creature: CreatureId,
         /// The point of the creature's skin.
         at: MaterialPoint,
-        /// Where that is, in world space, at the time of the hit.
+        /// Position of that point at the time of the hit, in world space.
         place: DVec3,
-        /// Share of the tick.
+        /// Time of the hit, as a share of the tick.
         time: f64,
-        /// The open weak point there, by its index.
+        /// Index of the open weak point there.
         weak_point: Option<usize>,
-        /// The whole plate that took the hit, by its index: weak points below it are not hurt.
+        /// Index of the whole plate that took the hit; weak points below it are not hurt.
         plate: Option<usize>,
-        /// Damage done to a weak point: less than the weapon could do if the point had less left, 0 elsewhere. The
-        /// creature tells in the next step what became of it: [`CreatureEvent::Hurt`], [`CreatureEvent::Staggered`].
+        /// Damage done to the weak point: at most the hit points that it had left, and 0 if the hit hurt no weak point.
+        /// The creature reports the effect in the next step: [`CreatureEvent::Hurt`], [`CreatureEvent::Staggered`].
         ///
         /// [`CreatureEvent::Hurt`]: clamber_colossus::CreatureEvent::Hurt
         /// [`CreatureEvent::Staggered`]: clamber_colossus::CreatureEvent::Staggered
         damage: f64,
     },
-    /// A creature struck a fighter, who feels it in the next step.
+    /// A creature struck a fighter. The blow reaches the fighter in the next step.
     Struck {
-        /// Who struck.
+        /// The creature that struck.
         creature: CreatureId,
-        /// Whom.
+        /// The fighter that was struck.
         fighter: FighterId,
         /// Change of the fighter's velocity, metres a second.
         velocity: DVec3,
-        /// Hit points, 0 to 1.
+        /// Hit points that the blow costs, 0 to 1.
         damage: f64,
-        /// Where, in world space.
+        /// Position of the blow, in world space.
         place: DVec3,
     },
     /// An arrow was shot or a stone was thrown.
     Shot {
-        /// Who shot it.
+        /// The fighter that shot or threw it.
         by: FighterId,
         /// The projectile.
         projectile: ProjectileId,
     },
-    /// An arrow sticks.
+    /// An arrow got stuck.
     Stuck {
         /// The arrow.
         projectile: ProjectileId,
-        /// What it sticks in.
+        /// The obstacle that it sticks in.
         obstacle: ObstacleId,
-        /// Where, in world space, at the time of the hit.
+        /// Position of the hit at its time, in world space.
         place: DVec3,
     },
-    /// An arrow that stuck falls: what it stuck in is gone, or there were too many.
+    /// A stuck arrow falls: the skin or terrain that it stuck in is gone, or too many arrows stick.
     CameLoose {
         /// The arrow.
         projectile: ProjectileId,
     },
-    /// What a fighter did with its weapons was broken off: by a shake, a blow, or the loss of its hold.
+    /// A shake, a blow or the loss of its hold broke off a fighter's act.
     BrokenOff {
         /// The fighter.
         fighter: FighterId,
@@ -110,7 +110,7 @@ pub enum ArenaEvent {
         /// The fighter.
         fighter: FighterId,
     },
-    /// A fighter stands where it began, and lives again.
+    /// A dead fighter lives again, at its spawn point or the free place nearest to it.
     Rose {
         /// The fighter.
         fighter: FighterId,
@@ -119,7 +119,7 @@ pub enum ArenaEvent {
     Killed {
         /// The creature.
         creature: CreatureId,
-        /// Whose hit it was; `None` if it was an order's.
+        /// The fighter whose hit killed it; `None` if an order did.
         by: Option<FighterId>,
     },
     /// A creature has joined.
@@ -142,9 +142,9 @@ pub enum ArenaEvent {
         /// The fighter.
         fighter: FighterId,
     },
-    /// An order was for somebody who is not there, and changed nothing.
+    /// An order named a fighter, creature or projectile that is not there. It changed nothing.
     Unheard {
-        /// Its index in the list of this step's orders.
+        /// Index of the order in this step's list.
         order: usize,
     },
 }

@@ -4,21 +4,21 @@ use super::fingerprint::hash_of;
 use super::{Arena, ArenaState};
 use crate::error::ArenaError;
 
-/// What a saved arena begins with.
+/// First bytes of a saved arena. Other bytes are refused.
 const MAGIC: [u8; 8] = *b"clamarna";
 
-/// Version of the format. Whatever changes what is saved raises it.
+/// Version of the format. Raise it with every change to the saved data; other versions are refused.
 const VERSION: u32 = 8;
 
-/// Length of what comes before the state: [`MAGIC`], version, hash of the configuration, checksum.
+/// Bytes before the state: [`MAGIC`], version, hash of the configuration, checksum.
 const HEADER: usize = 8 + 4 + 8 + 8;
 
 impl Arena {
-    /// All that changes as bytes, for a file or to send it: a header with version, hash of the configuration and a checksum,
-    /// then the state in the format of the crate postcard.
+    /// The arena's state as bytes, for a file or a network. A header with the version, the hash of the configuration
+    /// and a checksum comes first, then the state in the format of the crate postcard.
     ///
     /// # Errors
-    /// [`ArenaError::Damaged`] if it cannot be written, which does not happen.
+    /// [`ArenaError::Damaged`] if the state cannot be written, which does not happen.
     pub fn to_bytes(&self) -> Result<Vec<u8>, ArenaError> {
         let state = postcard::to_stdvec(&self.save())
             .map_err(|error| ArenaError::Damaged(error.to_string()))?;
@@ -31,11 +31,11 @@ impl Arena {
         Ok(bytes)
     }
 
-    /// Goes back to what [`Arena::to_bytes`] gave.
+    /// Restores a state from the bytes of [`Arena::to_bytes`].
     ///
     /// # Errors
-    /// [`ArenaError::Damaged`] if these are other bytes, [`ArenaError::Version`] if they are of another version,
-    /// and as [`Arena::restore`]. Nothing is changed then.
+    /// [`ArenaError::Damaged`] if the bytes are something else, [`ArenaError::Version`] if they have another version,
+    /// and the errors of [`Arena::restore`]. Nothing is changed then.
     pub fn restore_bytes(&mut self, bytes: &[u8]) -> Result<(), ArenaError> {
         self.restore(&self.read(bytes)?)
     }
@@ -76,7 +76,7 @@ fn split<const N: usize>(bytes: &[u8]) -> Option<([u8; N], &[u8])> {
 }
 
 fn checksum(bytes: &[u8]) -> u64 {
-    // As bytes, not as a sequence of them: eight at a time.
+    // `serialize_bytes` hashes eight bytes at a time. A serialised slice would be hashed byte by byte.
     struct Bytes<'a>(&'a [u8]);
     impl serde::Serialize for Bytes<'_> {
         fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {

@@ -1,5 +1,4 @@
-//! A hash of all that changes, over what is saved of it: what is left out of a saved state cannot be in the hash, and
-//! what is in it is.
+//! A hash of the arena's state. It is computed from the values that are saved, by serialising them into a hasher.
 
 use std::fmt::Display;
 
@@ -29,8 +28,8 @@ pub enum ArenaPart {
 }
 
 impl Arena {
-    /// A 64-bit hash of every bit of what [`Arena::save`] would save, for comparing runs and peers; not for hash
-    /// tables.
+    /// A 64-bit hash of everything that [`Arena::save`] saves, except the hash of the configuration. For comparing runs
+    /// and peers; not for hash tables.
     pub fn fingerprint(&self) -> u64 {
         let mut hash = Hasher::default();
         self.take_counters(&mut hash);
@@ -45,8 +44,7 @@ impl Arena {
         hash.hash()
     }
 
-    /// Hashes of the parts, to tell which of them differ: of each creature, of each fighter, and of the rest, in this
-    /// order.
+    /// Hashes of the single parts, to find the parts that differ: each creature, then each fighter, then the rest.
     pub fn part_fingerprints(&self) -> Vec<(ArenaPart, u64)> {
         let creatures = self.creatures.iter().map(|one| {
             let mut hash = Hasher::default();
@@ -73,7 +71,7 @@ impl Arena {
 }
 
 impl ArenaState {
-    /// [`Arena::fingerprint`] of the arena of which this was saved.
+    /// The same hash as [`Arena::fingerprint`] of the arena from which this state was saved.
     pub fn fingerprint(&self) -> u64 {
         let mut hash = Hasher::default();
         let next = (self.next_creature, self.next_fighter, self.next_projectile);
@@ -102,7 +100,7 @@ fn take_fighter(hash: &mut Hasher, mark: u64, climber: &ClimberState, state: &Fi
     add_fighter(hash, state);
 }
 
-/// All of a fighter beside its climber.
+/// Hashes a fighter's state without its climber.
 fn add_fighter(hash: &mut Hasher, state: &FighterState) {
     let FighterState {
         climber: _,
@@ -121,16 +119,16 @@ fn add_fighter(hash: &mut Hasher, state: &FighterState) {
     hash.take(&(has_begun, spawn));
 }
 
-/// Hash of a value, as it is serialised.
+/// Hash of a value in its serialised form.
 pub(crate) fn hash_of(start: u64, value: &impl Serialize) -> u64 {
     let mut hash = Hasher::new(start);
     hash.take(value);
     hash.hash()
 }
 
-/// Hashes 64-bit words one after another, each by a multiplication.
+/// Hashes 64-bit words one after another, with one multiplication each.
 ///
-/// Two hashes take turns, since each multiplication waits for the one before it in the same hash.
+/// Two hashes take turns: within one hash each multiplication waits for the one before it.
 #[derive(Clone, Copy, Debug)]
 struct Hasher([u64; 2]);
 
@@ -164,7 +162,7 @@ impl Hasher {
     }
 
     fn take(&mut self, value: &impl Serialize) {
-        // A hasher refuses nothing.
+        // The hasher returns no error.
         let _ = value.serialize(self);
     }
 }
@@ -174,7 +172,7 @@ fn add(hash: u64, word: u64) -> u64 {
     (hash.rotate_left(5) ^ word).wrapping_mul(0x9e37_79b9_7f4a_7c15)
 }
 
-/// Never made: a hasher refuses nothing.
+/// The error type that serde requires. The hasher never returns it.
 #[derive(Debug)]
 struct Never;
 

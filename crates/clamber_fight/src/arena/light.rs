@@ -1,4 +1,4 @@
-//! The light of a raised sword, which shows the way to the next weak point.
+//! The light of a sword, which shows the way to the next weak point.
 
 use clamber_world::{Obstacle, ObstacleId};
 use glam::DVec3;
@@ -6,38 +6,39 @@ use glam::DVec3;
 use super::{Arena, CreatureId};
 use crate::fighter::FighterId;
 
-/// Rays of a sword in the sun.
+/// Number of rays of a sword's light.
 const RAYS: usize = 12;
 
-/// The half angle of the rays' cone while the sword points away, and while it points at the weak point, radians.
+/// Half angle of the rays' cone while the sword points directly away from the weak point, radians.
 const WIDE: f64 = 0.6;
+/// Half angle of the rays' cone while the sword points at the weak point, radians.
 const NARROW: f64 = 0.005;
 
-/// How far the sun is looked for, metres.
+/// Length of the ray towards the sun, metres. Obstacles farther away cast no shade on the sword.
 const SHADE: f64 = 2000.0;
 
 /// The light of a sword.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SwordLight {
-    /// Where the rays begin: at the blade's tip.
+    /// Origin of the rays, in world space: the blade's tip.
     pub origin: DVec3,
-    /// Whose weak point they lead to.
+    /// The creature whose weak point the rays lead to.
     pub creature: CreatureId,
-    /// The weak point, by its index.
+    /// Index of the weak point.
     pub weak_point: usize,
-    /// Angle between where the sword points and the weak point, radians.
+    /// Angle between the sword's direction and the direction to the weak point, radians.
     pub off: f64,
-    /// Half angle of the rays' cone, radians: the smaller, the nearer the sword points to the weak point.
+    /// Half angle of the rays' cone, radians. It shrinks as the sword turns towards the weak point.
     pub spread: f64,
-    /// The rays: unit vectors around the direction in which the sword points. At the smallest spread all of them lead
-    /// to the weak point.
+    /// The rays: unit vectors around a direction between the sword's and the weak point's. At the smallest spread all
+    /// of them lead to the weak point.
     pub rays: [DVec3; RAYS],
 }
 
 impl Arena {
-    /// The light of a fighter's sword that points along `aim`, a direction in world space: rays that gather as it turns
-    /// to the nearest weak point that can be hurt now. `None` in the shade of terrain or creatures, without a sword,
-    /// and if no weak point is open.
+    /// The light of a fighter's sword that points along `aim`, a direction in world space. Its rays gather as the sword
+    /// turns towards the nearest weak point that can be hurt now. `None` without a sword, in the shade of terrain or
+    /// creatures, if no weak point is open, or if `aim` or the direction to the sun is zero.
     pub fn sword_light(
         &self,
         fighter: FighterId,
@@ -65,7 +66,7 @@ impl Arena {
         let to = (place - origin).try_normalize()?;
         let off = libm::atan2(aim.cross(to).length(), aim.dot(to));
         let spread = NARROW + (WIDE - NARROW) * (off / core::f64::consts::PI);
-        // The nearer it points, the more its rays lean to the weak point.
+        // The closer the sword points to the weak point, the more the cone's axis leans towards it.
         let (aside, along) = (aim.any_orthonormal_vector(), aim);
         let other = along.cross(aside);
         let gathered = 1.0 - off / core::f64::consts::PI;
@@ -87,7 +88,7 @@ impl Arena {
         })
     }
 
-    /// The weak point nearest to a place among those that can be hurt now, and where it is.
+    /// The weak point nearest to a place among those that can be hurt now: its creature, its index and its position.
     pub fn next_weak_point(&self, from: DVec3) -> Option<(CreatureId, usize, DVec3)> {
         let open = self.creatures().flat_map(|(id, creature)| {
             let points = 0..creature.kind().weak_points().len();

@@ -6,12 +6,12 @@ use std::sync::Arc;
 use super::fingerprint::hash_of;
 use crate::error::ArenaError;
 
-/// A creature of an arena, by its number: they are numbered in the order in which they join, and no number is used
+/// Number of a creature in an arena. Creatures are numbered in the order in which they join, and no number is used
 /// twice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct CreatureId(pub u32);
 
-/// A kind of creature that an arena knows: a hash of its files, which is the same everywhere
+/// A kind of creature that an arena knows: a hash of its files, which is the same on every machine
 /// ([`CreatureKind::fingerprint`]).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct KindId(pub u64);
@@ -22,7 +22,7 @@ pub(super) struct Member {
     pub(super) id: CreatureId,
     pub(super) kind: KindId,
     pub(super) creature: Creature,
-    /// Hash of what does not change of it.
+    /// Hash of the number, the kind and the configuration, which never change.
     pub(super) mark: u64,
 }
 
@@ -42,7 +42,7 @@ impl Member {
     }
 }
 
-/// Hash of what does not change of a creature.
+/// Hash of the constant part of a creature: number, kind and configuration.
 pub(super) fn mark(id: CreatureId, kind: KindId, config: &CreatureConfig) -> u64 {
     hash_of(1, &(id, kind, config))
 }

@@ -1,4 +1,4 @@
-//! The arena: all that fights, stepped in one order.
+//! The arena: creatures, fighters and projectiles, stepped together in a fixed order.
 
 mod aimed;
 mod config;
@@ -35,20 +35,20 @@ use crate::error::ArenaError;
 use crate::fighter::{Fighter, FighterConfig, FighterId};
 use crate::projectile::{Projectile, ProjectileId, ProjectileMotion, ProjectilePlace, place_on};
 
-/// Numbers of creatures and fighters are less than this.
+/// Numbers of creatures and fighters are below this, so that the counters do not overflow.
 const LAST: u32 = u32::MAX - 1024;
 
-/// Where the obstacle ids of creatures and of fighters begin. Terrain has smaller ones, such as the bits of an engine's
-/// entities.
+/// Smallest obstacle id of a creature. Terrain ids, for example the bits of an engine's entities, have to be below it.
 const CREATURES: u64 = 1 << 62;
+/// Smallest obstacle id of a fighter.
 const FIGHTERS: u64 = 1 << 63;
 
-/// The obstacle id of a creature: climbers' states and contacts name it.
+/// The obstacle id of a creature. Climbers' states and contacts refer to the creature by it.
 pub const fn creature_obstacle(creature: CreatureId) -> ObstacleId {
     ObstacleId(CREATURES + creature.0 as u64)
 }
 
-/// The obstacle id of a fighter, to the other fighters.
+/// The obstacle id under which the other fighters see a fighter.
 pub const fn fighter_obstacle(fighter: FighterId) -> ObstacleId {
     ObstacleId(FIGHTERS + fighter.0 as u64)
 }
@@ -59,16 +59,16 @@ pub(crate) fn creature_of(obstacle: ObstacleId) -> Option<CreatureId> {
     Some(CreatureId(u32::try_from(number).ok()?))
 }
 
-/// All that fights: creatures, fighters, projectiles, and their random streams, as one value that is stepped by a list
-/// of inputs.
+/// A whole fight as one value: creatures, fighters, projectiles, and their random streams. A step takes a list of
+/// inputs.
 ///
-/// Terrain is the game's: it is passed to each step, and is not part of what is saved. Terrain that moves has to be
-/// where it was when a step is repeated.
+/// The game owns the terrain: it is passed to each step, and is not saved. When a step is repeated, terrain that moves
+/// has to be where it was.
 #[derive(Clone, Debug)]
 pub struct Arena {
     config: ArenaConfig,
     kinds: BTreeMap<KindId, Arc<CreatureKind>>,
-    /// By ascending number, as the fighters.
+    /// By ascending number, like `fighters`.
     creatures: Vec<Member>,
     next_creature: u32,
     fighters: Vec<Fighter>,
@@ -83,7 +83,7 @@ pub struct Arena {
 }
 
 impl Arena {
-    /// An arena without anybody in it.
+    /// An arena without creatures and fighters.
     ///
     /// # Errors
     /// [`ArenaError::OutOfRange`] for a configuration outside its ranges.
@@ -105,8 +105,8 @@ impl Arena {
         })
     }
 
-    /// Makes a kind of creature known, so that creatures of it can join ([`Order::AddCreature`]) and states with some
-    /// can be restored. Nothing else is changed: it can be done at any time, in any order.
+    /// Registers a kind of creature. Creatures of this kind can then join ([`Order::AddCreature`]), and states that
+    /// contain them can be restored. Kinds can be registered at any time and in any order; nothing else changes.
     ///
     /// # Errors
     /// [`ArenaError::Tick`] if its brain was made for another tick.
@@ -120,11 +120,11 @@ impl Arena {
         Ok(id)
     }
 
-    /// A creature joins before the first step; later, it does so by [`Order::AddCreature`].
+    /// Adds a creature before the first step. After it, use [`Order::AddCreature`].
     ///
     /// # Errors
     /// [`ArenaError::Begun`] after the first step, [`ArenaError::Tick`] if its brain was made for another tick, and
-    /// [`ArenaError::Creature`] as of [`Creature::new`].
+    /// [`ArenaError::Creature`] for the errors of [`Creature::new`].
     pub fn add_creature(
         &mut self,
         kind: Arc<CreatureKind>,
@@ -136,8 +136,8 @@ impl Arena {
         Ok(self.join_creature(member))
     }
 
-    /// A fighter joins before the first step, at rest in the air; `position` is the centre of its climber's ball. It
-    /// comes back there after its death. After the first step it does so by [`Order::AddFighter`].
+    /// Adds a fighter before the first step, at rest in the air. `position` is the centre of its climber's ball, and
+    /// its spawn point after a death. After the first step, use [`Order::AddFighter`].
     ///
     /// # Errors
     /// [`ArenaError::Begun`] after the first step, [`ArenaError::OutOfRange`] and [`ArenaError::Climber`] for a
@@ -205,12 +205,12 @@ impl Arena {
         &self.config
     }
 
-    /// Ticks so far.
+    /// Number of ticks stepped so far.
     pub fn tick(&self) -> u64 {
         self.tick
     }
 
-    /// The kinds of creatures that it knows.
+    /// The registered kinds of creatures.
     pub fn kinds(&self) -> impl ExactSizeIterator<Item = (KindId, &Arc<CreatureKind>)> {
         self.kinds.iter().map(|(id, kind)| (*id, kind))
     }
@@ -263,12 +263,13 @@ impl Arena {
         &self.projectiles
     }
 
-    /// What happened in the last step, in order.
+    /// Events of the last step, in order.
     pub fn events(&self) -> &[ArenaEvent] {
         &self.events
     }
 
-    /// Where a projectile is after the last step; `None` if what it sticks in is gone, or its terrain was not passed.
+    /// Position and direction of a projectile after the last step. `None` if the obstacle that it sticks in is gone or
+    /// is not in `terrain`.
     pub fn place(
         &self,
         projectile: &Projectile,
@@ -297,7 +298,7 @@ impl Arena {
         }
     }
 
-    /// A projectile by its number; `None` if it is gone.
+    /// The projectile with a number; `None` if it is gone.
     pub fn projectile(&self, id: ProjectileId) -> Option<&Projectile> {
         let found = self
             .projectiles
@@ -306,8 +307,8 @@ impl Arena {
         self.projectiles.get(found)
     }
 
-    /// Hash of its configuration. Arenas that fight each other over a network have the same; whether they are alike in
-    /// all else, [`Arena::fingerprint`] tells.
+    /// Hash of the arena's configuration. Peers over a network have the same hash; [`Arena::fingerprint`] compares
+    /// everything else.
     pub fn config_hash(&self) -> u64 {
         hash_of(0xcbf2_9ce4_8422_2325, &self.config)
     }

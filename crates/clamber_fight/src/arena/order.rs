@@ -1,4 +1,4 @@
-//! Orders: what a game does to an arena between two of its ticks.
+//! Orders: changes that a game makes to an arena between two of its ticks.
 
 use clamber_climber::{Blow, Climber};
 use clamber_colossus::{Creature, CreatureConfig, Noise};
@@ -11,55 +11,56 @@ use crate::error::ArenaError;
 use crate::fighter::{Fighter, FighterConfig, FighterId, Room};
 use crate::projectile::ProjectileId;
 
-/// Something that a game does to an arena, beside what players do: falling rocks, fruit, checkpoints, scenes, waves of
-/// creatures. Orders are given to [`Arena::step_with`], and followed at the beginning of that step, one after the other.
+/// A change that the game itself makes to an arena, in addition to the players' inputs: falling rocks, fruit,
+/// checkpoints, scenes, waves of creatures. Orders are passed to [`Arena::step_with`], and are followed one after the
+/// other at the beginning of that step.
 ///
-/// They are a part of what led to a tick as the inputs are: record them, and give them again when a tick is stepped
-/// again. Nothing else changes an arena between ticks, but for [`Arena::restore`].
+/// Orders determine a tick just as inputs do: record them, and pass them again when the tick is repeated. Besides
+/// orders, only [`Arena::restore`] changes an arena between ticks.
 ///
-/// Who is named may be gone by then, as in a game over a network: such an order changes nothing, and
-/// [`ArenaEvent::Unheard`] tells. Places are in world space, metres.
+/// The fighter, creature or projectile that an order names may be gone by then, as in a game over a network. Such an
+/// order changes nothing, and [`ArenaEvent::Unheard`] reports it. Positions are in world space, metres.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum Order {
-    /// A fighter joins, at rest in the air, with the number [`Arena::next_fighter`]; it moves from this step on, without
-    /// input in this one. It goes aside if somebody is there.
+    /// Adds a fighter, at rest in the air, with the number [`Arena::next_fighter`]. It moves from this step on, without
+    /// input in this one. If its place is occupied, it is moved aside.
     AddFighter {
-        /// Its body and weapons.
+        /// The fighter's body and weapons.
         config: Box<FighterConfig>,
-        /// The centre of its climber's ball, where it rises after its death, too.
+        /// The centre of its climber's ball, and its spawn point after a death.
         position: DVec3,
     },
-    /// A fighter leaves. Whoever holds it falls; its arrows stay.
+    /// Removes a fighter. Climbers that hold it fall; its arrows stay.
     RemoveFighter {
         /// The fighter.
         fighter: FighterId,
     },
-    /// A creature joins, with the number [`Arena::next_creature`]. Who is where it begins goes aside.
+    /// Adds a creature, with the number [`Arena::next_creature`]. Fighters in its place are moved aside.
     AddCreature {
-        /// Its kind, which the arena knows by [`Arena::add_kind`].
+        /// The creature's kind, registered with [`Arena::add_kind`].
         kind: KindId,
-        /// Where it begins, and how large it is.
+        /// The creature's place at first, and its size.
         config: CreatureConfig,
     },
-    /// A creature leaves. Whoever is on it falls, and arrows in it come loose.
+    /// Removes a creature. Climbers on it fall, and arrows in it come loose.
     RemoveCreature {
         /// The creature.
         creature: CreatureId,
     },
-    /// An arrow or a stone is taken away.
+    /// Removes an arrow or a stone.
     RemoveProjectile {
         /// The projectile.
         projectile: ProjectileId,
     },
-    /// A fighter loses hit points.
+    /// Takes hit points from a fighter.
     Hurt {
         /// The fighter.
         fighter: FighterId,
         /// Hit points, 0 to 1.
         damage: f64,
     },
-    /// A fighter who lives gets hit points and stamina, up to what is full.
+    /// Gives hit points and stamina to a living fighter, up to 1 each.
     Heal {
         /// The fighter.
         fighter: FighterId,
@@ -68,81 +69,81 @@ pub enum Order {
         /// Stamina, 0 to 1.
         stamina: f64,
     },
-    /// Something strikes a fighter: it is thrown, and loses hit points. Of several blows in a tick the hardest throws it,
-    /// and all do damage.
+    /// Strikes a fighter: it is thrown, and loses hit points. Among several blows in a tick, the hardest one throws it,
+    /// and the damages add up.
     Strike {
         /// The fighter.
         fighter: FighterId,
         /// The blow.
         blow: Blow,
     },
-    /// A fighter is put somewhere, at rest in the air, with the hit points that it has; what it did with its weapons is
-    /// over. It goes aside if somebody is there.
+    /// Moves a fighter to a place, at rest in the air. It keeps its hit points, and its act ends. If the place is
+    /// occupied, it is moved aside.
     PlaceFighter {
         /// The fighter.
         fighter: FighterId,
         /// The centre of its climber's ball.
         position: DVec3,
     },
-    /// A fighter rises here from its next death on.
+    /// Sets the spawn point for a fighter's next respawn, also if it is dead now.
     Checkpoint {
         /// The fighter.
         fighter: FighterId,
         /// The centre of its climber's ball.
         position: DVec3,
     },
-    /// A dead fighter rises at once; nothing happens to one who lives.
+    /// Revives a dead fighter at once. A living fighter is not changed.
     Rise {
         /// The fighter.
         fighter: FighterId,
     },
-    /// A fighter gets arrows, if they are counted.
+    /// Gives arrows to a fighter whose arrows are counted.
     AddArrows {
         /// The fighter.
         fighter: FighterId,
-        /// How many more.
+        /// Number of additional arrows.
         arrows: u32,
     },
-    /// Creatures hear something in this step.
+    /// A noise that creatures hear in this step.
     Noise(Noise),
-    /// One of the game's own senses of a creature is set.
+    /// Sets one of the game's own senses of a creature.
     Sense {
         /// The creature.
         creature: CreatureId,
-        /// Its name in the brain's file.
+        /// The sense's name in the brain's file.
         name: String,
-        /// Its value.
+        /// The sense's new value.
         value: f64,
     },
-    /// A creature walks somewhere, whatever its brain wants, or does what that wants again: [`Creature::send`].
+    /// Makes a creature walk to a place instead of following its brain, or follow its brain again: [`Creature::send`].
     Send {
         /// The creature.
         creature: CreatureId,
-        /// Where to; `None` calls it back.
+        /// Where it walks to; `None` calls it back.
         to: Option<DVec3>,
     },
-    /// A creature's brain goes to a state: [`Creature::enter`].
+    /// Puts a creature's brain into a state: [`Creature::enter`].
     Enter {
         /// The creature.
         creature: CreatureId,
         /// The state's name in the brain's file.
         state: String,
     },
-    /// A creature is put somewhere, as if it had begun there: [`Creature::put`]. Whoever is on it is left behind,
-    /// and who is where it comes goes aside.
+    /// Moves a creature to a place, as if it had begun there: [`Creature::put`]. Fighters on it are left behind, and
+    /// other fighters in its new place are moved aside.
     PlaceCreature {
         /// The creature.
         creature: CreatureId,
-        /// Where its model's origin is.
+        /// New position of the model's origin.
         position: DVec3,
-        /// Its heading, radians about Y.
+        /// The creature's new heading about Y, radians.
         yaw: f64,
     },
-    /// A weak point of a creature is hurt, open or not: [`Creature::harm`].
+    /// Damages a weak point of a creature, open or not: [`Creature::harm`].
     Harm {
         /// The creature.
         creature: CreatureId,
-        /// The weak point, by its index.
+        /// Index of the weak point.
         weak_point: usize,
         /// Damage, in the weak point's hit points.
         damage: f64,
@@ -150,8 +151,8 @@ pub enum Order {
 }
 
 impl Order {
-    /// Orders as bytes, for a file or to send them: in the format of the crate postcard, which only the same version of
-    /// this crate reads.
+    /// Orders as bytes, for a file or a network, in the format of the crate postcard. Only the same version of this
+    /// crate reads them.
     ///
     /// # Errors
     /// [`ArenaError::Damaged`] if they cannot be written, which does not happen.
@@ -159,10 +160,10 @@ impl Order {
         postcard::to_stdvec(orders).map_err(|error| ArenaError::Damaged(error.to_string()))
     }
 
-    /// What [`Order::to_bytes`] gave. Whether they can be followed, the step tells.
+    /// Reads orders from the bytes of [`Order::to_bytes`]. The step checks whether they can be followed.
     ///
     /// # Errors
-    /// [`ArenaError::Damaged`] if these are other bytes.
+    /// [`ArenaError::Damaged`] if the bytes are something else.
     pub fn from_bytes(bytes: &[u8]) -> Result<Vec<Self>, ArenaError> {
         let read = postcard::take_from_bytes(bytes);
         let (orders, rest) = read.map_err(|error| ArenaError::Damaged(error.to_string()))?;
@@ -176,18 +177,19 @@ impl Order {
     }
 }
 
-/// Whoever joins by the orders of a step, in order.
+/// The fighters and creatures that join by the orders of a step, in the order of the list.
 #[derive(Default)]
 pub(super) struct Joining {
     fighters: Vec<Fighter>,
     creatures: Vec<Member>,
 }
 
-/// No more join in one step: each takes far more memory than the order for it.
+/// Greatest number of fighters and creatures that join in one step. Each takes far more memory than its order, so that
+/// a short list of orders could otherwise exhaust the memory.
 const MOST_JOINS: usize = 256;
 
 impl Joining {
-    /// Refuses one more.
+    /// Refuses one more to join if there are too many already, or if no numbers are left.
     fn check(&self, arena: &Arena) -> Result<(), String> {
         let (fighters, creatures) = (self.fighters.len(), self.creatures.len());
         check(fighters + creatures < MOST_JOINS, || {
@@ -201,14 +203,15 @@ impl Joining {
     }
 }
 
-/// Places are no further from the origin, metres.
+/// Greatest coordinate of a position in an order, metres.
 const FARTHEST: f64 = 1e12;
 
-/// Headings are no larger, radians.
+/// Greatest absolute heading in an order, radians.
 const MOST_YAW: f64 = 1e6;
 
 impl Arena {
-    /// Refuses orders that cannot be followed, and makes who joins. Nothing is changed.
+    /// Refuses orders that cannot be followed, and builds the fighters and creatures that join. Does not change the
+    /// arena.
     pub(super) fn check_orders(&self, orders: &[Order]) -> Result<Joining, ArenaError> {
         let mut joining = Joining::default();
         for (index, order) in orders.iter().enumerate() {
@@ -263,7 +266,7 @@ impl Arena {
             }
             Order::PlaceFighter { fighter, position } => {
                 place(*position)?;
-                // Only a climber knows whether it can be there.
+                // `Climber::new` decides whether a climber with this configuration can be at the position.
                 let climber = self.fighter(*fighter).map(|one| one.config().climber);
                 let there = climber.map(|config| Climber::new(config, *position));
                 there.transpose().map_err(|error| error.to_string())?;
@@ -347,7 +350,7 @@ impl Arena {
         }
     }
 
-    /// Checks what is asked of a creature, if it is there or joins before.
+    /// Runs a check on a creature that is there or joins earlier in the list. An order to any other creature passes.
     fn check_creature(
         &self,
         (creature, joining): (CreatureId, &Joining),
@@ -360,7 +363,7 @@ impl Arena {
         self.creature(creature).or_else(joins).map_or(Ok(()), check)
     }
 
-    /// Follows orders that were checked.
+    /// Follows orders that `check_orders` has accepted.
     pub(super) fn follow(&mut self, orders: &[Order], joining: Joining) -> Result<(), ArenaError> {
         let (mut fighters, mut creatures) =
             (joining.fighters.into_iter(), joining.creatures.into_iter());
@@ -411,7 +414,7 @@ impl Arena {
         Ok(())
     }
 
-    /// Follows an order to a fighter; false if it is not there.
+    /// Follows an order to a fighter; false if the fighter is not there.
     fn order_fighter(&mut self, fighter: FighterId, order: &Order) -> Result<bool, ArenaError> {
         let Some(index) = self.fighter_index(fighter) else {
             return Ok(false);
@@ -444,12 +447,12 @@ impl Arena {
         Ok(true)
     }
 
-    /// Follows an order to a creature; false if it is not there.
+    /// Follows an order to a creature; false if the creature is not there.
     fn order_creature(&mut self, id: CreatureId, order: &Order) -> Result<bool, ArenaError> {
         let Some(creature) = self.creature_mut(id) else {
             return Ok(false);
         };
-        // What was checked is done; else it would be told.
+        // A checked order succeeds; a failure would be reported as `Unheard`.
         let mut is_done = true;
         match order {
             Order::Sense { name, value, .. } => is_done = creature.set_sense(name, *value),
@@ -473,7 +476,8 @@ impl Arena {
         Ok(is_done)
     }
 
-    /// Those on whom a creature has just come go aside in this step, but for those who rode it.
+    /// Makes fighters inside a creature that was just added or moved look for room in this step, except those that ride
+    /// it.
     fn make_room(&mut self, creature: CreatureId) {
         let Some(index) = self.creature_index(creature) else {
             return;
@@ -494,12 +498,12 @@ impl Arena {
         }
     }
 
-    /// Takes a creature away; false if it is not there.
+    /// Removes a creature; false if it is not there.
     fn remove_creature(&mut self, creature: CreatureId) -> bool {
         let Some(index) = self.creature_index(creature) else {
             return false;
         };
-        // Arrows fall from where they are, which only the skin knows.
+        // Arrows fall from where they stick. This takes the creature's skin, so they are let go before it is removed.
         let mut outcome = Outcome::default();
         let obstacle = super::creature_obstacle(creature);
         let skin = self.creatures[index].creature.surface();
@@ -519,7 +523,7 @@ fn check(holds: bool, reason: impl FnOnce() -> String) -> Result<(), String> {
     if holds { Ok(()) } else { Err(reason()) }
 }
 
-/// Names, for a message.
+/// A list of names for an error message.
 fn listed(names: &[impl AsRef<str>]) -> String {
     if names.is_empty() {
         return "none".to_owned();

@@ -6,7 +6,7 @@ use super::{ArenaEvent, CreatureId, Weapon};
 use crate::fighter::FighterId;
 use crate::projectile::{Projectile, ProjectileId};
 
-/// What weapons and projectiles did in a tick.
+/// Results of weapons and projectiles in a tick.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Outcome {
     pub(crate) hits: Vec<Hit>,
@@ -17,7 +17,7 @@ pub(crate) struct Outcome {
     pub(crate) next: u64,
 }
 
-/// A hit, before it does damage.
+/// A hit whose damage is not yet done.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Hit {
     pub(crate) by: FighterId,
@@ -31,7 +31,7 @@ pub(crate) struct Hit {
 }
 
 impl Outcome {
-    /// The number that a projectile would get now.
+    /// The number that the next projectile will get.
     pub(crate) fn next_projectile(&self) -> ProjectileId {
         ProjectileId(self.next)
     }

@@ -6,12 +6,12 @@ use crate::error::ArenaError;
 use crate::fighter::{Fighter, FighterConfig, FighterId, FighterState};
 use crate::projectile::Projectile;
 
-/// All that changes in an arena: a plain value, without meshes and caches.
+/// The complete state of an arena: a plain value, without meshes and caches.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ArenaState {
-    /// [`Arena::config_hash`] of the arena that it is of.
+    /// [`Arena::config_hash`] of the arena from which it was saved.
     pub config: u64,
-    /// Ticks so far.
+    /// Number of ticks stepped so far.
     pub tick: u64,
     /// The creatures, by ascending number.
     pub creatures: Vec<SavedCreature>,
@@ -25,36 +25,36 @@ pub struct ArenaState {
     pub projectiles: Vec<Projectile>,
     /// The number that the next projectile gets.
     pub next_projectile: u64,
-    /// What creatures hear in the next step.
+    /// Noises that creatures hear in the next step.
     pub noises: Vec<Noise>,
 }
 
 /// A creature of a saved arena.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SavedCreature {
-    /// Its number.
+    /// The creature's number.
     pub id: CreatureId,
-    /// Its kind: the arena that restores it has to know it ([`Arena::add_kind`]).
+    /// The creature's kind. The arena that restores it has to know this kind ([`Arena::add_kind`]).
     pub kind: KindId,
-    /// Where it began, and how large it is.
+    /// The creature's place at first, and its size.
     pub config: CreatureConfig,
-    /// All that changes in it.
+    /// Its changing state.
     pub state: CreatureState,
 }
 
 /// A fighter of a saved arena.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SavedFighter {
-    /// Its number.
+    /// The fighter's number.
     pub id: FighterId,
-    /// Its body and weapons.
+    /// The fighter's body and weapons.
     pub config: FighterConfig,
-    /// All that changes in it.
+    /// Its changing state.
     pub state: FighterState,
 }
 
 impl Arena {
-    /// All that changes, to be restored later.
+    /// The complete state, to be restored later.
     pub fn save(&self) -> ArenaState {
         let creatures = self.creatures.iter().map(|one| SavedCreature {
             id: one.id,
@@ -80,14 +80,15 @@ impl Arena {
         }
     }
 
-    /// Goes back to a saved state, of this arena or of another one with the same configuration: all goes on with the
-    /// same bits as it did then. Whoever was not there then is gone, and whoever was comes back, if the arena knows its
-    /// kind. Events of the last step are forgotten.
+    /// Restores a saved state of this arena, or of another one with the same configuration. The arena continues with
+    /// the same bits as after the save. Creatures and fighters that are not in the state are removed, and missing ones
+    /// are added. Events of the last step are cleared.
     ///
     /// # Errors
-    /// [`ArenaError::Config`] if it is of an arena with another configuration, [`ArenaError::Kind`] if this one does not
-    /// know the kind of a creature, and [`ArenaError::OtherArena`], [`ArenaError::OutOfRange`], [`ArenaError::Climber`]
-    /// and [`ArenaError::Creature`] if the state was changed to what cannot be. Nothing is changed then.
+    /// [`ArenaError::Config`] if the state was saved with another configuration, [`ArenaError::Kind`] if this arena
+    /// does not know the kind of a creature, and [`ArenaError::OtherArena`], [`ArenaError::OutOfRange`],
+    /// [`ArenaError::Climber`] and [`ArenaError::Creature`] if the state is inconsistent or out of range. Nothing is
+    /// changed then.
     pub fn restore(&mut self, state: &ArenaState) -> Result<(), ArenaError> {
         self.check_state(state)?;
         let fighters = self.restored_fighters(&state.fighters)?;
@@ -110,7 +111,8 @@ impl Arena {
         Ok(())
     }
 
-    /// Fighters in their saved states; `None` if those that are there are the same ones, and can take these states.
+    /// Builds fighters in their saved states. `None` if the arena has exactly these fighters already; their states are
+    /// then only checked.
     fn restored_fighters(
         &self,
         saved: &[SavedFighter],
@@ -133,7 +135,7 @@ impl Arena {
         restored.collect::<Result<_, ArenaError>>().map(Some)
     }
 
-    /// Gives the creatures their saved states, or changes none of them.
+    /// Restores all creatures, or changes none of them.
     fn restore_creatures(&mut self, saved: &[SavedCreature]) -> Result<(), ArenaError> {
         let is_same = |(one, saved): (&Member, &SavedCreature)| {
             (one.id, one.kind) == (saved.id, saved.kind) && *one.creature.config() == saved.config
@@ -150,7 +152,7 @@ impl Arena {
         Ok(())
     }
 
-    /// Gives each creature its state, or none of them.
+    /// Sets the state of each creature, or changes none of them.
     fn swap_creatures(&mut self, mut states: Vec<CreatureState>) -> Result<(), ArenaError> {
         let mut swapped = 0;
         let mut failed = None;
@@ -176,7 +178,7 @@ impl Arena {
             return Err(ArenaError::Config { found, expected });
         }
         let other = |reason| Err(ArenaError::OtherArena(reason));
-        // So many are never reached, and there is room to count on.
+        // No run counts this far, and the limit leaves room to count on without an overflow.
         let far = state.tick.max(state.next_projectile) > u64::MAX / 2;
         if far || state.next_creature.max(state.next_fighter) > LAST {
             return other("its counters are further than an arena counts");
@@ -213,7 +215,7 @@ impl Arena {
     }
 }
 
-/// True if numbers ascend, and all of them have been given.
+/// True if the numbers ascend and all are below `next`.
 fn are_in_order(numbers: impl Iterator<Item = u32> + Clone, next: u32) -> bool {
     numbers.clone().is_sorted_by(|a, b| a < b) && numbers.last().is_none_or(|last| last < next)
 }

@@ -1,4 +1,4 @@
-//! One step of an arena, in the order in which it happens.
+//! One step of an arena, in its fixed order.
 
 use clamber_climber::{Blow, ClimberGroup, ClimberInput, ClimberMode, StepRules};
 use clamber_colossus::{Person, Riding, Surroundings, Wound};
@@ -13,36 +13,43 @@ use crate::error::ArenaError;
 use crate::fighter::{Around, BodyFrame, Fighter, FighterId, Room, Wielding, looks_every};
 use crate::projectile::{Air, Flown};
 
-/// Memory that is used again in each step.
+/// Memory that is reused in each step.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Scratch {
     people: Vec<Person>,
-    /// Of those who were there at the beginning of the step.
+    /// Inputs of the fighters that were there before this step's orders, by ascending number.
     inputs: Vec<(FighterId, ClimberInput)>,
-    /// Of those, who have not found room yet.
+    /// Fighters without room yet that do not look at once; they look again every half second.
     waiting: Vec<FighterId>,
     ids: Vec<ObstacleId>,
     group: ClimberGroup,
     outcome: Outcome,
 }
 
-/// Fighters that are farther from each other than this times a fighter's radius, beside the way that both make in the
-/// tick, do not touch.
+/// Part of a fighter's reach that grows with its size, in radii of its ball. Its height and its displacement in the
+/// tick are added to it. If it is too small, climbers that touch are not obstacles to each other.
 const APART: f64 = 20.0;
 
 impl Arena {
-    /// Lets a tick pass. `inputs` has one input for each fighter, by ascending number. Fur can be gripped.
+    /// Advances the arena by one tick. `inputs` has one input for each fighter, by ascending number. The rules are the
+    /// default ones: climbers can grip fur.
     ///
-    /// In this order: fighters that joined, rose or were put somewhere go aside if there is no room; creatures sense what
-    /// was around them at the end of the last tick, decide, move, and strike, then what they have thrown goes on;
-    /// fighters' climbers move among terrain, creatures and each other; weapons go on, then projectiles; what they hit
-    /// does damage, by the time of the hit within the tick. A blow that a creature deals reaches its fighter with the
-    /// next step.
+    /// The order is fixed:
+    ///
+    /// 1. Fighters that joined, were revived or were moved are moved aside if they have no room, and so are fighters on
+    ///    which an order puts a creature.
+    /// 2. Creatures sense what was around them at the end of the last tick, decide, move, and strike. Then their shots
+    ///    and waves go on.
+    /// 3. Fighters' climbers move among terrain, creatures and each other, and their weapons go on.
+    /// 4. Projectiles go on.
+    /// 5. Hits do their damage, in the order of their times within the tick.
+    ///
+    /// A creature's blow reaches its fighter in the next step.
     ///
     /// # Errors
     /// [`ArenaError::Inputs`], [`ArenaError::Blow`], [`ArenaError::InputNotFinite`], [`ArenaError::TerrainId`] and
-    /// [`ArenaError::TerrainTwice`]: nothing is changed then. [`ArenaError::Creature`] if a creature cannot be posed: the arena has
-    /// to be restored then.
+    /// [`ArenaError::TerrainTwice`]: nothing is changed then. [`ArenaError::Creature`] if a creature cannot be posed:
+    /// the arena has to be restored then.
     pub fn step(
         &mut self,
         inputs: &[ClimberInput],
@@ -51,12 +58,13 @@ impl Arena {
         self.step_with(inputs, &[], terrain, &StepRules::default())
     }
 
-    /// [`Arena::step`] with orders of the game, which are followed first, and by a game's own rules for climbers: for
-    /// contacts, and custom modes. `inputs` are of those who were there before the orders. Each fighter's climber has
-    /// [`fighter_obstacle`] as [`StepRules::id`], whatever the rules say.
+    /// [`Arena::step`] with orders, and with the game's own rules for climbers: contacts and custom modes. The orders
+    /// are followed first. `inputs` belong to the fighters that were there before the orders. The arena replaces
+    /// [`StepRules::id`] by [`fighter_obstacle`] for each fighter's climber.
     ///
     /// # Errors
-    /// As [`Arena::step`], and [`ArenaError::Order`] for an order that cannot be followed: nothing is changed then.
+    /// The errors of [`Arena::step`], and [`ArenaError::Order`] for an order that cannot be followed: nothing is
+    /// changed then.
     pub fn step_with(
         &mut self,
         inputs: &[ClimberInput],
@@ -77,7 +85,8 @@ impl Arena {
             .zip(inputs.iter().copied());
         scratch.inputs.extend(given);
         scratch.waiting.clear();
-        // Those of whom an order tells look at once.
+        // Fighters that an order places or revives look for room at once. If a creature is added or moved, all look at
+        // once.
         let is_told = |id: FighterId| {
             orders.iter().any(|order| match order {
                 Order::PlaceFighter { fighter, .. } | Order::Rise { fighter } => *fighter == id,
@@ -155,8 +164,8 @@ impl Arena {
         people: &mut Vec<Person>,
     ) -> Result<(), ArenaError> {
         let ground: Vec<&dyn Obstacle> = terrain.iter().map(|(_, obstacle)| *obstacle).collect();
-        // What they have thrown flies when all of them are where they are in this tick: it meets the same whatever their
-        // order, and after a restore.
+        // Shots and waves go on in a second pass, when all creatures have moved. So their contacts do not depend on the
+        // order of the creatures, and are the same after a restore.
         for from_afar in [false, true] {
             for index in 0..self.creatures.len() {
                 let (before, rest) = self.creatures.split_at_mut(index);
@@ -174,7 +183,7 @@ impl Arena {
                 let others = others.map(|other| other.creature.surface());
                 let others: Vec<&dyn Obstacle> = others.map(|skin| skin as &dyn Obstacle).collect();
                 people.clear();
-                // The dead are of no interest.
+                // Creatures neither sense nor strike dead fighters.
                 let living = self.fighters.iter().filter(|fighter| !fighter.is_dead());
                 people.extend(living.map(|fighter| person(fighter, creature_obstacle(id))));
                 let around = Surroundings {
@@ -201,8 +210,9 @@ impl Arena {
         Ok(())
     }
 
-    /// Finds room for those that have not begun, before a creature strikes them where they will not be. Who finds none
-    /// looks again from time to time, as the dead do.
+    /// Finds room for fighters that have not begun. It comes before the creatures' step, so that no creature strikes a
+    /// fighter at a place that it leaves in this step. A fighter that finds no room looks again every half second, like
+    /// a dead one.
     fn begin_fighters(
         &mut self,
         terrain: &[(ObstacleId, &dyn Obstacle)],
@@ -220,7 +230,7 @@ impl Arena {
         for member in &self.creatures {
             obstacles.push((creature_obstacle(member.id), member.creature.surface()));
         }
-        // Those that have begun keep their places; of others the first in order do.
+        // Fighters that have begun keep their places. Among the others, the first in the list chooses first.
         for index in 0..self.fighters.len() {
             let one = &self.fighters[index];
             let is_over = one.rest().has_begun || one.is_dead();
@@ -256,7 +266,7 @@ impl Arena {
         for member in &self.creatures {
             obstacles.push((creature_obstacle(member.id), member.creature.surface()));
         }
-        // Before any of them moves, so that their order does not matter.
+        // The group takes all climbers before any of them moves, so that the order of the fighters does not matter.
         let living = self.fighters.iter().filter(|fighter| !fighter.is_dead());
         let climbers = living.map(|fighter| (fighter_obstacle(fighter.id()), fighter.climber()));
         scratch.group.update(climbers, &obstacles, dt);
@@ -292,7 +302,7 @@ impl Arena {
             let others = self.fighters.iter().enumerate();
             let others = others.filter(|(other, fighter)| *other != index && !fighter.is_dead());
             let bodies = others.map(|(_, other)| other.climber().body());
-            // Only the dead look for room.
+            // Only dead fighters look for room, so the list stays empty for the living.
             let bodies: Vec<_> = bodies.filter(|_| is_dead).collect();
             let room = Room {
                 obstacles: &obstacles[..fixed],
@@ -337,8 +347,8 @@ impl Arena {
         }
     }
 
-    /// What was hit takes damage: first what was hit first, and of what was hit at the same time first what blades hit,
-    /// then by the numbers of fighters and projectiles.
+    /// Applies the hits' damage in the order of their times. At equal times blades come first, by fighter number, then
+    /// projectiles, by their numbers.
     fn do_damage(&mut self, outcome: &mut Outcome) {
         outcome.hits.sort_by(|a, b| a.time.total_cmp(&b.time));
         for hit in &outcome.hits {
@@ -384,7 +394,8 @@ impl Arena {
         }
     }
 
-    /// Blows reach their fighters with the next tick: of several the hardest, with the damage of all.
+    /// Gives the creatures' blows to the fighters, for the next tick. Among several blows, the hardest one's velocity
+    /// counts, and the damages add up.
     fn deal_blows(&mut self) {
         for Member { id, creature, .. } in &self.creatures {
             for blow in &creature.report().blows {
@@ -411,7 +422,7 @@ impl Arena {
     }
 }
 
-/// The input of a fighter: none if it has just joined.
+/// The input of a fighter; idle if it has just joined.
 fn input_of(inputs: &[(FighterId, ClimberInput)], fighter: FighterId) -> ClimberInput {
     let found = inputs.binary_search_by_key(&fighter, |one| one.0);
     found.map_or(ClimberInput::IDLE, |index| inputs[index].1)

@@ -1,4 +1,4 @@
-//! What a fighter does with its weapons in a tick: what its buttons begin, what breaks it off, and how it goes on.
+//! A fighter's acts with its weapons in a tick: how buttons begin them, when they are broken off, and how they go on.
 
 use clamber_climber::{Climber, ClimberError, ClimberEvent, ClimberInput, ClimberMode};
 use clamber_world::{Attachment, MaterialPoint, Obstacle, ObstacleId};
@@ -9,42 +9,43 @@ use super::{Act, Around, BodyFrame, Fighter, Room, Target, arrows};
 use crate::actions::{BOW, CUT, STAB, THROW};
 use crate::arena::{ArenaEvent, CreatureId, Hit, Outcome, Weapon, creature_obstacle, creature_of};
 
-/// Walking speed with a drawn bow, as a share.
+/// Walking speed while a bow is drawn, as a share of the normal speed.
 const DRAWN_WALK: f64 = 0.5;
 
-/// Who finds no room to rise looks again after so many seconds.
+/// Seconds after which a fighter without room looks for room again.
 const LOOKS: f64 = 0.5;
 
-/// After so many ticks looks for room who was put where there is none.
+/// Ticks after which a living fighter without room looks for room again.
 pub(crate) fn looks_every(tick: f64) -> u64 {
     (LOOKS / tick).ceil().max(1.0) as u64
 }
 
-/// True in the tick in which somebody looks for room who has waited for it so long.
+/// True in the ticks in which a dead fighter looks for room, `waited` seconds after the time of its respawn: in the
+/// first one, then every [`LOOKS`] seconds.
 fn looks(waited: f64, dt: f64) -> bool {
     let round = |seconds: f64| (seconds / LOOKS).floor();
     waited < dt || round(waited) > round(waited - dt)
 }
 
-/// What a fighter's weapons need of a tick.
+/// Data of a tick that a fighter's weapons need.
 #[derive(Clone, Copy)]
 pub(crate) struct Wielding<'a> {
-    /// The body before the climber's step.
+    /// The body's frame before the climber's step.
     pub(crate) before: BodyFrame,
     pub(crate) input: &'a ClimberInput,
     pub(crate) around: Around<'a>,
     pub(crate) dt: f64,
-    /// True if its own impact holds it in this tick.
+    /// True if the hit-stop of its own impact holds the fighter in this tick.
     pub(crate) is_held: bool,
-    /// True if a blow struck it in this tick.
+    /// True if a blow struck the fighter in this tick.
     pub(crate) is_struck: bool,
-    /// True if it throws a stone at the end of this tick.
+    /// True if the fighter throws a stone at the end of this tick.
     pub(crate) throws: bool,
 }
 
 impl Fighter {
-    /// Lets the buttons begin what they begin, and gives the climber's input, and whether a stone is thrown at the end of
-    /// this tick.
+    /// Begins the acts that the pressed buttons ask for. Returns the climber's input, and true if a stone is thrown at
+    /// the end of this tick.
     pub(crate) fn begin(&mut self, input: &ClimberInput, is_held: bool) -> (ClimberInput, bool) {
         let pressed = input.actions & !self.state.actions;
         self.state.actions = input.actions;
@@ -74,7 +75,7 @@ impl Fighter {
         (input, throws)
     }
 
-    /// Begins what the buttons begin. Returns true if that is to throw a stone.
+    /// Begins the act that the pressed buttons ask for. Returns true if it throws a stone.
     fn press(&mut self, actions: u32, pressed: u32) -> bool {
         use ClimberMode::{Falling, Holding, Sliding, Standing};
         let mode = self.climber.state().mode;
@@ -127,7 +128,8 @@ impl Fighter {
         false
     }
 
-    /// Takes damage without a blow that was waiting for this tick, and lies if it is dead.
+    /// Applies the harm that was stored for this tick, which comes from crushing. A dead climber is put into
+    /// [`ClimberMode::Tumbling`] if its configuration has that mode.
     pub(crate) fn take_harm(&mut self) -> Result<(), ClimberError> {
         let harm = std::mem::take(&mut self.state.harm);
         let mut state = *self.climber.state();
@@ -135,7 +137,7 @@ impl Fighter {
             if self.config.climber.tumble.is_none() {
                 return Ok(());
             }
-            // The dead lie.
+            // A dead climber falls over and lies.
             (state.mode, state.support, state.tumbling.still) = (ClimberMode::Tumbling, None, 0.0);
         } else if harm > 0.0 {
             state.hit_points = (state.hit_points - harm).max(0.0);
@@ -145,15 +147,15 @@ impl Fighter {
         self.climber.restore(state)
     }
 
-    /// True if its own impact holds it in this tick, which passes meanwhile.
+    /// Counts the hit-stop down. Returns true if it holds the fighter in this tick.
     pub(crate) fn be_held(&mut self, dt: f64) -> bool {
         let left = self.state.hit_stop - dt;
-        // Less than half a tick is rounding.
+        // A rest of less than half a tick is rounding error.
         self.state.hit_stop = if left > 0.5 * dt { left } else { 0.0 };
         left > -0.5 * dt
     }
 
-    /// After the climber's step: being crushed, death, also below the world's floor, and standing up again.
+    /// Applies the climber's step: harm by crushing, death by lost hit points or below the world's floor, and respawn.
     pub(crate) fn live(
         &mut self,
         [dt, floor]: [f64; 2],
@@ -192,10 +194,11 @@ impl Fighter {
         Ok(())
     }
 
-    /// In its first step: goes aside if somebody is where it begins, or a creature, or rock. Where there is no room it
-    /// stays, and has not begun.
+    /// Moves a fighter aside that has not begun, if its place is in rock or overlaps a creature or another fighter. If
+    /// there is no room, it stays and has not begun.
     pub(crate) fn begin_with_room(&mut self, room: &Room<'_>) -> Result<(), ClimberError> {
-        // Terrain pushes out what is put into it a little; skin and people do not, if they are deep in each other.
+        // Terrain pushes out a body that overlaps it a little. Creatures and other climbers do not push out a body that
+        // is deep inside them.
         let is_creature = |(id, _): &&(ObstacleId, &dyn Obstacle)| creature_of(*id).is_some();
         let creatures = room.obstacles.iter().filter(is_creature);
         let creatures: Vec<(ObstacleId, &dyn Obstacle)> = creatures.copied().collect();
@@ -227,8 +230,9 @@ impl Fighter {
         Ok(())
     }
 
-    /// True if what it does with its weapons is broken off: a stab by a shake beyond the one that makes it hang, by the
-    /// loss of its hold or a blow, and what needs both hands by a hold.
+    /// True if the current act is broken off. A blow, a shake above the one that makes the climber hang, or the loss of
+    /// its hold breaks off a stab. A blow or tumbling breaks off a plunge. Cuts and bow shots need both hands: a blow
+    /// breaks them off, and so does any mode but standing, sliding and falling.
     fn is_broken_off(&self, is_struck: bool) -> bool {
         use ClimberMode::{Falling, Hanging, LedgeHanging, Sliding, Standing, Tumbling};
         let state = self.climber.state();
@@ -254,7 +258,7 @@ impl Fighter {
         }
     }
 
-    /// Goes on with what it does with its weapons, after the climber's step.
+    /// Advances the current act by a tick, after the climber's step.
     pub(crate) fn wield(&mut self, tick: &Wielding<'_>, out: &mut Outcome) {
         if tick.throws
             && let Some(stone) = self.throw(tick, out.next_projectile())
@@ -267,7 +271,7 @@ impl Fighter {
             return;
         }
         if tick.is_held {
-            // Time stands still for the blade, but not for the skin that it is in.
+            // The hit-stop holds the blade, but the skin that the blade is in moves on.
             let mut act = std::mem::take(&mut self.state.act);
             match &mut act {
                 Act::Strike { target, .. } => *target = self.aimed(*target, tick),
@@ -332,7 +336,7 @@ impl Fighter {
         let skins = tick.around.skins;
         sword.cut_through(times, frames, tick.dt, skins, &mut struck, &mut hits);
         hits.retain(|found| {
-            // All of it at the end of the tick: then what comes between is where it is.
+            // Everything is compared at the end of the tick, where the rays see obstacles.
             let frame = &frames[1];
             let hit = &found.hit.hit;
             let at = MaterialPoint::on_triangle(hit.triangle, hit.barycentric);
@@ -340,7 +344,7 @@ impl Fighter {
             let places = [frame.origin, frame.at(sword.shoulder), place];
             let is_hidden = tick.around.hides(&places, Some(found.creature));
             if is_hidden {
-                // The cut may still get there from another side.
+                // A later part of the cut may reach the part of the creature from another side.
                 let part = hit.part.0;
                 struck.retain(|one| *one != (creature_obstacle(found.creature), part));
             }
@@ -360,7 +364,8 @@ impl Fighter {
                 damage: sword.cut_damage,
             });
         }
-        // Its damage is done after this: what was hit in its last tick needs it for one tick more.
+        // The arena does the damage later in this tick and needs `harmed` then. So a cut that hits in its last tick
+        // goes on for one more tick.
         if until < sword.wind_up + sword.cut + sword.recover || !hits.is_empty() {
             Act::Cut {
                 seconds: until,
@@ -372,9 +377,9 @@ impl Fighter {
         }
     }
 
-    /// False for a cut that has hurt that weak point or plate before, or the plate above that weak point: one cut does its
-    /// damage once, however many joints move the skin there, and what is too much for a plate is not passed on to the weak
-    /// points `below`, which may open when it breaks.
+    /// True if a hit does damage. A cut damages a weak point or a plate once, however many joints move the skin there.
+    /// A plate that breaks absorbs the rest of the damage: the weak points `below` it may open then, but the same cut
+    /// does not damage them. Always true for other weapons.
     pub(crate) fn hurts_anew(
         &mut self,
         weapon: Weapon,
@@ -405,7 +410,7 @@ impl Fighter {
         let falls = falls && self.climber.state().mode == ClimberMode::Falling;
         match &self.config.sword {
             Some(sword) if seconds < sword.raise => Act::Raise { seconds, falls },
-            // Out of a fall a stab has its full strength.
+            // A stab in a fall has its full strength at once.
             Some(_) => Act::Charge {
                 charge: if falls { 1.0 } else { 0.0 },
                 falls,
@@ -421,7 +426,7 @@ impl Fighter {
         let is_pressed = self.state.actions & STAB != 0;
         let rate = if is_pressed { sword.pressed } else { 1.0 } / sword.charge;
         let still_falls = falls && self.climber.state().mode == ClimberMode::Falling;
-        // The strength of a fall is gone with the fall.
+        // The full strength of a fall ends with the fall.
         let charge = if falls && !still_falls { 0.0 } else { charge };
         Act::Charge {
             charge: (charge + rate * dt).min(1.0),
@@ -429,8 +434,8 @@ impl Fighter {
         }
     }
 
-    /// Where a stab goes after this tick: with the skin, to other skin if that is gone, as a plate that broke, or into the
-    /// air.
+    /// The target of a stab after this tick. A target on skin follows the skin. If that skin is gone, as with a broken
+    /// plate, the stab gets a new target.
     fn aimed(&self, target: Target, tick: &Wielding<'_>) -> Target {
         match target {
             Target::Air => Target::Air,
@@ -490,7 +495,7 @@ impl Fighter {
         let frames = [tick.before, BodyFrame::of(&self.climber)];
         let Some((creature, hit)) = self.plunge_contact(frames, &tick.around, tick.dt) else {
             let falls = self.climber.state().mode == ClimberMode::Falling;
-            // It has come down beside.
+            // The fighter has landed without touching a creature.
             return if falls {
                 Act::Plunge { charge }
             } else {
@@ -539,13 +544,13 @@ impl Fighter {
     }
 }
 
-/// Follows the skin over the tick; the blade is in the air if the skin is gone.
+/// Moves a target with its skin over the tick; [`Target::Air`] if the skin is gone.
 fn follow(target: Target, tick: &Wielding<'_>) -> Target {
     let Target::Skin(mut at) = target else {
         return target;
     };
     let skin = creature_of(at.obstacle).and_then(|creature| tick.around.skins.get(creature));
-    // More than rounding, less than anybody sees.
+    /// Slack of [`Attachment::follow`], metres: more than rounding, less than a player sees.
     const SLACK: f64 = 0.01;
     match skin.and_then(|skin| at.follow(skin, tick.dt, SLACK)) {
         Some(_) => Target::Skin(at),

@@ -5,21 +5,24 @@ use glam::DVec3;
 
 use crate::arena::{CreatureId, Skins};
 
-/// What may come between a fighter and where its weapons go: they begin at the body, and go through nothing.
+/// Obstacles that can stop a fighter's weapons. Weapons act from the body, and do not pass through obstacles.
 #[derive(Clone, Copy)]
 pub(crate) struct Around<'a> {
     pub(crate) skins: Skins<'a>,
     pub(crate) terrain: &'a [(ObstacleId, &'a dyn Obstacle)],
 }
 
-/// What touches a place within this distance is not before it, metres.
+/// Length by which a line of sight stops short of its end, metres, so that an obstacle that only touches the end does
+/// not hide it.
 const SLACK: f64 = 0.01;
 
-/// A shot that meets something before it has left the hand begins this share of the way before that.
+/// Share of the distance to an obstacle between body and hand at which a shot begins. Below 1, so that the shot does
+/// not begin inside the obstacle.
 const SHORT: f64 = 0.99;
 
 impl Around<'_> {
-    /// Where a point of a creature's skin, which was somewhere within the tick, is at its end.
+    /// Where a point of a creature's skin is at the end of the tick. `place`, which is returned if the point has no
+    /// motion, is its position at the hit.
     pub(crate) fn now(
         &self,
         creature: CreatureId,
@@ -32,8 +35,8 @@ impl Around<'_> {
         motion.map_or(place, |motion| motion.position)
     }
 
-    /// True if terrain, or the skin of another creature than that one, is on one of the straight lines from each of these
-    /// places to the next, all at the end of the tick.
+    /// True if an obstacle crosses one of the straight lines from each place to the next, at the end of the tick.
+    /// Obstacles are the terrain, and the skins of all creatures but `creature`.
     pub(crate) fn hides(&self, places: &[DVec3], creature: Option<CreatureId>) -> bool {
         let mut lines = places.windows(2).map(|pair| {
             let way = pair[1] - pair[0];
@@ -49,7 +52,8 @@ impl Around<'_> {
         })
     }
 
-    /// Where a ball gets that goes straight from a place to another one, as far as nothing is in its way.
+    /// Where a ball gets on a straight way from one place to another: to its end, or to a point just before the first
+    /// obstacle in the way.
     pub(crate) fn reached(&self, from: DVec3, to: DVec3, radius: f64) -> DVec3 {
         let ball = WorldCapsule::ball(from, radius);
         let way = to - from;

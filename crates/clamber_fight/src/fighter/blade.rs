@@ -1,33 +1,34 @@
-//! Where the blade is: a function of the fighter's state, which the drawn body follows.
+//! The blade's position, which follows from the fighter's state. The drawn body follows the blade.
 
 use clamber_surface::geometry::rotation_from_axis_angle;
 use glam::DVec3;
 
 use super::{Act, BodyFrame, Fighter, SwordConfig, Target};
 
-/// A blade, or an arm with a blade, as a line.
+/// A blade as a line from hilt to tip.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Blade {
-    /// Where the hand holds it, in world space.
+    /// Where the hand holds the blade, in world space.
     pub hilt: DVec3,
-    /// Its tip.
+    /// Tip of the blade, in world space.
     pub tip: DVec3,
 }
 
-/// How far below the level the blade cuts, radians.
+/// Angle of a cut below the horizontal, radians.
 const DOWN: f64 = 0.25;
 
-/// Where a raised sword's hilt is, from the centre of the climber's ball: right, up, and ahead, metres; and where it
-/// points.
+/// Hilt of a raised sword, from the centre of the climber's ball: right, up, and ahead, metres.
 const RAISED: DVec3 = DVec3::new(0.1, 1.5, 0.1);
+/// Direction of a raised blade: right, up, and ahead, about a unit vector. It points up and backwards.
 const POINTS: DVec3 = DVec3::new(0.0, 0.94, -0.34);
 
-/// Where a blade that is carried is: beside the hip, backwards.
+/// Hilt of a carried sword, from the centre of the climber's ball, beside the hip: right, up, and ahead, metres.
 const CARRIED: DVec3 = DVec3::new(0.35, 0.5, 0.0);
+/// Direction of a carried blade: right, up, and ahead, a unit vector. It points down and backwards.
 const HANGS: DVec3 = DVec3::new(0.0, -0.5, -0.866);
 
 impl SwordConfig {
-    /// The blade in a cut, at an angle from the right (0) to the left.
+    /// The blade in a cut. `angle` is 0 at the right and grows to the left, radians.
     pub(super) fn in_cut(&self, frame: &BodyFrame, angle: f64) -> Blade {
         let from_ahead = angle - 0.5 * self.angle;
         let (sin, cos) = libm::sincos(from_ahead);
@@ -40,7 +41,7 @@ impl SwordConfig {
         }
     }
 
-    /// The blade raised for a stab.
+    /// The blade of a sword that is raised for a stab.
     pub(super) fn raised(&self, frame: &BodyFrame) -> Blade {
         let hilt = frame.at(RAISED);
         Blade {
@@ -49,7 +50,7 @@ impl SwordConfig {
         }
     }
 
-    /// The blade below a falling body.
+    /// The blade below a falling body, pointing down.
     pub(super) fn below(&self, frame: &BodyFrame) -> Blade {
         let hilt = frame.at(DVec3::new(0.0, 0.2, 0.3));
         Blade {
@@ -68,7 +69,8 @@ impl SwordConfig {
 }
 
 impl Blade {
-    /// The blade at a share of the way to another one; its length stays.
+    /// Interpolates to another blade: the tip moves on a straight line, and the blade turns about its tip. Length is
+    /// interpolated as well.
     pub(super) fn to(&self, other: &Self, share: f64) -> Self {
         let tip = self.tip.lerp(other.tip, share);
         let [from, to] = [self.hilt - self.tip, other.hilt - other.tip];
@@ -82,7 +84,7 @@ impl Blade {
         }
     }
 
-    /// The blade with its tip at a place, towards which it goes along a direction.
+    /// The blade moved so that its tip is at a place and it points along `into`, a unit vector.
     pub(super) fn in_skin(&self, tip: DVec3, into: DVec3) -> Self {
         Self {
             hilt: tip - into * self.tip.distance(self.hilt),
@@ -92,8 +94,7 @@ impl Blade {
 }
 
 impl Fighter {
-    /// Where its sword is after the last tick, in world space; `None` without a sword. The drawn hand holds it at the
-    /// hilt.
+    /// The sword's position after the last tick; `None` without a sword. The drawn hand holds it at the hilt.
     pub fn blade(&self) -> Option<Blade> {
         let sword = self.config.sword.as_ref()?;
         let frame = BodyFrame::of(&self.climber);

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{ArenaError, not_negative, positive, within};
 
-/// A fighter's body and weapons. A weapon that is `None` it does not have.
+/// A fighter's body and weapons. A fighter does not have a weapon that is `None`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FighterConfig {
     /// Body and abilities.
@@ -15,33 +15,33 @@ pub struct FighterConfig {
     pub bow: Option<BowConfig>,
     /// Stones to throw.
     pub stones: Option<StoneConfig>,
-    /// What being crushed costs.
+    /// Harm by being crushed.
     pub crush: Option<CrushConfig>,
-    /// Seconds for which whoever struck is held still by the impact; 0.1 by default. The creature never is: its riders
-    /// would feel it.
+    /// Hit-stop: seconds for which an impact of its blade holds the fighter still; 0.1 by default. The creature is
+    /// never held, since its riders would feel it.
     pub hit_stop: f64,
-    /// Seconds after its death at which a fighter stands where it began, unhurt; `None` for never. 4 by default.
+    /// Seconds from a fighter's death until it lives again, unhurt, at its spawn point; `None` for never. 4 by default.
     pub respawn: Option<f64>,
 }
 
-/// A sword, and how it is used.
+/// A sword, and its use.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SwordConfig {
-    /// The shoulder, from the centre of the climber's ball: to its right, up, and ahead, metres.
+    /// Shoulder, from the centre of the climber's ball: right, up, and ahead, metres.
     pub shoulder: DVec3,
-    /// Length from the shoulder to the blade's beginning, metres; 0.6 by default.
+    /// Length from the shoulder to the hilt, metres; 0.6 by default.
     pub arm: f64,
     /// Length of the blade, metres; 1.2 by default.
     pub blade: f64,
     /// Radius of the blade as a capsule, metres; 0.02 by default.
     pub radius: f64,
-    /// Seconds before the blade cuts; 0.15 by default.
+    /// Seconds from the button to the beginning of the blade's arc; 0.15 by default.
     pub wind_up: f64,
-    /// Seconds for which it cuts; 0.175 by default.
+    /// Seconds of the blade's arc; 0.175 by default.
     pub cut: f64,
-    /// Seconds after the cut until the next act can begin; 0.25 by default.
+    /// Seconds from the end of the arc until the next act can begin; 0.25 by default.
     pub recover: f64,
-    /// Angle of the cut, from the right to the left, radians; 200 degrees by default.
+    /// Angle of the arc, from right to left, radians; 200 degrees by default.
     pub angle: f64,
     /// Damage of a cut; 0.1 by default.
     pub cut_damage: f64,
@@ -49,17 +49,17 @@ pub struct SwordConfig {
     pub raise: f64,
     /// Seconds of charging after which a stab has its full strength; 2 by default.
     pub charge: f64,
-    /// How much faster the charge grows while the button stays down; 1.25 by default.
+    /// Factor on the charge's growth while the button stays down; 1.25 by default.
     pub pressed: f64,
-    /// Seconds of the strike; 0.12 by default.
+    /// Seconds from the second press until the stab lands; 0.12 by default.
     pub strike: f64,
-    /// How far from its shoulder a stab reaches the skin, metres; 1.8 by default.
+    /// Length of the ray by which a stab looks for skin, metres; 1.8 by default. It begins beside the climber's ball.
     pub reach: f64,
-    /// How deep the blade goes, metres; 0.4 by default.
+    /// How deep the blade goes into skin, metres; 0.4 by default.
     pub depth: f64,
     /// Seconds to pull the blade out; 0.6 by default.
     pub pull_out: f64,
-    /// Seconds to pull it out after a stab out of a fall; 1.6 by default.
+    /// Seconds to pull the blade out after a stab in a fall; 1.6 by default.
     pub pull_out_fallen: f64,
     /// Damage of a fully charged stab; 1 by default.
     pub stab_damage: f64,
@@ -68,56 +68,56 @@ pub struct SwordConfig {
 /// A bow and its arrows.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BowConfig {
-    /// Where an arrow's tip is when it is let go, from the centre of the climber's ball: to its right, up, and ahead,
-    /// metres.
+    /// Tip of an arrow when it is released, from the centre of the climber's ball: right, up, and ahead, metres.
     pub nock: DVec3,
     /// Seconds until the bow is fully drawn; 1 by default.
     pub draw: f64,
-    /// The bow shoots only from this share of a full draw on; 0.2 by default.
+    /// Smallest share of a full draw at which the bow shoots; 0.2 by default.
     pub least_draw: f64,
-    /// Speed of an arrow from a fully drawn bow, metres a second; 56.4 by default. It grows with the draw.
+    /// Speed of an arrow from a fully drawn bow, metres a second; 56.4 by default. It is proportional to the draw.
     pub speed: f64,
-    /// Drag: the deceleration is this times the square of the speed, 1/m; 0 by default. An arrow of 20 g and 5.5 mm has
+    /// Drag, 1/m: the deceleration is this times the square of the speed; 0 by default. An arrow of 20 g and 5.5 mm has
     /// 0.0011.
     pub drag: f64,
     /// Radius of an arrow's tip, metres; 0.005 by default.
     pub radius: f64,
-    /// How deep an arrow sticks, metres; 0.15 by default.
+    /// How deep an arrow sticks in skin or terrain, metres; 0.15 by default.
     pub depth: f64,
-    /// Damage of an arrow at full speed, which grows with its energy; 0.05 by default.
+    /// Damage of an arrow at full speed; 0.05 by default. It is proportional to the arrow's energy.
     pub damage: f64,
-    /// How far arrows stray, as an angle for each metre a second that the archer moves, radians; 0.004 by default.
+    /// Largest angle by which an arrow strays, radians for each metre a second of the archer's own motion; 0.004 by
+    /// default.
     pub stray: f64,
-    /// Arrows that it has, and gets back when it stands up again; `None` for as many as it wants.
+    /// Number of arrows at first, and again after each respawn; `None`, the default, for unlimited arrows.
     pub arrows: Option<u32>,
 }
 
-/// Stones to throw, which hurt nobody but are heard.
+/// Stones to throw. They do no damage, but creatures hear them.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StoneConfig {
-    /// Where a stone is when it is let go, from the centre of the climber's ball: to its right, up, and ahead, metres.
+    /// Position of a stone when it is released, from the centre of the climber's ball: right, up, and ahead, metres.
     pub hand: DVec3,
     /// Speed, metres a second; 18 by default.
     pub speed: f64,
     /// Radius, metres; 0.05 by default.
     pub radius: f64,
-    /// How loud it is where it hits; 2 by default.
+    /// Loudness of its impact; 2 by default.
     pub loudness: f64,
-    /// Seconds until the next throw; 0.8 by default.
+    /// Seconds from a throw until the next act can begin; 0.8 by default.
     pub again: f64,
 }
 
-/// What it costs to be crushed.
+/// Harm by being crushed.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CrushConfig {
-    /// The room that may be missing without harm, metres; 0.05 by default.
+    /// Missing room that does no harm, metres; 0.05 by default.
     pub depth: f64,
-    /// Hit points a second; 1 by default.
+    /// Hit points lost per second; 1 by default.
     pub damage: f64,
 }
 
 impl FighterConfig {
-    /// All weapons, and [`ClimberConfig::colossus_climber`]. The default.
+    /// A fighter with all weapons and [`ClimberConfig::colossus_climber`]. The default.
     pub const fn hero() -> Self {
         Self {
             climber: ClimberConfig::colossus_climber(),
@@ -156,6 +156,7 @@ impl Default for FighterConfig {
 }
 
 impl SwordConfig {
+    /// The default sword, as a constant for [`FighterConfig::hero`].
     const DEFAULT: Self = Self {
         shoulder: DVec3::new(0.2, 0.9, 0.0),
         arm: 0.6,
@@ -208,6 +209,7 @@ impl Default for SwordConfig {
 }
 
 impl BowConfig {
+    /// The default bow, as a constant for [`FighterConfig::hero`].
     const DEFAULT: Self = Self {
         nock: DVec3::new(0.0, 1.0, 0.6),
         draw: 1.0,
@@ -242,6 +244,7 @@ impl Default for BowConfig {
 }
 
 impl StoneConfig {
+    /// The default stones, as a constant for [`FighterConfig::hero`].
     const DEFAULT: Self = Self {
         hand: DVec3::new(0.3, 1.2, 0.4),
         speed: 18.0,
@@ -266,6 +269,7 @@ impl Default for StoneConfig {
 }
 
 impl CrushConfig {
+    /// The default harm, as a constant for [`FighterConfig::hero`].
     const DEFAULT: Self = Self {
         depth: 0.05,
         damage: 1.0,
@@ -289,7 +293,7 @@ fn place(name: &'static str, found: DVec3) -> Result<(), ArenaError> {
 mod tests {
     use super::*;
 
-    /// Somebody who sets degrees reads what to set instead.
+    /// The error for an angle in degrees tells that radians are expected.
     #[test]
     fn errors_about_angles_name_radians() {
         let sword = SwordConfig {

@@ -7,39 +7,39 @@ use clamber_world::ObstacleId;
 use super::{Blade, BodyFrame, SwordConfig};
 use crate::arena::{CreatureId, Skins, creature_obstacle};
 
-/// How far the chords on which something is looked for may be from the arc, metres.
+/// Greatest distance of a coarse chord from the blade's arc, metres. The blade is thickened by it for the coarse test.
 const ARC: f64 = 0.004;
 
-/// Into how many chords such a one is cut where something is near.
+/// Number of fine chords into which a coarse chord is divided where a creature is near.
 const FINER: u32 = 8;
 
-/// No tick is cut into more chords.
+/// Greatest number of coarse chords in a tick. It bounds the cost of an extremely fast cut.
 const MOST_CHORDS: f64 = 1e4;
 
-/// Something that a blade struck.
+/// A contact of a blade with a part of a creature.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BladeHit {
     pub(crate) creature: CreatureId,
     pub(crate) hit: WorldSweepHit,
-    /// Share of the tick.
+    /// Time of the contact, as a share of the tick.
     pub(crate) time: f64,
 }
 
 impl SwordConfig {
-    /// The angle of the blade at a time of its cut: from 0 at the right to the whole angle.
+    /// Angle of the blade in a cut, `seconds` after its beginning: 0 at the right, up to the whole angle, radians.
     pub(super) fn cut_angle(&self, seconds: f64) -> f64 {
         self.angle * ((seconds - self.wind_up) / self.cut).clamp(0.0, 1.0)
     }
 
-    /// What the blade strikes in a tick of `dt` seconds, in which the cut gets from one time to another and the body
-    /// from one place to another: of each part of each creature the first contact, by time. Parts that are in `struck`
-    /// are left out, and those that are struck are added to it.
+    /// Adds to `hits` the first contact of the blade with each part of each creature in a tick of `dt` seconds, sorted
+    /// by time. In the tick, the cut goes from one time to another, and the body from one frame to another. Parts in
+    /// `struck` are skipped, and the parts that are hit are added to it.
     ///
-    /// The blade's arc is swept in chords. Those of an arc of radius r that are at most e from it span `2 acos(1 - e /
-    /// r)`; a blade that is thicker by e covers the arc, so that nothing is missed. Chords of [`ARC`] tell whether
-    /// anything is near enough. Only there chords of an eighth of their length follow, which are 64 times nearer to the
-    /// arc, and tell what is struck, and when: early by no more than it takes to come nearer by 0.06 mm and the sweep's
-    /// tolerance.
+    /// The blade's arc is swept in chords. A chord that spans at most `2 acos(1 - e / r)` of an arc of radius r stays
+    /// within e of it. A blade that is thicker by e then covers the arc, so no contact is missed. Coarse chords, for
+    /// which e is [`ARC`], only tell whether a creature is near. Where one is, fine chords find the contacts: they have
+    /// an eighth of the length, and are 64 times nearer to the arc. A contact is early by at most the time in which the
+    /// blade comes nearer by 0.06 mm and the sweep's tolerance.
     pub(crate) fn cut_through(
         &self,
         [from, to]: [f64; 2],
@@ -81,7 +81,7 @@ impl SwordConfig {
     }
 }
 
-/// Cuts a span of the tick into parts.
+/// Divides a span of the tick into equal parts.
 fn chords([begin, end]: [f64; 2], parts: u32) -> impl Iterator<Item = [f64; 2]> {
     let at = move |part: u32| begin + (end - begin) * (f64::from(part) / f64::from(parts));
     (0..parts).map(move |part| [at(part), at(part + 1)])
@@ -91,12 +91,12 @@ fn chords([begin, end]: [f64; 2], parts: u32) -> impl Iterator<Item = [f64; 2]> 
 struct Sweeps<'a> {
     struck: &'a mut Vec<(ObstacleId, u32)>,
     hits: &'a mut Vec<BladeHit>,
-    /// Of the blade.
+    /// Radius of the blade, metres.
     radius: f64,
 }
 
 impl Sweeps<'_> {
-    /// True if something that is not yet struck may be met on a chord.
+    /// True if the thickened blade may touch a part on a chord that is not yet struck.
     fn is_near(
         &self,
         skin: &SkinnedSurface,
@@ -107,7 +107,7 @@ impl Sweeps<'_> {
         self.first(skin, creature, span, blades, ARC).is_some()
     }
 
-    /// Strikes what is met on a chord.
+    /// Records the contacts on a fine chord.
     fn strike(
         &mut self,
         skin: &SkinnedSurface,

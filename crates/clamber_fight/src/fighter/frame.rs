@@ -2,21 +2,22 @@ use clamber_climber::Climber;
 use clamber_surface::geometry::slerp;
 use glam::{DMat3, DQuat, DVec3};
 
-/// A climber's body as its weapons see it: a place, and where right, up and ahead are. On a hold it faces what it
-/// holds.
+/// A climber's body as its weapons see it: an origin, and the directions right, up and ahead. On a hold, ahead is into
+/// the surface that it holds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyFrame {
     /// Centre of the climber's ball, in world space.
     pub origin: DVec3,
-    /// Its rotation: x is its right, y up, and -z ahead.
+    /// The body's rotation: x is its right, y is up, and -z is ahead.
     pub rotation: DQuat,
 }
 
-/// How much of its heading a body that holds on turns its head to, beside up: it decides on skin that is level.
+/// Weight of the heading in the up direction of a body on a hold; the climber's own up has weight 1. On level skin,
+/// where that up has no component along the surface, the heading decides.
 const HEADING: f64 = 0.5;
 
 impl BodyFrame {
-    /// Of a climber after its last step.
+    /// The frame of a climber after its last step.
     pub fn of(climber: &Climber) -> Self {
         let (state, up) = (climber.state(), climber.config().up());
         let out = state
@@ -39,17 +40,17 @@ impl BodyFrame {
         }
     }
 
-    /// A place that is given by how far it is to the right, up, and ahead.
+    /// World position of a point that is given relative to the origin: right, up, and ahead, metres.
     pub fn at(&self, place: DVec3) -> DVec3 {
         self.origin + self.direction(place)
     }
 
-    /// A direction that is given by its parts to the right, up, and ahead.
+    /// World direction of a vector that is given by its components right, up, and ahead.
     pub fn direction(&self, direction: DVec3) -> DVec3 {
         self.rotation * DVec3::new(direction.x, direction.y, -direction.z)
     }
 
-    /// The frame at a share of the way to another one.
+    /// Interpolates to another frame.
     pub fn to(&self, other: &Self, share: f64) -> Self {
         Self {
             origin: self.origin + (other.origin - self.origin) * share,

@@ -28,7 +28,7 @@ pub use state::{Act, FighterState, Target};
 use crate::arena::hash_of;
 use crate::error::ArenaError;
 
-/// A fighter of an arena, by its number: they are numbered in the order in which they join, and no number is used twice.
+/// Number of a fighter in an arena. Fighters are numbered in the order in which they join, and no number is used twice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct FighterId(pub u32);
 
@@ -37,10 +37,10 @@ pub struct FighterId(pub u32);
 pub struct Fighter {
     id: FighterId,
     config: FighterConfig,
-    /// Hash of what does not change of it.
+    /// Hash of the number and the configuration, which never change.
     mark: u64,
     climber: Climber,
-    /// All that changes beside the climber; its `climber` is out of date between ticks.
+    /// State without the climber's. The field `climber` in it is stale; [`Fighter::state`] fills it in.
     state: FighterState,
     report: StepReport,
 }
@@ -77,12 +77,12 @@ impl Fighter {
         })
     }
 
-    /// Its number.
+    /// The fighter's number.
     pub fn id(&self) -> FighterId {
         self.id
     }
 
-    /// Its body and weapons.
+    /// The fighter's body and weapons.
     pub fn config(&self) -> &FighterConfig {
         &self.config
     }
@@ -92,17 +92,17 @@ impl Fighter {
         &self.climber
     }
 
-    /// What it does with its weapons.
+    /// The fighter's current act with its weapons.
     pub fn act(&self) -> &Act {
         &self.state.act
     }
 
-    /// What happened in its climber's last step, and what it pushed.
+    /// Events and pushes of its climber's last step.
     pub fn report(&self) -> &StepReport {
         &self.report
     }
 
-    /// True from its death until it stands up again.
+    /// True from the fighter's death until it lives again.
     pub fn is_dead(&self) -> bool {
         self.state.dead.is_some()
     }
@@ -113,7 +113,7 @@ impl Fighter {
         bow.arrows.map(|_| self.state.arrows)
     }
 
-    /// Strength of the stab that is being charged, from 0 to 1; 0 if there is none.
+    /// Strength of the current stab, from 0 to 1; 0 without a stab.
     pub fn charge(&self) -> f64 {
         match self.state.act {
             Act::Charge { charge, .. } | Act::Strike { charge, .. } | Act::Plunge { charge } => {
@@ -131,7 +131,7 @@ impl Fighter {
         }
     }
 
-    /// All that changes.
+    /// The fighter's complete state.
     pub fn state(&self) -> FighterState {
         FighterState {
             climber: *self.climber.state(),
@@ -143,7 +143,7 @@ impl Fighter {
         self.mark
     }
 
-    /// All that changes beside the climber.
+    /// State without the climber's; the field `climber` in it is stale.
     pub(crate) fn rest(&self) -> &FighterState {
         &self.state
     }
@@ -164,7 +164,7 @@ impl Fighter {
         Ok(())
     }
 
-    /// Refuses states that its climber cannot be in.
+    /// Checks that its climber can be in a saved state.
     pub(crate) fn check(&self, state: &FighterState) -> Result<(), ArenaError> {
         let mut climber = Climber::new(self.config.climber, state.spawn)?;
         Ok(climber.restore(state.climber)?)
@@ -178,7 +178,7 @@ impl Fighter {
     }
 }
 
-/// Hash of what does not change of a fighter.
+/// Hash of the constant part of a fighter: number and configuration.
 pub(crate) fn fighter_mark(id: FighterId, config: &FighterConfig) -> u64 {
     hash_of(2, &(id, config))
 }

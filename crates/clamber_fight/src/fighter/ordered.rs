@@ -1,4 +1,4 @@
-//! What orders do to a fighter.
+//! Effects of orders on a fighter.
 
 use clamber_climber::{Blow, Climber, ClimberError, ClimberState};
 use glam::DVec3;
@@ -6,7 +6,7 @@ use glam::DVec3;
 use super::{Act, Fighter};
 
 impl Fighter {
-    /// Puts it somewhere else, at rest in the air, with the hit points, the stamina and the heading that it has.
+    /// Moves the climber to a place, at rest in the air. It keeps its hit points, its stamina and its heading.
     pub(super) fn put(&mut self, place: DVec3) -> Result<(), ClimberError> {
         let before = *self.climber.state();
         let fresh = Climber::new(self.config.climber, place)?;
@@ -18,8 +18,8 @@ impl Fighter {
         })
     }
 
-    /// Puts it somewhere else; it goes aside if somebody is there. What it did with its weapons is over, and so is what
-    /// struck or crushed it in the last tick.
+    /// Moves the fighter to a place; the step moves it aside if that is occupied. Its act ends, and blows and harm that
+    /// wait for the next tick are dropped.
     pub(crate) fn place(&mut self, place: DVec3) -> Result<(), ClimberError> {
         self.put(place)?;
         self.state.act = Act::Ready;
@@ -29,7 +29,7 @@ impl Fighter {
         Ok(())
     }
 
-    /// Loses hit points. Without any left it dies in this step.
+    /// Takes hit points. A fighter without hit points dies in this step.
     pub(crate) fn hurt(&mut self, damage: f64) -> Result<(), ClimberError> {
         if self.is_dead() {
             return Ok(());
@@ -39,7 +39,7 @@ impl Fighter {
         self.climber.restore(state)
     }
 
-    /// Gives hit points and stamina back, unless it is dead.
+    /// Gives hit points and stamina to a living fighter, up to 1 each.
     pub(crate) fn heal(&mut self, hit_points: f64, stamina: f64) -> Result<(), ClimberError> {
         if self.is_dead() {
             return Ok(());
@@ -50,7 +50,8 @@ impl Fighter {
         self.climber.restore(state)
     }
 
-    /// Takes a blow with the next step of its climber: of several the hardest, with the damage of all.
+    /// Stores a blow for the climber's next step. Among several blows, the hardest one's velocity counts, and the
+    /// damages add up.
     pub(crate) fn take_blow(&mut self, mut dealt: Blow) {
         if let Some(other) = self.state.blow {
             if other.velocity.length_squared() >= dealt.velocity.length_squared() {
@@ -61,7 +62,7 @@ impl Fighter {
         self.state.blow = Some(dealt);
     }
 
-    /// Stands up again where it rises, if it is dead; true if it was.
+    /// Revives a dead fighter at its spawn point. Returns true if it was dead.
     pub(crate) fn rise(&mut self) -> Result<bool, ClimberError> {
         let is_dead = self.is_dead();
         if is_dead {

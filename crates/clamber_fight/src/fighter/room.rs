@@ -1,4 +1,4 @@
-//! Where a fighter finds room: at its spawn, or as near to it as there is some.
+//! Room for a fighter: at a place, or as near to it as possible.
 
 use clamber_climber::Climber;
 use clamber_surface::geometry::WorldCapsule;
@@ -8,39 +8,43 @@ use glam::DVec3;
 use super::Fighter;
 use crate::arena::creature_of;
 
-/// Rings of places about a spawn, as many places on each more than on the one before it, and the distance between rings,
-/// in radii of the body.
+/// Number of rings of candidate places around a place.
 const RINGS: u32 = 16;
+/// Places on the innermost ring. Each further ring has this many more, so that the distance along a ring stays the
+/// same.
 const MORE: u32 = 6;
+/// Distance between rings, in radii of the body. Equal bodies at neighbouring places do not touch.
 const APART: f64 = 2.5;
 
-/// More rings, of so many places and each farther away than the one before it by this factor, for a spawn in a creature:
-/// that may be larger than all the others.
+/// Number of further rings for a place inside a creature, since the creature may be larger than the inner rings.
 const FAR_RINGS: u32 = 9;
+/// Places on each further ring.
 const FAR_PLACES: u32 = 24;
+/// Ratio of the radii of consecutive further rings.
 const FARTHER: f64 = 1.5;
 
-/// A body has room where nothing is nearer than this share of its radius: it may stand on the ground.
+/// A body has no room if an obstacle is nearer to its segment than this share of its radius, or if it overlaps another
+/// body that is thinned likewise. Below 1, so that a body that stands on the ground has room.
 const SHARE: f64 = 0.8;
 
-/// The core of a body, as a share of its radius.
+/// Radius of a body's core, as a share of its radius. A body whose core overlaps terrain is in rock.
 const CORE: f64 = 0.3;
 
-/// How far below a spawn its ground may be, as a share of the body's height: a place without any is none, if the spawn has
-/// some.
+/// Greatest depth of the ground below a place, in heights of the body. If the wanted place has ground, places without
+/// ground are refused.
 const GROUND: f64 = 2.0;
 
-/// What a fighter must not rise in.
+/// Obstacles and bodies that take up room.
 pub(crate) struct Room<'a> {
     /// Terrain and creatures.
     pub(crate) obstacles: &'a [(ObstacleId, &'a dyn Obstacle)],
-    /// The bodies of the others.
+    /// The bodies of other fighters.
     pub(crate) bodies: &'a [WorldCapsule],
 }
 
 impl Fighter {
-    /// The place nearest to another one where this fighter has room; `None` if there is none within some 40 radii, or
-    /// 1,500 for a place in a creature.
+    /// The free place nearest to `near` for this fighter. `None` if no place within about 40 radii is free, or within
+    /// 1,500 radii if `near` is inside a creature.
     pub(crate) fn free_place(&self, near: DVec3, room: &Room<'_>) -> Option<DVec3> {
         let size = self.config.climber.body.radius;
         let body = |place: DVec3| Climber::new(self.config.climber, place).map(|new| new.body());
@@ -49,7 +53,7 @@ impl Fighter {
             let from = place + DVec3::Y * size;
             let mut all = room.obstacles.iter();
             all.any(|(_, obstacle)| {
-                // What it is in is none.
+                // An obstacle that the ray begins in is not ground.
                 let hit = obstacle.cast_ray(from, DVec3::NEG_Y, depth);
                 hit.is_some_and(|hit| hit.distance > 0.0)
             })
@@ -68,7 +72,7 @@ impl Fighter {
 }
 
 impl Room<'_> {
-    /// True if the core of a body is in terrain: that pushes out only what is put into it a little.
+    /// True if the core of a body overlaps terrain. Terrain pushes out only bodies that overlap it a little.
     pub(crate) fn is_in_rock(&self, body: &WorldCapsule) -> bool {
         let core = WorldCapsule {
             radius: CORE * body.radius,
@@ -85,7 +89,7 @@ impl Room<'_> {
         !contacts.is_empty()
     }
 
-    /// True if a body overlaps nothing, and is in no creature.
+    /// True if a body overlaps no obstacle and no other body, and is not inside a creature.
     pub(crate) fn is_free(&self, body: &WorldCapsule) -> bool {
         let middle = 0.5 * (body.ends[0] + body.ends[1]);
         let mut contacts: Vec<Contact> = Vec::new();
@@ -102,8 +106,8 @@ impl Room<'_> {
     }
 }
 
-/// True if a place may be inside a skin: at least two of six rays from there leave it through its back. Inside not all do,
-/// since skins have holes and pieces that overlap; outside one may, through a hole.
+/// True if a place may be inside a skin: at least two of six rays from it leave the skin through its back. From inside
+/// not all six do, because skins have holes and overlapping pieces. From outside one ray may, through a hole.
 fn is_inside(skin: &dyn Obstacle, place: DVec3) -> bool {
     let ways = [DVec3::X, DVec3::Y, DVec3::Z].map(|way| [way, -way]);
     let leaves = ways.as_flattened().iter().filter(|way| {
@@ -125,7 +129,7 @@ fn overlap(one: &WorldCapsule, other: &WorldCapsule) -> bool {
     low < other_high && other_low < high && level < SHARE * (one.radius + other.radius)
 }
 
-/// A place, and places on rings about it, from the inside out; and on so many that are far away.
+/// Candidate places: the middle, then the rings around it from the inside out, then `far_rings` further rings.
 fn places(middle: DVec3, apart: f64, far_rings: u32) -> impl Iterator<Item = DVec3> {
     let near = (1..=RINGS).map(move |ring| (MORE * ring, apart * f64::from(ring)));
     let last = apart * f64::from(RINGS);

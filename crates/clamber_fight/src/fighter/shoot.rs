@@ -1,4 +1,4 @@
-//! Arrows and stones leave the hand.
+//! Shooting arrows and throwing stones.
 
 use clamber_surface::geometry::rotation_from_axis_angle;
 use glam::DVec3;
@@ -8,11 +8,11 @@ use crate::projectile::{
     Projectile, ProjectileBody, ProjectileId, ProjectileKind, ProjectileMotion,
 };
 
-/// A faster archer than this does not stray more, radians.
+/// Largest angle by which an arrow strays, radians, however fast the archer moves.
 const MOST_STRAY: f64 = 0.5;
 
 impl BowConfig {
-    /// What matters of its arrows in flight.
+    /// The bow's arrow as a projectile.
     pub fn arrow(&self) -> ProjectileBody {
         ProjectileBody {
             radius: self.radius,
@@ -26,7 +26,7 @@ impl BowConfig {
 }
 
 impl StoneConfig {
-    /// What matters of these stones in flight.
+    /// The stone as a projectile.
     pub fn stone(&self) -> ProjectileBody {
         ProjectileBody {
             radius: self.radius,
@@ -40,27 +40,27 @@ impl StoneConfig {
 }
 
 impl Fighter {
-    /// Where it aims: along the input's aim, or ahead of it if that is zero.
+    /// Direction of the aim: the input's aim, or straight ahead if that is zero.
     pub(super) fn aim(&self, aim: DVec3) -> DVec3 {
         let ahead = || BodyFrame::of(&self.climber).direction(DVec3::Z);
         aim.try_normalize().unwrap_or_else(ahead)
     }
 
-    /// Where an arrow's tip is when it is let go, in world space; `None` without a bow. With terrain or skin between the
-    /// centre of the climber's ball and there, an arrow begins before that.
+    /// Position of an arrow's tip when it is released, in world space; `None` without a bow. If terrain or skin is
+    /// between the centre of the climber's ball and this position, a shot begins just before that obstacle.
     pub fn nock(&self) -> Option<DVec3> {
         let bow = self.config.bow.as_ref()?;
         Some(BodyFrame::of(&self.climber).at(bow.nock))
     }
 
-    /// Velocity of an arrow that would be let go now at a draw from 0 to 1, if it did not stray; `None` without a bow.
+    /// Velocity of an arrow that is released now without straying, at a draw from 0 to 1; `None` without a bow.
     pub fn arrow_velocity(&self, aim: DVec3, drawn: f64) -> Option<DVec3> {
         let bow = self.config.bow.as_ref()?;
         let own = self.climber.state().velocity;
         Some(self.aim(aim) * (bow.speed * drawn.clamp(0.0, 1.0)) + own)
     }
 
-    /// Lets an arrow go.
+    /// Shoots an arrow. `None` without a bow or arrows.
     pub(super) fn shoot(
         &mut self,
         tick: &Wielding<'_>,
@@ -87,7 +87,7 @@ impl Fighter {
         })
     }
 
-    /// Throws a stone.
+    /// Throws a stone. `None` without stones.
     pub(super) fn throw(&mut self, tick: &Wielding<'_>, id: ProjectileId) -> Option<Projectile> {
         let stones = self.config.stones?;
         let hand = BodyFrame::of(&self.climber).at(stones.hand);
@@ -104,7 +104,8 @@ impl Fighter {
         })
     }
 
-    /// Turns a velocity by up to an angle, in any direction, all places of the cone's disc being equally likely.
+    /// Turns a velocity by a random angle up to `angle`, in a random direction. Hits are spread evenly over the cone's
+    /// disc.
     fn stray(&mut self, velocity: DVec3, angle: f64) -> DVec3 {
         if angle <= 0.0 {
             return velocity;

@@ -1,4 +1,4 @@
-//! Stabs: where they go, and when the blade is there.
+//! Stabs: their target, and the blade's contact.
 
 use clamber_surface::geometry::WorldCapsule;
 use clamber_surface::surface::{CastOptions, TargetMotion};
@@ -8,13 +8,14 @@ use glam::DVec3;
 use super::{Around, Blade, BodyFrame, Fighter, SwordConfig, Target};
 use crate::arena::{CreatureId, creature_obstacle, creature_of};
 
-/// Where a stab begins to look for skin, from the centre of the climber's ball, as shares of the ball's radius: how far
-/// ahead along the skin, and how far above it.
+/// Distance from the centre of the climber's ball along the surface at which a stab looks for skin, in radii of the
+/// ball: ahead of a standing climber, above one on a hold.
 const ALONG: f64 = 0.9;
+/// Distance from the ball's centre away from the surface at which the ray for skin begins, in radii of the ball.
 const ABOVE: f64 = 1.0;
 
 impl SwordConfig {
-    /// The blade with its tip where the stab goes.
+    /// The blade with its tip at the stab's target.
     pub(super) fn struck(&self, frame: &BodyFrame, target: &Target) -> Blade {
         let below = self.below(frame);
         match target {
@@ -28,8 +29,9 @@ impl SwordConfig {
 }
 
 impl Fighter {
-    /// The point of the skin before it into which a stab would go: below where it stands, ahead of it, or before its
-    /// hands. None behind terrain or another creature. The attachment's offset is a unit vector into the skin.
+    /// The point of skin that a stab would hit: ahead of the feet, or in front of the hands on a hold. [`Target::Air`]
+    /// without a sword, if no skin is in reach, or if terrain or another creature is in between. The attachment's
+    /// offset is a unit vector into the skin.
     pub(crate) fn stab_target(&self, around: &Around<'_>) -> Target {
         let Some(sword) = &self.config.sword else {
             return Target::Air;
@@ -51,12 +53,12 @@ impl Fighter {
         }
         let obstacle = creature_obstacle(creature);
         let at = Attachment::new(obstacle, skin, &hit, hit.point);
-        // The offset is where the blade goes from there.
+        // The offset is the direction of the blade from the point.
         Target::Skin(at.moved_to(at.point + into))
     }
 
-    /// Where a stab goes when it lands: to the skin for which it was meant, or, if that is too far away or behind
-    /// something by now, to what is before it instead.
+    /// The target of a stab when it lands. If the chosen point of skin is too far away by now, or hidden by an
+    /// obstacle, the stab gets a new target.
     pub(super) fn still_reached(&self, target: Target, around: &Around<'_>) -> Target {
         let (Some(sword), Target::Skin(at)) = (&self.config.sword, &target) else {
             return target;
@@ -70,7 +72,7 @@ impl Fighter {
         self.stab_target(around)
     }
 
-    /// Where a stab begins: at the body's middle; where it begins to look for skin, and in which direction.
+    /// The centre of the climber's ball, the origin of the ray for skin, and the ray's direction.
     fn stab_way(&self) -> (DVec3, DVec3, DVec3) {
         let frame = BodyFrame::of(&self.climber);
         let holds = self.climber.state().mode.is_holding();
@@ -84,8 +86,8 @@ impl Fighter {
         (frame.origin, from, frame.direction(into))
     }
 
-    /// The first skin that the blade below a falling body meets between two places of the body. `None` if terrain or
-    /// another creature is in between.
+    /// The first skin that the blade below a falling body touches while the body goes from one frame to the other.
+    /// `None` if terrain or another creature is in between.
     pub(super) fn plunge_contact(
         &self,
         frames: [BodyFrame; 2],
@@ -107,7 +109,7 @@ impl Fighter {
         });
         let first = contacts.min_by(|a, b| a.1.time.total_cmp(&b.1.time).then(a.0.cmp(&b.0)));
         first.filter(|(creature, hit)| {
-            // At the end of the tick, where what comes between is.
+            // The point is taken at the end of the tick, where the rays see obstacles.
             let contact = &hit.contact;
             let place = around.now(*creature, &contact.material, contact.point, dt);
             !around.hides(&[frames[1].origin, place], Some(*creature))

@@ -3,85 +3,86 @@ use clamber_world::{Attachment, ObstacleId};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-/// All that changes in a fighter: a plain value.
+/// The complete state of a fighter: a plain value.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FighterState {
-    /// The climber.
+    /// State of the climber.
     pub climber: ClimberState,
-    /// What it is doing with its weapons.
+    /// Current act with its weapons.
     pub act: Act,
-    /// Its buttons in the last tick.
+    /// Buttons of the last tick.
     pub actions: u32,
-    /// A blow that it gets with the next tick.
+    /// Blow that strikes it in the next tick.
     pub blow: Option<Blow>,
-    /// Damage without a blow that it takes with the next tick.
+    /// Hit points that it loses in the next tick without a blow.
     pub harm: f64,
-    /// Seconds for which it is still held by the impact of its own weapon.
+    /// Seconds for which the impact of its own blade still holds it.
     pub hit_stop: f64,
-    /// Seconds since its death; `None` while it lives.
+    /// Seconds since its death; `None` while it is alive.
     pub dead: Option<f64>,
     /// Arrows left, if they are counted.
     pub arrows: u32,
-    /// State of its random stream, of which its arrows stray.
+    /// State of its random stream, from which the straying of arrows is drawn.
     pub random: u64,
-    /// False until it has found room where it is: at its beginning, after it was placed, and after a creature was put
-    /// there. It looks in its next step, and then now and then.
+    /// False until it has found room: when it joins, after an order moved or revived it, and after an order put a
+    /// creature on it. It looks for room at once, then every half second.
     pub has_begun: bool,
-    /// Where it stands up again after its death: the centre of its climber's ball.
+    /// Spawn point after a death: the centre of its climber's ball.
     pub spawn: DVec3,
 }
 
-/// Where the numbers of plates begin in [`Act::Cut`].
+/// Offset of the indices of plates in the list `harmed` of [`Act::Cut`]. Indices of weak points are below it.
 pub(super) const HARMED_PLATES: u32 = 1 << 31;
 
-/// What a fighter does with its weapons.
+/// An act of a fighter with its weapons.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub enum Act {
-    /// Nothing: it can begin something.
+    /// No act: a new one can begin.
     #[default]
     Ready,
     /// Cuts with the sword.
     Cut {
-        /// Seconds since it began.
+        /// Seconds since the cut began.
         seconds: f64,
-        /// What this cut has struck: creatures, and parts of them.
+        /// Parts of creatures that this cut has struck: the creature's obstacle id, and the part's index.
         struck: Vec<(ObstacleId, u32)>,
-        /// What this cut has hurt: creatures, and the numbers of their weak points, or 2^31 more than those of plates.
+        /// Weak points and plates that this cut has hurt: the creature's obstacle id, and the index. 2^31 is added to
+        /// the index of a plate.
         harmed: Vec<(ObstacleId, u32)>,
     },
     /// Raises the sword for a stab.
     Raise {
-        /// Seconds since it began.
+        /// Seconds since it began to raise the sword.
         seconds: f64,
-        /// True in a fall or a jump.
+        /// True if it has been in the air all the time.
         falls: bool,
     },
-    /// Holds the sword up while the stab gets stronger.
+    /// Holds the raised sword while the stab gets stronger.
     Charge {
         /// Share of the full strength, from 0 to 1.
         charge: f64,
-        /// True in a fall or a jump.
+        /// True if it has been in the air all the time.
         falls: bool,
     },
-    /// The blade comes down.
+    /// Brings the blade down.
     Strike {
-        /// Seconds since it began.
+        /// Seconds since the strike began.
         seconds: f64,
-        /// Share of the full strength.
+        /// Share of the full strength, from 0 to 1.
         charge: f64,
-        /// Where it goes.
+        /// Target of the blade.
         target: Target,
     },
-    /// Falls with the blade ahead.
+    /// Falls with the blade below its body.
     Plunge {
-        /// Share of the full strength.
+        /// Share of the full strength, from 0 to 1.
         charge: f64,
     },
-    /// Pulls the blade out.
+    /// Pulls the blade out of the skin.
     PullOut {
         /// Seconds left.
         seconds: f64,
-        /// Where the blade is.
+        /// Position of the blade.
         target: Target,
     },
     /// Draws the bow.
@@ -89,21 +90,21 @@ pub enum Act {
         /// Share of a full draw, from 0 to 1.
         drawn: f64,
     },
-    /// Has thrown a stone.
+    /// Has thrown a stone, and cannot act yet.
     Throw {
         /// Seconds left.
         seconds: f64,
     },
 }
 
-/// Where a stab goes.
+/// Target of a stab.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Target {
-    /// Not yet chosen: at the end of this tick.
+    /// Not chosen yet: it is chosen at the end of this tick.
     Open,
-    /// A point of a creature's skin: the blade's tip is there when it strikes.
+    /// A point of a creature's skin. The blade's tip is there when it strikes.
     Skin(Attachment),
-    /// Nothing in reach: the blade goes into the air.
+    /// No skin in reach: the stab hits the air.
     Air,
 }
 

@@ -1,28 +1,29 @@
 use glam::DVec3;
 
-/// What acts on a projectile in flight.
+/// Forces on a projectile in flight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Flight {
     /// Gravity, metres a second squared.
     pub gravity: DVec3,
-    /// Drag: the deceleration is this times the square of the speed, 1/m.
+    /// Drag, 1/m: the deceleration is this times the square of the speed.
     pub drag: f64,
 }
 
-/// The longest step with drag, seconds, and the largest share of its speed that drag takes in one, at the speed with which
-/// it begins. Runge and Kutta's method of fourth order then errs by less than a micrometre in 4 s at 60 m/s, and by less
-/// than 1e-4 of the speed at any.
+/// Longest integration step with drag, seconds. With it and [`SHARE`], the classical Runge-Kutta method errs by less
+/// than a micrometre in 4 s at 60 m/s, and by less than 1e-4 of the speed at any speed.
 const LONGEST: f64 = 1.0 / 60.0;
+/// Largest share of the speed at the step's beginning that drag takes in one step.
 const SHARE: f64 = 0.1;
 
-/// It takes no more steps than that: what would need more is no flight.
+/// Greatest number of integration steps in one call. It bounds the cost of extreme speeds and durations; time that is
+/// left after these steps is not integrated.
 const MOST_STEPS: u32 = 1_000_000;
 
 impl Flight {
     /// Position and velocity after `dt` seconds.
     ///
     /// Without drag this is exact: `p + v t + g t^2 / 2`. With drag it is integrated by the classical Runge-Kutta
-    /// method, in steps of at most 1/60 s, in which drag takes at most a tenth of the speed.
+    /// method of fourth order. A step is at most 1/60 s long, and drag takes at most a tenth of the speed in it.
     pub fn step(&self, position: DVec3, velocity: DVec3, dt: f64) -> (DVec3, DVec3) {
         if self.drag == 0.0 {
             let moved = position + velocity * dt + self.gravity * (0.5 * dt * dt);
@@ -55,8 +56,8 @@ impl Flight {
         self.gravity - velocity * (velocity.length() * self.drag)
     }
 
-    /// Places along a flight, one each `dt` seconds, from its beginning on: for an arc that is drawn while somebody
-    /// aims.
+    /// Positions along a flight, one each `dt` seconds, beginning with the start: for an arc that is drawn while a
+    /// player aims.
     pub fn arc(self, position: DVec3, velocity: DVec3, dt: f64) -> impl Iterator<Item = DVec3> {
         let mut now = (position, velocity);
         std::iter::from_fn(move || {
@@ -71,6 +72,7 @@ impl Flight {
 mod tests {
     use super::*;
 
+    /// Gravity of the tests, metres a second squared.
     const GRAVITY: DVec3 = DVec3::new(0.0, -9.81, 0.0);
 
     #[test]
@@ -92,7 +94,8 @@ mod tests {
 
     #[test]
     fn drag_takes_its_share_of_the_speed() {
-        // 56.4 m/s lose exp(-k s) over a distance s without gravity: 7.4 % over 70 m.
+        // Over a distance s without gravity, the speed decreases by the factor exp(-k s): 56.4 m/s lose 7.4 % over 70
+        // m.
         let drag = 1.1e-3;
         for rate in [30u32, 60, 240] {
             let flight = Flight {
@@ -112,7 +115,7 @@ mod tests {
                 "{rate} Hz: {lost}"
             );
         }
-        // With gravity, the same place at every rate.
+        // With gravity, the arrow is at the same place at every rate.
         let after = |rate: u32| {
             let flight = Flight {
                 gravity: GRAVITY,
@@ -131,7 +134,7 @@ mod tests {
         }
     }
 
-    /// However strong it is: without gravity a speed of v is v / (1 + k v t) after t.
+    /// Also for strong drag: without gravity, a speed of v is v / (1 + k v t) after t.
     #[test]
     fn strong_drag_slows_down() {
         for speed in [1.0, 150.0, 240.0, 1e3, 1e4, 1e12, 1e100] {

@@ -1,4 +1,4 @@
-//! Arrows and stones: in flight, in the skin, and falling.
+//! Arrows and stones: in flight, stuck, and falling.
 
 mod flight;
 mod step;
@@ -14,93 +14,95 @@ pub(crate) use stuck::place_on;
 
 use crate::fighter::FighterId;
 
-/// Number of a projectile: they are numbered in the order in which they are shot, and no number is used twice.
+/// Number of a projectile. Projectiles are numbered in the order in which they are shot, and no number is used twice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct ProjectileId(pub u64);
 
 /// An arrow or a stone.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Projectile {
-    /// Its number.
+    /// The projectile's number.
     pub id: ProjectileId,
-    /// What it is.
+    /// Arrow or stone.
     pub kind: ProjectileKind,
-    /// Who shot or threw it, who may have left since.
+    /// The fighter that shot or threw it; it may have left since.
     pub by: FighterId,
-    /// What of it matters in flight.
+    /// Properties in flight and at a hit.
     pub body: ProjectileBody,
-    /// Seconds since it was shot, since it stuck, or since it has been falling.
+    /// Seconds since it was shot, got stuck, or came loose, whichever was last.
     pub seconds: f64,
-    /// How it moves.
+    /// Its motion.
     pub motion: ProjectileMotion,
 }
 
-/// What of a projectile matters in flight and when it hits. It keeps that of the bow or the stones of whoever shot it.
+/// A projectile's properties in flight and at a hit. They are copied from the bow or the stones when it is shot, so
+/// they stay when its fighter leaves.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ProjectileBody {
     /// Radius, metres.
     pub radius: f64,
-    /// Drag, 1/m: its air brakes an arrow by this times the square of its speed.
+    /// Drag, 1/m: the deceleration is this times the square of the speed.
     pub drag: f64,
-    /// How deep its tip goes into what it hits, metres.
+    /// How deep its tip goes into the obstacle that it hits, metres.
     pub depth: f64,
-    /// Damage at [`ProjectileBody::speed`]; it grows with the square of the speed relative to what is hit.
+    /// Damage at [`ProjectileBody::speed`]. It grows with the square of the speed relative to the material that it
+    /// hits.
     pub damage: f64,
-    /// Speed at which it does its damage, metres a second.
+    /// Relative speed at which it does its nominal damage, metres a second.
     pub speed: f64,
-    /// How loud it is where it hits; 0 if nobody hears it.
+    /// Loudness of its impact; 0 for silent.
     pub loudness: f64,
 }
 
-/// What a projectile is.
+/// Kind of a projectile.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum ProjectileKind {
-    /// An arrow: it sticks.
+    /// An arrow, which sticks in the obstacle that it hits.
     Arrow,
-    /// A stone: it is heard where it hits, and is gone then.
+    /// A stone. Creatures hear its impact; it is removed then.
     Stone,
 }
 
-/// How a projectile moves.
+/// Motion of a projectile.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum ProjectileMotion {
-    /// Flies.
+    /// The projectile flies.
     Flying {
         /// Its tip, in world space.
         position: DVec3,
         /// Its velocity, metres a second.
         velocity: DVec3,
     },
-    /// Sticks.
+    /// The arrow sticks.
     Stuck {
-        /// Where: the tip is the attachment's offset below the skin. Of creatures it is followed only when somebody
-        /// asks ([`Arena::place`](crate::Arena::place)): its `point` and `frame` are those of the tick in which it
-        /// stuck.
+        /// Attachment to the material; the tip is at its offset, below the surface. On creatures the attachment does
+        /// not follow the skin: its `point` and `frame` are from the tick in which the arrow got stuck, and
+        /// [`Arena::place`](crate::Arena::place) computes the current position.
         at: Attachment,
-        /// Where it points, in the frame of the material.
+        /// Direction in which it points, in the frame of the material; a unit vector.
         direction: DVec3,
     },
-    /// Falls, and hurts nobody: what it stuck in is gone, or there were too many.
+    /// An arrow that came loose falls, and does no damage: its material is gone, or too many arrows stick.
     Falling {
         /// Its tip, in world space.
         position: DVec3,
         /// Its velocity, metres a second.
         velocity: DVec3,
-        /// Where it points.
+        /// Direction in which it points; a unit vector.
         direction: DVec3,
     },
 }
 
-/// Where a projectile is after a tick.
+/// Position and direction of a projectile after a tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProjectilePlace {
     /// Its tip, in world space.
     pub tip: DVec3,
-    /// Where it points: a unit vector.
+    /// Direction in which it points; a unit vector.
     pub direction: DVec3,
 }
 
-/// What sticks is no farther from the skin that it is in than this, metres.
+/// Largest coordinate of a stuck arrow's offset from the skin, metres. A saved state beyond it is refused.
 const MOST_OFFSET: f64 = 1e9;
 
 impl Projectile {

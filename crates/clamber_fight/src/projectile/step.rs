@@ -12,14 +12,16 @@ use super::{
 };
 use crate::arena::{ArenaEvent, Hit, Outcome, Skins, Weapon, creature_obstacle, creature_of};
 
-/// Seconds after which an arrow that has met nothing is gone, and one that falls.
+/// Seconds after which a projectile in flight is removed.
 const LONGEST_FLIGHT: f64 = 20.0;
+/// Seconds after which a falling arrow is removed.
 const LONGEST_FALL: f64 = 10.0;
 
-/// Distance, metres, by which moving terrain may be elsewhere than an arrow in it remembers, beside its motion.
+/// Slack of [`Attachment::follow`](clamber_world::Attachment::follow) for arrows in terrain, metres: the distance by
+/// which terrain may be displaced, beside its motion, without losing the arrow.
 const SLACK: f64 = 0.01;
 
-/// What projectiles fly through.
+/// The obstacles and forces that projectiles meet in a tick.
 #[derive(Clone, Copy)]
 pub(crate) struct Air<'a> {
     pub(crate) skins: Skins<'a>,
@@ -28,7 +30,7 @@ pub(crate) struct Air<'a> {
     pub(crate) dt: f64,
 }
 
-/// Whether a projectile is still there.
+/// Whether a projectile still exists after a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Flown {
     There,
@@ -46,7 +48,7 @@ impl<'a> Air<'a> {
         found.map(|(_, obstacle)| *obstacle)
     }
 
-    /// The first contact of a ball over the tick, with whatever moves meanwhile. At equal times the smaller id wins.
+    /// The first contact of a ball over the tick with moving terrain and skins. At equal times the smaller id wins.
     fn first_contact(
         &self,
         from: DVec3,
@@ -76,7 +78,7 @@ impl<'a> Air<'a> {
 }
 
 impl Projectile {
-    /// Lets a tick pass.
+    /// Advances the projectile by one tick.
     pub(crate) fn step(&mut self, air: &Air<'_>, out: &mut Outcome) -> Flown {
         self.seconds += air.dt;
         match self.motion {
@@ -99,7 +101,7 @@ impl Projectile {
                 let (to, velocity) = flight.step(position, velocity, air.dt);
                 let radius = self.body.radius;
                 let meets = air.first_contact(position, to - position, radius);
-                // What it has just come loose from touches it still.
+                // For half a second, it may still touch the obstacle from which it has just come loose.
                 let ends = meets.is_some_and(|(.., hit)| !hit.started_inside || self.seconds > 0.5);
                 if ends || self.seconds > LONGEST_FALL || !to.is_finite() {
                     return Flown::Gone;
@@ -157,7 +159,7 @@ impl Projectile {
         Flown::There
     }
 
-    /// Tells whom it struck, at a velocity relative to what it struck, and who hears it.
+    /// Records the hit on a creature, and the noise of the impact. `velocity` is relative to the material that was hit.
     fn hit(&self, id: ObstacleId, hit: &SweepContact, velocity: DVec3, out: &mut Outcome) {
         let weapon = match self.kind {
             ProjectileKind::Arrow => Weapon::Arrow,
@@ -188,7 +190,7 @@ impl Projectile {
         }
     }
 
-    /// Stays where it sticks, as long as that is there.
+    /// Keeps a stuck arrow in its material, or lets it fall if the material is gone.
     fn stay(&mut self, air: &Air<'_>, out: &mut Outcome) {
         let ProjectileMotion::Stuck { at, direction } = &mut self.motion else {
             return;
@@ -198,7 +200,7 @@ impl Projectile {
                 let triangle = at.material.triangle();
                 triangle.is_some_and(|triangle| skin.is_enabled(triangle))
             }),
-            // Terrain can be asked for no less than where it is.
+            // Terrain does not tell whether its material is there. It is gone if the attachment cannot follow it.
             None => air
                 .obstacle(at.obstacle)
                 .is_some_and(|obstacle| at.follow(obstacle, air.dt, SLACK).is_some()),
@@ -209,8 +211,8 @@ impl Projectile {
         }
     }
 
-    /// Comes loose from skin that is gone with the next step: it falls from where it is, from rest. The skin's motion is no
-    /// part of what is saved, so that nothing may depend on it here.
+    /// Comes loose from skin that is removed in this step. It falls from rest: the skin's motion is not saved, so the
+    /// result must not depend on it here.
     pub(crate) fn drop_from(&mut self, skin: &dyn Obstacle, out: &mut Outcome) {
         let ProjectileMotion::Stuck { at, direction } = self.motion else {
             return;
@@ -230,7 +232,7 @@ impl Projectile {
         });
     }
 
-    /// Comes loose, with the velocity of what it stuck in.
+    /// Comes loose, with the velocity of the material that it stuck in.
     pub(crate) fn fall(&mut self, air: &Air<'_>, out: &mut Outcome) {
         let ProjectileMotion::Stuck { at, direction } = self.motion else {
             return;
@@ -244,7 +246,7 @@ impl Projectile {
         let still = loose(at.position(), DVec3::ZERO, at.frame);
         let skin = creature_of(at.obstacle).and_then(|creature| air.skins.get(creature));
         self.motion = match skin {
-            // Hidden skin has a motion as well.
+            // Disabled triangles, as of a broken plate, have a motion as well.
             Some(skin) => {
                 let anchor = at.material.anchor_on(skin);
                 let motion = anchor.and_then(|anchor| skin.in_world().motion(&anchor, air.dt).ok());

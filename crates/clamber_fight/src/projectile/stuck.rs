@@ -1,4 +1,4 @@
-//! Arrows in skin.
+//! Arrows that stick in obstacles.
 
 use clamber_surface::geometry::rotation_from_axis_angle;
 use clamber_world::{Attachment, Obstacle, ObstacleId, SweepContact};
@@ -6,8 +6,9 @@ use glam::{DQuat, DVec3};
 
 use super::{ProjectileMotion, ProjectilePlace};
 
-/// Sticks into what was touched, in its current state, at a share of the tick that ends now: the tip goes `depth`
-/// deeper than the contact along `direction`. `None` if the material has no motion.
+/// Attaches an arrow to the obstacle that it has hit. The obstacle is in its pose at the end of the tick. The tip goes
+/// `depth` metres deeper than the contact, along `direction`, which is taken at the time of the contact. `None` if the
+/// material has no motion.
 pub(super) fn stick(
     obstacle: ObstacleId,
     touched: &dyn Obstacle,
@@ -18,7 +19,7 @@ pub(super) fn stick(
 ) -> Option<ProjectileMotion> {
     let motion = touched.motion(&hit.contact.material, dt)?;
     let now = motion.frame.unwrap_or(DQuat::IDENTITY);
-    // The frame at the time of the contact: so much of the turn was still ahead.
+    // The frame at the time of the contact: the rest of the tick's turn was still ahead.
     let then = part_of_turn(motion.turn, 1.0 - hit.time).conjugate() * now;
     let in_material = then.conjugate() * direction;
     Some(ProjectileMotion::Stuck {
@@ -33,7 +34,7 @@ pub(super) fn stick(
     })
 }
 
-/// A share of a turn.
+/// A share of a rotation.
 fn part_of_turn(turn: DQuat, share: f64) -> DQuat {
     let turn = if turn.w < 0.0 { -turn } else { turn };
     let axis = DVec3::new(turn.x, turn.y, turn.z);
@@ -45,13 +46,13 @@ fn part_of_turn(turn: DQuat, share: f64) -> DQuat {
     rotation_from_axis_angle(axis / sin, angle)
 }
 
-/// Where a stuck arrow is on the obstacle in its current state; `None` if the material is gone.
+/// Position and direction of a stuck arrow on the obstacle in its current pose; `None` if the material is gone.
 pub(crate) fn place_on(
     at: &Attachment,
     direction: DVec3,
     obstacle: &dyn Obstacle,
 ) -> Option<ProjectilePlace> {
-    // Neither frame nor position depend on the length of the tick.
+    // Frame and position do not depend on the length of the tick.
     let motion = obstacle.motion(&at.material, 1.0)?;
     let frame = motion.frame.unwrap_or(at.frame);
     Some(ProjectilePlace {

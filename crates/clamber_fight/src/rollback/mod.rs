@@ -1,8 +1,8 @@
-//! Rollback over a network, by the crate [ggrs]: the arena's side of it.
+//! Rollback over a network with the crate [ggrs]: the arena's side of it.
 //!
-//! Peers send each other their players' inputs, guess those that have not arrived, and when a guess was wrong, go back
-//! and step again. All of that is ggrs's; this module saves, restores and steps the arena as it asks, and keeps what
-//! happened until it is certain.
+//! Peers send each other their players' inputs and predict inputs that have not arrived. When a prediction was wrong,
+//! they go back and step again. ggrs decides all of this. This module saves, restores and steps the arena on its
+//! request, and keeps events until they are confirmed.
 //!
 //! ```no_run
 //! use clamber_fight::rollback::{AdvanceError, ArenaSession, Rollback, Watch};
@@ -64,11 +64,12 @@
 //! }
 //! ```
 //!
-//! [`Order`](crate::Order)s are not sent by ggrs: each peer makes them anew from what all of them know, the arena and the
-//! inputs, of which [`PlayerInput::order`](crate::PlayerInput) is one. ggrs does not let players join a session. For a
-//! late joiner all end theirs at a confirmed tick, one sends the others [`Arena::to_bytes`](crate::Arena), the newcomer
-//! joins by [`Order::AddFighter`](crate::Order) in the first step, and all begin a new session: the example `duel` does
-//! it.
+//! ggrs does not send [`Order`](crate::Order)s. Each peer derives them from the arena and the inputs, which all peers
+//! know; [`PlayerInput::order`](crate::PlayerInput) is part of the inputs.
+//!
+//! ggrs does not let players join a session. For a late joiner, all peers end their session at a confirmed tick, and
+//! one peer sends [`Arena::to_bytes`](crate::Arena) to the others. Then all begin a new session, and the new player
+//! joins by [`Order::AddFighter`](crate::Order) in its first step. The example `duel` shows this.
 
 mod watch;
 
@@ -87,7 +88,7 @@ use crate::arena::{Arena, ArenaEvent, ArenaState};
 use crate::error::ArenaError;
 pub use watch::{AdvanceError, Watch, Watched};
 
-/// ggrs's configuration for an arena, with the peers' kind of address:
+/// ggrs's configuration for an arena; `A` is the type of the peers' addresses:
 /// `SessionBuilder::<ArenaSession<SocketAddr>>::new()`.
 #[derive(Debug)]
 pub struct ArenaSession<A>(PhantomData<A>);
@@ -99,7 +100,7 @@ impl<A: Clone + PartialEq + Eq + Hash + Debug + 'static> Config for ArenaSession
     type Address = A;
 }
 
-/// Guesses inputs that have not arrived: the player goes on with what it did last, and orders nothing.
+/// Predicts inputs that have not arrived: the player repeats its last input, without its order.
 #[derive(Debug)]
 pub struct PredictPlayer;
 
@@ -112,17 +113,17 @@ impl InputPredictor<PlayerInput> for PredictPlayer {
     }
 }
 
-/// Does what ggrs asks for, and keeps events until they are certain.
+/// Handles ggrs's requests, and keeps events until they are confirmed.
 #[derive(Clone, Debug)]
 pub struct Rollback {
-    /// Tick of the arena when the session began.
+    /// The arena's tick when the session began.
     began: u64,
-    /// Of each tick that is not yet confirmed, its events.
+    /// Events of each tick that is not yet confirmed.
     events: BTreeMap<u64, Vec<ArenaEvent>>,
 }
 
 impl Rollback {
-    /// For an arena at the beginning of a session.
+    /// Creates a handler for an arena at the beginning of a session.
     pub fn new(arena: &Arena) -> Self {
         Self {
             began: arena.tick(),
@@ -130,15 +131,15 @@ impl Rollback {
         }
     }
 
-    /// Does what a session asks for, in order: saves, restores, and steps by `step`, which gets of each player, by its
-    /// number in the session, the input and the [`PlayerInput::order`]. All states are saved with their
-    /// [`Arena::fingerprint`] as checksum. A player who has left does nothing, and orders nothing.
+    /// Handles a session's requests in order: saves, restores, and steps. `step` gets the inputs and the
+    /// [`PlayerInput::order`] of all players, by their numbers in the session. Each state is saved with its
+    /// [`Arena::fingerprint`] as the checksum. A player that has left has idle inputs and no orders.
     ///
-    /// What `step` does depends on nothing but the arena, these inputs and orders, and terrain that is the same on all
-    /// peers: it is called again for the same tick when a guess was wrong.
+    /// `step` may depend only on the arena, these inputs and orders, and terrain that is the same on all peers. It is
+    /// called again for the same tick when a prediction was wrong.
     ///
     /// # Errors
-    /// Those of `step`, and [`ArenaError::OtherArena`] if a state is asked for that was not saved.
+    /// The errors of `step`, and [`ArenaError::OtherArena`] if ggrs asks for a state that was not saved.
     pub fn handle<A: Clone + PartialEq + Eq + Hash + Debug + 'static>(
         &mut self,
         arena: &mut Arena,
@@ -155,7 +156,7 @@ impl Rollback {
                     let missing = ArenaError::OtherArena("it was not saved");
                     let state = cell.data().ok_or(missing)?;
                     arena.restore(&state)?;
-                    // What is played again happens again.
+                    // The ticks after the restored one are played again, and produce their events again.
                     self.events.split_off(&(arena.tick() + 1));
                 }
                 GgrsRequest::AdvanceFrame { inputs } => {
@@ -179,9 +180,10 @@ impl Rollback {
         Ok(())
     }
 
-    /// What has happened for certain since the last call, with its ticks, in order. `frame` is the session's
-    /// `confirmed_frame` after [`Rollback::handle`]: all inputs up to there are known, and were played. Do not ask while the
-    /// session waits: what is certain by then was not yet played.
+    /// Events that were confirmed since the last call, with their ticks, in order. `frame` is the session's
+    /// `confirmed_frame` after [`Rollback::handle`]: all inputs up to that frame are known and were played. Do not call
+    /// it while [`Watch::advance`] returns [`AdvanceError::Wait`]: frames that are confirmed meanwhile have not been
+    /// played yet.
     pub fn confirmed(&mut self, frame: Frame) -> impl Iterator<Item = (u64, ArenaEvent)> + use<> {
         let certain = u64::try_from(frame).map_or(0, |frame| self.began + frame + 1);
         let later = self.events.split_off(&(certain + 1));

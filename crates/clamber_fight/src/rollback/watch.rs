@@ -1,4 +1,4 @@
-//! Leaving: what peers know of somebody who is gone, before ggrs goes back to it.
+//! Detects that a player has left while the peers know different parts of its inputs.
 
 use std::fmt::Debug;
 use std::hash::Hash;
@@ -9,46 +9,48 @@ use thiserror::Error;
 
 use super::ArenaSession;
 
-/// Watches a session of ggrs for somebody who leaves badly.
+/// Watches a ggrs session for a player that leaves badly: the remaining peers know different parts of its inputs.
 ///
-/// Of three and more peers each may have heard another part of what somebody sent who is gone. All then go back to the
-/// first tick that one of them does not know. ggrs 0.13 does so in each of its steps again, and panics once that tick is
-/// out of its window. A watch knows it before: it listens to what peers tell each other about who is there.
+/// With three or more peers, each peer may have received a different part of the leaving player's last packets. All
+/// peers then go back to the first tick that one of them does not know. ggrs 0.13 repeats this in each of its steps,
+/// and panics once that tick is out of its prediction window. The watch recognises this earlier, from the connection
+/// states that peers send each other.
 ///
 /// Use [`Watch::poll`] and [`Watch::advance`] in place of the session's own `poll_remote_clients`, `events` and
 /// `advance_frame`, and give the session the socket of [`Watch::over`].
 #[derive(Debug)]
 pub struct Watch<A> {
     heard: Arc<Mutex<Heard<A>>>,
-    /// Who is gone, as far as this peer knows by itself.
+    /// Peers whose disconnection this peer has noticed itself.
     gone: Vec<A>,
-    /// Calls for which this peer has waited for what others know of somebody who is gone.
+    /// Consecutive calls in which this peer has waited for the others' reports on a player that left.
     waited: u32,
 }
 
-/// A socket that a [`Watch`] listens to.
+/// A socket whose messages a [`Watch`] reads as well.
 #[derive(Debug)]
 pub struct Watched<S, A> {
     socket: S,
     heard: Arc<Mutex<Heard<A>>>,
 }
 
-/// What each peer has told last, with the number of its session: of each player, whether it is gone, and the last of its
-/// frames that the peer has.
+/// The last report of each peer, with its session's number: for each player, whether it has left, and its last frame
+/// that the peer has received.
 type Heard<A> = Vec<(A, u16, Vec<(bool, Frame)>)>;
 
-/// No more peers are listened to: anybody may send something.
+/// Greatest number of addresses whose reports are stored. Any address may send packets, so the list must not grow
+/// without limit.
 const MOST_PEERS: usize = 64;
 
-/// Why there are no requests.
+/// Why [`Watch::advance`] returns no requests.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum AdvanceError {
-    /// This peer waits until the others say what they know of somebody who is gone: poll again in the next tick, and tell
-    /// nothing as certain meanwhile.
+    /// This peer is too far ahead of the others, or waits for their reports on a player that left. Poll again in the
+    /// next tick, and do not treat any event as confirmed meanwhile.
     #[error("this peer waits for the others")]
     Wait,
-    /// Somebody has left, and another peer knows less of its inputs than this one. This session is at its end.
+    /// A player has left, and another peer knows fewer of its inputs than this one. This session has to end.
     #[error(
         "player {player} has left, and the peers know different parts of what it did: end this session, let one peer send its arena (`Arena::to_bytes`), and begin a new one from there"
     )]
@@ -61,14 +63,16 @@ pub enum AdvanceError {
     Ggrs(GgrsError),
 }
 
-/// A peer waits for no more calls until the others say what they know of somebody who is gone: ten seconds of a game.
+/// Greatest number of calls for which a peer waits for the others' reports on a player that left: ten seconds at 60
+/// ticks a second.
 const LONGEST: u32 = 600;
 
-/// The message of ggrs that holds inputs, by its place in their list, in which the state of all players comes first.
+/// Index of ggrs's message with inputs among its kinds of messages. It begins with the connection states of all
+/// players. Valid for ggrs 0.13.
 const INPUT: u32 = 2;
 
 impl<A: Clone + PartialEq + Eq + Hash + Debug + 'static> Watch<A> {
-    /// A watch over a socket, and the socket for the session.
+    /// Wraps a socket. Returns the socket for the session, and the watch that reads its messages.
     pub fn over<S: NonBlockingSocket<A>>(socket: S) -> (Watched<S, A>, Self) {
         let heard = Arc::new(Mutex::new(Vec::new()));
         let watch = Self {
@@ -79,7 +83,7 @@ impl<A: Clone + PartialEq + Eq + Hash + Debug + 'static> Watch<A> {
         (Watched { socket, heard }, watch)
     }
 
-    /// Receives and sends messages, and gives the session's events.
+    /// Receives and sends messages, and returns the session's events.
     pub fn poll(
         &mut self,
         session: &mut P2PSession<ArenaSession<A>>,
@@ -94,11 +98,11 @@ impl<A: Clone + PartialEq + Eq + Hash + Debug + 'static> Watch<A> {
         events
     }
 
-    /// What the session asks for, for [`Rollback::handle`](super::Rollback::handle). Add this peer's inputs before. A peer
-    /// that is too far ahead of the others is asked for no step.
+    /// The session's requests for [`Rollback::handle`](super::Rollback::handle). Add this peer's inputs first. A peer
+    /// that is too far ahead of the others gets [`AdvanceError::Wait`].
     ///
     /// # Errors
-    /// [`AdvanceError`].
+    /// [`AdvanceError`]: the peer has to wait, the session has to end, or ggrs fails.
     pub fn advance(
         &mut self,
         session: &mut P2PSession<ArenaSession<A>>,
@@ -111,7 +115,7 @@ impl<A: Clone + PartialEq + Eq + Hash + Debug + 'static> Watch<A> {
         }
     }
 
-    /// Refuses to go on if the session would have to go back too far, or may have to soon.
+    /// Returns an error if the session would have to go back too far, or may soon have to.
     fn check(&mut self, session: &P2PSession<ArenaSession<A>>) -> Result<(), AdvanceError> {
         let heard = Arc::clone(&self.heard);
         let heard = heard.lock().unwrap_or_else(PoisonError::into_inner);
@@ -119,7 +123,7 @@ impl<A: Clone + PartialEq + Eq + Hash + Debug + 'static> Watch<A> {
         for player in session.remote_player_handles() {
             let is_theirs = |peer: &A| session.handles_by_address(peer.clone()).contains(&player);
             let of = |players: &[(bool, Frame)]| players.get(player).copied();
-            // Whoever has gone sent all that this peer has of it, and told up to where.
+            // All inputs of this player came from its own peer, whose messages also tell the last of its frames.
             let theirs = heard.iter().find(|(peer, ..)| is_theirs(peer));
             let Some((_, ours)) = theirs.and_then(|(.., players)| of(players)) else {
                 continue;
@@ -137,7 +141,7 @@ impl<A: Clone + PartialEq + Eq + Hash + Debug + 'static> Watch<A> {
             if least >= ours || !(is_said || is_gone) {
                 continue;
             }
-            // ggrs would go back to the first frame that one of them does not know, in each of its steps again.
+            // Here ggrs would go back, in each of its steps, to the first frame that one of the peers does not know.
             if is_said {
                 return Err(AdvanceError::LeftBadly { player });
             }
@@ -171,7 +175,8 @@ impl<S: NonBlockingSocket<A>, A: Clone + PartialEq + Eq + Hash + Debug> NonBlock
                 continue;
             };
             match heard.iter_mut().find(|(peer, ..)| peer == from) {
-                // They come in any order: nobody comes back, and nobody knows less than before.
+                // Messages arrive in any order. A player that has left does not return, and a peer's last known frame
+                // does not decrease.
                 Some((_, known, before)) if *known == session && before.len() == players.len() => {
                     for (known, told) in before.iter_mut().zip(players) {
                         *known = (known.0 || told.0, known.1.max(told.1));
@@ -186,11 +191,11 @@ impl<S: NonBlockingSocket<A>, A: Clone + PartialEq + Eq + Hash + Debug> NonBlock
     }
 }
 
-/// What a message tells of all players; `None` if it is of another kind. ggrs shows messages only as what they are
-/// serialised to.
+/// The connection states in a message; `None` if it is of another kind. ggrs keeps the fields of messages private, so
+/// they are read from its serialised form.
 fn told(message: &Message) -> Option<(u16, Vec<(bool, Frame)>)> {
     let bytes = postcard::to_stdvec(message).ok()?;
-    // The session's number, and which message it is.
+    // The number of the sender's session, and the kind of the message.
     let ((session, kind), rest) = postcard::take_from_bytes::<(u16, u32)>(&bytes).ok()?;
     if kind != INPUT {
         return None;

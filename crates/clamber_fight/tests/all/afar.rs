@@ -1,4 +1,4 @@
-//! What a creature throws and sends out reaches fighters by way of the arena, and is part of what is saved.
+//! A creature's shots and waves strike fighters of the arena, and are part of the saved state.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
@@ -12,7 +12,7 @@ use clamber_world::{HalfSpace, Obstacle, ObstacleId};
 use glam::{DVec2, DVec3, Vec3};
 use serde_json::json;
 
-/// A giant that throws a stone that bursts after a second, and then stomps.
+/// A giant that throws a stone, which bursts and sends out a wave, and then stomps.
 fn thrower() -> Arc<CreatureKind> {
     giant_with(|file| {
         let wave = json!({ "radius": 4.0, "speed": 10.0, "damage": 0.2, "throw": 5.0 });
@@ -34,7 +34,7 @@ fn thrower() -> Arc<CreatureKind> {
     })
 }
 
-/// Three fighters before that giant.
+/// An arena with the throwing giant and three fighters in front of it.
 fn arena() -> Arena {
     let mut arena = Arena::new(ArenaConfig::default()).unwrap();
     arena
@@ -84,7 +84,8 @@ fn stones_and_waves_of_a_creature_strike_fighters() {
         let ours = struck.iter().filter(|(fighter, _)| fighter.0 == number);
         ours.map(|(_, damage)| *damage).collect::<Vec<f64>>()
     };
-    // The stone's own damage, and less by its burst; the wave of the stomp, the less the farther.
+    // The first fighter takes the stone's own damage, and the second one the smaller damage of its burst. The stomp's
+    // wave strikes all three.
     assert_eq!(of(0)[0], 0.3);
     assert!(of(1)[0] > 0.02 && of(1)[0] < 0.2, "{:?}", of(1));
     assert_eq!([of(0).len(), of(1).len(), of(2).len()], [2, 2, 1]);
@@ -111,7 +112,7 @@ fn stones_and_waves_of_a_creature_strike_fighters() {
         2
     );
     assert!(in_the_air > 60, "{in_the_air}");
-    // From wherever it was saved, a fresh arena comes to the same end.
+    // A fresh arena that is restored from any of the saved states ends in the same state.
     for (tick, bytes) in saved {
         let mut fresh = arena();
         fresh.restore_bytes(&bytes).unwrap();
@@ -122,15 +123,15 @@ fn stones_and_waves_of_a_creature_strike_fighters() {
     }
 }
 
-/// A stone that meets another creature, which moves, meets it where it is, and at the same place after a restore; whoever
-/// of the two has the lower number.
+/// A stone that meets another, moving creature meets it at its current position. The result is the same after a
+/// restore, and whichever of the two creatures has the lower number.
 #[test]
 fn stones_meet_creatures_that_move_as_a_fresh_arena_has_it() {
     let ground = HalfSpace::below(0.0);
     let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &ground)];
     let inputs = [ClimberInput::IDLE; 3];
     let shield = || {
-        // Up and down at 12 m/s.
+        // The shield moves up and down at 12 m/s.
         let keys = (0..9).map(|index| {
             let up = if index % 2 == 0 { 2.0 } else { 8.0 };
             (0.5 * index as f32, Vec3::Y * up, Vec3::ONE)

@@ -1,4 +1,4 @@
-//! Aims at moving targets, held against the exact quartic.
+//! Aims at moving targets, compared with the exact quartic.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
@@ -7,9 +7,10 @@ use dashu_int::IBig;
 use dashu_ratio::RBig;
 use glam::DVec3;
 
+/// Gravity, metres a second squared.
 const GRAVITY: DVec3 = DVec3::new(0.0, -9.81, 0.0);
 
-/// A polynomial with exact coefficients, that of the constant first.
+/// A polynomial with exact coefficients, beginning with the constant.
 type Polynomial = Vec<RBig>;
 
 fn exact(x: f64) -> RBig {
@@ -21,7 +22,7 @@ fn dot(a: DVec3, b: DVec3) -> RBig {
     (0..3).fold(RBig::ZERO, |sum, k| sum + exact(a[k]) * exact(b[k]))
 }
 
-/// The quartic whose positive roots are the times at which arrow and target can meet.
+/// The quartic whose positive roots are the times at which the arrow and the target can meet.
 fn quartic(d: DVec3, w: DVec3, g: DVec3, s: f64) -> Polynomial {
     let two = RBig::from(2);
     vec![
@@ -45,7 +46,7 @@ fn derivative(p: &Polynomial) -> Polynomial {
     p.iter().skip(1).zip(powers).map(|(x, k)| x * k).collect()
 }
 
-/// The remainder of a division, negated.
+/// The negated remainder of a polynomial division.
 fn negated_remainder(a: &Polynomial, b: &Polynomial) -> Polynomial {
     let mut rest = a.clone();
     while rest.len() >= b.len() {
@@ -59,7 +60,7 @@ fn negated_remainder(a: &Polynomial, b: &Polynomial) -> Polynomial {
     trimmed(rest.into_iter().map(|x| -x).collect())
 }
 
-/// True if a polynomial has a root above 0, by Sturm's theorem.
+/// True if a polynomial has a positive root, by Sturm's theorem.
 fn has_positive_root(p: Polynomial) -> bool {
     let first = trimmed(p);
     let mut chain = vec![first.clone(), derivative(&first)];
@@ -128,7 +129,7 @@ fn aims_hit_or_are_out_of_reach_as_the_quartic_says() {
             miss < 0.01,
             "missed by {miss} m: {from} {target} {way} {speed}"
         );
-        // The low arc: nothing sooner hits.
+        // No earlier time hits, so the arc is the flatter one.
         let f = |t: f64| {
             (d + way * t - gravity * (0.5 * t * t)).length_squared() - (speed * t) * (speed * t)
         };

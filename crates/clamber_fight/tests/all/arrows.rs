@@ -1,4 +1,5 @@
-//! Arrows in an arena: plates that break, the oldest that fall, numbers that come back. Scenes B32, B36 and B57.
+//! Arrows in an arena: plates break, the oldest arrows fall, and numbers are the same after a restore. Scenes B32, B36
+//! and B57.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
@@ -15,9 +16,10 @@ use clamber_fight::{
 use clamber_world::{HalfSpace, Obstacle, ObstacleId};
 use glam::{DVec3, Vec3};
 
+/// Direction in which archers shoot at the skin before their feet; not a unit vector.
 const DOWN: DVec3 = DVec3::new(0.0, -1.0, 0.3);
 
-/// A hero whose bow is drawn at once.
+/// A hero whose bow is fully drawn after one tick, without straying.
 fn archer() -> FighterConfig {
     let bow = BowConfig {
         draw: 1.0 / 60.0,
@@ -31,7 +33,7 @@ fn archer() -> FighterConfig {
     }
 }
 
-/// Draws and lets go.
+/// Draws the bow, and shoots.
 fn shoot(arena: &mut Arena, aim: DVec3) -> Vec<ArenaEvent> {
     let mut events = Vec::new();
     for actions in [BOW, BOW, 0] {
@@ -53,7 +55,7 @@ fn wait(arena: &mut Arena, ticks: u32) -> Vec<ArenaEvent> {
         .collect()
 }
 
-/// A slab with a plate that moves at a steady pace for ten minutes.
+/// A slab with a plate that moves at a constant velocity for ten minutes.
 fn moving() -> Slab {
     let way = Vec3::new(3.0, 0.5, -1.0);
     Slab {
@@ -73,7 +75,8 @@ fn an_arrow_that_breaks_its_plate_sticks_first_and_falls_as_fast_as_the_plate() 
     land(&mut arena);
     let mut events = shoot(&mut arena, DOWN);
     events.extend(wait(&mut arena, 3));
-    // One tick: it sticks, and what it hit breaks. The next: it comes loose, and the plate's staggering is told.
+    // In the first tick, the arrow gets stuck and its hit breaks the plate. In the next tick, it comes loose, and the
+    // creature reports that the plate staggered.
     let stuck = events
         .iter()
         .position(|one| matches!(one, ArenaEvent::Stuck { .. }))
@@ -97,7 +100,7 @@ fn an_arrow_that_breaks_its_plate_sticks_first_and_falls_as_fast_as_the_plate() 
     };
     assert!(events.contains(&broke), "{events:?}");
 
-    // From the same beginning: how fast it is when it comes loose.
+    // The same shot again, to measure the arrow's velocity when it comes loose.
     let mut arena = moving().arena(archer(), &[on_plate]);
     land(&mut arena);
     shoot(&mut arena, DOWN);
@@ -112,7 +115,7 @@ fn an_arrow_that_breaks_its_plate_sticks_first_and_falls_as_fast_as_the_plate() 
     assert!((fell - plate).length() < 0.01 * plate.length(), "{fell}");
 }
 
-/// What breaks a plate within a tick before the arrow arrives, and after it: the order is that of the times.
+/// A cut and an arrow that hit a plate in the same tick do their damage in the order of their times.
 #[test]
 fn a_cut_and_an_arrow_in_one_tick_are_taken_by_their_times() {
     let on_plate = DVec3::new(3.0, PLATE + 1.0, 3.0);
@@ -121,7 +124,7 @@ fn a_cut_and_an_arrow_in_one_tick_are_taken_by_their_times() {
         let mut config = archer();
         config.hit_stop = 0.0;
         let sword = config.sword.as_mut().unwrap();
-        // A cut that goes through the plate, and would break it alone.
+        // The cut passes through the plate, and would break it alone.
         (sword.shoulder.y, sword.cut_damage) = (0.0, 3.0);
         let arena = moving();
         let mut arena = arena.arena(config, &[on_plate, on_plate + DVec3::new(1.0, 0.0, 0.0)]);
@@ -131,7 +134,7 @@ fn a_cut_and_an_arrow_in_one_tick_are_taken_by_their_times() {
         let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &ground)];
         let mut events = Vec::new();
         for tick in 0..40 {
-            // One shoots; the other one has begun a cut before, or does after.
+            // One fighter shoots. The other one begins a cut earlier or later.
             let aim = DVec3::new(0.3, -1.0, 0.3);
             let actions = if (17..=18).contains(&tick) { BOW } else { 0 };
             let archer = ClimberInput {
@@ -209,7 +212,7 @@ fn the_oldest_arrows_fall_when_there_are_too_many() {
         let first = (shot + 1u64).saturating_sub(5);
         assert_eq!(stuck, (first..=shot).collect::<Vec<_>>());
     }
-    // Those that fell are gone after a while.
+    // Fallen arrows are gone after a while.
     wait(&mut arena, 700);
     assert_eq!(arena.projectiles().len(), 5);
 }
@@ -221,7 +224,7 @@ fn arrows_come_back_with_their_numbers_a_thousand_times() {
     land(&mut arena);
     let mut rng = fastrand::Rng::with_seed(57);
     for round in 0..1000 {
-        // Draws, shoots, and lets the arrow fly and stick, within eight ticks.
+        // Draws, shoots, and lets the arrow fly and get stuck, within eight ticks.
         let aim = DVec3::new(rng.f64() - 0.5, -1.0, rng.f64() - 0.5);
         let before = arena.save();
         let play = |arena: &mut Arena| {
@@ -239,7 +242,7 @@ fn arrows_come_back_with_their_numbers_a_thousand_times() {
     assert_eq!(arena.save().next_projectile, 1000);
 }
 
-/// Of each hit, the weak point and the plate.
+/// The weak point and the plate of each hit.
 fn struck(events: &[ArenaEvent]) -> Vec<(Option<usize>, Option<usize>)> {
     let hits = events.iter().filter_map(|event| match event {
         ArenaEvent::Hit {
@@ -290,7 +293,7 @@ fn a_stone_is_heard_and_an_arrow_hurts_what_it_hits() {
     events = shoot(&mut arena, DOWN);
     events.extend(wait(&mut arena, 10));
     let done = support::hits(&events);
-    // Its energy is that of a fully drawn bow, but for what it fell.
+    // The bow was fully drawn, so the damage is 3, but for the energy that the arrow gains by its fall.
     assert!(done.len() == 1 && (done[0] - 3.0).abs() < 0.1, "{done:?}");
     assert_eq!(struck(&events), [(Some(0), None)]);
     let by = events

@@ -1,4 +1,4 @@
-//! Weapons begin at the body, and go through neither terrain nor another creature.
+//! Weapons act from the body, and pass through neither terrain nor another creature.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
@@ -15,6 +15,7 @@ use crate::support::{GIANT, GROUND, HERO, Slab, giant, hits, mode, pressing, wal
 
 type Terrain<'a> = [(ObstacleId, &'a dyn Obstacle)];
 
+/// Id of the floor or the wall.
 const WALL: ObstacleId = ObstacleId(1);
 
 /// Corners and triangles of a box.
@@ -40,7 +41,7 @@ pub(crate) fn box_of(low: Vec3, high: Vec3) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     (corners, triangles)
 }
 
-/// A box of triangles.
+/// A box of triangles as terrain.
 pub(crate) fn block(low: Vec3, high: Vec3) -> TriangleTerrain {
     let (corners, triangles) = box_of(low, high);
     TriangleTerrain::new(&corners, &triangles, &[], DVec3::ZERO).unwrap()
@@ -59,7 +60,8 @@ fn run(
     all
 }
 
-/// A whole stab: charged, let go, and struck.
+/// A whole stab: the sword is raised and charged, the button is released, and the next press strikes. Returns the
+/// damages.
 fn stab(arena: &mut Arena, terrain: &Terrain<'_>) -> Vec<f64> {
     let mut events = run(arena, pressing(STAB), terrain, 200);
     events.extend(run(arena, ClimberInput::IDLE, terrain, 5));
@@ -67,8 +69,8 @@ fn stab(arena: &mut Arena, terrain: &Terrain<'_>) -> Vec<f64> {
     hits(&events)
 }
 
-/// A stab and a plunge onto a floor above the creature do nothing, whether it is of stone or another creature; through
-/// air they do.
+/// A stab and a plunge onto a floor above the creature do no damage, whether the floor is stone or another creature.
+/// Without a floor they do.
 #[test]
 fn stabs_stop_at_a_floor() {
     let deep = HalfSpace::below(-50.0);
@@ -119,7 +121,7 @@ fn stabs_stop_at_a_floor() {
     }
 }
 
-/// Cuts, arrows and stones stop at a wall that is thinner than an arm is long, at which the fighter stands.
+/// Cuts, arrows and stones stop at a wall in front of the creature, although the wall is thinner than an arm is long.
 #[test]
 fn cuts_and_shots_stop_at_a_wall() {
     let ground = HalfSpace::below(-1.6);
@@ -149,7 +151,7 @@ fn cuts_and_shots_stop_at_a_wall() {
                 walk: DVec3::NEG_Z,
                 ..ClimberInput::IDLE
             };
-            // As near as the wall lets it; at least within the sword's reach.
+            // The fighter walks up to the wall, or into the sword's reach of the creature.
             run(&mut arena, walk, &terrain, 180);
             arena
         };
@@ -176,7 +178,7 @@ fn cuts_and_shots_stop_at_a_wall() {
     }
 }
 
-/// Somebody who stands at the giant's foot, on any side, and shoots at it hits its near skin.
+/// A fighter that stands at the giant's foot, on any side, and shoots at the foot hits its near side.
 #[test]
 fn shots_at_what_is_near_hit_its_near_side() {
     let ground = HalfSpace::below(0.0);

@@ -1,4 +1,4 @@
-//! Rocks that are rolled back with an arena, where a game asks for it.
+//! Rocks of a physics world that are rolled back together with an arena, for games that need it.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
@@ -11,6 +11,7 @@ use clamber_world::{
 };
 use glam::{DVec3, Vec3};
 
+/// Length of a tick, seconds.
 const TICK: f64 = 1.0 / 60.0;
 
 struct Scene {
@@ -21,7 +22,7 @@ struct Scene {
 }
 
 impl Scene {
-    /// A slab that heaves, with a fighter and thirty rocks on it.
+    /// A slab that moves up and down, with a fighter and thirty rocks on it.
     fn new() -> Self {
         let heave = (0..40u8).map(|k| {
             let up = if k % 2 == 0 { 0.0 } else { 0.4 };
@@ -58,7 +59,7 @@ impl Scene {
         }
     }
 
-    /// A tick of the arena, among the rocks, and one of the rocks.
+    /// Steps the arena among the rocks, then the rocks by the same tick. Returns the hash of both.
     fn step(&mut self, tick: u64) -> u64 {
         let poses = BodyPoses::default();
         let input = ClimberInput {
@@ -89,7 +90,7 @@ impl Scene {
         self.hash()
     }
 
-    /// Of the arena and of all rocks.
+    /// Hash of the arena and of all rocks.
     fn hash(&self) -> u64 {
         let bodies = self.rocks.iter().map(|rock| &self.world.bodies[*rock]);
         let numbers = bodies.flat_map(|body| {
@@ -124,13 +125,13 @@ fn rocks_and_arena_go_back_together_and_on_with_the_same_bits() {
             assert_eq!(first, again, "from {from}");
         }
     }
-    // Rocks lie on the slab, and some have been in the fighter's way.
+    // More than ten rocks lie on the slab.
     let lie = scene.rocks.iter();
     let lie = lie.filter(|rock| scene.world.bodies[**rock].translation().y > -2.0);
     assert!(lie.count() > 10);
 }
 
-/// What is left out is noticed: the rocks alone do not go back.
+/// The test notices rocks that are not rolled back: with the arena alone, the run differs.
 #[test]
 fn an_arena_that_goes_back_without_its_rocks_does_not_go_on_the_same() {
     let mut scene = Scene::new();

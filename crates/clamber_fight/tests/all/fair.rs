@@ -1,4 +1,4 @@
-//! What must not depend on ticks, on how fine a rig is, or on what a state does not hold.
+//! Results that must not depend on the tick's length, on how fine a rig is, or on data outside the saved state.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
@@ -32,7 +32,7 @@ fn pressed(actions: u32) -> ClimberInput {
     }
 }
 
-/// An arena with one fighter on the ground, who dies and rises again after a second.
+/// An arena with one fighter on the ground that respawns one second after its death.
 fn alone() -> Arena {
     let mut arena = arena(1.0 / 60.0);
     let mut config = FighterConfig::hero();
@@ -41,8 +41,8 @@ fn alone() -> Arena {
     arena
 }
 
-/// Who throws a stone in the tick in which it dies throws none, then or later: a fresh arena that restores the state goes
-/// on alike.
+/// A fighter that presses the throw button in the tick in which it dies throws no stone, neither then nor later. A
+/// fresh arena that restores the state continues alike.
 #[test]
 fn a_throw_in_the_tick_of_death_is_lost() {
     let ground = HalfSpace::below(0.0);
@@ -51,7 +51,7 @@ fn a_throw_in_the_tick_of_death_is_lost() {
     for _ in 0..30 {
         ours.step(&[ClimberInput::IDLE], &terrain).unwrap();
     }
-    // Nothing is left of it.
+    // The fighter dies in the next step, in which it also presses the throw button.
     let mut state = ours.save();
     state.fighters[0].state.climber.hit_points = 0.0;
     ours.restore(&state).unwrap();
@@ -76,7 +76,7 @@ fn a_throw_in_the_tick_of_death_is_lost() {
     assert!(rose);
 }
 
-/// A slab that moves along X with a speed, with a weak point in its middle.
+/// A slab that moves along X at `speed`, with a weak point in its middle.
 fn moving(speed: f64, rate: f64) -> Arc<CreatureKind> {
     let mut heart = weak_point("heart", Vec3::ZERO, 1e6, 0);
     heart.radius = 0.4;
@@ -92,8 +92,9 @@ fn moving(speed: f64, rate: f64) -> Arc<CreatureKind> {
     slab.kind()
 }
 
-/// Of arrows that come down about the weak point, how many hit it, by where they struck at the time of the hit: within
-/// 0.38 m of its middle, and beyond 0.42 m; and the damages of those that do. `along` is the arrows' own speed along X.
+/// Shoots 60 arrows down around the weak point. Counts those that miss it and those that hurt it, by the place of the
+/// hit at its time: within 0.38 m of the weak point's middle, and beyond 0.42 m. Also returns the damages that are not
+/// zero. `along` is the arrows' own speed along X.
 fn arrows(speed: f64, along: f64, rate: f64) -> ([[usize; 2]; 2], Vec<f64>) {
     let dt = 1.0 / rate;
     let kind = moving(speed, rate);
@@ -114,7 +115,7 @@ fn arrows(speed: f64, along: f64, rate: f64) -> ([[usize; 2]; 2], Vec<f64>) {
         let aside = (shot % 12) as f64 * 0.07;
         let angle = shot as f64 * 2.4;
         let off = DVec3::new(libm::cos(angle), 0.0, libm::sin(angle)) * aside;
-        // It comes down 2 m in about 0.05 s, at another time of a tick each.
+        // Each arrow falls at least 2 m in about 0.05 s, and arrives at another time within a tick.
         let height = 2.0 + 0.011 * shot as f64;
         let time = height / 40.0;
         let heart = arena
@@ -171,7 +172,7 @@ fn arrows(speed: f64, along: f64, rate: f64) -> ([[usize; 2]; 2], Vec<f64>) {
     (found, damages)
 }
 
-/// Weak points are hit where they are at the time of the hit, at every rate of ticks and speed.
+/// Arrows hurt a moving weak point where it is at the time of the hit, at every tick rate and speed.
 #[test]
 fn weak_points_that_move_are_hit_where_they_are() {
     for rate in [30.0, 60.0, 120.0] {
@@ -184,7 +185,7 @@ fn weak_points_that_move_are_hit_where_they_are() {
     }
 }
 
-/// A sword that is raised in a fall has its full strength only as long as it falls.
+/// A sword that is raised in a fall has its full strength only while the fall lasts.
 #[test]
 fn a_charge_is_not_kept_across_a_hop() {
     let ground = HalfSpace::below(0.0);
@@ -216,14 +217,14 @@ fn a_charge_is_not_kept_across_a_hop() {
     assert!(landed);
 }
 
-/// An arrow hurts by how fast it meets what it hits: beside a slab that moves along with it as beside one at rest, and at
-/// every rate of ticks.
+/// An arrow's damage follows from its speed relative to the skin, at every tick rate. It is the same on a slab that
+/// moves along with the arrow as on a slab at rest.
 #[test]
 fn arrows_hurt_by_their_relative_speed() {
     let still = arrows(0.0, 0.0, 60.0).1[0];
     for rate in [30.0, 60.0, 120.0] {
         for speed in [10.0, 60.0] {
-            // Both move, only the slab, only the arrow.
+            // Slab and arrow move; only the slab moves; only the arrow moves.
             let square = |along: f64| (40.0 * 40.0 + along * along) / (40.0 * 40.0);
             for (slab, arrow, share) in [
                 (speed, speed, 1.0),
@@ -245,7 +246,7 @@ fn arrows_hurt_by_their_relative_speed() {
 #[test]
 fn a_cut_hurts_once() {
     let mut parts = Vec::new();
-    // A narrow cut ends in the wall. Without time after it, it hurts in its last tick too.
+    // A narrow cut ends inside the wall. Without a recovery time, it also hits in its last tick.
     for (recover, degrees) in [(0.25, 200f64), (0.25, 90.0), (0.0, 90.0), (0.0, 120.0)] {
         for joints in [1, 2, 4, 8, 16] {
             let mut hero = FighterConfig::hero();
@@ -264,7 +265,7 @@ fn a_cut_hurts_once() {
     assert!(parts[0] == 2.0 && parts[4] > 8.0, "{parts:?}");
 }
 
-/// What a cut breaks, it does not go through, whatever the rig's fineness: the weak point below is left to the next one.
+/// A cut that breaks a plate does not damage the weak point below, however fine the rig is. Only the next cut does.
 #[test]
 fn a_cut_that_breaks_a_plate_does_not_hurt_what_is_below() {
     for joints in [1, 2, 4, 8, 16] {
@@ -285,7 +286,8 @@ fn a_cut_that_breaks_a_plate_does_not_hurt_what_is_below() {
     }
 }
 
-/// The number of hits and the damage of two cuts, one after the other, at a wall, and what its weak point has lost.
+/// Makes two cuts at a wall, one after the other. Returns the number of hits, their damage, and the hit points that the
+/// weak point has lost.
 fn two_cuts(hero: FighterConfig, wall: &support::Wall) -> [f64; 3] {
     let mut arena = arena(1.0 / 60.0);
     arena
@@ -318,7 +320,8 @@ fn two_cuts(hero: FighterConfig, wall: &support::Wall) -> [f64; 3] {
     [hits, damage, 100.0 - left]
 }
 
-/// Nor by who hops off fur, raises the sword in the air, and grips the fur again, whenever that is.
+/// A fighter that hops off fur, raises the sword in the air, and grips the fur again loses the full charge of the fall,
+/// at whichever tick it grips.
 #[test]
 fn a_charge_is_not_kept_by_gripping_again() {
     let (mut held, mut fell) = (0, 0);

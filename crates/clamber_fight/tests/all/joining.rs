@@ -1,4 +1,4 @@
-//! Who joins and who leaves, by orders.
+//! Fighters and creatures that join and leave by orders.
 
 #![allow(
     clippy::unwrap_used,
@@ -20,8 +20,8 @@ use clamber_fight::{
 use clamber_world::{HalfSpace, Obstacle, ObstacleId};
 use glam::{DVec3, Vec3};
 
-/// A creature that is placed leaves its rider behind; one that leaves lets riders fall and arrows come loose where they
-/// are, not where they struck.
+/// When a creature is removed, its riders fall, and its arrows come loose at their current position rather than where
+/// they struck.
 #[test]
 fn riders_and_arrows_of_who_leaves_are_let_go() {
     for speed in [0.0f32, 4.0] {
@@ -64,9 +64,10 @@ fn riders_and_arrows_of_who_leaves_are_let_go() {
         };
         let way = f64::from(speed) / 60.0;
         assert!(position.distance(place) < 0.01 + way, "{position} {place}");
-        // From rest: the skin's motion is no part of what is saved, and a peer that has just restored has none.
+        // The arrow falls from rest: the skin's motion is not saved, and an arena that was just restored does not know
+        // it.
         assert!(velocity.x.abs() < 1e-9, "{velocity}");
-        // Its number is not given again, and its fighters go on.
+        // The creature's number is not given again, and the fighters go on.
         let kind = arena.kinds().next().unwrap().0;
         let joins = Order::AddCreature {
             kind,
@@ -79,8 +80,8 @@ fn riders_and_arrows_of_who_leaves_are_let_go() {
     }
 }
 
-/// Fighters join and leave in the middle of a fight: inputs are of those who were there before, numbers are not given
-/// twice, and whom a creature hunts may leave.
+/// Fighters join and leave in the middle of a fight. Inputs belong to the fighters that were there before the orders,
+/// and numbers are not given twice.
 #[test]
 fn fighters_join_and_leave() {
     let mut arena = pair();
@@ -106,10 +107,10 @@ fn fighters_join_and_leave() {
     assert_eq!(events[..3], [joined(2), left, joined(3)]);
     let ids: Vec<u32> = arena.fighters().iter().map(|one| one.id().0).collect();
     assert_eq!(ids, [1, 2, 3]);
-    // Both began at one place: the second one went aside.
+    // The two fighters began at the same place, so the second one was moved aside.
     let [a, b] = [2, 3].map(|number| state(&arena, FighterId(number)).position);
     assert!(a.distance(b) > 0.3, "{a} {b}");
-    // Inputs belong to those that are there, in the order of their numbers.
+    // Inputs belong to the present fighters, by ascending number.
     for _ in 0..60 {
         step_with(&mut arena, &[IDLE, walks, IDLE], &[]);
     }
@@ -133,7 +134,7 @@ fn fighters_join_and_leave() {
     assert_eq!(arena.next_fighter(), FighterId(4));
 }
 
-/// An arrow goes on when who shot it has left, and does its damage.
+/// An arrow goes on and does its damage after its archer has left.
 #[test]
 fn arrows_outlive_who_shot_them() {
     let slab = Slab {
@@ -153,7 +154,7 @@ fn arrows_outlive_who_shot_them() {
     }
     let arrow = arena.projectiles()[0];
     assert!(arrow.is_flying());
-    // It comes down where there is no ledge any more.
+    // The arrow comes down where there is no ledge any more.
     let leaves = [Order::RemoveFighter { fighter: HERO }];
     let events = idle(&mut arena, &leaves);
     assert!(events.contains(&ArenaEvent::FighterLeft { fighter: HERO }));
@@ -181,7 +182,8 @@ fn arrows_outlive_who_shot_them() {
     assert!(arena.projectiles().is_empty());
 }
 
-/// Somebody who is held by another one, and whom a creature hunts, leaves: the others go on, and are let go.
+/// A fighter leaves while another one stands on it and a creature hunts it. The other fighter falls, and the arena goes
+/// on.
 #[test]
 fn who_is_held_and_hunted_may_leave() {
     let mut arena = Arena::new(ArenaConfig::default()).unwrap();
@@ -229,8 +231,8 @@ fn who_is_held_and_hunted_may_leave() {
     assert!(alone.position.y < 1.0, "{}", alone.position);
 }
 
-/// Of two arenas, one of which has just restored what the other one is, an arrow falls alike out of who leaves; and
-/// whoever joins in a step may be told something in it.
+/// An arena and another one that was just restored from it follow the same orders with the same result: an arrow falls
+/// from a creature that leaves, and orders reach a fighter and a creature that join earlier in the same list.
 #[test]
 fn a_restored_arena_follows_orders_alike() {
     let moves = Slab {
@@ -284,7 +286,7 @@ fn a_restored_arena_follows_orders_alike() {
         assert_eq!(state(one, fighter).hit_points, 0.75);
     }
     assert_eq!(arena.fingerprint(), twin.fingerprint());
-    // A typo in an order to who joins is refused as one to who is there.
+    // An order with a misspelt state is refused also for a creature that joins in the same step.
     let joins = Order::AddCreature {
         kind,
         config: CreatureConfig::default(),
@@ -298,14 +300,15 @@ fn a_restored_arena_follows_orders_alike() {
     let inputs = [IDLE; 2];
     let refused = arena.step_with(&inputs, &[joins.clone(), typo], &[], &rules);
     assert!(matches!(refused, Err(ArenaError::Order { index: 1, .. })));
-    // More than is sensible.
+    // More than 256 creatures in one step are refused.
     let many = vec![joins; 300];
     let refused = arena.step_with(&inputs, &many, &[], &rules);
     assert!(matches!(refused, Err(ArenaError::Order { index: 256, .. })));
     assert_eq!(arena.fingerprint(), twin.fingerprint());
 }
 
-/// A fresh arena that knows nothing but the kinds goes on alike from any tick, whoever has joined and left before.
+/// A fresh arena that knows only the kinds of creatures can be restored at any tick and continues alike, although
+/// creatures and fighters have joined and left.
 #[test]
 fn a_fresh_arena_takes_whoever_has_joined() {
     let kind = giant();
@@ -370,7 +373,7 @@ fn a_fresh_arena_takes_whoever_has_joined() {
             twin = Some(fresh);
         }
     }
-    // Back to before anybody was there, in an arena that has some.
+    // Restores the state of an empty arena in an arena with creatures and fighters.
     let mut empty = Arena::new(ArenaConfig::default()).unwrap();
     arena.restore(&empty.save()).unwrap();
     assert_eq!(arena.fingerprint(), empty.fingerprint());

@@ -1,4 +1,4 @@
-//! Fights, seen from outside: weapons, rooms, snapshots, and what must not happen.
+//! Fights through the public interface: weapons, room, snapshots, and errors.
 
 mod afar;
 mod aims;

@@ -1,4 +1,4 @@
-//! Weapons where everything moves: what a fighter stands on, what it strikes, and what comes between.
+//! Weapons among moving obstacles: a fighter's ground, its target, and obstacles in between.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
@@ -18,7 +18,7 @@ use glam::{DVec3, Vec3};
 use crate::behind::{block, box_of};
 use crate::support::{GIANT, GROUND, HERO, Slab, Wall, hits, mode, pressing, weak_point};
 
-/// A box that moves without turning.
+/// A box of skin that moves without turning.
 struct Car(SkinnedSurface);
 
 impl Car {
@@ -27,7 +27,7 @@ impl Car {
         let middle = 0.5 * (low + high);
         for [a, b, c] in &mut triangles {
             let [x, y, z] = [*a, *b, *c].map(|corner| positions[corner as usize]);
-            // Skin has an outside.
+            // Triangles of skin have to face outwards.
             if (y - x).cross(z - x).dot(x - middle) < 0.0 {
                 std::mem::swap(b, c);
             }
@@ -62,13 +62,13 @@ fn palette() -> Palette {
     Palette::from_matrices(vec![Affine::IDENTITY])
 }
 
-/// How far something is that starts gently, metres: it goes at this speed after six seconds.
+/// Displacement, metres, of a body that accelerates evenly to `velocity` in six seconds and then keeps it.
 fn way(velocity: DVec3, time: f64) -> DVec3 {
     let start = time.min(6.0);
     velocity * (start * start / 12.0 + (time - 6.0).max(0.0))
 }
 
-/// Two cuts, in a car that moves, at a creature that it carries; how often they hit.
+/// Makes two cuts at a creature; fighter and creature stand on a moving box. Returns the number of hits.
 fn cuts(velocity: DVec3, rate: f64, rock: Option<[f32; 2]>) -> usize {
     let mut cars = vec![Car::new(
         Vec3::new(-20.0, -5.0, -20.0),
@@ -103,7 +103,7 @@ fn cuts(velocity: DVec3, rate: f64, rock: Option<[f32; 2]>) -> usize {
         let terrain = cars.iter().enumerate();
         let terrain = terrain.map(|(id, car)| (ObstacleId(id as u64), &car.0 as &dyn Obstacle));
         let terrain: Vec<(ObstacleId, &dyn Obstacle)> = terrain.collect();
-        // It looks at the wall, and stays where it stands.
+        // The fighter turns to the creature, and then stands still.
         let input = ClimberInput {
             walk: DVec3::NEG_Z * f64::from(u8::from(time < 0.1)) * 0.1,
             aim: DVec3::NEG_Z,
@@ -128,8 +128,8 @@ fn cuts(velocity: DVec3, rate: f64, rock: Option<[f32; 2]>) -> usize {
     found
 }
 
-/// In a car that goes at 30 m/s cuts hit what they hit at rest, whatever is close behind the fighter, and stop at what
-/// is before it.
+/// On a box that moves at 30 m/s, cuts hit as often as at rest. A wall close behind the fighter does not matter, and a
+/// wall in front of it stops the cuts.
 #[test]
 fn cuts_in_a_car_are_as_at_rest() {
     for rate in [30.0, 60.0, 120.0] {
@@ -152,7 +152,7 @@ fn cuts_in_a_car_are_as_at_rest() {
     }
 }
 
-/// A slow stab does not strike what has left meanwhile, or what something has come before.
+/// A slow stab does not hit skin that has moved out of reach since it began, or that an obstacle has covered.
 #[test]
 fn a_stab_does_not_follow_what_leaves() {
     let edge: TriangleTerrain = block(Vec3::new(-9.0, -9.0, 0.0), Vec3::new(9.0, 0.5, 9.0));
@@ -162,11 +162,11 @@ fn a_stab_does_not_follow_what_leaves() {
         (0.0, -6.0, false),
         (0.0, -20.0, false),
         (0.0, 0.0, true),
-        // What was not there when it was struck is not struck.
+        // Skin that comes into reach only after the strike began is not hit.
         (-2.0, 8.0, false),
     ];
     for (from, rises, closes) in ways {
-        // It lies still for six seconds, and sinks then, or rises to where the others lie.
+        // The slab lies still for six seconds. Then it stays, sinks, or rises from below to the height of the others.
         let up = |y: f32| Vec3::Y * y;
         let until = if rises > 0.0 { -from / rises } else { 3.0 };
         let keys = vec![

@@ -1,4 +1,4 @@
-//! Orders: what a game does to an arena. Who joins and leaves is in `joining`.
+//! Orders, except those that add and remove fighters and creatures, which are tested in `joining`.
 
 #![allow(
     clippy::unwrap_used,
@@ -19,7 +19,9 @@ use clamber_fight::{
 use clamber_world::{HalfSpace, Obstacle, ObstacleId};
 use glam::DVec3;
 
+/// An input without buttons or directions.
 pub(crate) const IDLE: ClimberInput = ClimberInput::IDLE;
+/// The second fighter of [`pair`].
 pub(crate) const OTHER: FighterId = FighterId(1);
 
 pub(crate) fn state(arena: &Arena, fighter: FighterId) -> clamber_climber::ClimberState {
@@ -31,7 +33,7 @@ pub(crate) fn idle(arena: &mut Arena, orders: &[Order]) -> Vec<ArenaEvent> {
     step_with(arena, &inputs, orders)
 }
 
-/// Two who stand on a slab that lies still.
+/// An arena with two fighters on a slab at rest.
 pub(crate) fn pair() -> Arena {
     let places = [DVec3::Y * 1.5, DVec3::new(3.0, 1.5, 0.0)];
     let mut arena = Slab::default().arena(FighterConfig::hero(), &places);
@@ -49,7 +51,7 @@ fn hit_points_are_taken_given_and_end() {
     let before = state(&arena, OTHER);
     idle(&mut arena, &[hurt(0.25), hurt(0.125)]);
     assert_eq!(state(&arena, HERO).hit_points, 0.625);
-    // One after the other: what heals after a wound heals that one.
+    // Orders are followed one after another: healing restores the hit points that were lost earlier in the list.
     let full = Order::Heal {
         fighter: HERO,
         hit_points: 1.0,
@@ -68,7 +70,7 @@ fn hit_points_are_taken_given_and_end() {
     assert_eq!(state(&arena, HERO).hit_points, 1.0, "more than full");
     let events = idle(&mut arena, &[hurt(1.0)]);
     assert!(events.contains(&ArenaEvent::Died { fighter: HERO }));
-    // The dead are not healed, and rise where their checkpoint is.
+    // A dead fighter is not healed, and is revived at its checkpoint.
     let place = DVec3::new(-4.0, 1.2, 2.0);
     let checkpoint = Order::Checkpoint {
         fighter: HERO,
@@ -81,7 +83,7 @@ fn hit_points_are_taken_given_and_end() {
     let risen = state(&arena, HERO);
     assert_eq!(risen.hit_points, 1.0);
     assert!(risen.position.distance(place) < 0.05, "{}", risen.position);
-    // Who lives does not rise, and the other one has noticed nothing.
+    // A living fighter is not revived, and the other fighter has not changed.
     let events = idle(&mut arena, &[Order::Rise { fighter: HERO }]);
     assert!(!events.contains(&ArenaEvent::Rose { fighter: HERO }));
     let after = state(&arena, OTHER);
@@ -159,7 +161,7 @@ fn who_is_put_somewhere_keeps_its_body_and_finds_room() {
         (0.5, ClimberMode::Falling)
     );
     assert!(matches!(arena.fighter(HERO).unwrap().act(), Act::Ready));
-    // Onto somebody: it goes aside.
+    // Moved onto the other fighter, it is put beside that fighter.
     let taken = state(&arena, OTHER).position;
     idle(&mut arena, &[put(taken)]);
     let radius = FighterConfig::hero().climber.body.radius;
@@ -173,7 +175,7 @@ fn who_is_put_somewhere_keeps_its_body_and_finds_room() {
     assert_eq!(state(&arena, HERO).hit_points, 0.5);
 }
 
-/// A blow that it has not felt yet does not follow who is put elsewhere.
+/// A blow that still waits for its tick is dropped when the fighter is moved.
 #[test]
 fn who_is_put_somewhere_is_not_struck_there() {
     let mut arena = pair();
@@ -231,7 +233,7 @@ fn creatures_are_sent_told_and_hurt() {
         }
         (found, arena.creature(GIANT).unwrap().clone())
     };
-    // Heard in the same step.
+    // The creature hears the noise in the same step.
     let place = DVec3::new(0.0, 0.0, 30.0);
     let noise = Order::Noise(Noise {
         place,
@@ -271,7 +273,7 @@ fn creatures_are_sent_told_and_hurt() {
         .path(after.state().current())
         .to_owned();
     assert!(path.ends_with("roar"), "{path}");
-    // All of its weak points one after the other: it is killed, by nobody.
+    // An order uses up each of its weak points. The creature is killed, and the event names no fighter.
     let points = after.kind().weak_points().iter().enumerate();
     let orders: Vec<Order> = points
         .map(|(weak_point, point)| Order::Harm {
@@ -285,7 +287,8 @@ fn creatures_are_sent_told_and_hurt() {
     assert!(killed && after.health() == 0.0);
 }
 
-/// Orders to those who are not there, or no more, change nothing and are told; also within one list.
+/// Orders to fighters, creatures and projectiles that are not there, or have left earlier in the same list, change
+/// nothing and are reported.
 #[test]
 fn orders_to_nobody_are_told() {
     let mut arena = pair();
@@ -451,7 +454,7 @@ fn orders_that_cannot_be_followed_are_refused_and_nothing_is_changed() {
     let before = arena.fingerprint();
     let rules = StepRules::default();
     for (order, words) in wrong {
-        // After some that can be followed.
+        // The refused order follows two that could be followed.
         let orders = [hurt(0.1), noise(DVec3::X, 1.0), order];
         let refused = arena
             .step_with(&[IDLE; 2], &orders, &[], &rules)
@@ -490,7 +493,7 @@ fn orders_come_back_from_their_bytes() {
     }
 }
 
-/// What is put as far as it can be goes on there, and can be saved and restored.
+/// A creature at the farthest allowed place goes on, and can be saved and restored.
 #[test]
 fn what_is_put_far_away_can_be_restored() {
     let mut arena = pair();

@@ -1,4 +1,4 @@
-//! Fighters in an arena: hit-stop, death, getting up, blows, being crushed, and the sword's light. Scenes B34 and B35.
+//! Fighters in an arena: hit-stop, death, respawn, the sword's light, and refused inputs. Scenes B34 and B35.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
@@ -34,7 +34,8 @@ fn swaying() -> Slab {
     }
 }
 
-/// Two who stand on the slab; the first stabs, and is held by it for six ticks or not. All states of all ticks.
+/// Two fighters stand on the slab, and the first one stabs. Returns all states, and the number of ticks with a
+/// hit-stop.
 fn stabbing(hit_stop: f64) -> (Vec<ArenaState>, u32) {
     let config = FighterConfig {
         hit_stop,
@@ -95,7 +96,7 @@ fn whoever_dies_falls_and_stands_up_where_it_began() {
     assert!(arena.fighter(HERO).unwrap().is_dead());
     let at = arena.tick();
     while !events.contains(&ArenaEvent::Rose { fighter: HERO }) {
-        // The dead neither walk nor strike.
+        // A dead fighter neither walks nor strikes.
         events = step(
             &mut arena,
             &ClimberInput {
@@ -116,7 +117,7 @@ fn whoever_dies_falls_and_stands_up_where_it_began() {
     let state = *arena.fighter(HERO).unwrap().climber().state();
     assert_eq!((state.position, state.hit_points), (DVec3::Y * 60.0, 1.0));
 
-    // Out of the world as well.
+    // A fighter that falls below the world's floor dies as well.
     let config = FighterConfig {
         respawn: None,
         ..FighterConfig::hero()
@@ -154,7 +155,7 @@ fn a_sword_shows_the_way_in_the_sun() {
         let to = (creature.weak_point(0).unwrap() - origin).normalize();
         let aside = to.any_orthonormal_vector();
         let mut before = f64::INFINITY;
-        // From behind to the weak point the rays gather.
+        // As the sword turns from the opposite direction to the weak point, the rays gather.
         for degrees in (0..=180).rev() {
             let (sin, cos) = libm::sincos(f64::from(degrees).to_radians());
             let light = arena
@@ -172,7 +173,7 @@ fn a_sword_shows_the_way_in_the_sun() {
             }
         }
     }
-    // In the shade of terrain, and of another creature.
+    // No light in the shade of terrain, and of another creature.
     let roof = HalfSpace::behind(DVec3::Y * 50.0, DVec3::NEG_Y).unwrap();
     assert_eq!(arena.sword_light(HERO, DVec3::X, &[(GROUND, &roof)]), None);
     let config = CreatureConfig {
@@ -186,8 +187,8 @@ fn a_sword_shows_the_way_in_the_sun() {
     assert_eq!(arena.sword_light(HERO, DVec3::X, &terrain), None);
 }
 
-/// When a weak point is used up, the next one is what the light leads to, in the same tick. (The blade itself is in the
-/// skin then, out of the sun.)
+/// When a weak point is used up, the light leads to the next one in the same tick. (There is no light while the blade
+/// is in the skin, which shades it.)
 #[test]
 fn the_light_leads_to_the_next_weak_point_at_once() {
     let mut slab = swaying();
@@ -266,7 +267,7 @@ fn bad_inputs_change_nothing() {
     assert_eq!(arena.fingerprint(), before);
     assert_eq!(mode(&arena), ClimberMode::Standing);
 
-    // After the first step nobody joins but by orders.
+    // After the first step, fighters and creatures can join only by orders.
     let begun = arena.add_fighter(FighterConfig::hero(), DVec3::Y);
     assert!(matches!(begun, Err(ArenaError::Begun)));
     let kind = Slab::default().kind();
@@ -274,7 +275,7 @@ fn bad_inputs_change_nothing() {
     assert!(matches!(begun, Err(ArenaError::Begun)));
     assert_eq!(arena.fingerprint(), before);
 
-    // Configurations.
+    // Configurations outside their ranges are refused.
     let mut arena = Slab::default().arena(FighterConfig::hero(), &[DVec3::Y, DVec3::X]);
     let before = arena.fingerprint();
     let mut config = FighterConfig::hero();

@@ -1,4 +1,5 @@
-//! Rollback by ggrs: every tick played again with equal checksums, and two peers over a bad line. Scenes B53 and B55.
+//! Rollback by ggrs: every tick is played again with the same checksum, and peers over a bad connection have the same
+//! fight. Scenes B53 and B55.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
@@ -19,15 +20,17 @@ use clamber_fight::{ArenaEvent, Order, PlayerInput};
 
 type Session = ArenaSession<usize>;
 
+/// Length of the fights, ticks: 78 s at 60 ticks a second.
 const TICKS: u64 = 60 * 78;
 
-/// Ticks beyond the last one: with their inputs it is confirmed, and played again where a guess was wrong.
+/// Ticks that are played beyond the last compared one. They confirm its inputs, and play it again where a prediction
+/// was wrong.
 const BEYOND: u64 = 20;
 
 fn input(tick: u64, player: usize) -> PlayerInput {
     let asks = tick + 11 * player as u64;
     PlayerInput {
-        // Often in two ticks one after the other: what was asked last is no guess for the next tick.
+        // Orders come in two consecutive ticks, so that predictions, which have no order, are often wrong.
         order: if asks % 37 < 2 {
             1 + (asks / 37 % 4) as u16
         } else {
@@ -37,7 +40,7 @@ fn input(tick: u64, player: usize) -> PlayerInput {
     }
 }
 
-/// What the game makes of what players ask for.
+/// The game's orders for the players' requests.
 fn orders(arena: &clamber_fight::Arena, asked: &[u16]) -> Vec<Order> {
     let fighters = arena.fighters().iter().zip(asked);
     let orders = fighters.filter_map(|(fighter, asked)| {
@@ -82,7 +85,7 @@ fn every_tick_of_the_fight_is_the_same_when_it_is_played_again() {
                 .add_local_input(player, input(tick, player))
                 .unwrap();
         }
-        // Compares each checksum with the first one of its tick.
+        // The session compares each checksum with the first one of its tick.
         for request in session.advance_frame().unwrap() {
             let sum = match &request {
                 GgrsRequest::SaveGameState { .. } => Some(melee.arena.fingerprint()),
@@ -102,7 +105,7 @@ fn every_tick_of_the_fight_is_the_same_when_it_is_played_again() {
                 })
                 .unwrap();
             if let (Some(cell), Some(sum)) = (cell, sum) {
-                // The checksum is given, and is that of the state.
+                // The saved cell contains the checksum, which is the state's fingerprint.
                 saved += 1;
                 assert!(
                     format!("{cell:?}").contains(&format!("checksum: Some({sum})")),
@@ -131,10 +134,10 @@ fn melee_step(
     arena.step_with(inputs, &orders, &terrain, &rules).map(drop)
 }
 
-/// A message under way: when it arrives, to whom, from whom.
+/// A message in transit: time of arrival in milliseconds, receiver, sender, and the message.
 type UnderWay = (f64, usize, usize, Message);
 
-/// A line between peers on which messages take their time, and some get lost.
+/// A connection between peers that delays messages and loses some.
 #[derive(Clone)]
 struct Line {
     now: Rc<RefCell<f64>>,
@@ -143,9 +146,11 @@ struct Line {
     ours: usize,
 }
 
-/// Milliseconds one way, and by how much more or less; and the share that gets lost.
+/// Delay of a message one way, milliseconds.
 const ONE_WAY: f64 = 50.0;
+/// Greatest deviation from [`ONE_WAY`] in both directions, milliseconds.
 const JITTER: f64 = 10.0;
+/// Share of the messages that are lost.
 const LOST: f64 = 0.05;
 
 impl NonBlockingSocket<usize> for Line {
@@ -177,15 +182,16 @@ struct Peer {
     session: P2PSession<Session>,
     melee: Melee,
     rollback: Rollback,
-    /// Of each tick, the checksum that it had last.
+    /// The last checksum of each tick.
     sums: BTreeMap<i32, u64>,
     events: Vec<(u64, ArenaEvent)>,
-    /// The longest time that was played again, in ticks, and how often.
+    /// Greatest number of ticks that were played again at once. `rollbacks` counts how often that happened.
     longest: u32,
     rollbacks: u32,
     waits: u32,
 }
 
+/// Input delay of the sessions, ticks.
 const DELAY: u64 = 2;
 
 impl Peer {
@@ -196,7 +202,7 @@ impl Peer {
             .with_max_prediction_window(8)
             .with_input_delay(DELAY as usize)
             .with_desync_detection_mode(DesyncDetection::On { interval: 10 });
-        // The third fighter is played by the first peer.
+        // The first peer plays the third fighter, too.
         for player in 0..3 {
             let owner = player % 2;
             let kind = if owner == ours {
@@ -290,7 +296,8 @@ fn two_peers_over_a_bad_line_have_the_same_fight_and_its_events_once() {
             peer.step();
         }
         *line.now.borrow_mut() += 1000.0 / 60.0;
-        // ggrs waits by the clock until it asks again for a message that was lost while peers get to know each other.
+        // While peers synchronise, ggrs waits in real time before it repeats a lost message. So this loop takes real
+        // time as well.
         if peers
             .iter()
             .any(|peer| peer.session.current_state() != SessionState::Running)
@@ -299,7 +306,7 @@ fn two_peers_over_a_bad_line_have_the_same_fight_and_its_events_once() {
         }
         assert!(began.elapsed().as_secs() < 300, "the peers do not get on");
     }
-    // What one machine would have played alone.
+    // The same fight on one machine alone.
     let mut alone = Melee::new(&kind);
     let mut events = Vec::new();
     let mut sums = BTreeMap::new();
@@ -336,7 +343,7 @@ fn two_peers_over_a_bad_line_have_the_same_fight_and_its_events_once() {
             .map(|(tick, sum)| (*tick, *sum))
             .collect();
         assert!(ours == sums, "ticks differ");
-        // Of the last tick nobody needs to know.
+        // The events of the last tick need not be confirmed yet.
         let known: Vec<_> = events.iter().filter(|(tick, _)| *tick < TICKS).collect();
         let told: Vec<_> = peer
             .events
@@ -347,12 +354,13 @@ fn two_peers_over_a_bad_line_have_the_same_fight_and_its_events_once() {
     }
 }
 
-/// Three peers, of whom one leaves after its last packets have reached only one of the others. Where the others know
-/// nearly the same of it, they go on and have the same fight in the end; where they do not, both are told that the
-/// session is over, and nobody panics.
+/// A peer leaves two others after its last packets have reached only one of them. If the others know nearly the same
+/// inputs of it, they go on and have the same fight. If not, the peer that knows more is told that the session has to
+/// end, and nothing panics.
 #[test]
 fn three_peers_of_whom_one_leaves_badly_go_on_or_are_told() {
-    // Ticks that packets take, and for which the third reaches only the first before it is gone.
+    // The delay of packets in ticks; the ticks for which the third peer reaches only the first one before it leaves;
+    // and whether the others can go on.
     for (lag, cut, goes_on) in [
         (1, 0, true),
         (3, 0, true),
@@ -383,7 +391,7 @@ fn three_peers_of_whom_one_leaves_badly_go_on_or_are_told() {
         let [a, b] = [0, 1].map(|side| &peers.sides[side]);
         let what = format!("lag {lag}, cut {cut}: {:?} {:?}", a.left, b.left);
         if !goes_on {
-            // Who knows more cannot go back; the other one waits for it.
+            // The first peer knows more inputs and cannot go back. The second one waits for it.
             assert_eq!(a.left, Some(2), "{what}");
             continue;
         }
@@ -400,7 +408,7 @@ fn three_peers_of_whom_one_leaves_badly_go_on_or_are_told() {
     }
 }
 
-/// Peers in one process, whose packets take some ticks.
+/// Peers in one process whose packets are delayed by some ticks.
 struct Peers {
     net: Rc<RefCell<Net>>,
     sides: Vec<Side>,
@@ -441,9 +449,9 @@ impl NonBlockingSocket<usize> for End {
 struct Side {
     session: P2PSession<Session>,
     watch: Watch<usize>,
-    /// Who has left badly.
+    /// The player that has left badly.
     left: Option<usize>,
-    /// True if ggrs has seen that peers differ.
+    /// True if ggrs has detected a desync.
     differs: bool,
     arena: clamber_fight::Arena,
     rollback: Rollback,
@@ -504,7 +512,7 @@ impl Peers {
         self.sides.iter().all(is)
     }
 
-    /// A tick of the first peers.
+    /// One tick of the first `count` peers.
     fn tick(&mut self, count: usize) {
         self.net.borrow_mut().tick += 1;
         for side in &mut self.sides[..count] {
@@ -530,7 +538,8 @@ impl Side {
         }
         let tick = self.session.current_frame() as u64;
         for player in self.session.local_player_handles() {
-            // Walks to and fro, jumps, and throws stones, in turns that nobody guesses.
+            // The player walks back and forth, jumps, and throws stones in a random sequence, so that predictions are
+            // wrong.
             let lot = fastrand::Rng::with_seed(tick * 3 + player as u64).u64(..);
             let input = clamber_climber::ClimberInput {
                 walk: glam::DVec3::X * if lot & 1 == 0 { 1.0 } else { -1.0 },

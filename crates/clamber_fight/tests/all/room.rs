@@ -1,4 +1,4 @@
-//! Who begins, or rises, finds room.
+//! Fighters that join, respawn or are moved find room.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
@@ -19,7 +19,7 @@ fn died(events: &[ArenaEvent]) -> usize {
     events.iter().filter(died).count()
 }
 
-/// Fighters with one spawn point stand apart from the first tick on, and nobody dies of that.
+/// Fighters with the same spawn point stand apart from the first ticks on, and none of them is crushed to death.
 #[test]
 fn fighters_with_one_spawn_point_stand_apart() {
     let ground = HalfSpace::below(0.0);
@@ -31,7 +31,7 @@ fn fighters_with_one_spawn_point_stand_apart() {
                 let place = DVec3::new(apart * index as f64 / count as f64, 1.0, 0.0);
                 arena.add_fighter(FighterConfig::hero(), place).unwrap();
             }
-            // Each walks its own way.
+            // Each fighter walks in its own direction.
             let input = |index: usize| {
                 let angle = index as f64 / count as f64 * core::f64::consts::TAU;
                 let walk = DVec3::new(libm::cos(angle), 0.0, libm::sin(angle));
@@ -63,7 +63,7 @@ fn fighters_with_one_spawn_point_stand_apart() {
     }
 }
 
-/// Who begins or rises inside the giant stands beside it.
+/// A fighter that joins or respawns inside the giant is put beside it.
 #[test]
 fn nobody_rises_inside_a_creature() {
     let ground = HalfSpace::below(0.0);
@@ -105,7 +105,7 @@ fn nobody_rises_inside_a_creature() {
                 looked += 1;
                 let body = arena.fighter(FighterId(0)).unwrap().climber().body();
                 let middle = 0.5 * (body.ends[0] + body.ends[1]);
-                // Of rays that begin inside a skin most leave through its back.
+                // Most rays that begin inside a skin leave it through its back.
                 let skin = arena.creature(CreatureId(0)).unwrap().surface();
                 let leaves = |index: &u32| {
                     let angle = f64::from(*index) * 0.7;
@@ -134,7 +134,7 @@ fn nobody_rises_inside_a_creature() {
     }
 }
 
-/// Who finds no room waits for it.
+/// A dead fighter without room waits until there is some.
 #[test]
 fn who_finds_no_room_waits() {
     let mut config = FighterConfig::hero();
@@ -172,7 +172,7 @@ fn who_finds_no_room_waits() {
     assert!(rose.is_some_and(|tick| tick <= 31), "{rose:?}");
 }
 
-/// Who is told to rise, to be elsewhere, or to join where rock is by now finds room beside it.
+/// A fighter that is revived, moved or added where there is rock by now is put beside the rock.
 #[test]
 fn nobody_is_put_into_rock() {
     let ground = HalfSpace::below(0.0);
@@ -207,7 +207,7 @@ fn nobody_is_put_into_rock() {
                 position: there,
             },
             _ => {
-                // The other one makes room.
+                // The first fighter leaves, so that its place is free.
                 let leaves = Order::RemoveFighter { fighter };
                 let idle = [ClimberInput::IDLE];
                 arena.step_with(&idle, &[leaves], &open, &rules).unwrap();
@@ -229,7 +229,8 @@ fn nobody_is_put_into_rock() {
     }
 }
 
-/// Who joins, or is put, deep inside a creature of kilometres finds no room, and looks again until there is some.
+/// A fighter that joins or is moved deep into a creature of several kilometres finds no room. It looks again until
+/// there is some.
 #[test]
 fn who_is_put_where_no_room_is_looks_again() {
     let ground = HalfSpace::below(0.0);
@@ -271,7 +272,7 @@ fn who_is_put_where_no_room_is_looks_again() {
                 arena.step(&idle, &terrain).unwrap();
                 assert!(!has_begun(&arena));
             }
-            // Who is put elsewhere while it waits looks at once.
+            // A waiting fighter that is moved elsewhere looks for room at once.
             let mut other = Arena::new(ArenaConfig::default()).unwrap();
             other.add_creature(kind.clone(), config).unwrap();
             other.restore_bytes(&arena.to_bytes().unwrap()).unwrap();
@@ -295,8 +296,7 @@ fn who_is_put_where_no_room_is_looks_again() {
     }
 }
 
-/// Who stands where a creature is put, or joins, is outside of it in the same tick, and is not struck by what it does
-/// there before.
+/// A fighter that stands where a creature is put is outside of it in the same tick, and is not struck there before.
 #[test]
 fn creatures_that_are_put_on_people_make_room() {
     let ground = HalfSpace::below(0.0);

@@ -1,4 +1,5 @@
-//! Saved arenas: all goes on with the same bits, what is left out is noticed, and bad bytes are refused. Scene B54.
+//! Saved arenas: runs continue with the same bits, missing fields are noticed, and damaged bytes are refused. Scene
+//! B54.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
@@ -12,7 +13,7 @@ use clamber_fight::{Arena, ArenaConfig, ArenaError, ArenaState, FighterConfig};
 use glam::{DVec3, Vec3};
 use serde_json::Value;
 
-/// Ticks that are played again from each saved state.
+/// Number of ticks that are played again from each saved state.
 const AGAIN: u64 = 7;
 
 #[test]
@@ -51,7 +52,7 @@ fn much_happens_in_the_melee() {
     );
 }
 
-/// Every tick of the fight, played again from seven ticks before.
+/// Repeats every third tick of the fight from the state seven ticks before.
 #[test]
 fn a_restored_arena_goes_on_with_the_same_bits() {
     let mut melee = Melee::new(&giant());
@@ -79,8 +80,8 @@ fn a_restored_arena_goes_on_with_the_same_bits() {
     }
 }
 
-/// Plays a fight for so many ticks. From each of its states a fresh arena goes on with the same bits for a few ticks, and
-/// from one in `far` for 600.
+/// Plays a fight for `ticks` ticks. From each of its states, a fresh arena continues with the same bits for [`AGAIN`]
+/// ticks; every `far`-th state is continued for 600 ticks.
 fn fresh_arenas_go_on_alike(number: u64, ticks: u64, far: u64) {
     let kind = giant();
     let mut melee = Melee::another(&kind, number);
@@ -109,7 +110,7 @@ fn fresh_arenas_go_on_alike(number: u64, ticks: u64, far: u64) {
     }
 }
 
-/// Nothing outside the state influences a tick: what another arena remembers of its life makes no difference.
+/// Only the saved state influences a tick: memory that an arena keeps beside it makes no difference.
 #[test]
 fn a_fresh_arena_goes_on_with_the_same_bits() {
     fresh_arenas_go_on_alike(1, 240, 60);
@@ -123,7 +124,7 @@ fn fresh_arenas_go_on_with_the_same_bits_in_ten_fights() {
     }
 }
 
-/// A place in a saved state, as its fields and indices.
+/// Path of a value in a saved state: names of fields, and indices.
 type Path = &'static [&'static str];
 
 fn at(value: &mut Value, path: Path) -> &mut Value {
@@ -140,10 +141,11 @@ fn text_hash(text: &str) -> u64 {
     })
 }
 
-/// If a field is left out of what is saved, a run that is loaded and played again has other bits: within 60 ticks from
-/// where it first matters.
+/// A field that is missing in a saved state is noticed: a run that continues from it has other bits, within 60 ticks
+/// from the point where the field first matters.
 #[test]
 fn each_field_that_is_left_out_is_noticed_within_a_second() {
+    /// Fields that are left out in turn: a name for messages, and the path in the saved state.
     const FIELDS: [(&str, Path); 31] = [
         ("tick", &["tick"]),
         (
@@ -205,7 +207,7 @@ fn each_field_that_is_left_out_is_noticed_within_a_second() {
     let value = |tick: usize| serde_json::to_value(&states[tick]).unwrap();
     for (index, (name, path)) in FIELDS.into_iter().enumerate() {
         let last = states.len() - 60 - 2 * AGAIN as usize;
-        // Prey in view is seen anew in each tick: it is remembered while it is not.
+        // Prey in view is sensed anew in each tick. The remembered prey matters only while it is out of view.
         let is_remembered = |from: &usize| {
             let mut state = value(*from);
             let unseen = &["creatures", "0", "state", "unseen"];
@@ -223,12 +225,12 @@ fn each_field_that_is_left_out_is_noticed_within_a_second() {
             let Ok(state) = serde_json::from_value::<ArenaState>(loaded) else {
                 return true;
             };
-            // What no arena can be in is noticed as well.
+            // A state that the arena refuses is noticed as well.
             if melee.arena.restore(&state).is_err() {
                 return true;
             }
             (from + 1..=from + AGAIN as usize).any(|tick| {
-                // The inputs of a tick are those of its number in the run.
+                // Inputs depend on the tick's number, so the number of the original run is set.
                 let mut loaded = melee.arena.save();
                 loaded.tick = tick as u64 - 1;
                 if name != "tick" {
@@ -243,7 +245,7 @@ fn each_field_that_is_left_out_is_noticed_within_a_second() {
             "{name} can be left out from tick {first} on"
         );
     }
-    // Nothing left out: nothing noticed.
+    // States without a missing field continue with the same bits.
     for from in (0..600).step_by(50) {
         melee.arena.restore(&states[from]).unwrap();
         for sum in sums.iter().skip(from + 1).take(AGAIN as usize) {
@@ -267,7 +269,7 @@ fn bytes_come_back_and_others_are_refused() {
     }
     melee.arena.restore_bytes(&bytes).unwrap();
     assert!(melee.arena.save() == saved);
-    // Another arena that was made alike goes on from there too.
+    // Another arena with the same creatures and fighters continues from there as well.
     let mut other = Melee::new(&kind);
     other.arena.restore_bytes(&bytes).unwrap();
     melee.step();
@@ -297,7 +299,7 @@ fn bytes_come_back_and_others_are_refused() {
     assert!(melee.arena.restore_bytes(&longer).is_err());
     assert_eq!(melee.arena.fingerprint(), before);
 
-    // Another configuration; and an arena that does not know the creatures.
+    // Another configuration is refused, and so is a kind of creature that the arena does not know.
     let config = ArenaConfig {
         stuck_arrows: 3,
         ..*melee.arena.config()
@@ -308,7 +310,7 @@ fn bytes_come_back_and_others_are_refused() {
     let mut arena = Arena::new(*melee.arena.config()).unwrap();
     let error = arena.restore_bytes(&bytes).unwrap_err();
     assert!(matches!(error, ArenaError::Kind { .. }), "{error}");
-    // Empty as it is, it takes the state once it knows them.
+    // The empty arena takes the state once it knows the kinds.
     for (_, kind) in melee.arena.kinds() {
         arena.add_kind(kind.clone()).unwrap();
     }
@@ -317,7 +319,7 @@ fn bytes_come_back_and_others_are_refused() {
     assert_eq!(arena.fingerprint(), sum);
 }
 
-/// States with numbers that are not theirs: refused, or played without a panic.
+/// States with changed numbers are refused, or are played without a panic.
 #[test]
 fn states_that_were_changed_are_refused_or_played() {
     let mut melee = Melee::new(&giant());
@@ -330,7 +332,7 @@ fn states_that_were_changed_are_refused_or_played() {
     let (mut refused, mut played) = (0, 0);
     for round in 0..1000 {
         let mut value = whole.clone();
-        // Those that are there have most of the numbers.
+        // Most numbers are in the creatures, fighters and projectiles, so these are changed in three of four rounds.
         let part = ["creatures", "fighters", "projectiles"].get(round % 4);
         match part.and_then(|part| value.get_mut(part)) {
             Some(part) => spoil(part, &mut rng),
@@ -347,10 +349,10 @@ fn states_that_were_changed_are_refused_or_played() {
         }
         played += 1;
         for _ in 0..3 {
-            // What is taken can be played.
+            // A state that is accepted can be played.
             melee_step(&mut melee);
         }
-        // And what comes of it can be saved and taken again.
+        // The resulting state can be saved and restored again.
         let bytes = melee.arena.to_bytes().unwrap();
         let again = melee.arena.restore_bytes(&bytes);
         assert!(again.is_ok(), "round {round}: {again:?}");
@@ -368,7 +370,7 @@ fn melee_step(melee: &mut Melee) {
     melee.arena.step(&inputs, &terrain).unwrap();
 }
 
-/// Changes a number somewhere.
+/// Replaces one value at random.
 fn spoil(value: &mut Value, rng: &mut fastrand::Rng) {
     match value {
         Value::Array(all) if !all.is_empty() => {
@@ -412,7 +414,7 @@ fn a_restore_that_fails_changes_nothing() {
         change(&mut state);
         wrong.push(state);
     };
-    // The second creature is refused after the first one was taken.
+    // The second creature's state is refused after the first one's was accepted.
     spoil(&|state| state.creatures[1].state = state.creatures[0].state.clone());
     spoil(&|state| state.creatures.swap(0, 1));
     spoil(&|state| state.creatures[1].id = state.creatures[0].id);

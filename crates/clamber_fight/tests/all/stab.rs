@@ -1,4 +1,4 @@
-//! Stabs: charge, damage, what breaks them off, and where the blade goes. Scenes B26 to B28.
+//! Stabs: charge, damage, interruptions, and targets. Scenes B26 to B28.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
@@ -12,6 +12,7 @@ use clamber_fight::{Act, Arena, ArenaEvent, FighterConfig, Order, SwordConfig, T
 use clamber_world::{Obstacle, ObstacleId};
 use glam::{DVec3, Vec3};
 
+/// Tick rates of the tests, ticks a second.
 const RATES: [f64; 4] = [30.0, 60.0, 120.0, 240.0];
 
 fn hero() -> FighterConfig {
@@ -29,7 +30,7 @@ fn charge(arena: &Arena) -> f64 {
     arena.fighter(HERO).unwrap().charge()
 }
 
-/// Presses until the sword is up.
+/// Presses the stab button, and waits until the sword is raised.
 fn raise(arena: &mut Arena, hold: &ClimberInput) {
     let pressed = ClimberInput {
         actions: STAB,
@@ -45,7 +46,7 @@ fn raise(arena: &mut Arena, hold: &ClimberInput) {
     panic!("{:?}", act(arena));
 }
 
-/// Strikes, and gives the damage of what was hit.
+/// Strikes, and returns the damages of the hits.
 fn strike(arena: &mut Arena, hold: &ClimberInput) -> Vec<f64> {
     let mut all = hits(&step(
         arena,
@@ -114,9 +115,10 @@ fn damage_is_proportional_to_the_charge() {
     }
 }
 
-/// The giant's skin jerks while the stab is charged: a hold of 15 m/s^2 is the most.
+/// Skin that starts to move with a constant acceleration while a stab is charged. Above a shake of 15 m/s^2, a climber
+/// only hangs.
 fn jerking(rate: f64, acceleration: f32) -> Slab {
-    // Still for five seconds, then to and fro at that acceleration.
+    // The skin is at rest for five seconds, accelerates for one second, and then keeps its velocity.
     let mut keys = vec![(0.0, Vec3::ZERO, Vec3::ONE), (5.0, Vec3::ZERO, Vec3::ONE)];
     for k in 1..=240 {
         let t = k as f32 / 240.0;
@@ -138,7 +140,7 @@ fn a_shake_beyond_the_hang_threshold_breaks_a_stab_off_within_a_tick() {
     for rate in RATES {
         for (acceleration, breaks) in [(10.0, false), (25.0, true)] {
             let mut config = hero();
-            // The feet stay, and the hold is kept, so that the shake alone decides.
+            // The feet stay on the skin and the hold is kept, so that the shake alone decides.
             config.climber.ground.throw_acceleration = f64::INFINITY;
             config.climber.stamina = None;
             let mut arena = jerking(rate, acceleration).arena(config, &[DVec3::Y]);
@@ -177,7 +179,7 @@ fn a_shake_beyond_the_hang_threshold_breaks_a_stab_off_within_a_tick() {
     }
 }
 
-/// Whoever strikes in the tick in which the shake breaks it off does not strike, at any rate.
+/// A strike that begins in the tick in which the shake breaks off the stab does not hit, at any tick rate.
 #[test]
 fn a_strike_in_the_tick_of_the_shake_is_broken_off_at_every_rate() {
     for rate in RATES {
@@ -220,7 +222,7 @@ fn a_strike_in_the_tick_of_the_shake_is_broken_off_at_every_rate() {
     }
 }
 
-/// Full stabs, and one of a share, into a point of two and a half.
+/// Makes two full stabs, and one with the charge `share`, at a weak point of 2.5 hit points.
 fn stabs(share: f64) -> (Arena, Vec<f64>) {
     let slab = Slab {
         weak_points: vec![
@@ -229,7 +231,7 @@ fn stabs(share: f64) -> (Arena, Vec<f64>) {
         ],
         ..Slab::default()
     };
-    // A tenth of the charge each six ticks: all shares are exact but for rounding.
+    // The charge grows by 1/120 a tick, so 0.5 and 1 are reached exactly, but for rounding.
     let mut arena = slab.arena(hero(), &[DVec3::Y]);
     land(&mut arena);
     let mut done = Vec::new();
@@ -249,11 +251,11 @@ fn a_point_of_two_and_a_half_stabs_takes_as_many_and_passes_nothing_on() {
     assert_eq!(done.len(), 3, "{done:?}");
     let points = arena.creature(GIANT).unwrap().state().hit_points().to_vec();
     assert!(points[0] <= 1e-9, "{points:?}, {done:?}");
-    // Less leaves it open.
+    // Less damage leaves the first point open.
     let (arena, _) = stabs(0.49 - 1.0 / 120.0);
     let points = arena.creature(GIANT).unwrap().state().hit_points().to_vec();
     assert!(points[0] > 0.0 && points[1] == 5.0, "{points:?}");
-    // More is not passed on to the next one.
+    // Damage beyond the first point's hit points is not passed on to the next one.
     let (arena, done) = stabs(1.0);
     let points = arena.creature(GIANT).unwrap().state().hit_points().to_vec();
     assert_eq!(points, [0.0, 5.0], "{done:?}");
@@ -264,7 +266,8 @@ fn a_point_of_two_and_a_half_stabs_takes_as_many_and_passes_nothing_on() {
     );
 }
 
-/// On skin that is stretched by half and moves at 5 m/s the tip goes where it was aimed, and hits in each of 20 poses.
+/// On skin that is stretched by up to a half and moves at 5 m/s, the tip goes to the point at which it aimed, and hits
+/// in each of 20 poses.
 #[test]
 fn the_tip_goes_to_its_material_point_on_stretched_and_moving_skin() {
     for pose in 0..20 {
@@ -274,7 +277,8 @@ fn the_tip_goes_to_its_material_point_on_stretched_and_moving_skin() {
             1.0 + (19 - pose) as f32 / 38.0,
         );
         let way = Vec3::new(5.0, 0.0, 0.0);
-        // It is moving and stretched when the fighter lands, goes on for 20 s, and begins again after the test.
+        // The skin moves and stretches from the beginning. Its clip lasts 60 s, so that it does not repeat within the
+        // test.
         let keys = vec![
             (0.0, Vec3::ZERO, stretch),
             (60.0, way * 60.0, stretch * Vec3::new(1.5, 1.0, 1.5)),
@@ -321,7 +325,7 @@ fn the_tip_goes_to_its_material_point_on_stretched_and_moving_skin() {
             );
             events = step(&mut arena, &hold);
         };
-        // Where the aimed point is by now, independently: by its anchor on the skin.
+        // The current position of the aimed point, computed independently from its anchor on the skin.
         let surface = arena.creature(GIANT).unwrap().surface();
         let anchor = aimed.material.anchor_on(surface).unwrap();
         let motion = surface.in_world().motion(&anchor, 1.0 / 60.0).unwrap();
@@ -331,7 +335,7 @@ fn the_tip_goes_to_its_material_point_on_stretched_and_moving_skin() {
             motion.velocity
         );
         assert!(place.distance(motion.position) < 0.005, "pose {pose}");
-        // The blade is there, and so deep in the skin.
+        // The blade is at this point, and as deep in the skin as configured.
         let blade = arena.fighter(HERO).unwrap().blade().unwrap();
         let depth = (motion.position - blade.tip).dot(motion.normal);
         assert!(
@@ -349,14 +353,14 @@ fn a_stab_out_of_a_fall_is_full_and_slow_to_pull_out() {
     let mut done = Vec::new();
     let mut pulling = 0;
     for tick in 0..240 {
-        // The sword is up after 0.3 s.
+        // The sword is raised after 0.3 s.
         let input = if tick == 30 { pressing(STAB) } else { idle };
         done.append(&mut hits(&step(&mut arena, &input)));
         pulling += u32::from(matches!(act(&arena), Act::PullOut { .. }));
     }
     assert_eq!(done, [1.0]);
     assert!((90..100).contains(&pulling), "{pulling} ticks");
-    // Who has lost the ground instead has its stab broken off.
+    // The loss of its ground breaks off a stab instead.
     let mut arena = with_weak_point(60.0, 9.0).arena(hero(), &[DVec3::new(5.8, 1.0, 0.0)]);
     land(&mut arena);
     raise(&mut arena, &idle);
@@ -367,7 +371,7 @@ fn a_stab_out_of_a_fall_is_full_and_slow_to_pull_out() {
     assert!(broken, "{:?}", mode(&arena));
 }
 
-/// The blade goes with the skin that it is in, also while the impact holds it.
+/// The blade moves with the skin that it is in, also while the hit-stop holds the fighter.
 #[test]
 fn the_blade_stays_in_moving_skin_at_every_rate() {
     for rate in RATES {
@@ -404,7 +408,7 @@ fn the_blade_stays_in_moving_skin_at_every_rate() {
     }
 }
 
-/// A stab into a plate that somebody else breaks before it lands goes into what is below the plate.
+/// A stab at a plate that another fighter breaks before it lands hits the skin below the plate.
 #[test]
 fn a_stab_goes_on_when_its_plate_breaks() {
     let slab = Slab {
@@ -414,7 +418,7 @@ fn a_stab_goes_on_when_its_plate_breaks() {
     };
     let mut config = hero();
     config.sword.as_mut().unwrap().stab_damage = 3.0;
-    // The other one stands beside, where its footing stays.
+    // The other fighter stands on terrain beside the plate, so that it keeps its footing.
     let edge = block(Vec3::new(-9.0, -9.0, 6.0), Vec3::new(9.0, 0.8, 15.0));
     let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &edge)];
     for later in 0..8 {

@@ -1,4 +1,4 @@
-//! The same fight over terrain of different makes: an own one, plain triangles, and a rapier world.
+//! The same fight over three implementations of terrain: a half-space, triangles, and a rapier world.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
@@ -10,7 +10,7 @@ use clamber_world::rapier3d::prelude::*;
 use clamber_world::{BodyPoses, HalfSpace, Obstacle, ObstacleId, RapierTerrain, TriangleTerrain};
 use glam::{DVec3, Vec3};
 
-/// A level of triangles, 200 m wide, in cells of 5 m.
+/// Horizontal triangles, 200 m wide, in cells of 5 m.
 fn triangles() -> TriangleTerrain {
     let (mut corners, mut triangles) = (Vec::new(), Vec::new());
     for row in 0..=40 {
@@ -35,7 +35,7 @@ fn input(tick: u64) -> ClimberInput {
     }
 }
 
-/// Where the fighter is in the end, and the tip of its arrow.
+/// Final position of the fighter, and the tip of its arrow.
 fn fought(ground: &dyn Obstacle) -> [DVec3; 2] {
     let mut arena = Arena::new(ArenaConfig::default()).unwrap();
     let hero = arena
@@ -56,7 +56,7 @@ fn fought(ground: &dyn Obstacle) -> [DVec3; 2] {
     let arrow = arena.projectiles()[0];
     assert!(matches!(arrow.motion, ProjectileMotion::Stuck { .. }));
     let tip = arena.place(&arrow, &terrain).unwrap().tip;
-    // From a saved state all goes on with the same bits, on terrain that is asked again.
+    // The run repeats with the same bits from a saved state, on the same terrain.
     arena.restore_bytes(&saved.unwrap()).unwrap();
     for tick in 81..300 {
         arena.step(&[input(tick)], &terrain).unwrap();
@@ -88,7 +88,7 @@ fn a_fight_is_the_same_over_own_terrain_triangles_and_rapier() {
     }
 }
 
-/// Ids from 2^62 on are the arena's own.
+/// Ids from 2^62 on belong to the arena.
 #[test]
 fn terrain_with_an_id_of_the_arena_is_refused_and_changes_nothing() {
     let mut arena = Arena::new(ArenaConfig::default()).unwrap();

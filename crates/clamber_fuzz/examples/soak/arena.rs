@@ -1,4 +1,4 @@
-//! Whole arenas: creatures of any size anywhere, fighters, random inputs, random orders, and states that are taken back.
+//! Whole arenas: creatures of any size at any place, fighters, random inputs, random orders, and rollbacks.
 
 #[path = "orders.rs"]
 mod orders;
@@ -13,12 +13,14 @@ use clamber_world::{HalfSpace, Obstacle, ObstacleId};
 use fastrand::Rng;
 use glam::DVec3;
 
-/// Ticks of an arena, and of what is played again.
+/// Number of ticks of an arena.
 const TICKS: usize = 300;
+
+/// Number of ticks that a rollback takes back and repeats.
 const AGAIN: usize = 8;
 
-/// Runs an arena; returns the number of checks. Panics if a number is not finite, if what is played again has other
-/// bits, or if a step ends with an error.
+/// Runs an arena; returns the number of checks. Panics if a number is not finite, if repeated ticks give other bits, or
+/// if a step ends with an error.
 pub(crate) fn arena(giant: &Creature, seed: u64) -> usize {
     let mut rng = Rng::with_seed(seed);
     let (mut arena, origin) = make(giant, &mut rng);
@@ -54,7 +56,7 @@ pub(crate) fn arena(giant: &Creature, seed: u64) -> usize {
         }
         if played.len() == AGAIN {
             let sum = arena.fingerprint();
-            // In turns by itself, and by another arena that knows nothing but the kind of creature.
+            // At random, this arena or a new one repeats the ticks. The new one has only the creature kinds in common.
             if rng.bool() {
                 arena = fresh(&arena);
             }
@@ -86,7 +88,7 @@ fn step(
     }
 }
 
-/// An empty arena that knows the same kinds of creatures.
+/// An empty arena with the same creature kinds.
 fn fresh(arena: &Arena) -> Arena {
     let mut fresh = match Arena::new(*arena.config()) {
         Ok(fresh) => fresh,

@@ -5,15 +5,16 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use crate::task::Task;
 
-/// A task that found something.
+/// A task whose check failed, or that panicked otherwise.
 #[derive(Clone, Debug)]
 pub(crate) struct Finding {
     pub(crate) task: Task,
-    /// The panic's message and place in the source.
+    /// The panic's message and its place in the source.
     pub(crate) message: String,
 }
 
 thread_local! {
+    /// The message of this thread's last panic.
     static SAID: RefCell<String> = const { RefCell::new(String::new()) };
 }
 

@@ -1,4 +1,4 @@
-//! Random orders to an arena, among them some for who is not there.
+//! Random orders to an arena. Some of them name a fighter or creature that does not exist.
 
 use clamber_climber::Blow;
 use clamber_colossus::{CreatureConfig, Noise};
@@ -6,11 +6,13 @@ use clamber_fight::{Arena, CreatureId, FighterConfig, FighterId, Order, Projecti
 use fastrand::Rng;
 use glam::DVec3;
 
-/// No more of each.
+/// No order adds a creature to an arena with this many creatures.
 const MOST_CREATURES: usize = 3;
+
+/// No order adds a fighter to an arena with this many fighters.
 const MOST_FIGHTERS: usize = 6;
 
-/// The orders of a tick: mostly none.
+/// The orders of a tick. At most one tick in twenty has any.
 pub(super) fn orders(rng: &mut Rng, arena: &Arena, origin: DVec3) -> Vec<Order> {
     let count = if rng.u8(0..20) == 0 { rng.u8(1..4) } else { 0 };
     (0..count)

@@ -1,26 +1,28 @@
-//! The order of the tasks: the same for the same seed, whatever the time.
+//! The order of the tasks. It depends on the seed alone, not on the time.
 
 use clamber_fuzz::stress::{Case, MeshFamily, Place, PoseFamily};
 
 use crate::task::{Target, Task};
 
-/// Sizes of stress cases, triangles. Every [`LARGE_EVERY`]th round has the last size.
+/// Sizes of stress cases, triangles. Rounds alternate between the first two sizes.
 const SIZES: [usize; 3] = [600, 6_000, 60_000];
+
+/// One in this many rounds has the last of [`SIZES`].
 const LARGE_EVERY: u64 = 16;
 
-/// Ticks of a stress case.
+/// Number of ticks of a stress case.
 const TICKS: usize = 3;
 
-/// Inputs of each fuzz target after each stress case.
+/// Number of inputs for each fuzz target after each stress case.
 const INPUTS: u64 = 20;
 
-/// Number of stress cases for each battle.
+/// Number of stress cases per battle.
 const BATTLE_EVERY: usize = 18;
 
-/// Arenas after each battle.
+/// Number of arenas after each battle.
 const ARENAS: u64 = 3;
 
-/// An endless sequence of tasks. Each round goes over every mesh in every pose; each task has a seed of its own.
+/// An endless sequence of tasks. Each round goes over every mesh in every pose. Each task has its own seed.
 pub(crate) fn tasks(seed: u64) -> impl Iterator<Item = Task> {
     let mut seeds = fastrand::Rng::with_seed(seed);
     (0u64..).flat_map(move |round| {

@@ -11,13 +11,13 @@ use clamber_scenes::measure::Table;
 use crate::findings::Finding;
 use crate::task::Task;
 
-/// A class is judged from so many queries up: with fewer the slowest thousandth is not defined.
+/// The smallest number of queries of a class that is judged. With fewer queries the slowest thousandth is not defined.
 const LEAST: usize = 1_000;
 
-/// Number of the worst classes that are listed.
+/// Number of the worst classes in the report. If more classes miss the limit, all of those are listed.
 const LISTED: usize = 20;
 
-/// Length to which a finding's message is cut: some messages hold whole answers.
+/// Number of characters to which a finding's message is cut. Some messages hold whole answers.
 const LETTERS: usize = 1_000;
 
 /// The results of a soak.
@@ -59,7 +59,7 @@ impl Report {
         self.findings.len()
     }
 
-    /// The classes that are judged, by descending ratio of the slowest thousandth to the median.
+    /// The judged classes, by descending ratio of the slowest thousandth to the median.
     fn judged(&self) -> Vec<(Class, Summary)> {
         let all = self.times.summaries();
         let mut judged: Vec<_> = all.filter(|(_, s)| s.count >= LEAST).collect();
@@ -67,7 +67,7 @@ impl Report {
         judged
     }
 
-    /// True if there is no finding, and no class misses the limit.
+    /// True if there is no finding, and every judged class keeps the limit.
     pub(crate) fn holds(&self) -> bool {
         let slow = self
             .judged()
@@ -151,12 +151,13 @@ impl fmt::Display for Report {
     }
 }
 
-/// All classes of a query.
+/// The classes of one query.
 #[derive(Default)]
 struct OfQuery {
     /// The judged classes, the worst first.
     judged: Vec<(Class, Summary)>,
-    /// Mixed classes, which merge those that differ only in work: their number, and how many miss the limit.
+    /// Mixed classes merge the classes that differ only in work. Their number, and the number of those that miss the
+    /// limit.
     mixed: [usize; 2],
 }
 

@@ -1,4 +1,4 @@
-//! The tasks of a soak, with names by which they can be repeated.
+//! The tasks of a soak, with names by which a task can be repeated.
 
 use std::fmt;
 use std::str::FromStr;
@@ -10,16 +10,16 @@ use clamber_scenes::Creature;
 use crate::arena::arena;
 use crate::fight::fight;
 
-/// A task of a soak. It does the same every time.
+/// A task of a soak. It runs the same way every time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Task {
     /// A stress case.
     Stress(Case),
-    /// A fuzz target on random bytes from a seed.
+    /// A fuzz target, with the seed of its random bytes.
     Fuzz(Target, u64),
-    /// A whole battle with a seed.
+    /// A whole battle, with its seed.
     Battle(u64),
-    /// An arena with a seed: creatures and fighters anywhere, of any size.
+    /// An arena with its seed: creatures and fighters of any size at any place.
     Arena(u64),
 }
 
@@ -33,6 +33,7 @@ pub(crate) enum Target {
 }
 
 impl Target {
+    /// All targets.
     pub(crate) const ALL: [Self; 4] = [Self::Queries, Self::Palettes, Self::Builder, Self::Import];
 
     fn name(self) -> &'static str {
@@ -87,7 +88,7 @@ impl Task {
     }
 }
 
-/// Random bytes for a target: for imports a valid file with some bytes changed, else any bytes.
+/// Random bytes for a target. For an import they are a valid file with some bytes changed.
 fn random_bytes(target: Target, seed: u64) -> Vec<u8> {
     let mut rng = fastrand::Rng::with_seed(seed);
     if target != Target::Import {
@@ -97,7 +98,7 @@ fn random_bytes(target: Target, seed: u64) -> Vec<u8> {
     let mut file = [&json[..], &[0], &binary].concat();
     for _ in 0..rng.usize(1..4) {
         let at = rng.usize(0..file.len());
-        // In the text, characters that JSON uses load more often than any byte would.
+        // In the JSON text, a file loads more often with characters that JSON uses than with any bytes.
         file[at] = if at < json.len() {
             b"0123456789-.eE[]{}\","[rng.usize(0..20)]
         } else {

@@ -5,7 +5,7 @@ use clamber_surface::mesh::MeshError;
 use clamber_surface::surface::SurfaceError;
 use thiserror::Error;
 
-/// Why queries cannot be read or run.
+/// The reason why queries cannot be read or run.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum CcdError {

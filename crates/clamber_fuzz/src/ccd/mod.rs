@@ -1,7 +1,7 @@
 //! Tests the library's sweeps with continuous collision queries whose exact answers are known: from files ([`run`]), or
 //! one by one ([`Stage`]).
 //!
-//! The answers to a file's queries are judged in rational numbers, from the exact points of the file.
+//! The answers to a file's queries are checked in rational numbers, with the exact points of the file.
 
 mod error;
 mod options;
@@ -57,7 +57,7 @@ pub fn run(options: &CcdOptions) -> Result<CcdReport, CcdError> {
 }
 
 impl CcdReport {
-    /// Counts a claim about a query, and whether it is true.
+    /// Counts a claim about a query, and any fault of it.
     ///
     /// # Panics
     /// If the claimed time is not in 0..=1.

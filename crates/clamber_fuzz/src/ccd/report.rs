@@ -2,7 +2,7 @@ use std::fmt;
 
 use serde::Serialize;
 
-/// Counts of the sweeps' answers, and of the wrong ones.
+/// Numbers of the sweeps' answers, and of the wrong answers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct CcdReport {
     /// Queries that were run.
@@ -11,7 +11,8 @@ pub struct CcdReport {
     pub hits: usize,
     /// Queries answered without a contact.
     pub misses: usize,
-    /// Hits although the file says that nothing touches; correct if the motion comes within radius and tolerance.
+    /// Hits although the file says that the motion does not touch. Such a hit is correct if the motion comes within
+    /// radius and tolerance.
     pub near_misses_hit: usize,
     /// Misses although the file says that the motion touches.
     pub false_negatives: usize,
@@ -22,9 +23,9 @@ pub struct CcdReport {
     pub late: usize,
     /// Answers that could neither be proved nor refuted.
     pub unproved: usize,
-    /// Hits that the sweep flagged as undecided: they may be too far away.
+    /// Hits that the sweep flagged as undecided: the contact may be beyond the tolerance.
     pub undecided: usize,
-    /// Largest number of steps of a query.
+    /// Largest number of steps of the exact test in a query.
     pub worst_steps: u32,
     /// Mean time of a query with empty skin caches, nanoseconds.
     pub ns_per_query: f64,

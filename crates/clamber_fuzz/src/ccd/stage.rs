@@ -9,8 +9,8 @@ use clamber_surface::rig::{JointId, Palette};
 use clamber_surface::surface::{CastOptions, SkinnedSurface, SurfaceError, SweepHit};
 use glam::Vec3;
 
-/// Largest number of steps that the library takes for a triangle. If a query is not decided by then, its hit is
-/// flagged.
+/// Largest number of steps that the library takes for a triangle. If the steps do not decide a query, its hit is
+/// flagged as undecided.
 pub const CAP: u32 = 256;
 
 /// A surface of one triangle, for sweeps against any moving triangle. Each corner has a joint of its own, whose
@@ -32,7 +32,7 @@ pub struct Answer {
 }
 
 impl Answer {
-    /// The claim that the answer makes.
+    /// The claim of the answer, for the checks of `clamber_oracle`.
     pub fn claim(&self) -> Claim {
         Claim {
             time: self.hit.map(|hit| hit.time),
@@ -89,7 +89,8 @@ impl Stage {
     }
 }
 
-/// A palette that takes every vertex to its joint's position, wherever the vertex is at rest: `0 x + t` is exact.
+/// A palette that takes every vertex to its joint's position, independent of the vertex's rest position: `0 x + t` is
+/// exact.
 fn palette(corners: [Vec3; 3]) -> Palette {
     Palette::from_matrices(corners.map(|corner| Affine {
         rows: corner.to_array().map(|t| [0.0, 0.0, 0.0, t]),

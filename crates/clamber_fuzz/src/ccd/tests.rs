@@ -1,4 +1,4 @@
-//! Queries in the files' format, and wrong answers to them.
+//! Queries in the format of the files, and wrong answers to them.
 
 use std::path::Path;
 
@@ -6,13 +6,14 @@ use clamber_oracle::queries::parse_queries;
 
 use super::*;
 
-/// A vertex that falls from 1 through a face at 0 to -1, in fractions; and one that stops above it.
+/// Two vertex-face queries in the files' format: a vertex that falls from 1 through a face at 0 to -1, and one that
+/// stops above the face.
 const VERTICES: &str = "\
     1,4,1,1,1,4,1\n0,1,0,1,0,1,1\n1,1,0,1,0,1,1\n0,1,0,1,1,1,1\n\
     1,4,-1,1,1,4,1\n0,1,0,1,0,1,1\n1,1,0,1,0,1,1\n0,1,0,1,1,1,1\n\
     1,4,1,1,1,4,0\n0,1,0,1,0,1,0\n1,1,0,1,0,1,0\n0,1,0,1,1,1,0\n\
     1,4,1,9,1,4,0\n0,1,0,1,0,1,0\n1,1,0,1,0,1,0\n0,1,0,1,1,1,0\n";
-/// The same two motions of an edge above another edge.
+/// Two edge-edge queries with the same two motions, of an edge above another edge.
 const EDGES: &str = "\
     -1,2,1,1,0,1,1\n1,2,1,1,0,1,1\n0,1,0,1,-1,2,1\n0,1,0,1,1,2,1\n\
     -1,2,-1,1,0,1,1\n1,2,-1,1,0,1,1\n0,1,0,1,-1,2,1\n0,1,0,1,1,2,1\n\
@@ -46,7 +47,7 @@ fn the_library_answers_correctly() {
             assert!(report.holds(), "{report}");
             answer.claim().time
         });
-        // The extent is 2, so the radius is 2e-5: contact is at that height, just before half of the way.
+        // The extent is 2, so the radius is 2e-5. The contact is at that height, just before half of the motion.
         let time = hit.unwrap();
         assert!((0.5 - 2e-5..=0.5 - 0.9e-5).contains(&time), "{time}");
         assert_eq!(miss, None);
@@ -61,7 +62,7 @@ fn each_kind_of_wrong_answer_has_its_count() {
         let late = count(&falls, Some(0.5));
         assert_eq!((late.false_negatives, late.late), (0, 1), "{late}");
         assert!(!missed.holds() && !late.holds());
-        // Early, but the motion does touch: not a false contact.
+        // The claim is early, but the motion does touch, so it is not a false contact.
         assert!(count(&falls, Some(0.4)).holds());
         let invented = count(&stops, Some(1.0));
         assert_eq!(

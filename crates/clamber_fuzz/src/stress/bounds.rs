@@ -7,9 +7,9 @@ use glam::Vec3;
 
 use super::posed::Posed;
 
-/// Random vertices, chosen once, at which queries are checked in every pose.
+/// Random vertices, chosen once. Queries are checked at them in every pose.
 pub(super) struct Bounds {
-    /// Each vertex with the triangles around it.
+    /// Each vertex with the ids of the triangles around it.
     around: Vec<(usize, Vec<u32>)>,
 }
 
@@ -31,12 +31,12 @@ impl Bounds {
         Self { around }
     }
 
-    /// Checks all bounds; returns how often a vertex was compared with a bound.
+    /// Checks all bounds; returns the number of comparisons of a vertex with a bound.
     pub(super) fn check(&self, posed: &Posed<'_>) -> usize {
         check_parts(posed) + check_ball(posed) + self.check_tree(posed)
     }
 
-    /// Checks that the hierarchy does not rule out a query at a vertex.
+    /// Checks that queries at a vertex find the triangles around it, so that the hierarchy rules none of them out.
     fn check_tree(&self, posed: &Posed<'_>) -> usize {
         let space = posed.surface.in_model();
         let touching = CastOptions::STILL.with_tolerance(0.0);
@@ -89,7 +89,7 @@ fn check_parts(posed: &Posed<'_>) -> usize {
     checked
 }
 
-/// Checks the ball around all skin over the tick, in the world.
+/// Checks the world-space ball around all skin at both ends of the tick.
 fn check_ball(posed: &Posed<'_>) -> usize {
     let Some((center, radius)) = posed.surface.bounding_ball() else {
         panic!("the surface has no bounding ball");

@@ -1,5 +1,5 @@
-//! Checks that no contact is missed, reported late, or reported where there is none: casts and sweeps against skin
-//! whose motion is known, in f64.
+//! Checks that casts and sweeps miss no contact, report none late, and report no false one. The motion of the skin is
+//! known in f64.
 
 use clamber_oracle::agreement::{
     Among, Answers, Cast, Found, Hit, Question, Shape, point_of, weights,
@@ -13,7 +13,7 @@ use super::soups::random_direction;
 /// Number of times within a tick at which all triangles are checked.
 const TIMES: usize = 6;
 
-/// Number of points of a capsule's segment that are checked.
+/// Number of points of a capsule's segment at which distances are checked.
 const ALONG: usize = 5;
 
 /// A moving sphere or capsule in f64, by both ends of its segment, which are equal for a sphere.
@@ -33,7 +33,7 @@ impl Mover {
         [0, 1].map(|k| self.start[k] + self.ways[k] * time)
     }
 
-    /// The point of the segment nearest to `p`, but for rounding.
+    /// The point of the segment nearest to `p`, up to rounding.
     fn facing(&self, time: f64, p: DVec3) -> DVec3 {
         let [a, b] = self.at(time);
         let along = (p - a).dot(b - a) / (b - a).length_squared();
@@ -41,14 +41,14 @@ impl Mover {
         a + (b - a) * along
     }
 
-    /// Upper bound of the rounding of a distance in f64, with a margin.
+    /// Upper bound of the rounding error of a distance in f64, with a margin.
     fn lost(&self, posed: &Posed<'_>) -> f64 {
         let size = self.start[0].length() + self.ways[0].length() + f64::from(posed.farthest);
         1e-12 * (size + self.radius)
     }
 }
 
-/// Checks casts and sweeps at known points; returns how many had to touch.
+/// Checks casts and sweeps that aim at known points; returns the number of those that had to touch.
 pub(super) fn check(posed: &Posed<'_>, rng: &mut fastrand::Rng, rounds: usize) -> usize {
     let mut checked = 0;
     for round in 0..rounds {
@@ -57,7 +57,7 @@ pub(super) fn check(posed: &Posed<'_>, rng: &mut fastrand::Rng, rounds: usize) -
         let weights = weights(rng);
         let unit = posed.extent;
         let radius = unit * libm::exp10f(-3.0 + 2.0 * rng.f32());
-        // The motion starts anywhere near, and ends within the radius of a point of the skin.
+        // The motion starts at a random place nearby, and ends within the radius of a point of the skin.
         let end = point_of(posed.corners(triangle), weights);
         let within = random_direction(rng).as_vec3() * (radius * 0.9 * rng.f32());
         let way = random_direction(rng).as_vec3() * (unit * rng.f32());
@@ -96,7 +96,7 @@ pub(super) fn check(posed: &Posed<'_>, rng: &mut fastrand::Rng, rounds: usize) -
     checked
 }
 
-/// Asks a question and checks its answer against the known motion; returns 1 if there had to be a contact.
+/// Asks a question and checks its answer against the known motion; returns 1 if a contact was certain, else 0.
 fn compare(
     posed: &Posed<'_>,
     cast: Cast,
@@ -127,7 +127,7 @@ fn compare(
             );
         }
     };
-    // The point aimed at, over the whole tick.
+    // Checks the target point over the whole tick.
     let weights = weights.map(f64::from);
     for step in 0..=64 {
         let at = f64::from(step) / 64.0;
@@ -136,7 +136,7 @@ fn compare(
         let p = (a * weights[0] + b * weights[1] + c * weights[2]) / sum;
         at_latest(at, (mover.facing(at, p) - p).length(), triangle);
     }
-    // All triangles, at some times.
+    // Checks all triangles at some times.
     for step in 0..TIMES {
         let at = (step as f64 + 0.5) / TIMES as f64;
         if at >= time {
@@ -159,7 +159,7 @@ fn corners(posed: &Posed<'_>, mover: &Mover, triangle: usize, at: f64) -> [DVec3
     posed.corners_at(triangle, if mover.sweeps { at } else { 1.0 })
 }
 
-/// Checks that a reported contact touches, within the tolerance.
+/// Checks that a reported contact touches within the tolerance, and that its point and distance are right.
 fn assert_near(
     posed: &Posed<'_>,
     question: &Question,

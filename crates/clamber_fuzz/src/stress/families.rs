@@ -1,4 +1,4 @@
-//! The families that a case is made of, with their names.
+//! The families from which a case is made, with their names.
 
 use core::fmt;
 use core::str::FromStr;
@@ -44,7 +44,7 @@ macro_rules! named {
 named! {
     /// The mesh of a case.
     MeshFamily {
-        /// A closed ball, every vertex moved by up to six joints.
+        /// A closed ball. Up to six joints influence each vertex.
         Ball = "ball",
         /// A closed tube along a chain of twelve joints.
         Limb = "limb",
@@ -52,36 +52,37 @@ named! {
         OneJoint = "one-joint",
         /// A closed tube along a chain of a thousand joints.
         Chain = "chain",
-        /// A closed tube along twelve joints, of which one has all weights.
+        /// A closed tube along twelve joints. The middle joint has all weights.
         AllOnOne = "all-on-one",
-        /// A closed tube whose rings come in close pairs, with edge lengths in a ratio of up to a million.
+        /// A closed tube with rings in close pairs. The edge lengths differ by a factor of up to a million.
         SliverTube = "sliver-tube",
         /// Loose triangles, each up to a million times as long as it is wide.
         Slivers = "slivers",
-        /// A ball with additional triangles: doubled ones, flipped ones, doubles that other joints move, and triangles
-        /// without area.
+        /// A ball with additional triangles: duplicates, flipped ones, duplicates that follow other joints, and
+        /// triangles without area.
         Copies = "copies",
-        /// A closed ball with some vertices at a hundred to ten thousand radii.
+        /// A closed ball with some vertices at a hundred to ten thousand times the radius.
         Spikes = "spikes",
-        /// A ball with vertices in the middle of edges that only one of the edge's two triangles uses.
+        /// A ball with vertices in the middle of edges. Only the triangle on one side of the edge is cut there.
         TJunctions = "t-junctions",
     }
 }
 
 named! {
-    /// The poses of a case. In all but `Rest` the joints turn as well; on a chain the turns add up.
+    /// The poses of a case. In all families but `Rest` the joints turn as well; on a chain the turns add up.
     PoseFamily {
         /// No joint moves.
         Rest = "rest",
         /// The joints only turn.
         Bent = "bent",
-        /// Some joints collapse all that they move to one point.
+        /// Some joints collapse all their vertices to one point.
         Collapsed = "collapsed",
         /// Some or all joints mirror.
         Mirrored = "mirrored",
-        /// Some joints reflect in a point: their skin is turned inside out, and pinched at the ends.
+        /// Some joints reflect in a point: their skin is turned inside out, and pinched where the joints' influence
+        /// ends.
         InsideOut = "inside-out",
-        /// Some or all joints flatten all that they move into a plane or onto a line.
+        /// Some or all joints flatten their vertices onto a plane or a line.
         Flat = "flat",
         /// Some joints scale by 1e-4 to 1e4, next to joints that do not.
         Scaled = "scaled",
@@ -93,8 +94,8 @@ named! {
 }
 
 named! {
-    /// The creature's place in the world, and its size. In all but `Home` the creature moves and turns from tick to
-    /// tick.
+    /// The creature's place in the world, and its size. In all places but `Home` the creature moves and turns from tick
+    /// to tick.
     Place {
         /// A creature of 1 to 50 m that stays at the origin.
         Home = "home",
@@ -110,7 +111,7 @@ named! {
 }
 
 impl MeshFamily {
-    /// True for meshes without a border: no ray passes through their skin without a hit.
+    /// True for meshes without a border: no ray passes through the skin of such a mesh without a hit.
     pub fn is_closed(self) -> bool {
         !matches!(self, Self::Slivers | Self::Copies | Self::TJunctions)
     }

@@ -12,14 +12,15 @@ use glam::{DVec3, Vec3};
 
 use super::posed::Posed;
 
-/// Largest distance of a computed winding number from a whole number.
+/// Largest distance of a computed winding number from a whole number. A number farther off is not used.
 const ROUNDED: f64 = 1e-3;
 
-/// A ray's f32 arithmetic acts like moving the vertices by at most this share of the lengths involved; it has a margin.
+/// Rounding of a ray test in f32 acts like moving the vertices by at most this share of the lengths involved. The value
+/// includes a margin.
 const MOVED: f64 = 1e-6;
 
-/// The winding number of closed skin around a point. `None` near the skin, where rounding could move the skin across
-/// the point. Elsewhere moving the skin by the rounding does not change the winding number.
+/// The winding number of closed skin around a point. `None` near the skin, where moving the skin by rounding could move
+/// it across the point. Elsewhere such a motion does not change the winding number.
 fn winding(posed: &Posed<'_>, point: DVec3) -> Option<i64> {
     let clear = MOVED * (f64::from(posed.farthest) + point.length());
     let mut sum = 0.0;
@@ -38,7 +39,7 @@ fn winding(posed: &Posed<'_>, point: DVec3) -> Option<i64> {
     ((turns - whole).abs() < ROUNDED).then_some(whole as i64)
 }
 
-/// Aims rays at edges, vertices and triangles from either side; returns how many rays had to hit.
+/// Aims rays at edges, vertices and triangles from either side; returns the number of rays that had to hit.
 pub(super) fn check(posed: &Posed<'_>, rng: &mut fastrand::Rng, origins: usize) -> usize {
     let mut checked = 0;
     for _ in 0..origins {
@@ -60,7 +61,7 @@ pub(super) fn check(posed: &Posed<'_>, rng: &mut fastrand::Rng, origins: usize) 
                 must_hit(posed, [origin, target - origin], f32::INFINITY);
                 checked += 1;
             }
-            // A ray that ends just beyond the skin aimed at.
+            // A ray that ends just beyond its target on the skin.
             let beyond = libm::exp10(-4.0 + 3.0 * rng.f64()) * f64::from(posed.extent);
             let reach = (target - origin).as_dvec3().length() + beyond;
             let end = origin.as_dvec3() + ray.direction().as_dvec3() * reach;

@@ -7,9 +7,9 @@
 //! - answers are equal in every bit with lazy skinning, with everything skinned ahead, on another instruction set and
 //!   by brute force;
 //! - every bound holds all its vertices;
-//! - no ray gets through closed skin, judged by the winding numbers at both its ends;
+//! - no ray gets through closed skin, judged by the winding numbers at both ends of the ray;
 //! - closest points are the closest, compared with f64;
-//! - no contact is missed or late: casts and sweeps meet skin whose motion is known in f64;
+//! - no contact is missed or late: casts and sweeps touch skin whose motion is known in f64;
 //! - a palette with NaN, infinity or a number beyond the limit is rejected with an error that names the joint, and
 //!   leaves no trace in that tick or the next;
 //! - answers in the world are as exact 100 km from the origin as at the origin.
@@ -39,16 +39,16 @@ pub use times::{Class, DOUBTFUL, FLOOR, LIMIT, Summary, Times};
 use core::fmt;
 use core::str::FromStr;
 
-/// A stress case. It runs the same way every time. As text it is `mesh/pose/place/triangles/ticks/seed`.
+/// A stress case. It runs the same way every time. Its text form is `mesh/pose/place/triangles/ticks/seed`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Case {
     /// The mesh.
     pub mesh: MeshFamily,
-    /// The poses of its joints.
+    /// The poses of the mesh's joints.
     pub pose: PoseFamily,
-    /// Its place in the world.
+    /// The creature's place in the world, and its size.
     pub place: Place,
-    /// About the number of its triangles.
+    /// Approximate number of triangles.
     pub triangles: usize,
     /// Number of ticks to run.
     pub ticks: usize,

@@ -20,7 +20,7 @@ pub(super) fn check(posed: &Posed<'_>, rng: &mut fastrand::Rng, count: usize) ->
         let distances = triangles
             .map(|triangle| distance(p, &posed.corners(triangle).map(|corner| corner.as_dvec3())));
         let nearest = distances.fold(f64::INFINITY, f64::min);
-        // The size of the lengths involved.
+        // A measure of the lengths involved, to which the rounding error is proportional.
         let size = f64::from(posed.farthest) + p.length();
         let lost = size * 1e-11;
         let off = (found.distance - nearest).abs();

@@ -12,12 +12,12 @@ const FARTHEST: f64 = 1e5;
 /// The motion of a creature through the world.
 #[derive(Debug)]
 pub(super) struct Journey {
-    /// The creature's size in units of its own space.
+    /// The creature's size in model units.
     pub(super) extent: f64,
     scale: f64,
     start: DVec3,
     turn: DQuat,
-    /// Displacement in a tick, metres.
+    /// Displacement per tick, metres.
     way: DVec3,
     spin: (DVec3, f64),
 }
@@ -29,7 +29,7 @@ impl Journey {
             Place::Tiny => 0.01,
             Place::Vast => 1_000.0,
         };
-        // The size comes from the creature's own coordinates, from its scale in the world, or from both.
+        // The size comes from the model's coordinates, from the creature's scale in the world, or from both.
         let extent = [metres, 1.0, metres * 0.3][rng.usize(0..3)];
         let anywhere = libm::exp10(5.0 * rng.f64());
         let away = match place {

@@ -1,4 +1,4 @@
-//! The positions of a posed surface, which checks use without its queries.
+//! The positions of a posed surface, for checks that do not use the surface's queries.
 
 use clamber_oracle::agreement::Aims;
 use clamber_surface::mesh::{TriangleId, VertexId};
@@ -54,7 +54,7 @@ impl<'a> Posed<'a> {
         self.surface.mesh().triangles()[triangle].map(|v| v.index())
     }
 
-    /// The corners of a triangle at a time of the tick, 0 to 1. They move on straight lines.
+    /// The corners of a triangle at a time of the tick, 0 to 1. They move on straight lines over the tick.
     pub(super) fn corners_at(&self, triangle: usize, time: f64) -> [DVec3; 3] {
         self.corner_ids(triangle).map(|v| {
             let (from, to) = (self.previous[v].as_dvec3(), self.positions[v].as_dvec3());
@@ -62,7 +62,7 @@ impl<'a> Posed<'a> {
         })
     }
 
-    /// Aims at the skin as it is posed.
+    /// Targets on the skin in its current pose.
     pub(super) fn aims<'b>(&'b self, rng: &'b mut fastrand::Rng) -> Aims<'b> {
         Aims::new(&self.triangles, self.extent, rng)
     }

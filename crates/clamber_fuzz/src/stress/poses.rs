@@ -12,11 +12,11 @@ use super::{PoseFamily, Subject};
 /// The motion of a creature's joints from tick to tick.
 pub(super) struct Motion {
     family: PoseFamily,
-    /// The axis of every joint, and the largest angle of its turn, radians.
+    /// For each joint the axis of its rotation, and the largest angle, radians.
     axes: Vec<(DVec3, f64)>,
-    /// The joints that are deformed as the family says.
+    /// The joints that the family deforms.
     chosen: Range<usize>,
-    /// Their deformation, before they turn.
+    /// The linear map of the chosen joints, applied before their rotation.
     deformation: DMat3,
     /// Scale of each joint in [`PoseFamily::Scaled`].
     factors: Vec<f64>,
@@ -25,7 +25,7 @@ pub(super) struct Motion {
 impl Motion {
     pub(super) fn new(subject: &Subject, family: PoseFamily, rng: &mut fastrand::Rng) -> Self {
         let joints = subject.origins.len();
-        // A chain turns by about as much with any number of joints.
+        // Keeps the total turn of a chain about the same for any number of joints.
         let most = 4.0 / (joints as f64).max(4.0);
         let axes = (0..joints).map(|_| (random_direction(rng), most * rng.f64()));
         let axes = axes.collect();
@@ -109,7 +109,7 @@ impl Motion {
     }
 }
 
-/// Numbers that a palette must not hold.
+/// Matrix elements that make a palette invalid.
 const FAULTS: [f32; 6] = [
     f32::NAN,
     f32::INFINITY,
@@ -124,7 +124,7 @@ const FAULTS: [f32; 6] = [
 pub(super) fn spoilt(palette: &Palette, rng: &mut fastrand::Rng) -> (Palette, usize) {
     let mut matrices = palette.matrices().to_vec();
     let joint = rng.usize(0..matrices.len());
-    // In the translation: there it counts in full, however small the mesh is.
+    // The fault is in the translation: there it counts in full, however small the mesh is.
     let element = &mut matrices[joint].rows[rng.usize(0..3)][3];
     *element = FAULTS[rng.usize(0..FAULTS.len())];
     (Palette::from_matrices(matrices), joint)

@@ -16,28 +16,28 @@ use super::poses::{Motion, spoilt};
 use super::world::Before;
 use super::{Case, Class, Seen, Subject, Times, contacts, leaks, nearest, world};
 
-/// Rounds of all questions in a tick.
+/// Number of rounds of all questions in a tick.
 const ROUNDS: usize = 2;
 
-/// Origins of rays at closed skin in a tick, six rays each.
+/// Number of ray origins near closed skin in a tick. Each has six targets.
 const ORIGINS: usize = 4;
 
-/// Closest points that are checked in a tick.
+/// Number of closest points that are checked in a tick.
 const NEAREST: usize = 4;
 
-/// Rounds of contacts that are checked in a tick, with two movers each.
+/// Number of rounds of contact checks in a tick, with two movers each.
 const CONTACTS: usize = 6;
 
-/// Places in the world that are checked in a tick.
+/// Number of places in the world that are checked in a tick.
 const WORLD: usize = 6;
 
-/// Questions of every name that are timed in a tick.
+/// Number of timed questions of every name in a tick.
 const TIMED: usize = 64;
 
 /// Largest number of steps of a cast's exact test, as documented.
 const STEPS: u32 = 256;
 
-/// Runs a case, and returns how much was checked.
+/// Runs a case; returns the numbers of its checks.
 ///
 /// With `times`, queries are timed as well. Each query runs once before it is timed, so that the time does not include
 /// skinning.
@@ -54,7 +54,7 @@ pub fn run(case: &Case, mut times: Option<&mut Times>) -> Seen {
     let mut any_level = || levels[rng.usize(0..levels.len())];
     let [level, other] = [any_level(), any_level()];
     let mut surface = SkinnedSurface::with_simd_level(subject.mesh.clone(), level);
-    // The twin is never given a faulty palette, and skins ahead.
+    // The twin gets no faulty palette, and skins ahead.
     let mut twin = SkinnedSurface::with_simd_level(subject.mesh.clone(), other);
     let fault = rng.usize(0..case.ticks.max(1));
     let mut before: Option<Before> = None;
@@ -99,7 +99,7 @@ pub fn run(case: &Case, mut times: Option<&mut Times>) -> Seen {
     seen
 }
 
-/// Asks all questions in every way, and compares the answers.
+/// Asks all questions of both surfaces, and compares the answers with brute force.
 fn compare(posed: &Posed<'_>, twin: &SkinnedSurface, rng: &mut fastrand::Rng) -> Seen {
     let mut seen = Seen::default();
     let brute_force = BruteForce::new(posed.surface.in_model());
@@ -125,7 +125,7 @@ fn compare(posed: &Posed<'_>, twin: &SkinnedSurface, rng: &mut fastrand::Rng) ->
     seen
 }
 
-/// Checks that a surface rejects a faulty palette and an invalid place, and does not change.
+/// Checks that a surface rejects a faulty palette and an invalid place, and that it does not change.
 fn refuse(
     surface: &mut SkinnedSurface,
     palette: &Palette,
@@ -164,10 +164,10 @@ fn refuse(
     );
 }
 
-/// A pose and the one before it.
+/// The previous pose and the current one, each a palette and a place.
 type Poses<'a> = [(&'a Palette, Similarity); 2];
 
-/// Times all questions.
+/// Times all questions, each in its class.
 fn time(
     case: &Case,
     posed: &Posed<'_>,
@@ -186,8 +186,8 @@ fn time(
                 query,
                 work: 0,
             };
-            // Asked once before it is timed, so that all it touches is skinned, and on the same surface: a surface that
-            // is skinned ahead has other bounds, so the work differs.
+            // `work` asks the question once before it is timed, so that all clusters that it touches are skinned. It
+            // asks the same surface, since a surface that is skinned ahead has other bounds, so the work differs.
             let class = class.with_work(work(&mut fresh, poses, question, &mut answer));
             times.add(class, case, || {
                 answer.clear();
@@ -197,7 +197,8 @@ fn time(
     }
 }
 
-/// The work of a question that is the first of its tick: nodes, clusters and triangles, weighted about by their cost.
+/// The work of a question that is the first of its tick: nodes, clusters and triangles, weighted about in proportion to
+/// their cost.
 fn work(
     fresh: &mut SkinnedSurface,
     [before, now]: Poses<'_>,

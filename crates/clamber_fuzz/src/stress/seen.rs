@@ -1,6 +1,6 @@
 use core::ops::AddAssign;
 
-/// Counts of what was checked.
+/// Numbers of checks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Seen {
     /// Poses that were accepted.
@@ -11,11 +11,11 @@ pub struct Seen {
     pub questions: usize,
     /// Hits among the answers.
     pub hits: usize,
-    /// How often a vertex was compared with a bound.
+    /// Comparisons of a vertex with a bound.
     pub bounds: usize,
     /// Rays that had to hit closed skin.
     pub rays: usize,
-    /// Closest points that were compared with f64.
+    /// Closest points that were checked in f64.
     pub nearest: usize,
     /// Casts and sweeps that had to touch.
     pub contacts: usize,

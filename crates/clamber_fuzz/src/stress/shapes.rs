@@ -1,4 +1,4 @@
-//! Closed shapes of plain triangles, in f64, about one unit large.
+//! Closed shapes of plain triangles, in f64, about one unit in size.
 
 use glam::DVec3;
 
@@ -8,14 +8,14 @@ pub(super) struct Shape {
     pub(super) triangles: Vec<[u32; 3]>,
 }
 
-/// The unit vector at a share of a turn around +Y.
+/// The unit vector at a share of a full turn around +Y.
 fn around(share: f64) -> DVec3 {
     let angle = share * core::f64::consts::TAU;
     DVec3::new(libm::cos(angle), 0.0, libm::sin(angle))
 }
 
-/// A closed surface of revolution around +Y: a pole, rings of `[height, radius]`, a pole. It faces outwards if the
-/// heights ascend.
+/// A closed surface of revolution around +Y: a pole, rings of `[height, radius]`, another pole. It faces outwards if
+/// the heights ascend.
 pub(super) fn revolved(bottom: f64, rings: &[[f64; 2]], top: f64, segments: u32) -> Shape {
     let mut positions = vec![DVec3::Y * bottom, DVec3::Y * top];
     for [height, radius] in rings {
@@ -41,7 +41,7 @@ pub(super) fn revolved(bottom: f64, rings: &[[f64; 2]], top: f64, segments: u32)
     }
 }
 
-/// A ball of diameter 1 with about so many triangles.
+/// A ball of diameter 1 with about the given number of triangles.
 pub(super) fn ball(triangles: usize) -> Shape {
     let rings = ((triangles as f64 / 4.0).sqrt() as u32).max(2);
     let segments = 2 * rings;
@@ -53,7 +53,7 @@ pub(super) fn ball(triangles: usize) -> Shape {
     revolved(-0.5, &all, 0.5, segments)
 }
 
-/// A tube of length 1 and diameter 0.1 with about so many triangles.
+/// A tube of length 1 and diameter 0.1 with about the given number of triangles.
 pub(super) fn tube(triangles: usize) -> Shape {
     let segments = ((triangles as f64 / 8.0).sqrt() as u32).clamp(3, 1_000);
     let rings = (triangles / (2 * segments as usize)).max(2);
@@ -62,7 +62,7 @@ pub(super) fn tube(triangles: usize) -> Shape {
     revolved(0.0, &all, 1.0, segments)
 }
 
-/// A tube whose rings come in pairs, with `gap` between the two rings of a pair.
+/// A tube of length 1 and diameter 0.1 whose rings come in pairs, `gap` apart.
 pub(super) fn tube_of_pairs(triangles: usize, gap: f64) -> Shape {
     let segments = ((triangles as f64 / 8.0).sqrt() as u32).clamp(3, 1_000);
     let pairs = (triangles / (4 * segments as usize)).max(1);

@@ -1,10 +1,10 @@
-//! Bad meshes, such as users will have all the same: slivers, doubled triangles, spikes, T-junctions.
+//! Bad meshes that users will have nevertheless: slivers, duplicate triangles, spikes, T-junctions.
 
 use glam::{DQuat, DVec3};
 
 use super::shapes::Shape;
 
-/// Loose triangles in and near a ball of diameter 1. Each is 0.05 long, and 1 to 1e-6 times as wide.
+/// Loose triangles in and near a ball of diameter 1. Each is 0.05 long; its height is 1 to 1e-6 times its length.
 pub(super) fn slivers(triangles: usize, rng: &mut fastrand::Rng) -> Shape {
     let mut shape = Shape {
         positions: Vec::new(),
@@ -15,7 +15,7 @@ pub(super) fn slivers(triangles: usize, rng: &mut fastrand::Rng) -> Shape {
         let (long, across) = (turn * DVec3::X * 0.05, turn * DVec3::Y * 0.05);
         let width = libm::exp10(-6.0 * rng.f64());
         let place = random_direction(rng) * (0.5 * libm::cbrt(rng.f64()));
-        // Needles have the third corner beside one end, caps have it beside the long edge.
+        // The third corner of a needle is beside one end of the long edge. A cap has it beside the edge's interior.
         let foot = if rng.bool() { 0.0 } else { rng.f64() };
         let third = place + long * foot + across * width;
         shape.positions.extend([place, place + long, third]);
@@ -48,7 +48,7 @@ pub(super) fn copied(mut shape: Shape, rng: &mut fastrand::Rng) -> Shape {
     shape
 }
 
-/// A shape with about every fiftieth vertex pulled out to a hundred to ten thousand times its distance.
+/// A shape with about every fiftieth vertex moved out to a hundred to ten thousand times its distance from the origin.
 pub(super) fn spiked(mut shape: Shape, rng: &mut fastrand::Rng) -> Shape {
     for position in &mut shape.positions {
         if rng.u32(0..50) == 0 {
@@ -58,8 +58,7 @@ pub(super) fn spiked(mut shape: Shape, rng: &mut fastrand::Rng) -> Shape {
     shape
 }
 
-/// A shape with about every third triangle cut in two at the middle of an edge, while the neighbour at that edge is not
-/// cut.
+/// A shape with about every third triangle cut in two at the middle of an edge. The neighbour at that edge is not cut.
 pub(super) fn with_t_junctions(mut shape: Shape, rng: &mut fastrand::Rng) -> Shape {
     for index in 0..shape.triangles.len() {
         if rng.u32(0..3) > 0 {
@@ -75,7 +74,7 @@ pub(super) fn with_t_junctions(mut shape: Shape, rng: &mut fastrand::Rng) -> Sha
     shape
 }
 
-/// A random unit vector, evenly distributed.
+/// A random unit vector, uniformly distributed.
 pub(super) fn random_direction(rng: &mut fastrand::Rng) -> DVec3 {
     loop {
         let p = DVec3::new(rng.f64(), rng.f64(), rng.f64()) * 2.0 - DVec3::ONE;

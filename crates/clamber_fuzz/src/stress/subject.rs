@@ -20,23 +20,23 @@ pub struct Subject {
     pub(super) origins: Vec<DVec3>,
     /// True if each joint is the child of the one before; false if no joint has a parent.
     pub(super) is_chain: bool,
-    /// Approximate size at rest, without spikes, in units of its own space.
+    /// Approximate size at rest in model units, without spikes.
     pub extent: f64,
 }
 
-/// The joints, and how they share the vertices.
+/// The joints, and their influences on the vertices.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Joints {
     /// Six joints, along the axes of a ball.
     Star,
-    /// So many joints along a tube.
+    /// A chain of this many joints along a tube.
     Chain(usize),
-    /// So many joints along a tube, of which the middle one has all weights.
+    /// A chain of this many joints along a tube. The middle joint has all weights.
     Middle(usize),
 }
 
 impl Subject {
-    /// A mesh with about so many triangles and the given extent.
+    /// A mesh with about the given number of triangles, and the given extent in model units.
     pub fn new(family: MeshFamily, triangles: usize, extent: f64, seed: u64) -> Self {
         let mut rng = fastrand::Rng::with_seed(seed);
         let (shape, joints) = match family {
@@ -81,7 +81,7 @@ impl Subject {
                 Joints::Middle(count) => influences.push(influence(count / 2, 1.0)),
             }
             if family == MeshFamily::Copies && rng.u32(0..8) == 0 {
-                // Cracks open along the vertices with other joints.
+                // Cracks open along vertices that follow other joints.
                 let start = influence_ends.last().map_or(0, |end| *end as usize);
                 influences.truncate(start);
                 influences.push(influence(rng.usize(0..6), 1.0));
@@ -116,6 +116,7 @@ impl Subject {
     }
 }
 
+/// The directions of the joints of [`Joints::Star`] from the centre.
 const STAR: [DVec3; 6] = [
     DVec3::X,
     DVec3::NEG_X,
@@ -140,7 +141,7 @@ fn star(position: DVec3, all: &mut Vec<Influence>) {
     all.extend(near.map(|(joint, near)| influence(joint, near * near)));
 }
 
-/// Influences of the four nearest joints of a chain, or of all if there are fewer.
+/// Influences of the four nearest joints of a chain, or of all joints if the chain has fewer.
 fn chain(height: f64, count: usize, all: &mut Vec<Influence>) {
     let along = height * count as f64 - 0.5;
     let first = (along.floor() as isize - 1).clamp(0, count.saturating_sub(4) as isize) as usize;
@@ -151,7 +152,7 @@ fn chain(height: f64, count: usize, all: &mut Vec<Influence>) {
     }
 }
 
-/// True if every edge has one triangle on either side.
+/// True if every edge has exactly one triangle on either side.
 fn is_closed(mesh: &ColliderMesh) -> bool {
     let mut balance: HashMap<[u32; 2], [u32; 2]> = HashMap::new();
     for corners in mesh.triangles() {

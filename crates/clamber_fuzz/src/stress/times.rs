@@ -5,22 +5,22 @@ use std::time::Instant;
 
 use super::MeshFamily;
 
-/// A class of similar queries, in any pose: a pose makes a difference only through the work.
+/// A class of similar queries, in any pose. The pose matters only through the work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Class {
     /// The mesh.
     pub mesh: MeshFamily,
-    /// About the number of its triangles.
+    /// Approximate number of triangles.
     pub triangles: usize,
     /// Name of the query and its aim.
     pub query: &'static str,
     /// Work of the query: nodes of the hierarchy, plus four times the clusters, plus eight times the triangles, about
-    /// in proportion to their cost; rounded up to a power of four less one.
+    /// in proportion to their cost. It is rounded up to a power of four minus one.
     pub work: usize,
 }
 
 impl Class {
-    /// The class for so much work.
+    /// The class with the given work, rounded up.
     pub(super) fn with_work(self, done: usize) -> Self {
         let mut work = 0;
         while work < done {
@@ -30,20 +30,20 @@ impl Class {
     }
 }
 
-/// A median below this counts as this, nanoseconds. A query that the root's box rules out takes a twentieth of it, and
-/// is no measure for queries that get a little farther.
+/// Smallest median of a class, nanoseconds; a shorter one is replaced by it. A query that the root's box rules out
+/// takes a twentieth of this time, which is no measure for queries that get a little farther.
 pub const FLOOR: f64 = 1_000.0;
 
-/// The slowest queries of a class may take so many times the class's median.
+/// The largest allowed ratio of the slowest queries of a class to the class's median.
 pub const LIMIT: f64 = 20.0;
 
-/// A query that takes more than so many times the median is timed again, and its shortest time counts.
+/// A query that takes more than this many times the median is timed again, and its shortest time counts.
 pub const DOUBTFUL: f64 = 4.0;
 
-/// How often a query is timed again.
+/// Number of times that a query is timed again.
 const AGAIN: usize = 3;
 
-/// The first so many queries of a class are always timed again, since their median is not yet reliable.
+/// Number of first queries of a class that are always timed again, since the class's median is not yet reliable.
 const FEW: usize = 16;
 
 /// Times of queries by class.
@@ -58,7 +58,7 @@ struct Samples {
     /// Approximate median, computed again whenever the number of samples has doubled.
     median: f32,
     worst: f32,
-    /// The case of the longest time.
+    /// The case with the longest time.
     of: String,
 }
 
@@ -71,7 +71,7 @@ pub struct Summary {
     pub median: f64,
     /// The 99.9th percentile of the times, nanoseconds. With fewer than 1,000 queries it is the longest time.
     pub p999: f64,
-    /// The case of the longest time.
+    /// The case with the longest time.
     pub longest: String,
 }
 
@@ -83,8 +83,8 @@ impl Summary {
 }
 
 impl Times {
-    /// Times a query. The first queries of a class, and those that take more than [`DOUBTFUL`] times the median so far,
-    /// are timed three times more at once, and the shortest time counts: another process may have had the core.
+    /// Times a query. The first queries of a class, and queries that take more than [`DOUBTFUL`] times the median so
+    /// far, are timed three times more right away, and the shortest time counts: another process may have had the core.
     pub(super) fn add(&mut self, class: Class, case: &impl ToString, mut ask: impl FnMut()) {
         let mut time = || {
             let start = Instant::now();
@@ -115,7 +115,7 @@ impl Times {
         all.map(|(class, samples)| (*class, samples.summary()))
     }
 
-    /// [`Times::summaries`] with the classes merged that differ only in their work. A merged class has a work of 0.
+    /// [`Times::summaries`], with classes merged that differ only in their work. A merged class has a work of 0.
     pub fn whatever_work(&self) -> Vec<(Class, Summary)> {
         let mut merged: BTreeMap<Class, Samples> = BTreeMap::new();
         for (class, samples) in &self.classes {

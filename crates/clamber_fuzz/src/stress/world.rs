@@ -1,4 +1,4 @@
-//! Checks that answers in the world are as exact 100 km from the origin as at the origin.
+//! Checks that answers in world space are as exact 100 km from the origin as at the origin.
 
 use clamber_oracle::agreement::{point_of, weights};
 use clamber_surface::geometry::Similarity;
@@ -12,7 +12,7 @@ use super::posed::Posed;
 /// Length of a tick, seconds.
 const TICK: f64 = 1.0 / 60.0;
 
-/// The data of the last tick.
+/// The positions, the place and the reach of the last tick.
 pub(super) struct Before {
     pub(super) positions: Vec<Vec3>,
     pub(super) place: Similarity,
@@ -29,7 +29,7 @@ impl Before {
     }
 }
 
-/// Bound of the products that skinning adds up, in model units. The rounding of skinning is a share of it.
+/// Upper bound of the products that skinning adds up, in model units. The rounding error of skinning is a share of it.
 fn reach(surface: &SkinnedSurface, palette: &Palette) -> f64 {
     let radius = f64::from(surface.mesh().radius());
     let of = |map: glam::DAffine3| {
@@ -41,7 +41,8 @@ fn reach(surface: &SkinnedSurface, palette: &Palette) -> f64 {
     all.fold(0.0, f64::max)
 }
 
-/// Compares answers here with those at the origin, and motions of points with f64; returns the number of checks.
+/// Compares answers at the creature's place with answers at the origin, and motions of points with f64; returns the
+/// number of checks.
 pub(super) fn check(
     posed: &Posed<'_>,
     palette: &Palette,
@@ -60,8 +61,8 @@ pub(super) fn check(
         panic!("rejected at the origin: {error}");
     }
     let away = place.translation;
-    // A point in model space is rounded to f32 once, wherever it comes from, and so is a point that is found. World
-    // coordinates are off by about 2^-52 of their own size.
+    // A query point is rounded to f32 model space once, and so is a point that is found. World coordinates are off by
+    // about 2^-52 of their own size.
     let world = 1e-15 * away.length();
     let mut checked = 0;
     for _ in 0..count {
@@ -109,7 +110,7 @@ pub(super) fn check(
 /// Checks that a contact is at its material point.
 fn check_contact(posed: &Posed<'_>, contact: &Contact, exact: f64) {
     let corners = posed.corners(contact.material.key as usize);
-    // Computed in model space: weights in f32 do not add up to exactly 1, which matters far from the origin.
+    // Computed in model space: the f32 weights do not add up to exactly 1, which matters far from the origin.
     let weights = contact.material.coordinates.map(|weight| weight as f32);
     let place = posed.surface.world_from_model();
     let point = place.transform_point_f32(point_of(corners, weights));
@@ -139,7 +140,7 @@ fn check_motion(posed: &Posed<'_>, palette: &Palette, before: &Before, rng: &mut
     let then = before.place.transform_point_f32(point_of(corners, weights));
     let moved = now - then;
     let relative = place.relative(&before.place).translation.length();
-    // The rounding of two skinnings and a matrix is a share of the products that they add up.
+    // The rounding error of two skinnings and a matrix is a share of the products that they add up.
     let size = reach(posed.surface, palette) + before.reach + relative;
     let exact = place.scale * size * 2e-6 + 1e-14 * place.translation.length();
     let off = (motion.velocity * TICK - moved).length();

@@ -40,7 +40,7 @@ fn data_that_is_read_many_times_is_refused_before_memory_runs_out() {
     let error = file.load().unwrap_err();
     assert!(error.to_string().contains("more than once"), "{error}");
 
-    // Sparse without a buffer view: a huge count without data.
+    // A sparse accessor without a buffer view claims a huge count without data.
     let mut file = File::square();
     let accessor = file.json["accessors"][0].as_object_mut().unwrap();
     accessor.remove("bufferView");
@@ -95,8 +95,9 @@ fn data_that_is_small_in_a_file_but_large_in_memory_is_refused() {
     refused(&file, "a long name of many joints");
 }
 
-/// Loads files that take as much memory as they may: a large mesh, shown by as many nodes as the options allow, and by one
-/// more. What is shown once takes at most a hundred times the file, each further vertex at most 512 bytes.
+/// Loads files that take as much memory as they can: a large mesh, shown by as many nodes as the options allow, and by
+/// one more. The first showing takes at most a hundred times the file, and each vertex of further showings at most 512
+/// bytes.
 #[test]
 fn the_greediest_file_stays_within_its_bounds() {
     let vertices = 9_999;

@@ -13,8 +13,7 @@ pub(crate) struct File {
 }
 
 impl File {
-    /// A square of two triangles on two joints. A clip turns the upper joint. The joints are under a
-    /// plain node.
+    /// A square of two triangles on two joints. A clip turns the upper joint. The joints are under a plain node.
     pub(crate) fn square() -> Self {
         let mut file = Self {
             json: json!({
@@ -90,7 +89,7 @@ impl File {
         index
     }
 
-    /// Appends to an array of the document; gives the index.
+    /// Appends to an array of the document; returns the index.
     pub(crate) fn push(&mut self, array: &str, value: Value) -> usize {
         if self.json.get(array).is_none() {
             self.json[array] = json!([]);
@@ -100,7 +99,7 @@ impl File {
         items.len() - 1
     }
 
-    /// Appends a node to the first scene; gives its index.
+    /// Appends a node to the first scene; returns its index.
     pub(crate) fn node(&mut self, node: Value) -> usize {
         let index = self.push("nodes", node);
         let roots = self.json["scenes"][0]["nodes"].as_array_mut().unwrap();
@@ -108,7 +107,7 @@ impl File {
         index
     }
 
-    /// Appends a node under another one; gives its index.
+    /// Appends a node under another one; returns its index.
     pub(crate) fn node_under(&mut self, parent: usize, node: Value) -> usize {
         let index = self.push("nodes", node);
         let parent = &mut self.json["nodes"][parent];
@@ -122,7 +121,7 @@ impl File {
         index
     }
 
-    /// Appends an accessor with a view of its own; gives its index.
+    /// Appends an accessor with a view of its own; returns its index.
     pub(crate) fn accessor(
         &mut self,
         kind: &str,

@@ -60,7 +60,7 @@ fn harmless_extensions_and_unused_channels_meshes_and_skins_are_skipped() {
 
 #[test]
 fn surplus_bind_matrices_are_ignored_and_unknown_joints_refused() {
-    // A third bind matrix is legal, whatever it holds, and belongs to no joint.
+    // A third bind matrix is legal, with any contents, and belongs to no joint.
     let mut file = File::square();
     let mut binds = [f32::NAN; 48];
     for k in 0..8 {
@@ -79,7 +79,7 @@ fn surplus_bind_matrices_are_ignored_and_unknown_joints_refused() {
         error.to_string().contains("joint 1 of a skin of 1"),
         "{error}"
     );
-    // With a weight of 0 it is padding.
+    // With a weight of 0, the unknown joint is padding.
     let all_on_joint_0 = file.floats("VEC4", &[1.0, 0.0, 0.0, 0.0].repeat(4));
     let attributes = &mut file.json["meshes"][0]["primitives"][0]["attributes"];
     attributes["WEIGHTS_0"] = json!(all_on_joint_0);
@@ -104,7 +104,7 @@ fn animated_nodes_above_the_joints_move_them_at_any_scale() {
     samplers.push(json!({"input": times, "output": scales}));
     let channels = animation["channels"].as_array_mut().unwrap();
     channels.push(json!({"sampler": 1, "target": {"node": 0, "path": "scale"}}));
-    // Both joints stay as they are: only the node above moves.
+    // The channel of the joint is removed: only the node above the joints moves.
     channels.remove(0);
     let rig = file.load().unwrap();
     for (time, scale) in [
@@ -241,7 +241,8 @@ fn weak_points_are_on_the_joint_that_they_hang_under() {
         (JointId(1), Vec3::new(2.0, 1.0, 0.0))
     );
     assert!(eye.major && eye.hit_points == 3.0 && eye.name == "eye");
-    // The radius in the file; and the scale of a node of 0.4 under one of 2, in an armature of 2.
+    // The first radius is in the file. The second is the scale of the node, 0.4, under a node of scale 2, in an
+    // armature of scale 2.
     assert_eq!((lower.radius, eye.radius), (0.25, 0.4 * 2.0 * 2.0));
     let [warning] = rig.report.warnings.as_slice() else {
         panic!("{:?}", rig.report.warnings);

@@ -93,7 +93,7 @@ fn bad_heights_and_creatures_without_height_are_refused() {
         let error = with_height(&file, wanted).unwrap_err();
         assert!(matches!(error, GltfErrorKind::BadHeight { .. }), "{error}");
     }
-    // The square lies down, and is flat.
+    // The square lies down and is flat.
     let mut flat = File::square();
     flat.json["nodes"][0]["rotation"] = json!([1, 0, 0, 0]);
     flat.json["nodes"][0]["scale"] = json!([2, 0, 2]);

@@ -52,7 +52,7 @@ fn links_that_lead_out_of_the_folder_are_refused() {
     folders.link("../elsewhere", "folder");
     folders.link("relative.bin", "twice.bin");
     folders.link("../model-beside.bin", "prefix.bin");
-    // As text its path begins with the folder's path, but it is not in the folder.
+    // As text, the target's path begins with the folder's path, but the target is not in the folder.
     std::fs::write(folders.root.join("model-beside.bin"), &folders.file.bytes).unwrap();
     folders.link("/dev/zero", "endless.bin");
     for uri in [
@@ -105,7 +105,7 @@ fn the_model_and_its_folder_may_be_links() {
     let folder = folders.root.join("linked");
     symlink(folders.root.join("model"), &folder).unwrap();
     load(folder.join("square.gltf")).unwrap();
-    // Its buffers are looked up beside the link, as other programs do.
+    // The buffers are looked up beside the link, as in other programs.
     let apart = folders.root.join("elsewhere/link.gltf");
     symlink(folders.document("data.bin"), &apart).unwrap();
     load(&apart).unwrap();

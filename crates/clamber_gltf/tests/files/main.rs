@@ -1,4 +1,4 @@
-//! Tests with small files made in code: what they load as, and how broken ones are refused.
+//! Tests with small files made in code: how they load, and how broken files are refused.
 
 #![expect(
     clippy::unwrap_used,

@@ -185,7 +185,7 @@ fn a_rigid_mesh_under_a_joint_follows_it_alone() {
         between,
         json!({"name": "plate", "mesh": plate, "translation": [0, 0, 3]}),
     );
-    // One under no joint.
+    // The same mesh once more, under no joint.
     file.node(json!({"mesh": plate}));
 
     let rig = file.load().unwrap();

@@ -1,11 +1,12 @@
-//! Meshes that are shown many times: they are read once, and what they make has a limit of its own.
+//! Meshes that are shown many times: they are read once, and the vertices of further showings have a limit of their
+//! own.
 
 use clamber_gltf::{GltfErrorKind, LoadOptions, load_all, load_slice};
 use serde_json::json;
 
 use crate::builder::File;
 
-/// Adds a sphere of 25 by 25 vertices to a file; gives its mesh.
+/// Adds a sphere of 25 by 25 vertices to a file; returns the index of its mesh.
 fn sphere(file: &mut File) -> usize {
     let (rings, sides) = (25, 25);
     let angle = |k: usize, of: usize| k as f32 / (of - 1) as f32 * std::f32::consts::PI;
@@ -49,7 +50,7 @@ fn a_centipede_of_300_segments_of_one_sphere_loads() {
             json!({"name": name, "mesh": mesh, "translation": [0, 0, 1]}),
         );
     }
-    // Each is counted but the first, and the limit is what it says.
+    // Each segment but the first counts, and the limit is exact.
     let repeated = 299 * 625;
     for (limit, loads) in [(1 << 20, true), (repeated, true), (repeated - 1, false)] {
         let options = LoadOptions::default().with_max_repeated_vertices(limit);
@@ -113,7 +114,7 @@ fn a_crowd_of_100_loads_with_one_mesh() {
         "{}",
         rigs[1].collider.positions().len()
     );
-    // Each member alone makes nothing twice.
+    // A single member repeats no vertex.
     let alone = LoadOptions::default()
         .with_skin(50)
         .with_max_repeated_vertices(0);

@@ -41,7 +41,7 @@ fn the_resolver_is_called_once_per_file_with_the_decoded_path() {
         assert_eq!(rig.unwrap().collider.positions().len(), 4);
         asked
     };
-    // What is not read is not asked for: it may be missing, and its address may be anything.
+    // A buffer that is not read is not asked for: its file may be missing, and its URI may be any.
     let mut document = document(&file, &uris);
     assert_eq!(asked(&document), ["a b/data.bin"]);
     let text = String::from_utf8(document).unwrap();

@@ -5,7 +5,7 @@ use serde_json::json;
 
 use crate::builder::File;
 
-/// Two squares in scenes of their own, 1 and 2; scene 0 is empty, and a third square is in none.
+/// Two squares in scenes of their own, 1 and 2; scene 0 is empty, and a third square is in no scene.
 fn two_scenes() -> File {
     let mut file = File::square();
     let second = file.push("nodes", json!({"name": "second", "mesh": 0}));
@@ -89,7 +89,7 @@ fn empty_scenes_are_no_error_and_a_scene_without_a_mesh_says_which_has_one() {
     let text = "scene 0 shows no mesh, and no other scene does: the file's meshes are in none";
     assert_eq!(file.load().unwrap_err().to_string(), text);
 
-    // A file without any mesh is another matter.
+    // A file without any mesh has another error.
     for node in file.json["nodes"].as_array_mut().unwrap() {
         node.as_object_mut().unwrap().remove("mesh");
     }
@@ -100,9 +100,10 @@ fn empty_scenes_are_no_error_and_a_scene_without_a_mesh_says_which_has_one() {
     );
 }
 
-/// Looking for a scene with a mesh takes one pass through a file, not one for each scene.
+/// The search for a scene with a mesh takes one pass through a file, not one for each scene.
 #[test]
 fn many_scenes_of_many_nodes_load_in_one_pass() {
+    /// Number of added nodes, and of scenes without a mesh. A pass for each scene would visit 10^10 nodes.
     const MANY: usize = 100_000;
     let mut file = two_scenes();
     let nodes = file.json["nodes"].as_array_mut().unwrap();
@@ -148,7 +149,7 @@ fn scenes_that_do_not_exist_are_refused() {
         let error = file.load().unwrap_err().to_string();
         assert!(error.contains("the default scene: is"), "{error}");
     }
-    // A scene that is loaded names nodes; what another one names is never read.
+    // The nodes of the loaded scene are checked; the nodes of other scenes are never read.
     for (nodes, text) in [
         (json!([0, 99]), "names node 99"),
         (json!(["a"]), "is no index"),

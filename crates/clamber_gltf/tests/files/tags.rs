@@ -22,7 +22,7 @@ fn three() -> File {
         }
         primitives.push(primitive);
     }
-    // Rigid, so that positions suffice.
+    // The meshes are rigid, so positions suffice.
     file.json.as_object_mut().unwrap().remove("skins");
     let body = file.json["nodes"][3].as_object_mut().unwrap();
     body.remove("skin");

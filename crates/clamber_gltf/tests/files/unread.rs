@@ -1,4 +1,4 @@
-//! What is never read refuses no file.
+//! Faults in parts of a file that are never read do not refuse the file.
 
 use std::io;
 
@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use crate::builder::File;
 
-/// Loads the square after a change of its document, and checks that it is the square still.
+/// Loads the square after a change of its document, and checks that it still is the square.
 fn changed(what: &str, change: impl FnOnce(&mut Value)) -> Rig {
     let mut file = File::square();
     change(&mut file.json);
@@ -48,7 +48,7 @@ fn textures_in_any_format_and_images_that_cannot_be_read() {
             assert_eq!(rig.report.warnings, warned, "{name}");
         }
     }
-    // As Blockbench writes them, then ones that are plainly wrong.
+    // First a texture as Blockbench writes it, then some that are plainly wrong.
     for (texture, image) in [
         (json!({"name": "skin.png"}), json!({"uri": "data:,"})),
         (json!({"source": 7, "sampler": 7}), json!({})),
@@ -88,7 +88,7 @@ fn faults_in_what_is_not_loaded() {
             accessors
                 .push(json!({"bufferView": view, "componentType": 7, "count": 0, "type": "VEC9"}));
             let accessor = accessors.len() - 1;
-            // Tangents are not read either, nor what an unknown property is moved by.
+            // Tangents are not read, either.
             json["meshes"][0]["primitives"][0]["attributes"]["TANGENT"] = json!(accessor);
         },
     );
@@ -97,7 +97,7 @@ fn faults_in_what_is_not_loaded() {
         *count = json!(count.as_u64().unwrap() as f64);
         json["nodes"][3]["mesh"] = json!(0.0);
     });
-    // Lines in messages are those of the text.
+    // Messages have the line numbers of the text.
     let mut file = File::square();
     file.json["nodes"][0]["translation"] = json!("none");
     let error = file.load().unwrap_err().to_string();
@@ -126,7 +126,7 @@ fn instances_of_a_mesh_are_told() {
     file.json["nodes"][3]["extensions"] = many;
     let rig = file.load().unwrap();
     assert_eq!(rig.report.warnings, [ImportWarning::Instances { nodes: 1 }]);
-    // A required extension is one without which the file cannot be shown at all.
+    // If the extension is required, the file is refused.
     file.json["extensionsRequired"] = json!(["EXT_mesh_gpu_instancing"]);
     let error = load_slice(&file.glb(), &LoadOptions::default()).unwrap_err();
     assert!(error.to_string().contains("extensionsRequired"), "{error}");

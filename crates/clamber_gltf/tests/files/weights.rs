@@ -55,7 +55,7 @@ fn every_component_type_gives_the_same_weights() {
     let joints = file.accessor("VEC4", 5123, 4, &joints);
     replace(&mut file, "JOINTS_0", joints);
     assert_eq!(weights_of(&file), expected, "joints of 16 bits");
-    // Signed integers name no joint.
+    // Signed integers cannot name joints.
     let joints = file.accessor("VEC4", 5120, 4, &[0; 16]);
     replace(&mut file, "JOINTS_0", joints);
     assert!(file.load().is_err());

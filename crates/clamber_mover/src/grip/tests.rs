@@ -5,7 +5,8 @@ use fastrand::Rng;
 use super::*;
 use crate::MoverMemory;
 
-/// Rough ground of 6 m by 6 m, in cells of 0.2 m, at a level. It has holes: one of `every` triangles is there.
+/// Rough ground of 6 m by 6 m, in cells of 0.2 m, at a level. Only one of `every` triangles is kept; the rest are
+/// holes.
 fn rough(rng: &mut Rng, height: f32, level: f32, every: usize) -> TriangleTerrain {
     let (mut positions, mut triangles) = (Vec::new(), Vec::new());
     for row in 0..=30 {
@@ -32,7 +33,7 @@ fn a_grip_at_the_body_is_the_grip_of_the_whole_reach_and_nothing_is_before_it() 
     for case in 0..400 {
         let height = [0.0, 0.1, 0.5, 1.5][case % 4];
         let ground = rough(&mut rng, height, 0.0, 1);
-        // Above it, in some cases, something that nobody can grip.
+        // In some cases, a grate above the ground that hands cannot grip.
         let grate = rough(&mut rng, 0.0, height + 0.03, 3);
         let obstacles: [(ObstacleId, &dyn Obstacle); 2] =
             [(ObstacleId(1), &ground), (ObstacleId(2), &grate)];

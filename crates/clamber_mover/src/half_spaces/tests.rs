@@ -1,11 +1,11 @@
 use super::*;
 use fastrand::Rng;
 
-/// Halvings in the search for the least relief, from the largest gap down to its rounding.
+/// Number of halvings in the search for the least relief, from the largest gap down to its rounding.
 const HALVINGS: usize = 50;
 
-/// The brute-force reference: of all points that up to three planes determine, the nearest above all the others. Where
-/// there is none, the planes are lowered until there is one.
+/// The brute-force reference: among all points that up to three planes determine, the nearest above all the other
+/// planes. If no such point exists, the planes are lowered until one does.
 fn project_onto_half_spaces_reference(target: DVec3, planes: &[HalfSpace]) -> Projection {
     let size = planes.iter().fold(0.0, |most: f64, plane| {
         most.max(plane.offset - plane.normal.dot(target))
@@ -98,8 +98,8 @@ fn nearest_of_all(walls: &[Wall], relief: f64) -> Option<DVec3> {
     best
 }
 
-/// The point on all walls. `lift` has for each wall a step that raises the point by 1 from this wall alone. Repeated,
-/// since the steps are rounded.
+/// The point on all walls. `lift` holds, for each wall, a step that raises the point by 1 from this wall alone. The
+/// steps are repeated, since they are rounded.
 fn refined(walls: &[&Wall], lift: [DVec3; 3]) -> DVec3 {
     let mut point = DVec3::ZERO;
     for _ in 0..4 {
@@ -277,7 +277,7 @@ fn results_scale_with_the_input() {
     let mut rng = Rng::with_seed(5);
     for case in 0..3000 {
         let count = rng.usize(1..=12);
-        // Random directions only: a rounding more must not turn a wedge into a wall.
+        // Random directions only: additional rounding must not turn a wedge into a wall.
         let normals: Vec<DVec3> = (0..count).map(|_| direction(&mut rng)).collect();
         let planes = if case % 3 == 0 {
             anyhow(&mut rng, &normals)

@@ -31,13 +31,13 @@ fn boxed(low: Vec3, high: Vec3, size: f64, turn: f64) -> TriangleTerrain {
     TriangleTerrain::new(&positions, &triangles, &[], DVec3::ZERO).unwrap()
 }
 
-/// A vector that is given before the scene is turned.
+/// Turns a vector about the vertical, as the scene is turned.
 fn turned(v: DVec3, turn: f64) -> DVec3 {
     let (sin, cos) = (libm::sin(turn), libm::cos(turn));
     DVec3::new(v.x * cos + v.z * sin, v.y, v.z * cos - v.x * sin)
 }
 
-/// Asks for the ledges of boxes, by a ball of 0.4 m that hangs 0.6 m below an edge at y 0 and z 0, at an x.
+/// Runs a ledge query among boxes, for a ball of 0.4 m that hangs at `x`, 0.6 m below an edge at y 0 and z 0.
 fn asked<T>(
     boxes: &[(Vec3, Vec3)],
     (size, turn): (f64, f64),
@@ -185,7 +185,7 @@ fn a_body_goes_around_an_outer_corner_on_a_circle() {
             let ledge = asked(&[wall(-4.0, 1.0)], scene, 1.0, |mover, hold, _| {
                 let corner = DVec3::new(1.0, -0.6, 0.0);
                 let position = turned(corner + out * 0.4, turn) * size;
-                // It faces the corner from a little before.
+                // The body still faces the corner from a slightly earlier position.
                 let before = DVec3::new(libm::sin(angle - 0.05), 0.0, libm::cos(angle - 0.05));
                 let hold = LedgeHold {
                     facing: -turned(before, turn),

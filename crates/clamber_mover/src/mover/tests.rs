@@ -147,7 +147,7 @@ fn a_path_that_is_not_finite_leaves_the_body_at_its_start() {
     }
 }
 
-/// Two floors above each other, of which the upper one is passed: queries of every kind find the lower one, in either
+/// Two floors, one above the other. The upper one is not solid: queries of every kind find the lower one, in either
 /// order of the two.
 #[test]
 fn what_is_not_solid_is_not_there_for_any_query() {
@@ -190,7 +190,7 @@ fn what_is_not_solid_is_not_there_for_any_query() {
     }
 }
 
-/// What holds nobody up is no ground, but still solid.
+/// A contact that the `ground` filter rejects is no ground, but still solid.
 #[test]
 fn what_is_no_ground_is_not_found_as_such_but_blocks() {
     let floor = clamber_world::HalfSpace::below(0.0);

@@ -1,4 +1,4 @@
-//! Following a plan while the skin moves.
+//! Follows a plan while the skin moves.
 
 use glam::DVec3;
 
@@ -6,29 +6,32 @@ use super::{BotConfig, Target, View};
 use crate::graph::Spot;
 use crate::{ClimbGraph, Footing, Plan};
 
-/// It looks for itself on so many steps of its plan, before and after the one that it was on.
+/// Number of steps before the last known one among which the bot searches its present step.
 const BACK: usize = 3;
+/// Number of steps after the last known one among which the bot searches its present step.
 const ON: usize = 8;
 
 /// A plan, and how far it has been followed.
 #[derive(Clone, Debug)]
 pub(super) struct Progress {
     pub(super) plan: Plan,
-    /// The step that it is on.
+    /// The step at which the bot is.
     at: usize,
-    /// The farthest step that it has been on, and since when.
+    /// The farthest step at which the bot has been.
     farthest: usize,
+    /// When the bot reached that step or last waited, seconds.
     since: f64,
-    /// The step up to which it has rested.
+    /// The step up to which the bot has rested.
     rested: usize,
-    /// When it last moved, and until when it tries something else.
+    /// When the bot last moved, seconds.
     moved: f64,
+    /// Until when the bot tries another direction, seconds.
     tries_until: f64,
-    /// When it was where last.
+    /// Time and position at the last call of [`Progress::tries_else`].
     seen: (f64, DVec3),
-    /// Where it passes on its way to its target: memory that is used again.
+    /// The places that the bot passes on its way to its target: memory that is reused.
     passed: Vec<DVec3>,
-    /// It was made for the strength that there is, in the weather that is expected.
+    /// True if the plan was found for the bot's stamina and in its forecast.
     lasts: bool,
 }
 
@@ -48,7 +51,7 @@ impl Progress {
         }
     }
 
-    /// True if it walks where it is.
+    /// True if the plan walks at the present step.
     pub(super) fn walks(&self) -> bool {
         let step = self.plan.steps.get(self.at);
         step.is_some_and(|step| step.footing == Footing::Stands)
@@ -60,7 +63,7 @@ impl Progress {
         self.lasts && planned.is_some_and(|planned| stamina >= planned)
     }
 
-    /// Finds the step that it is on. False if it is off its way.
+    /// Finds the bot's present step. False if the bot is off its way.
     pub(super) fn find(
         &mut self,
         graph: &ClimbGraph,
@@ -84,7 +87,7 @@ impl Progress {
         };
         let mut nearest = (f64::INFINITY, self.at);
         for index in from..=to {
-            // It does not skip rests.
+            // Steps beyond a rest that is still to come are not searched.
             if index > self.at && self.is_rest(index) && index > self.rested {
                 break;
             }
@@ -109,7 +112,7 @@ impl Progress {
             && steps[index - 1].footing == Footing::Stands
     }
 
-    /// Stamina until which it rests here.
+    /// The stamina until which the bot rests at its present step; `None` if no rest comes next.
     pub(super) fn rests_until(&self) -> Option<f64> {
         let mut last = None;
         let mut index = self.at + 1;
@@ -130,7 +133,7 @@ impl Progress {
         }
     }
 
-    /// It waits, and is not stuck.
+    /// Notes that the bot waits on purpose, so that it does not count as stuck.
     pub(super) fn waits(&mut self, seconds: f64) {
         self.since = seconds;
     }
@@ -139,7 +142,7 @@ impl Progress {
         seconds - self.since > patience
     }
 
-    /// True for a while after it has come to rest on its way.
+    /// True if the bot should try another direction: for a while after it came to rest on its way.
     pub(super) fn tries_else(&mut self, view: &View<'_>) -> bool {
         let (state, seconds) = (view.climber.state(), view.seconds);
         let climbs = view
@@ -147,7 +150,7 @@ impl Progress {
             .config()
             .grip
             .map_or(0.0, |grip| grip.climb_speed);
-        // What it has made, which is less than its velocity where something is in its way.
+        // The way that it has moved. Where an obstacle blocks it, this is less than its velocity says.
         let passed = seconds - self.seen.0;
         let made = state.position - self.seen.1 - state.base_velocity * passed;
         if passed > 0.0 && made.length() > SLOW * climbs * passed {
@@ -161,13 +164,13 @@ impl Progress {
         seconds < self.tries_until
     }
 
-    /// The ends of the jump that comes next, if it is on the patch where that begins.
+    /// The patches of the jump that comes next, if the bot is at the step where it begins.
     pub(super) fn next_jump(&self) -> Option<[usize; 2]> {
         let [here, next] = [self.at, self.at + 1].map(|at| self.plan.steps.get(at));
         Some([here?.patch, next.filter(|next| next.jumps)?.patch])
     }
 
-    /// The way that it is on.
+    /// The patches of the way that the bot is on.
     pub(super) fn next_way(&self) -> Option<[usize; 2]> {
         let here = self.plan.steps.get(self.at)?.patch;
         let mut on = self.plan.steps[self.at..].iter().map(|step| step.patch);
@@ -175,7 +178,7 @@ impl Progress {
         Some([here, next])
     }
 
-    /// Where it goes: some way ahead.
+    /// The bot's target: a place some way ahead on its plan.
     pub(super) fn target(
         &mut self,
         graph: &ClimbGraph,
@@ -225,7 +228,7 @@ impl Progress {
             if target.is_some() && !is_straight(here, place, &self.passed, ASIDE * radius) {
                 break;
             }
-            // Where it is already is no target.
+            // The bot's present place is no target if a later step gives one.
             if index > self.at || target.is_none() {
                 target = Some(Target {
                     place,
@@ -233,7 +236,7 @@ impl Progress {
                     footing: step.footing,
                     in_corner: false,
                 });
-                // First to where it takes hold of another side.
+                // If the patch is on another side, the target stays here: the bot takes hold of that side first.
                 let turns = normal.dot(held) < CORNER;
                 if turns && index > self.at {
                     break;
@@ -250,7 +253,7 @@ impl Progress {
     }
 }
 
-/// True if a straight way passes near places in between.
+/// True if the straight way passes all places in between within `aside` metres.
 fn is_straight(from: DVec3, to: DVec3, between: &[DVec3], aside: f64) -> bool {
     let way = to - from;
     let squared = way.length_squared();
@@ -264,20 +267,21 @@ fn is_straight(from: DVec3, to: DVec3, between: &[DVec3], aside: f64) -> bool {
     })
 }
 
-/// Where its way rises by more than this share of its radius off the skin that it holds, it goes by the corner.
+/// If the way rises off the skin that the bot holds by more than this share of its radius, the bot goes by the corner.
 const RISES: f64 = 0.5;
 
-/// Whoever is on a patch counts as no farther from its middle than so many radii.
+/// A bot on a patch counts as no farther from its middle than this many radii.
 const ON_IT: f64 = 0.5;
 
-/// Below this share of its climbing speed, for so long, it counts as at rest; then it tries something else for a while;
-/// seconds.
+/// The bot counts as at rest below this share of its climbing speed.
 const SLOW: f64 = 0.2;
+/// The bot has to be at rest for this time before it tries another direction, seconds.
 const RESTS: f64 = 0.3;
+/// The bot tries another direction for this time, seconds.
 const TRIES: f64 = 0.5;
 
-/// Sides whose normals have a lower cosine than this meet in a corner.
+/// Two sides whose normals have a lower cosine than this meet in a corner.
 const CORNER: f64 = 0.7;
 
-/// It cuts corners by so many radii.
+/// The bot cuts corners by at most this many radii.
 const ASIDE: f64 = 0.5;

@@ -1,4 +1,4 @@
-//! On the ground: to where it can get on.
+//! A bot on the ground: how it chooses an entry, and gets on there.
 
 use std::collections::BTreeMap;
 
@@ -10,71 +10,79 @@ use crate::graph::highest_entry;
 use crate::plan::Around;
 use crate::{ClimbGraph, Footing, Start};
 
-/// It jumps within so many radii of where it gets on, seen from above.
+/// The bot jumps within this many radii of the place where it gets on, seen from above.
 const NEAR: f64 = 2.2;
 
-/// It counts as blocked if it wants to walk but moves at less than this share of its walking speed for `PUZZLED`
+/// The bot counts as blocked if it wants to walk, but stays below this share of its walking speed for [`PUZZLED`]
 /// seconds.
 const KEPT: f64 = 0.15;
+/// Time after which a bot that does not move counts as blocked, seconds.
 const PUZZLED: f64 = 0.3;
 
-/// It keeps its distance to so many radii.
+/// Tolerance of the distance that the bot keeps, radii.
 const SWAY: f64 = 0.5;
 
 /// Least time between two jumps, seconds.
 const BETWEEN_JUMPS: f64 = 1.2;
 
-/// Jumps at an entry before it tries another one, and for how long it then avoids it, seconds.
+/// Number of jumps at an entry before the bot tries another one.
 const TRIES: u32 = 3;
+/// Time for which the bot avoids an entry that did not work, seconds.
 const AVOIDS: f64 = 20.0;
 
-/// Who falls within so many seconds after it got on avoids that limb.
+/// A bot that falls within this time after it got on avoids the limb by which it got on, seconds.
 const SOON: f64 = 8.0;
 
-/// An entry that is faster than this share of the speed at which hands catch swings.
+/// An entry that moves faster than this share of the speed at which hands catch counts as swinging.
 const SWINGS: f64 = 0.4;
 
-/// It chooses an entry anew every so many seconds.
+/// The bot chooses an entry anew once in this time, seconds.
 const CHOOSES: f64 = 0.5;
 
-/// From the ground to its first patch it takes so long, and it waits no longer than `WAITS` for a good time to do so,
-/// seconds.
+/// Time from the ground to the first patch, seconds.
 const GETS_ON: f64 = 0.5;
+/// The longest time that the bot waits for a good time to get on, seconds.
 const WAITS: f64 = 60.0;
 
-/// A search for that time which found nothing is made again after so many seconds at most.
+/// The longest pause between two searches for such a time while they find none, seconds. The searches take long.
 const PAUSE: f64 = 2.0;
 
-/// An entry has to be better by so many seconds to be taken instead of the one that it goes to.
+/// Another entry has to be better by this time to replace the present one, seconds. It keeps the bot from switching
+/// back and forth.
 const BETTER: f64 = 1.5;
 
-/// Memory of a bot on the ground.
+/// State of a bot on the ground.
 #[derive(Clone, Debug)]
 pub(super) struct Approach {
-    /// The entry that it goes to.
+    /// The entry to which the bot goes.
     entry: Option<usize>,
+    /// Number of jumps at this entry so far.
     tries: u32,
-    /// Entries that did not work, and until when they are avoided.
+    /// Entries that did not work, each with the time until which it is avoided, seconds.
     avoided: Vec<(usize, f64)>,
+    /// When the bot last chose an entry, seconds.
     chosen: f64,
+    /// When the bot last jumped, seconds.
     jumped: f64,
-    /// When it was last not blocked.
+    /// When the bot was last not blocked, seconds.
     free: f64,
-    /// Since when it sees an attack.
+    /// When the bot first saw the present attack, seconds.
     attacked: Option<f64>,
-    /// The entry by which it got on last, and when.
+    /// The entry by which the bot got on last, and when.
     rode: Option<(usize, f64)>,
-    /// Where the entry that it goes to was, and when.
+    /// The present entry, with its place at the last look and the time of that look.
     seen: Option<(usize, DVec3, f64)>,
-    /// Since when it waits for a time from which its strength is enough, whether that is now, and after how long it has
-    /// seen all that is expected, seconds.
+    /// When the bot began to wait for a time from which on its stamina is enough, seconds.
     waits: Option<f64>,
+    /// True if its stamina is enough from now on.
     lasts: bool,
+    /// Seconds after which the forecast repeats.
     repeats: f64,
-    /// When it last looked for that, and after how long it looks again, seconds.
+    /// When the bot last searched for such a time, seconds.
     looked: f64,
+    /// Seconds from that search until the next one.
     pause: f64,
-    /// It has let go, and holds on to nothing before it stands on the ground.
+    /// True if the bot has let go. It does not grip before it stands on the ground.
     pub(super) drops: bool,
 }
 
@@ -109,13 +117,13 @@ impl Approach {
             .or(self.rode);
         self.tries = 0;
         self.attacked = None;
-        // Who has waited in vain does not wait again.
+        // A bot that got on after a wait without success does not wait again: it keeps `waits`.
         if self.lasts {
             self.waits = None;
         }
     }
 
-    /// Tries another entry than the one that it goes to.
+    /// Avoids the present entry for a while, and chooses another one.
     pub(super) fn gives_up(&mut self, seconds: f64) {
         if let Some(entry) = self.entry.take() {
             self.avoided.push((entry, seconds + AVOIDS));
@@ -124,7 +132,7 @@ impl Approach {
         self.chosen = f64::NEG_INFINITY;
     }
 
-    /// True if it jumps now: not too soon after the last jump.
+    /// True if the bot jumps now: the last jump was long enough ago.
     pub(super) fn jumps(&mut self, seconds: f64) -> bool {
         let jumps = seconds - self.jumped > BETWEEN_JUMPS;
         if jumps {
@@ -162,7 +170,7 @@ impl Approach {
         {
             self.free = seconds;
             let away = level(state.position - view.surface.world_from_model().translation);
-            // A tired one does not grip: it rests on the ground, even if it runs into a leg.
+            // A tired bot does not grip, so that it rests on the ground even if it runs into a leg.
             return ClimberInput {
                 walk: away.normalize_or(up.any_orthonormal_vector()),
                 grip: !stands || is_rested(config, view),
@@ -174,7 +182,7 @@ impl Approach {
         }
         let Some(entry) = self.entry else {
             self.free = seconds;
-            // Nothing that it could hold leads on.
+            // Without an entry that leads to the goal, a standing bot grips nothing.
             return if stands { ClimberInput::IDLE } else { grip };
         };
         let patch = &graph.patches()[graph.entries()[entry].patch];
@@ -209,13 +217,13 @@ impl Approach {
         ClimberInput {
             walk,
             jump,
-            // Whoever walks into a limb holds on to it.
+            // A bot that walks into a limb holds on to it.
             grip: is_ready || !stands,
             ..ClimberInput::IDLE
         }
     }
 
-    /// It has fallen soon after it had got on: the limb by which it did is avoided for a while.
+    /// After a fall soon after the bot got on: avoids the limb by which it got on for a while.
     fn fell_off(&mut self, graph: &ClimbGraph, view: &View<'_>) {
         let Some((entry, since)) = self.rode.take() else {
             return;
@@ -236,7 +244,7 @@ impl Approach {
         self.chosen = f64::NEG_INFINITY;
     }
 
-    /// No way leads on from a patch: all entries that lead to it are avoided for a while.
+    /// Avoids all entries that lead to a patch for a while, because no way leads on from there.
     pub(super) fn gives_up_limb(&mut self, graph: &ClimbGraph, view: &View<'_>, patch: usize) {
         (self.rode, self.drops) = (None, true);
         self.gives_up(view.seconds);
@@ -247,7 +255,7 @@ impl Approach {
         self.avoided.extend(same.map(|(entry, _)| (entry, until)));
     }
 
-    /// The input of somebody who gets off the creature, from wherever that is.
+    /// Input with which the bot gets off the creature from any place on it.
     pub(super) fn leave(&mut self, view: &View<'_>) -> ClimberInput {
         let state = view.climber.state();
         let up = view.climber.config().up();
@@ -261,7 +269,7 @@ impl Approach {
         }
     }
 
-    /// True while an entry moves too fast for hands to catch it: a foot that swings is none until it stands.
+    /// True while an entry moves too fast for hands to catch it. A swinging foot becomes an entry when it stands.
     fn swings(&mut self, entry: usize, place: DVec3, view: &View<'_>) -> bool {
         let before = self.seen.replace((entry, place, view.seconds));
         let Some((_, from, since)) = before.filter(|(seen, ..)| *seen == entry) else {
@@ -274,15 +282,15 @@ impl Approach {
         lasted > 0.0 && place.distance(from) > SWINGS * catches * lasted
     }
 
-    /// True if it is time to get on: its strength is enough for what is expected from now on, or it has waited for such
-    /// a time until all that is expected has passed.
+    /// True if it is time to get on: the bot's stamina is enough for the forecast from now on, or the bot has waited
+    /// for one full repetition of the forecast, a minute at most.
     fn is_time(&mut self, view: &View<'_>) -> bool {
         if view.forecast.is_still() || self.lasts {
             self.waits = None;
             return true;
         }
         if view.danger != Danger::None {
-            // It keeps away for now.
+            // While the creature is dangerous, the bot keeps away instead.
             self.waits = None;
             return false;
         }
@@ -290,7 +298,7 @@ impl Approach {
         view.seconds - since >= self.repeats
     }
 
-    /// The hardest shake in which it gets on, metres a second squared.
+    /// The hardest shake in which the bot gets on, metres per second squared.
     fn shake(config: &BotConfig, view: &View<'_>) -> f64 {
         let climber = view.climber.config();
         let stands = config.stands_in * climber.ground.throw_acceleration;
@@ -300,7 +308,8 @@ impl Approach {
         holds.unwrap_or(stands)
     }
 
-    /// The entry from which its strength is enough for what is expected.
+    /// The entry from which the bot's stamina is enough for the forecast. `comes` gives the time at which the bot
+    /// arrives at an entry.
     fn lasting(
         &self,
         graph: &ClimbGraph,
@@ -330,7 +339,7 @@ impl Approach {
         Some(known.get(&plan.steps.first()?.patch)?.0)
     }
 
-    /// Chooses the entry from which it comes to the goal first.
+    /// Chooses the entry by which the bot gets to the goal first.
     fn choose(&mut self, graph: &ClimbGraph, config: &BotConfig, view: &View<'_>) {
         let seconds = view.seconds;
         self.chosen = seconds;
@@ -343,7 +352,8 @@ impl Approach {
             view.spot(&graph.patches()[graph.entries()[entry].patch])
                 .point
         };
-        // When it comes to an entry; `None` to one that is too high, did not work, or is not there, as on a plate that broke.
+        // Seconds until the bot arrives at an entry. `None` for an entry that is too high, did not work, or is gone, as
+        // on a plate that broke.
         let comes = |entry: usize| {
             let is_avoided = self.avoided.iter().any(|(other, _)| *other == entry);
             if is_avoided || !graph.is_there(graph.entries()[entry].patch, view.surface) {
@@ -366,7 +376,7 @@ impl Approach {
             let lasting = self.lasting(graph, config, view, comes);
             self.lasts = lasting.is_some();
             self.repeats = view.forecast.repeats_after().min(WAITS);
-            // A search that finds nothing takes long: it is made less and less often.
+            // A search that finds nothing takes long, so it is repeated less and less often.
             self.pause = if self.lasts {
                 CHOOSES
             } else {
@@ -380,7 +390,8 @@ impl Approach {
             }
         }
         let (strength, most) = (strength(config, view), Self::shake(config, view));
-        // Seconds to the goal by an entry, after whether it tires on the way: then it comes as far as its strength goes.
+        // The cost of an entry: whether the bot tires on the way to the goal, then the seconds to the goal. If it
+        // tires, it gets as far as its stamina lasts.
         let cost = |entry: usize| {
             let comes = comes(entry)?;
             let at = graph.entries()[entry].patch;
@@ -393,7 +404,7 @@ impl Approach {
             } else {
                 lasts
             };
-            // A foot that swings is no entry until it stands.
+            // A swinging foot becomes an entry when it stands.
             let seconds = comes + view.forecast.calms_after(graph, at, comes, most) + left;
             left.is_finite().then_some((tires, seconds))
         };
@@ -420,7 +431,7 @@ impl Approach {
     }
 }
 
-/// The stamina that it counts on once it gets on: it rests before it does.
+/// The stamina that the bot counts on when it gets on: it rests before that.
 fn strength(config: &BotConfig, view: &View<'_>) -> f64 {
     let stamina = view.climber.config().stamina;
     let rests = stamina.is_some_and(|stamina| stamina.refill > 0.0);
@@ -433,7 +444,7 @@ fn strength(config: &BotConfig, view: &View<'_>) -> f64 {
     (then - config.reserve).max(0.0)
 }
 
-/// True if it has the strength to get on.
+/// True if the bot has the stamina to get on.
 fn is_rested(config: &BotConfig, view: &View<'_>) -> bool {
     let stamina = view.climber.config().stamina;
     let rests = stamina.is_some_and(|stamina| stamina.refill > 0.0);

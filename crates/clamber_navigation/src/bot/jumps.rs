@@ -1,4 +1,4 @@
-//! The jumps of a plan: when they begin, and how they go.
+//! The jumps of a plan: when the bot takes off, and its input in flight.
 
 use clamber_climber::ClimberInput;
 use glam::DVec3;
@@ -7,12 +7,12 @@ use super::View;
 use crate::ClimbGraph;
 use crate::graph::{Aim, Leap};
 
-/// Memory of a bot that jumps.
+/// State of a bot's jumps.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Jumps {
-    /// The jump that it is in.
+    /// The jump that the bot is in.
     flight: Option<Flight>,
-    /// The one that it is about to make.
+    /// The jump that the bot is about to make.
     ready: Option<Ready>,
 }
 
@@ -20,36 +20,39 @@ pub(super) struct Jumps {
 struct Flight {
     ends: [usize; 2],
     aim: Aim,
-    /// When it began, and until when it may land, seconds.
+    /// When the jump began, seconds.
     since: f64,
+    /// Until when the jump may land, seconds.
     until: f64,
 }
 
-/// It stands where a jump begins.
+/// A jump at whose beginning the bot stands.
 #[derive(Clone, Copy, Debug)]
 struct Ready {
     ends: [usize; 2],
-    /// Since when both ends have kept together, seconds, and the way from one to the other then, and when it looked last.
+    /// When both ends began to keep together, seconds.
     since: f64,
+    /// The vector from one end to the other at that time.
     way: DVec3,
+    /// The vector from one end to the other at the last look.
     last: DVec3,
 }
 
-/// What to do where a jump begins.
+/// The decision at the beginning of a jump.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum TakeOff {
-    /// It jumps now.
+    /// The bot jumps now.
     Now(Aim),
-    /// It rests: its strength is not enough.
+    /// The bot rests: its stamina is not enough.
     Tired,
-    /// The creature moves so that it would not land, but will not do so for ever.
+    /// The creature moves so that the jump would miss now, but it would land later.
     Later,
-    /// It cannot be told whether it would land.
+    /// Unknown whether the jump would land.
     Unsure,
 }
 
 impl Jumps {
-    /// What to do now if it stands where its next jump begins; `None` if it does not.
+    /// The decision if the bot stands where its next jump begins; `None` if it does not stand there.
     pub(super) fn take_off(
         &mut self,
         graph: &ClimbGraph,
@@ -79,7 +82,7 @@ impl Jumps {
                 last: DVec3::NAN,
             });
         self.ready = Some(Ready { last: way, ..ready });
-        // Who cannot rest goes as far as its strength does.
+        // A bot that cannot rest jumps with any stamina.
         let rests = climber.stamina.is_some_and(|stamina| stamina.refill > 0.0);
         if rests && state.stamina <= leap.costs() {
             return Some(TakeOff::Tired);
@@ -88,7 +91,7 @@ impl Jumps {
             return Some(TakeOff::Unsure);
         };
         let is_sure = if view.forecast.is_still() {
-            // Nothing is known of what the creature is about to do.
+            // Without a forecast, the present motion of both ends decides.
             let keeps_still = (ready.last - way).length() <= STILL * radius;
             keeps_still || view.seconds - ready.since >= leap.seconds()
         } else {
@@ -103,7 +106,7 @@ impl Jumps {
         })
     }
 
-    /// It jumps: the input of this tick.
+    /// Begins a jump, and returns the input of its first tick.
     pub(super) fn begin(
         &mut self,
         graph: &ClimbGraph,
@@ -122,12 +125,12 @@ impl Jumps {
         aim.input(view.climber.config(), 0.0)
     }
 
-    /// True from a jump until it has landed or missed.
+    /// True from the take-off until the bot has landed or missed.
     pub(super) fn flies(&self) -> bool {
         self.flight.is_some()
     }
 
-    /// The input on its way through the air, as long as it may still land.
+    /// The input in flight; `None` once it is too late to land.
     pub(super) fn input(&self, view: &View<'_>) -> Option<ClimberInput> {
         let flight = self.flight?;
         let input = || {
@@ -138,13 +141,14 @@ impl Jumps {
         (view.seconds <= flight.until).then(input)
     }
 
-    /// Where it jumps to.
+    /// The place to which the bot jumps.
     pub(super) fn goes_to(&self, graph: &ClimbGraph, view: &View<'_>) -> Option<DVec3> {
         let patch = graph.patches().get(self.flight?.ends[1])?;
         Some(view.spot(patch).seat)
     }
 
-    /// It is on the creature again, or on the ground: the way on which it missed its end, if it did.
+    /// Ends the jump, because the bot is on the creature again, or on the ground. Returns the jump's patches if the bot
+    /// has missed its end.
     pub(super) fn ends(&mut self, graph: &ClimbGraph, view: &View<'_>) -> Option<[usize; 2]> {
         let to = self.goes_to(graph, view)?;
         let climber = view.climber;
@@ -153,8 +157,8 @@ impl Jumps {
         (!view.is_on_creature() || apart > MISSES * climber.config().body.radius).then_some(ends)
     }
 
-    /// Of each jump, whether a plan may lead over it. If clips are expected, it has to land in one of them. Otherwise its
-    /// ends have to keep together, at the velocities that they had in the last `dt` seconds.
+    /// For each jump, whether a plan may use it. With a forecast of clips, the jump has to land in one of them. Without
+    /// one, the jump's ends have to keep together at the velocities that they had in the last `dt` seconds.
     pub(super) fn may_land(graph: &ClimbGraph, view: &View<'_>, dt: f64) -> Vec<bool> {
         let radius = view.climber.config().body.radius;
         let velocity = |patch: u32| view.velocity(&graph.patches()[patch as usize], dt);
@@ -162,7 +166,7 @@ impl Jumps {
             if !view.forecast.is_still() {
                 return view.forecast.ever_lands(graph, number);
             }
-            // After a pause no velocities are known. Then the take-off decides.
+            // After a pause no velocities are known, and the take-off decides.
             if !(dt > 0.0 && dt < LOOKS) {
                 return true;
             }
@@ -175,26 +179,28 @@ impl Jumps {
     }
 }
 
-/// It jumps within so many radii of where a jump begins, seen from above, and within so many in height.
+/// The bot jumps within this many radii of the place where a jump begins, seen from above.
 const ASIDE: f64 = 0.25;
+/// The bot jumps within this many radii of the height at which a jump begins.
 const HIGHER: f64 = 0.5;
 
-/// The ends of a jump keep together if they come apart by no more than so many radii in as much time as it takes. If
-/// they go on as they do, at a turning point as well, they come apart by at most nine times as much in the jump: of an
-/// acceleration `a` that is within `d` for a time `T`, `a T² <= 8 d`, and in the next `T` it moves by `a T²` at most.
+/// The ends of a jump keep together if their distance vector changes by no more than this many radii in the time of the
+/// jump. If they keep their acceleration, also through a turning point, they come apart by at most nine times as much
+/// in the jump. Proof: a motion of constant acceleration `a` that stays within `d` for a time `T` has `a T² <= 8 d`,
+/// and in the next `T` it moves by `a T²` at most.
 const TOGETHER: f64 = 0.1;
 
-/// Whose ends move by no more than so many radii from look to look keep still.
+/// The ends of a jump keep still if their distance vector changes by no more than this many radii between two looks.
 const STILL: f64 = 1e-6;
 
-/// A plan leads over a jump if its ends come apart by no more than so many radii in it, at the velocities that they have.
+/// A plan uses a jump if its ends come apart by no more than this many radii during it, at their present velocities.
 const PARTS: f64 = 0.5;
 
-/// It may land so many times as late as it is expected to.
+/// The latest time at which a jump may land, as a multiple of its expected time.
 const LATE: f64 = 1.3;
 
-/// Who comes down farther than so many radii from where it jumped to has missed it.
+/// A bot that comes down farther than this many radii from the place to which it jumped has missed.
 const MISSES: f64 = 4.0;
 
-/// Velocities are known from looks that are no farther apart, seconds.
+/// The longest time between two looks from which velocities are taken, seconds.
 const LOOKS: f64 = 0.1;

@@ -1,27 +1,27 @@
-//! Limbs that threw a bot off.
+//! The limbs that threw a bot off.
 
 use clamber_surface::rig::JointId;
 
 use super::{BotConfig, View};
 use crate::ClimbGraph;
 
-/// A limb is avoided for so long, seconds.
+/// Time for which a limb is avoided, seconds.
 const AVOIDS: f64 = 60.0;
 
-/// What was this long ago at most, seconds, was in the tick before.
+/// A look at most this long ago, seconds, counts as the tick before.
 const JUST: f64 = 0.1;
 
-/// The limbs that threw a bot off lately: it plans its ways round them, where there is one.
+/// The limbs that threw the bot off lately. Its plans go round them where possible.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Limbs {
-    /// The joints that move them, and until when they are avoided.
+    /// The limbs' joints, each with the time until which it is avoided, seconds.
     avoided: Vec<(JointId, f64)>,
-    /// The limb that it was on when it was shaken last, and when that was.
+    /// The limb on which the bot was last shaken, and when.
     shaken_on: Option<(JointId, f64)>,
 }
 
 impl Limbs {
-    /// Remembers the limb that has thrown it off.
+    /// Updates the list: a limb that has thrown the bot off is avoided.
     pub(super) fn watch(&mut self, config: &BotConfig, view: &View<'_>) {
         // Time may have begun anew.
         self.avoided.retain(|(_, until)| {
@@ -47,7 +47,7 @@ impl Limbs {
         self.avoided.is_empty()
     }
 
-    /// True if a way leads onto one of them from elsewhere.
+    /// True if a way leads onto an avoided limb from elsewhere.
     pub(super) fn lead_onto(
         &self,
         graph: &ClimbGraph,
@@ -58,7 +58,7 @@ impl Limbs {
         to && !from
     }
 
-    /// True if a patch is on one of them.
+    /// True if a patch is on an avoided limb.
     pub(super) fn has(&self, graph: &ClimbGraph, view: &View<'_>, patch: usize) -> bool {
         let triangle = graph.patches().get(patch).map(|patch| patch.triangle);
         let limb = triangle.and_then(|triangle| view.surface.mesh().joint_of(triangle));

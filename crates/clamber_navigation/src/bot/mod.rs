@@ -1,4 +1,4 @@
-//! A climber that plans.
+//! A bot: drives a climber by plans.
 
 mod config;
 mod follow;
@@ -26,37 +26,37 @@ use room::Room;
 
 /// Drives a climber to a goal on a creature, by its input alone.
 ///
-/// On the ground it walks to where it can get on, keeps away while the creature attacks, and jumps. On the creature it
-/// follows a plan: it walks and climbs from patch to patch, holds on while the skin shakes, rests where the plan says
-/// so, and plans anew when it has been carried off its way, does not get on, or has fallen.
+/// On the ground the bot walks to an entry, keeps away while the creature attacks, and jumps. On the creature it
+/// follows a plan: it walks and climbs from patch to patch, holds on while the skin shakes, and rests where the plan
+/// says so. It plans anew when it has been carried off its way, makes no progress, or has fallen.
 #[derive(Clone, Debug)]
 pub struct Bot {
     graph: Arc<ClimbGraph>,
     config: BotConfig,
     plan: Option<Progress>,
     approach: Approach,
-    /// Ways that did not work.
+    /// Ways on which the bot was stuck.
     blocked: Vec<Blocked>,
-    /// When it last planned, seconds.
+    /// When the bot last planned, seconds.
     planned: f64,
-    /// Since when it hangs in calm, seconds.
+    /// Since when the bot hangs in calm, seconds.
     hangs: Option<f64>,
     /// Number of plans so far.
     plans: u64,
-    /// Level patches, where it rests.
+    /// The goal to reach a level patch, where the bot can rest.
     level: Arc<Goal>,
-    /// It rests before it goes on.
+    /// True if the bot has to rest before it goes on.
     rests: bool,
-    /// Limbs that threw it off.
+    /// Limbs that threw the bot off.
     limbs: Limbs,
-    /// When it first found no way from where it is, and when it last did, seconds.
+    /// The first and the last time at which the bot found no way from where it is, seconds.
     lost: Option<[f64; 2]>,
-    /// There is a place that stays calm while it rests.
+    /// False if the bot found no place that stays calm while it rests.
     finds_calm: bool,
-    /// Where it goes along a ledge, and until when.
+    /// The direction in which the bot goes along a ledge, and until when, seconds.
     shimmies: (DVec3, f64),
     jumps: Jumps,
-    /// When it looked last, and how long before that it had, seconds.
+    /// The time of the last look, and the time between it and the look before, seconds.
     looks: [f64; 2],
 }
 
@@ -90,29 +90,29 @@ impl Bot {
         }
     }
 
-    /// The graph that it plans on.
+    /// The graph on which the bot plans.
     pub fn graph(&self) -> &Arc<ClimbGraph> {
         &self.graph
     }
 
-    /// What it is about to do; `None` on the ground, and when no way leads to the goal.
+    /// The bot's present plan; `None` on the ground, and when no way leads to the goal.
     pub fn plan(&self) -> Option<&Plan> {
         self.plan.as_ref().map(|progress| &progress.plan)
     }
 
-    /// True if it has been on the creature for some seconds and finds no way from where it is, with whatever strength.
-    /// It then lets go and tries to get on elsewhere.
+    /// True if the bot has been on the creature for some seconds and finds no way from where it is, not even with full
+    /// stamina. It then lets go and tries another entry.
     pub fn is_lost(&self, seconds: f64) -> bool {
         let lasts = self.lost.map_or(0.0, |[first, last]| last - first);
         lasts > LOST && self.lost.is_some_and(|[_, last]| seconds - last <= LOST)
     }
 
-    /// How often it has planned.
+    /// Number of times that the bot has planned.
     pub fn plans(&self) -> u64 {
         self.plans
     }
 
-    /// True if it is on a patch of the goal, or where it would be if it were on one.
+    /// True if the bot is on a patch of the goal, or near the seat of one.
     pub fn is_there(&self, view: &View<'_>) -> bool {
         let Some(patch) = self.patch_below(view) else {
             return false;
@@ -129,8 +129,8 @@ impl Bot {
         goal.binary_search(&patch).is_ok() || goal.iter().any(is_near)
     }
 
-    /// It forgets its way: its goal is another one, or it was put elsewhere. It remembers for a minute which limbs threw
-    /// it off.
+    /// Discards the bot's plans. Call it when its goal changes, or when the climber was put elsewhere. The bot still
+    /// remembers for a minute which limbs threw it off.
     pub fn forget(&mut self) {
         self.plan = None;
         self.planned = f64::NEG_INFINITY;
@@ -142,7 +142,7 @@ impl Bot {
         self.jumps = Jumps::default();
     }
 
-    /// True if it has to rest before it goes on, or does anything that costs strength.
+    /// True if the bot has to rest before it goes on or does anything that costs stamina.
     pub fn wants_rest(&mut self, view: &View<'_>) -> bool {
         if self.jumps.flies() {
             return self.rests;
@@ -159,7 +159,8 @@ impl Bot {
             .config()
             .stamina
             .is_some_and(|stamina| stamina.refill > 0.0);
-        // It goes on as planned, or if its strength is enough where no shakes are expected.
+        // The bot goes on if its stamina is enough for its plan, or if the forecast is still and its stamina is enough
+        // for the goal.
         let goes_on = || {
             if before {
                 return false;
@@ -211,13 +212,13 @@ impl Bot {
         }
     }
 
-    /// The patch that it is on.
+    /// The patch that the climber is on.
     fn patch_below(&self, view: &View<'_>) -> Option<usize> {
         let (triangle, barycentric) = view.material()?;
         self.graph.patch_near(triangle, barycentric)
     }
 
-    /// Waits until the skin is calm; lets go where it cannot pull itself in.
+    /// Waits until the skin is calm. Lets go if the climber cannot pull itself in.
     fn hang(&mut self, view: &View<'_>) -> ClimberInput {
         let seconds = view.seconds;
         let state = view.climber.state();
@@ -229,11 +230,11 @@ impl Bot {
         let since = *self.hangs.get_or_insert(seconds);
         let is_on_ledge = state.mode == ClimberMode::LedgeHanging;
         let most = if is_on_ledge { LEDGES } else { 1.0 } * self.config.hangs_for;
-        // Where it pulls itself up there may be room.
+        // A climber that pulls itself up may find room above.
         let pulls_up = is_on_ledge && state.ledge_hanging.pull_up > 0.0;
         let holds = pulls_up || seconds - since <= most;
         if !holds && is_on_ledge {
-            // There is no room above it, nor beside.
+            // The ledge has no room above it or beside it.
             let way = self.plan.as_ref().and_then(Progress::next_way);
             if let Some(way) = way {
                 self.block(way, seconds);
@@ -246,8 +247,8 @@ impl Bot {
         }
     }
 
-    /// Up over the ledge that it hangs from; where there is no room it goes along it for a while, to the side where its
-    /// way goes on.
+    /// The climb direction at a ledge: up. If there is no room above, along the ledge for a while, to the side where
+    /// the way goes on.
     fn over_ledge(&mut self, view: &View<'_>) -> DVec3 {
         let (seconds, state) = (view.seconds, view.climber.state());
         let up = view.climber.config().up();
@@ -259,7 +260,7 @@ impl Bot {
                 .jumps
                 .goes_to(&self.graph, view)
                 .or(ahead.map(|target| target.place));
-            // Without a way to each side by turns.
+            // Without a way, the bot goes to each side in turn.
             let back = -self.shimmies.0.dot(aside);
             let toward = ahead.map_or(back, |place| (place - state.position).dot(aside));
             let (ledge, radius) = (
@@ -293,10 +294,10 @@ impl Bot {
             .grip
             .map_or(0.0, |grip| grip.hang_acceleration);
         let throws = view.climber.config().ground.throw_acceleration;
-        // Where nothing stays calm it rests wherever it can, between shakes.
+        // If no place stays calm, the bot rests wherever it can, between shakes.
         let is_calm = || !self.finds_calm || view.forecast.is_calm_at(&self.graph, patch, RESTS);
         let rests_here = self.rests && (stands || view.is_level(LETS_GO)) && is_calm();
-        // Before it comes: hands are slower than feet.
+        // The shake ahead counts as well, because hands need time to take hold.
         let can_stand =
             state.shake.length().max(view.shake_ahead) <= self.config.stands_in * throws;
         let is_shaken = if stands || rests_here {
@@ -321,7 +322,7 @@ impl Bot {
             if self.approach.drops {
                 return self.approach.leave(view);
             }
-            // No way for now: it rests if it can.
+            // The bot has no way for now, and rests if it can.
             let is_level = self.graph.patches[patch].can_stand || stands;
             return if is_level { rest } else { hold };
         }
@@ -337,7 +338,7 @@ impl Bot {
                 progress.waits(view.seconds);
                 return if can_stand { rest } else { hold };
             }
-            // It may still hold on to the slope beside the place.
+            // The climber may still hold on to the slope beside the place of its rest.
             let comes = needs && !progress.is_stuck(view.seconds, self.config.patience);
             if !comes {
                 progress.has_rested();
@@ -367,13 +368,14 @@ impl Bot {
         let toward = target.place - state.position;
         let up = view.climber.config().up();
         let level = toward - up * toward.dot(up);
-        // Where its way can be walked it lets go, and gets strength back.
+        // If the way can be walked, the climber lets go, so that its stamina refills.
         let walks = stands || can_stand && progress.walks() && view.is_level(AS_PLANNED);
         let tries_else = progress.tries_else(view);
         let jumps = stands && progress.is_stuck(view.seconds, self.config.patience);
         ClimberInput {
             climb: if tries_else {
-                // Where the way ahead leads straight off its hold: along it, to where it touches the next.
+                // If the way ahead leads straight off the climber's hold, the bot climbs against the target's normal
+                // instead, until the climber touches the next skin.
                 -target.normal
             } else {
                 view.against(&target)
@@ -386,12 +388,12 @@ impl Bot {
         }
     }
 
-    /// Goes on with its plan, or makes another one.
+    /// Goes on with the present plan, or makes another one.
     fn follow_or_plan(&mut self, view: &View<'_>, patch: usize) {
         let seconds = view.seconds;
         if let Some(progress) = &mut self.plan {
             let is_on_it = progress.find(&self.graph, view, patch, &self.config);
-            // A new plan may begin off where it is, too.
+            // A new plan is kept for a while, because it may begin off the bot's place.
             let is_new = seconds - self.planned < self.config.plans_every;
             if is_new || is_on_it && !progress.is_stuck(seconds, 2.0 * self.config.patience) {
                 return;
@@ -471,7 +473,7 @@ impl Bot {
         let find = |starts: &[Start], goal, forecast, around| {
             self.graph.plan_around(starts, goal, forecast, around)
         };
-        // Searches that cannot find anything take longest.
+        // Searches that cannot find anything take longest, so they are skipped.
         let finds_calm = !rests || goal.patches().iter().any(|patch| arrives(*patch));
         let is_free = |patch: &usize| !limbs.has(&self.graph, view, *patch);
         let goes_round = !limbs.is_empty() && finds_calm && goal.patches().iter().any(is_free);
@@ -481,8 +483,8 @@ impl Bot {
         self.finds_calm = lasting.is_some();
         let (lasts, plan) = match lasting {
             Some(plan) => (true, Some(plan)),
-            // No calm place to rest is in reach: to any level place, or else straight to the goal.
-            // With all its strength, or without the strength for it: as far as it gets.
+            // No plan lasts, or none leads to a calm place. Plan with all stamina, without the reserve; else as if
+            // stamina were full, and go as far as it lasts; at last the same straight to the goal.
             None => {
                 let plan = find(&spent, goal, &still, &all)
                     .or_else(|| find(&tireless, goal, &still, &all))
@@ -490,7 +492,7 @@ impl Bot {
                 (false, plan)
             }
         };
-        // A way that is blocked for now is one; one over skin that is gone, or below a plate, is none.
+        // A way that is blocked for now counts as a way. One over skin that is gone, or below a plate, does not.
         let is_there = |_: usize, to: usize| self.graph.is_there(to, view.surface);
         let is_lost = plan.is_none() && {
             let any = Around {
@@ -504,7 +506,7 @@ impl Bot {
         self.plan = plan.map(|plan| Progress::new(plan, lasts, seconds));
     }
 
-    /// A way did not work. Each time that it does not, it is avoided for twice as long.
+    /// Avoids a way on which the bot was stuck. Each further time doubles the time of avoidance.
     fn block(&mut self, way: [usize; 2], seconds: f64) {
         let same = self.blocked.iter_mut().find(|blocked| blocked.way == way);
         let lasts = same
@@ -546,56 +548,59 @@ impl Bot {
     }
 }
 
-/// A way that did not work.
+/// A way on which the bot was stuck.
 #[derive(Clone, Copy, Debug)]
 struct Blocked {
     way: [usize; 2],
-    /// Until when, and for how long, it is avoided, seconds.
+    /// Until when the way is avoided, seconds.
     until: f64,
+    /// For how long it is avoided, seconds.
     lasts: f64,
 }
 
 impl Blocked {
-    /// True if it was open for long enough that it may as well work.
+    /// True if the way has been open long enough to try it like a new one.
     fn is_forgotten(&self, seconds: f64) -> bool {
         seconds > self.until + FORGETS * self.lasts
     }
 }
 
-/// A way that did not work is forgotten after it was open for so many times as long as it was avoided.
+/// A blocked way is forgotten after it was open for this many times as long as it was avoided.
 const FORGETS: f64 = 4.0;
 
-/// Whoever is nearer to where it would be on a patch than this share of its radius is there.
+/// A bot within this share of its radius of a goal patch's seat has arrived.
 const THERE: f64 = 0.5;
 
-/// In shakes beyond this share of the one in which it can only hang it waits before it lets go.
+/// A bot that hangs counts as shaken in shakes above this share of the shake in which it can only hang. Its wait before
+/// it lets go then starts over.
 const STILL: f64 = 0.2;
 
-/// It rests where it is calm for so long, seconds.
+/// A place to rest has to stay calm for this time, seconds.
 const RESTS: f64 = 8.0;
 
-/// Who finds no way for so long lets go, seconds.
+/// A bot that finds no way for this time lets go, seconds.
 const LOST: f64 = 3.0;
 
-/// The steepest slopes on which it lets go, as shares of the steepest one that it can stand on: to rest anywhere, and
-/// to rest or walk where its plan says so.
+/// The steepest slope on which the bot lets go to rest anywhere, as a share of the steepest one that it can stand on.
 const LETS_GO: f64 = 0.8;
+/// The steepest slope on which the bot lets go to rest or walk as planned, as a share of the steepest one that it can
+/// stand on.
 const AS_PLANNED: f64 = 0.97;
 
-/// From a ledge it hangs so many times as long before it lets go, and goes along it by so many radii where there is no
-/// room above.
+/// From a ledge the bot hangs this many times as long before it lets go.
 const LEDGES: f64 = 2.0;
+/// Distance that the bot goes along a ledge without room above, radii.
 const SHIMMIES: f64 = 2.5;
 
-/// Stamina that it has to spare where it goes on without a rest.
+/// Stamina that the bot has to spare when it goes on without a rest.
 const SPARE: f64 = 0.05;
 
-/// Where it goes next.
+/// The place to which the bot moves next.
 #[derive(Clone, Copy, Debug)]
 struct Target {
     place: DVec3,
     normal: DVec3,
     footing: Footing,
-    /// It takes hold of another side there.
+    /// True if the climber takes hold of another side there.
     in_corner: bool,
 }

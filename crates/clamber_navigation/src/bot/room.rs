@@ -1,4 +1,4 @@
-//! Whether there is room on a patch as the creature is now.
+//! Tells whether a patch has room for the climber in the creature's present pose.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -6,13 +6,13 @@ use std::collections::BTreeMap;
 use super::View;
 use crate::graph::Patch;
 
-/// Patches within so many radii of the climber are looked at: the creature moves on before it comes to others.
+/// Only patches within this many radii of the climber are tested: the creature moves on before the bot comes to others.
 const LOOKS: f64 = 12.5;
 
 /// A ball that is deeper in skin than this share of its radius has no room.
 const DEEP: f64 = 0.6;
 
-/// Patches near the climber, and whether there is room on them.
+/// The patches near the climber that were tested so far, and whether they have room.
 pub(super) struct Room<'a> {
     view: &'a View<'a>,
     known: RefCell<BTreeMap<usize, bool>>,

@@ -8,40 +8,40 @@ use super::Target;
 use crate::graph::{Corner, Patch, Spot, spot_on};
 use crate::{Forecast, Goal};
 
-/// What a creature is about to do to somebody on the ground.
+/// The danger that a creature is to a climber on the ground.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Danger {
-    /// It keeps still: it may be approached.
+    /// The creature keeps still: it may be approached.
     #[default]
     None,
-    /// It walks about.
+    /// The creature walks about.
     Moves,
-    /// It strikes.
+    /// The creature strikes.
     Attacks,
 }
 
-/// What a bot sees in a tick.
+/// The state of the world that a bot reads in a tick.
 #[derive(Clone, Copy, Debug)]
 pub struct View<'a> {
     /// Time, seconds.
     pub seconds: f64,
-    /// The climber that it drives.
+    /// The climber that the bot drives.
     pub climber: &'a Climber,
     /// The creature's obstacle id.
     pub creature: ObstacleId,
-    /// Its skin.
+    /// The creature's skin.
     pub surface: &'a SkinnedSurface,
-    /// Where to go.
+    /// The bot's goal.
     pub goal: &'a Goal,
-    /// What the creature is expected to do from now on: a clip that it plays begins with its present time. Plans are
-    /// made on it now and then, so it may be a rough guess; but a jump from one part of the creature to another relies
-    /// on the next second or two. [`Forecast::still`] leaves that to the bot's own eyes.
+    /// The clips that the creature is expected to play from now on; the present clip begins at its present time. Plans
+    /// are made on it now and then, so it may be a rough guess. But a jump from one part of the creature to another
+    /// relies on the next second or two. With [`Forecast::still`], the bot judges jumps by the motion that it sees.
     pub forecast: &'a Forecast,
-    /// What it is about to do to somebody on the ground.
+    /// The danger for a climber on the ground.
     pub danger: Danger,
-    /// The hardest shake that the climber's place is about to get, metres a second squared:
-    /// [`FutureSkin::shake_ahead`](crate::FutureSkin::shake_ahead), half a second ahead in steps of a tenth. 0 plays
-    /// without looking ahead, and is thrown off more often.
+    /// The hardest shake that the climber's place is about to get, metres per second squared:
+    /// [`FutureSkin::shake_ahead`](crate::FutureSkin::shake_ahead), half a second ahead in steps of a tenth. With 0 the
+    /// bot does not look ahead, and is thrown off more often.
     pub shake_ahead: f64,
 }
 
@@ -52,7 +52,7 @@ impl View<'_> {
         support.is_some_and(|support| support.attachment.obstacle == self.creature)
     }
 
-    /// The point of the skin that it stands on or holds.
+    /// The point of the creature's skin that the climber stands on or holds.
     pub(super) fn material(&self) -> Option<(TriangleId, [f32; 3])> {
         let support = self.climber.state().support?;
         let material = support.attachment.material;
@@ -61,7 +61,7 @@ impl View<'_> {
         Some((triangle, material.coordinates.map(|weight| weight as f32)))
     }
 
-    /// True if the skin under it is no steeper than a share of the steepest slope that it can stand on.
+    /// True if the skin under the climber is no steeper than this share of the steepest slope that it can stand on.
     pub(super) fn is_level(&self, share: f64) -> bool {
         let config = self.climber.config();
         let support = self.climber.state().support;
@@ -71,7 +71,8 @@ impl View<'_> {
         })
     }
 
-    /// The way to a target. In a corner it goes against the skin that it is to take hold of, the more the nearer it is.
+    /// The direction to a target. In a corner it also presses against the skin that the climber is to take hold of, the
+    /// more the nearer that is.
     pub(super) fn against(&self, target: &Target) -> DVec3 {
         let (state, radius) = (self.climber.state(), self.climber.config().body.radius);
         let toward = target.place - state.position;
@@ -86,12 +87,12 @@ impl View<'_> {
         toward - target.normal * (share.clamp(0.0, 1.0) * radius)
     }
 
-    /// A patch, as the creature is now.
+    /// A patch in the creature's present pose.
     pub(super) fn spot(&self, patch: &Patch) -> Spot {
         Spot::of(self.surface, patch)
     }
 
-    /// By how much a patch has moved in the last tick, divided by some seconds.
+    /// Velocity of a patch: its motion in the last tick, divided by `dt` seconds.
     pub(super) fn velocity(&self, patch: &Patch, dt: f64) -> Option<DVec3> {
         let point = SurfacePoint {
             mesh: self.surface.mesh().id(),
@@ -101,7 +102,7 @@ impl View<'_> {
         Some(self.surface.in_world().path(point, dt).ok()?.velocity)
     }
 
-    /// True if a ball at a place is no deeper in the skin than a share of its radius.
+    /// True if a ball at a place is no deeper in the skin than the share `deep` of its radius.
     pub(super) fn has_room(&self, place: DVec3, deep: f64) -> bool {
         let radius = self.climber.config().body.radius;
         let hit = self.surface.in_world().closest_point(place, radius);
@@ -111,7 +112,7 @@ impl View<'_> {
         })
     }
 
-    /// The place in a corner, as the creature is now.
+    /// The position of the climber's ball in a corner, in the creature's present pose.
     pub(super) fn corner(&self, corner: &Corner) -> Option<DVec3> {
         let (point, [.., here]) = spot_on(self.surface, corner.triangle, corner.barycentric)?;
         let (_, [.., there]) = spot_on(self.surface, corner.other, [1.0, 0.0, 0.0])?;

@@ -1,4 +1,4 @@
-//! What a graph depends on, as a number.
+//! The hash of everything that a graph depends on.
 
 use std::fmt::{self, Write as _};
 
@@ -6,10 +6,10 @@ use xxhash_rust::xxh3::Xxh3;
 
 use crate::{GraphConfig, GraphSource};
 
-/// To be raised when graphs of the same creature change.
+/// Version of the graph's content. Raise it when graphs of the same creature change; otherwise old files are read.
 const FORMAT: u32 = 6;
 
-/// Takes text.
+/// A hash that takes text.
 struct Digest(Xxh3);
 
 impl fmt::Write for Digest {
@@ -19,8 +19,8 @@ impl fmt::Write for Digest {
     }
 }
 
-/// A hash of everything that a graph depends on, as it is printed for debugging: numbers are printed to their last bit,
-/// and no field can be forgotten.
+/// A hash of everything that a graph depends on, from its debug output, which prints every field, and floats to their
+/// last bit.
 pub(super) fn key(source: &GraphSource<'_>, config: &GraphConfig) -> u128 {
     let GraphSource {
         skeleton,
@@ -34,7 +34,7 @@ pub(super) fn key(source: &GraphSource<'_>, config: &GraphConfig) -> u128 {
     } = source;
     let mut digest = Digest(Xxh3::new());
     let version = env!("CARGO_PKG_VERSION");
-    // A digest takes all text.
+    // Writing to a digest never fails.
     let _ = write!(
         digest,
         "{version} {FORMAT} {config:?} {world_from_model:?} {ground:?} "

@@ -1,4 +1,4 @@
-//! Graphs in files: built once for each creature.
+//! Keeps graphs in files, so that each creature's graph is built once.
 
 mod key;
 mod sound;
@@ -15,7 +15,7 @@ use xxhash_rust::xxh3::xxh3_128;
 
 use crate::{ClimbGraph, GraphConfig, GraphSource, NavigationError, Progress};
 
-/// A graph, and where it comes from.
+/// A graph, and how it was obtained.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct CachedGraph {
@@ -23,31 +23,31 @@ pub struct CachedGraph {
     pub graph: ClimbGraph,
     /// Its file.
     pub file: PathBuf,
-    /// Whether it was read.
+    /// How the graph was obtained.
     pub origin: GraphOrigin,
 }
 
-/// Where a graph comes from.
+/// How a graph was obtained.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum GraphOrigin {
-    /// It was read from its file.
+    /// The graph was read from its file.
     Read,
-    /// It was built, and is in its file now.
+    /// The graph was built, and saved in its file.
     Built,
-    /// It was built, and its file could not be written: next time it is built again.
+    /// The graph was built, but its file could not be written: the next call builds it again.
     NotSaved(io::Error),
 }
 
 impl ClimbGraph {
     /// The graph of a creature, from its file in `folder`. Without a file the graph is built, as by
-    /// [`ClimbGraph::build`], and written there for the next time. The folder is created if it is missing.
+    /// [`ClimbGraph::build`], and saved there for the next call. The folder is created if it is missing.
     ///
-    /// The file's name is a hash of the skin, skeleton, clips, plates, place and configuration, and of this crate's
-    /// version: a creature that has changed gets a file of its own. Files that are not used any more are never removed.
-    /// A file that is damaged is built and written anew. Two programs may use a folder at the same time.
+    /// The file's name is a hash of the skin, skeleton, clips, plates, transform and configuration, and of this crate's
+    /// version, so a changed creature gets a file of its own. Old files are never removed. If a file is damaged, the
+    /// graph is built and saved again. Several programs may use a folder at the same time.
     ///
-    /// `progress` is called only by a build. A build takes seconds, so do it on a thread of its own:
+    /// `progress` is called only by a build. A build takes seconds, so run it on a thread of its own:
     ///
     /// ```no_run
     /// use std::ops::ControlFlow;
@@ -91,7 +91,7 @@ impl ClimbGraph {
     /// ```
     ///
     /// # Errors
-    /// As [`ClimbGraph::build`]. A folder that cannot be written is no error: see [`GraphOrigin::NotSaved`].
+    /// As [`ClimbGraph::build`]. A folder that cannot be written is not an error: see [`GraphOrigin::NotSaved`].
     pub fn cached(
         folder: &Path,
         source: &GraphSource<'_>,
@@ -122,16 +122,17 @@ impl ClimbGraph {
     }
 }
 
-/// What a file begins with: a name, then the key, and a hash of the rest.
+/// The first bytes of a file. The key follows, and a hash of the rest. Change it if this layout changes.
 const MAGIC: &[u8; 16] = b"clamber graph 1\n";
 
-/// Files of a graph are no larger than this, bytes: that of the giant has some megabytes.
+/// Largest file of a graph that is read, bytes. The giant's graph has some megabytes; the limit keeps a wrong file from
+/// filling the memory.
 const LARGEST: u64 = 1 << 30;
 
-/// So many names are tried for a file that is being written.
+/// The most names that are tried for a file that is being written.
 const MOST_PARTS: u32 = 1000;
 
-/// What is in a plain file of a graph's size; `None` of anything else, as a device or a pipe.
+/// The content of a regular file of at most [`LARGEST`] bytes; `None` for anything else, such as a device or a pipe.
 fn contents(file: &Path) -> Option<Vec<u8>> {
     let about = std::fs::metadata(file).ok()?;
     if !about.is_file() || about.len() > LARGEST {
@@ -150,10 +151,10 @@ fn save(graph: &ClimbGraph, key: u128, folder: &Path, file: &Path) -> io::Result
     bytes.extend(xxh3_128(&rest).to_le_bytes());
     bytes.extend(rest);
     std::fs::create_dir_all(folder)?;
-    // Under a name of its own first: nobody reads half a file.
+    // Write to a temporary name first, so that no other program reads an incomplete file.
     static COUNT: AtomicU64 = AtomicU64::new(0);
     let count = COUNT.fetch_add(1, Ordering::Relaxed);
-    // A file of this name that is there already is somebody else's, or of a process that was killed.
+    // An existing file of this name belongs to another program, or was left by a process that was killed.
     let mut attempt = 0;
     let (half, mut part) = loop {
         let name = format!("{}-{count}-{attempt}.part", std::process::id());
@@ -175,7 +176,7 @@ fn save(graph: &ClimbGraph, key: u128, folder: &Path, file: &Path) -> io::Result
     written
 }
 
-/// The graph of a file; `None` if the file is damaged, or of another creature.
+/// The graph in a file's content; `None` if the content is damaged or is another creature's graph.
 fn read(
     bytes: &[u8],
     key: u128,

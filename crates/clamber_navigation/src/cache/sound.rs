@@ -1,9 +1,9 @@
-//! Whether a graph from a file can be used: none of its numbers lead out of its lists.
+//! Checks that a graph from a file can be used: all of its indices are within their lists.
 
 use crate::ClimbGraph;
 
 impl ClimbGraph {
-    /// True if it fits a mesh of so many triangles, and itself.
+    /// True if the graph fits a mesh of this many triangles, and its own lists.
     pub(super) fn is_sound(&self, triangles: usize) -> bool {
         let patches = self.patches.len();
         let is_there = |triangle: usize| triangle < triangles;
@@ -25,7 +25,7 @@ impl ClimbGraph {
     }
 }
 
-/// True if `start` divides a list of so many items into so many ranges.
+/// True if `start` divides a list of `items` items into `ranges` ranges.
 pub(crate) fn divides(start: &[u32], ranges: usize, items: usize) -> bool {
     start.len() == ranges + 1
         && start.first() == Some(&0)

@@ -1,4 +1,4 @@
-//! How hard each clip shakes each patch, and how it tilts it.
+//! Measures how hard each clip shakes each patch, and how it tilts it.
 
 use clamber_surface::rig::{Clip, Palette, Playback, Pose};
 use clamber_surface::surface::SurfaceError;
@@ -8,66 +8,70 @@ use crate::graph::Patch;
 use crate::progress::{Stage, Tell};
 use crate::{GraphConfig, GraphSource, NavigationError};
 
-/// Length of a slice of a clip, seconds.
+/// Length of a slice of a clip, seconds. Clips and forecasts are stored in slices. Shorter slices take more memory.
 pub(crate) const SLICE: f64 = 0.5;
 
-/// The clips are played in ticks of this length, seconds.
+/// Length of the ticks in which clips are played, seconds.
 pub(crate) const TICK: f64 = 1.0 / 60.0;
 
-/// Slices times patches of all clips: 300 MB.
+/// The most slices times patches of all clips. At three bytes each they take 300 MB.
 const MOST: f64 = 1e8;
 
-/// Slices of a clip, some 14 hours.
+/// The most slices of a clip, some 14 hours.
 const LONGEST: f64 = 1e5;
 
-/// Whoever watches is told every so many ticks.
+/// Progress is reported once in this many ticks.
 const TELLS: usize = 256;
 
-/// Shakes are stored in steps of this size, metres a second squared; the largest stands for all larger ones.
+/// Shakes are stored in steps of this size, metres per second squared. The largest stored value stands for all larger
+/// ones.
 const STEP: f64 = 0.25;
 
-/// The hardest shake that is told apart from harder ones, metres a second squared.
+/// Shakes from this on are stored as infinite, metres per second squared.
 pub(crate) const HARDEST: f64 = 255.0 * STEP;
 
-/// Tilts are stored in steps of this size, in cosines.
+/// Size of the steps in which tilts are stored, as cosines of the slope.
 pub(crate) const COSINE: f64 = 1.0 / 127.0;
 
-/// A clip, by its slices.
+/// A clip's slices.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "cache", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct ClipSlices {
     pub(crate) name: String,
+    /// The number of its first slice among the slices of all clips.
     first: usize,
+    /// Number of slices.
     pub(crate) count: usize,
-    /// It ends as it begins.
+    /// True if the clip can be played as a loop.
     pub(crate) loops: bool,
 }
 
-/// A patch in a slice of a clip.
+/// The shake and tilt of a patch in a slice of a clip.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Moment {
-    /// The hardest shake at the ends of ticks, metres a second squared, rounded up; infinite from [`HARDEST`] on.
+    /// The hardest shake at the ends of ticks, metres per second squared, rounded up; infinite from [`HARDEST`] on.
     pub(crate) shake: f64,
-    /// By how much the shake exceeds what holding on costs no more for, on average, metres a second squared.
+    /// The mean excess of the shake over the threshold up to which holding on costs no more, metres per second squared.
     pub(crate) excess: f64,
     /// The lowest cosine of the slope.
     pub(crate) upright: f64,
 }
 
-/// All clips of a creature.
+/// Shakes and tilts of all patches in all clips of a creature.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "cache", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct ClipFacts {
     pub(crate) clips: Vec<ClipSlices>,
-    /// How fast they are played.
+    /// The rate at which the clips are played, as a share of the file's.
     rate: f64,
+    /// Number of patches.
     patches: usize,
     /// Shake, excess and slope of each patch in each slice: `slice * patches + patch`.
     moments: Vec<[u8; 3]>,
 }
 
 impl ClipFacts {
-    /// Plays all clips of a creature, each from its beginning to its end; what is a loop, through its seam as well.
+    /// Plays each clip of a creature from its beginning to its end. Loops are played through their seam as well.
     pub(crate) fn measure(
         source: &GraphSource<'_>,
         config: &GraphConfig,
@@ -117,7 +121,7 @@ impl ClipFacts {
             .collect();
         let mut riders = vec![Rider::default(); patches.len()];
         let mut played = Played::new(source, clip)?;
-        // What comes before the beginning of a loop is its end.
+        // Before its beginning, a loop plays its end.
         let loops = played.is_loop(&seats, lasts, self.rate, tell)?;
         let lead = if loops { ticks.min(LEAD) } else { 0 };
         self.clips.push(ClipSlices {
@@ -144,7 +148,7 @@ impl ClipFacts {
                 continue;
             };
             if tick == 0 && lead > 0 {
-                // Only the motion counts that it has had.
+                // Discard the shakes before the clip's beginning. They only set up the riders' motion.
                 riders.iter_mut().for_each(|rider| {
                     rider.moment(&rules);
                 });
@@ -159,25 +163,26 @@ impl ClipFacts {
         Ok(())
     }
 
-    /// How fast the clips are played.
+    /// The rate at which the clips are played, as a share of the file's.
     pub(crate) fn rate(&self) -> f64 {
         self.rate
     }
 
-    /// The number of a slice of a clip among those of all clips; the clip goes on from its beginning.
+    /// The number, among the slices of all clips, of a clip's slice. A slice beyond the clip's end wraps around to its
+    /// beginning.
     pub(crate) fn slice(&self, clip: usize, slice: usize) -> Option<usize> {
         let clip = self.clips.get(clip)?;
         Some(clip.first + slice % clip.count)
     }
 
-    /// The clip of a slice, by its number among those of all clips.
+    /// The clip of a slice, by the slice's number among the slices of all clips.
     pub(crate) fn clip_of(&self, slice: usize) -> usize {
         let after = self.clips.partition_point(|clip| clip.first <= slice);
         after.saturating_sub(1)
     }
 
-    /// True if a slice follows on another one within a clip. The last slice of a loop is shorter than others, so that it
-    /// may be passed over.
+    /// True if `next` follows on `slice` within a clip, or over a loop's seam. The last slice of a loop is shorter than
+    /// the others, so a forecast may leave it out.
     pub(crate) fn goes_on(&self, slice: usize, next: usize) -> bool {
         self.clips.get(self.clip_of(slice)).is_some_and(|clip| {
             let left = (clip.first + clip.count).saturating_sub(slice + 1);
@@ -186,14 +191,14 @@ impl ClipFacts {
         })
     }
 
-    /// How long a clip is, in whole slices, seconds.
+    /// Length of a clip in whole slices, seconds.
     pub(crate) fn seconds(&self, clip: usize) -> f64 {
         self.clips
             .get(clip)
             .map_or(SLICE, |clip| clip.count as f64 * SLICE)
     }
 
-    /// A patch in a slice, of those of all clips.
+    /// The shake and tilt of a patch in a slice, by the slice's number among the slices of all clips.
     pub(crate) fn at(&self, slice: usize, patch: usize) -> Moment {
         let moment = self.moments.get(slice * self.patches + patch);
         let [shake, excess, upright] = moment.copied().unwrap_or([0, 0, 254]);
@@ -208,7 +213,7 @@ impl ClipFacts {
         }
     }
 
-    /// True if it knows every slice of every clip for so many patches.
+    /// True if all slices of all clips are there for this many patches.
     #[cfg(feature = "cache")]
     pub(crate) fn is_sound(&self, patches: usize) -> bool {
         let slices = self.clips.iter().try_fold(0usize, |first, clip| {
@@ -219,29 +224,32 @@ impl ClipFacts {
         self.patches == patches && wanted == Some(self.moments.len())
     }
 
-    /// The clip of a name.
+    /// The first clip with a name.
     pub(crate) fn find(&self, name: &str) -> Option<usize> {
         self.clips.iter().position(|clip| clip.name == name)
     }
 }
 
-/// A loop is played for so many ticks before its beginning: some times longer than shakes last.
+/// Number of ticks for which a loop is played before its beginning: several times as long as shakes last, so that its
+/// first slice starts with the shake of a running loop.
 const LEAD: usize = 60;
 
-/// A clip is no loop if some skin is more than `JUMP` times as fast at the seam as anywhere within the clip, and faster
-/// than `SLOW` heights of the creature a second.
+/// A clip is no loop if some skin moves at the seam more than this many times as fast as anywhere within the clip, and
+/// faster than [`SLOW`].
 const JUMP: f64 = 1.5;
+/// Skin slower than this at the seam never rules out a loop, heights of the creature per second.
 const SLOW: f64 = 0.01;
 
-/// How fast skin is within a clip is looked at in one of so many ticks.
+/// Speeds within a clip are measured in one of this many ticks, to save time.
 const STRIDE: usize = 4;
 
-/// A clip, and the skin as it is in it.
+/// A clip, and the skin in its present pose.
 struct Played<'a> {
     source: &'a GraphSource<'a>,
     clip: &'a Clip,
     pose: Pose,
     palette: Palette,
+    /// The skinned positions of the vertices, in model space.
     skin: Vec<Vec3>,
 }
 
@@ -257,7 +265,7 @@ impl<'a> Played<'a> {
         })
     }
 
-    /// The skin at a time of the clip, in the space of the model.
+    /// The skin at a time of the clip, in model space.
     fn at(&mut self, time: f64) -> Result<&[Vec3], NavigationError> {
         let source = self.source;
         self.clip
@@ -275,7 +283,7 @@ impl<'a> Played<'a> {
         Ok(seats.iter().map(|seat| seat.at(skin).0).collect())
     }
 
-    /// True if no seat is much faster from the clip's end to its beginning than within it.
+    /// True if no seat is much faster from the clip's end to its beginning than within the clip.
     fn is_loop(
         &mut self,
         seats: &[Seat],
@@ -297,7 +305,7 @@ impl<'a> Played<'a> {
                 *fastest = fastest.max(a.distance(*b));
             }
         }
-        // A tick with the seam in its middle.
+        // A tick whose middle is the seam.
         let half = (0.5 * TICK * rate).min(duration);
         let end = self.places(seats, duration - half)?;
         let start = self.places(seats, half)?;
@@ -311,13 +319,15 @@ impl<'a> Played<'a> {
     }
 }
 
-/// What a rider is subject to, in the space of the model, in which a climber may be small or large.
+/// The numbers that a rider's shakes depend on, in model space, whose units are `scale` metres.
 struct Rules {
+    /// The direction up in model space.
     up: DVec3,
+    /// Metres per model unit.
     scale: f64,
-    /// Share of the shake that is kept from tick to tick.
+    /// Share of the shake that the low-pass filter keeps from tick to tick.
     kept: f64,
-    /// Shake up to which holding on costs no more, in the space of the model.
+    /// Shake up to which holding on costs no more, model units per second squared.
     threshold: f64,
 }
 
@@ -337,7 +347,7 @@ impl Rules {
     }
 }
 
-/// The middle of a patch, as a point of the skin.
+/// The middle of a patch as a point of the skin.
 struct Seat {
     vertices: [usize; 3],
     barycentric: [f64; 3],
@@ -352,7 +362,7 @@ impl Seat {
         }
     }
 
-    /// Its place in a pose of the skin, and a vector along the normal there, in the space of the model.
+    /// The point's position in a pose of the skin, and a vector along the normal there, in model space.
     fn at(&self, skin: &[Vec3]) -> (DVec3, DVec3) {
         let [a, b, c] = self.vertices.map(|vertex| skin[vertex].as_dvec3());
         let [u, v, w] = self.barycentric;
@@ -360,16 +370,19 @@ impl Seat {
     }
 }
 
-/// Somebody who rides on a patch, in the space of the model.
+/// A climber that rides on a patch, in model space.
 #[derive(Clone, Copy, Debug, Default)]
 struct Rider {
     place: DVec3,
     velocity: DVec3,
     shake: DVec3,
-    /// The square of the hardest shake.
+    /// The square of the hardest shake since the last moment.
     hardest: f64,
+    /// Sum over the ticks of the shake's excess over the threshold.
     excess: f64,
+    /// Number of ticks since the last moment.
     ticks: f64,
+    /// The lowest cosine of the slope since the last moment.
     lowest: f64,
 }
 
@@ -394,7 +407,7 @@ impl Rider {
         self.ticks += 1.0;
     }
 
-    /// What was since the last time.
+    /// The stored shake and tilt since the last call.
     fn moment(&mut self, rules: &Rules) -> [u8; 3] {
         let steps = |value: f64| value * rules.scale / STEP;
         let hardest = steps(self.hardest.sqrt()).ceil().clamp(0.0, 255.0);

@@ -1,4 +1,4 @@
-//! Where a climber gets on from the ground.
+//! Entries: patches onto which a climber gets from the ground.
 
 use clamber_climber::ClimberConfig;
 use clamber_surface::surface::SkinnedSurface;
@@ -8,25 +8,26 @@ use super::Patch;
 use crate::GraphConfig;
 use crate::survey::Survey;
 
-/// A place where a climber gets on from the ground.
+/// A patch onto which a climber gets from the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 #[cfg_attr(feature = "cache", derive(serde::Serialize, serde::Deserialize))]
 pub struct Entry {
     /// The patch.
     pub patch: usize,
-    /// How high the middle of the climber's ball is there, metres above the ground.
+    /// Height of the middle of the climber's ball there, above the ground, metres.
     pub height: f64,
-    /// How fast a climber that jumps from the ground, at the speed of a walk, passes what its hands reach there, at
-    /// most, metres a second. 0 where it reaches that from the ground, without a jump.
+    /// The largest speed at which the climber's hands pass this place in a jump from the ground at walking speed,
+    /// metres per second. 0 if they reach it from the ground without a jump.
     pub speed: f64,
 }
 
-/// Patches that a climber on the ground gets to with a jump: straight up, to where its hands reach, or forwards at the
-/// speed of a walk. A jump forwards is tried in this many directions.
+/// Number of directions in which a jump forwards to a patch is tried. More find more entries between obstacles, and
+/// cost more.
 const DIRECTIONS: u32 = 16;
 
-/// The patches to which a jump leads through free space.
+/// The patches to which a jump leads through free space: straight up to where hands reach, or forwards at walking
+/// speed. Patches on which a climber cannot stand are left out if hands do not catch them.
 pub(super) fn entries(survey: &Survey, patches: &[Patch], patch_of: &[u32]) -> Vec<Entry> {
     let jumps = Jumps::new(survey);
     let highest = highest_entry(&survey.config);
@@ -54,7 +55,7 @@ pub(super) fn entries(survey: &Survey, patches: &[Patch], patch_of: &[u32]) -> V
 }
 
 impl Entry {
-    /// True if a jump passes it so slowly that hands catch it.
+    /// True if a jump passes this place slowly enough for hands to catch it.
     pub(super) fn is_caught(&self, climber: &ClimberConfig) -> bool {
         climber
             .grip
@@ -62,8 +63,8 @@ impl Entry {
     }
 }
 
-/// The greatest speed of a jump from the ground where hands reach a place, which is that high above the ground: at the
-/// lowest point from where they reach it.
+/// The largest speed of a jump from the ground at the lowest point from which hands reach a place. `height` is the
+/// place's height above the ground.
 fn speed_at(config: &GraphConfig, height: f64) -> f64 {
     let rises = height - config.radius() - config.reach().max(0.0);
     if rises <= 0.0 {
@@ -74,7 +75,8 @@ fn speed_at(config: &GraphConfig, height: f64) -> f64 {
     libm::hypot(libm::sqrt(squared.max(0.0)), ground.walk_speed)
 }
 
-/// How high the middle of a climber's ball may be for its hands to reach something with a jump from the ground, metres.
+/// The highest middle of a climber's ball at a place that its hands reach with a jump from the ground, metres above the
+/// ground.
 pub(crate) fn highest_entry(config: &GraphConfig) -> f64 {
     let climber = &config.climber;
     let gravity = climber.gravity.length();
@@ -86,25 +88,29 @@ pub(crate) fn highest_entry(config: &GraphConfig) -> f64 {
     config.radius() + jump + config.reach().max(0.0)
 }
 
-/// Steps of a ball on its way, as a share of its radius.
+/// Distance between two tests of a ball along a jump, as a share of its radius. Longer steps could pass through thin
+/// skin.
 const STEP: f64 = 0.5;
 
-/// A ball on its way may be so deep in skin, as a share of its radius: seats have as much.
+/// Depth in skin up to which a ball on its way still counts as free, as a share of its radius. It is more than the 0.02
+/// that seats allow.
 const TOUCH: f64 = 0.03;
 
-/// A jump does not lead onto skin that is nearer to its end than this, as a share of the radius: there it touches
-/// already.
+/// Near the end of a jump, within this share of the radius, the ball is not tested: it touches the skin of its end
+/// there.
 const ARRIVES: f64 = 0.5;
 
-/// Jumps from the ground.
+/// Tests jumps from the ground.
 struct Jumps<'a> {
     surface: &'a SkinnedSurface,
     up: DVec3,
     ground: f64,
     radius: f64,
-    /// Speeds at the take-off, metres a second, and gravity, metres a second squared.
+    /// Upward speed at the take-off, metres per second.
     rise: f64,
+    /// Walking speed at the take-off, metres per second.
     walk: f64,
+    /// Acceleration of gravity, metres per second squared.
     gravity: f64,
 }
 
@@ -137,7 +143,7 @@ impl<'a> Jumps<'a> {
             .all(|step| self.is_free(seat - self.up * (way * f64::from(step) / steps)))
     }
 
-    /// True if a jump at the speed of a walk leads to a seat, on its way up or down.
+    /// True if a jump at walking speed leads to a seat, on its way up or down.
     fn lead_forwards_to(&self, seat: DVec3) -> bool {
         let height = seat.dot(self.up) - self.ground - self.radius;
         let under = self.rise * self.rise - 2.0 * self.gravity * height;
@@ -155,12 +161,12 @@ impl<'a> Jumps<'a> {
         })
     }
 
-    /// True if nothing is in the way of a jump that comes to a seat after some seconds.
+    /// True if the path of a jump that arrives at `seat` after `time` seconds is free of skin.
     fn is_arc_free(&self, seat: DVec3, level: DVec3, time: f64) -> bool {
         let fastest = self.rise.max(self.rise - self.gravity * time) + self.walk;
         let steps = (fastest * time / (STEP * self.radius)).ceil().max(1.0);
         (1..=steps as u32).all(|step| {
-            // Backwards from its end.
+            // Backwards from the end.
             let before = time * f64::from(step) / steps;
             let rate = self.rise - self.gravity * time;
             let rise = -rate * before - 0.5 * self.gravity * before * before;

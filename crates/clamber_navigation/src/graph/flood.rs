@@ -1,4 +1,4 @@
-//! Everything that can be reached from the entries.
+//! The patches that can be reached from the entries.
 
 use std::collections::BinaryHeap;
 
@@ -6,17 +6,17 @@ use super::ClimbGraph;
 use crate::Start;
 use crate::plan::{node, of_node};
 
-/// How a climber is on a patch.
+/// How a climber is supported on a patch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "cache", derive(serde::Serialize, serde::Deserialize))]
 pub enum Footing {
-    /// It stands.
+    /// The climber stands.
     Stands,
-    /// It holds on.
+    /// The climber holds on.
     Holds,
 }
 
-/// What can be reached, by patch.
+/// The patches that are reached, by footing.
 #[derive(Clone, Debug)]
 pub(crate) struct Reachable {
     stands: Vec<bool>,
@@ -31,13 +31,13 @@ impl Reachable {
 }
 
 impl ClimbGraph {
-    /// All that can be reached at rest from some patches by a climber that does not tire. It walks where it can stand,
-    /// climbs where it can hold on, changes from one to the other wherever it can do both, and jumps.
+    /// All patches that a climber that does not tire reaches from some patches on the creature at rest. It walks where
+    /// it can stand, climbs where it can hold on, changes between both wherever both are possible, and jumps.
     pub(crate) fn flood(&self, from: impl IntoIterator<Item = usize>) -> Reachable {
         self.reach(from, true)
     }
 
-    /// [`ClimbGraph::flood`] without jumps: the way back is open, too.
+    /// [`ClimbGraph::flood`] without jumps: every patch of the result can also be left on the same way back.
     pub(crate) fn region(&self, from: impl IntoIterator<Item = usize>) -> Reachable {
         self.reach(from, false)
     }
@@ -54,7 +54,7 @@ impl ClimbGraph {
                      patch: usize,
                      [stands, holds]: [bool; 2]| {
             let here = &self.patches[patch];
-            // Where it can do both it does both.
+            // A climber that can both stand and hold on here can change between the two.
             let is_both = here.can_stand && here.can_hold && (stands || holds);
             let stands = here.can_stand && (stands || is_both);
             let holds = here.can_hold && (holds || is_both);
@@ -85,10 +85,10 @@ impl ClimbGraph {
         reached
     }
 
-    /// Of each node, the most stamina with which a climber comes there at rest from some starts if it rests wherever
-    /// it can; negative if it does not come there.
+    /// For each node, the most stamina with which a climber arrives there from some starts on the creature at rest, if
+    /// it rests wherever it can; negative if it does not get there.
     ///
-    /// Dijkstra's search (1959) for the widest path. A place that a rest makes better is looked at again.
+    /// Dijkstra's search (1959) for the widest path. A node whose stamina a rest improves is visited again.
     pub(crate) fn strength(&self, starts: impl IntoIterator<Item = Start>) -> Vec<f64> {
         let costs = self.config.climber.stamina;
         let drain = costs.map_or(0.0, |costs| costs.hold_drain);
@@ -104,7 +104,7 @@ impl ClimbGraph {
             let node = node(patch, footing);
             if stamina >= 0.0 && stamina > most[node] {
                 most[node] = stamina;
-                // Bits of numbers that are not negative have their order.
+                // The bits of floats that are not negative sort like the floats.
                 open.push((stamina.to_bits(), node));
             }
         };

@@ -1,4 +1,4 @@
-//! Which patch a point of the skin belongs to.
+//! Finds the patch of a point of the skin.
 
 use clamber_surface::mesh::{ColliderMesh, TriangleId};
 use glam::DVec3;
@@ -6,16 +6,16 @@ use glam::DVec3;
 use super::patch::NONE;
 use crate::survey::Survey;
 
-/// Of each triangle, its pieces and their patches.
+/// For each triangle, its bits and their patches.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "cache", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Locator {
-    /// Those of triangle t are `start[t]..start[t + 1]`.
+    /// The places of triangle t are `start[t]..start[t + 1]`.
     start: Vec<u32>,
     pieces: Vec<Place>,
 }
 
-/// A piece, and its patch, or the nearest one.
+/// The middle of a bit of a triangle, and its patch or the nearest one.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "cache", derive(serde::Serialize, serde::Deserialize))]
 struct Place {
@@ -25,7 +25,7 @@ struct Place {
 }
 
 impl Locator {
-    /// A piece without a patch takes the nearest patch at rest.
+    /// Creates the locator. A piece without a patch takes the patch that is nearest at rest.
     pub(super) fn new(survey: &Survey, patch_of: &[u32], mesh: &ColliderMesh) -> Self {
         let nearest = nearest(survey, patch_of);
         let mut of: Vec<Vec<Place>> = vec![Vec::new(); mesh.triangles().len()];
@@ -51,7 +51,7 @@ impl Locator {
         locator
     }
 
-    /// True if it finds so many patches on a mesh of so many triangles.
+    /// True if the locator has a range for each of `triangles` triangles, and its patches are below `patches`.
     #[cfg(feature = "cache")]
     pub(crate) fn is_sound(&self, patches: usize, triangles: usize) -> bool {
         let mut found = self.pieces.iter();
@@ -59,7 +59,7 @@ impl Locator {
             && found.all(|place| (place.patch as usize) < patches)
     }
 
-    /// The patch of a point, and whether the point is on it or just near.
+    /// The patch of a point, and whether the point is on the patch or only near it.
     pub(super) fn find(
         &self,
         triangle: TriangleId,
@@ -79,11 +79,11 @@ impl Locator {
     }
 }
 
-/// Pieces farther from any patch than so many radii of the climber belong to none.
+/// Pieces farther from all patches than this get no patch, radii of the climber.
 const FAR: f64 = 5.0;
 
 fn nearest(survey: &Survey, patch_of: &[u32]) -> Vec<u32> {
-    // The cells of a grid, sorted, with the pieces in them that have a patch.
+    // Pieces that have a patch, sorted by their cell in a grid.
     let far = FAR * survey.config.radius();
     let cell = |point: DVec3| (point / far).floor().as_i64vec3().to_array();
     let mut cells: Vec<([i64; 3], usize)> = (0..patch_of.len())
@@ -105,7 +105,7 @@ fn nearest(survey: &Survey, patch_of: &[u32]) -> Vec<u32> {
             let from = cells.partition_point(|(cell, _)| *cell < at);
             for (_, other) in cells[from..].iter().take_while(|(cell, _)| *cell == at) {
                 let there = &survey.pieces[*other];
-                // The other side of a thin part is no neighbour.
+                // Skin on the other side of a thin part is not a neighbour.
                 let faces = there.normal.dot(here.normal) > -0.5;
                 let apart = there.point.distance(here.point);
                 if faces && apart < best.0 {

@@ -1,4 +1,4 @@
-//! Patches, and the ways between them.
+//! The graph: patches, and the ways between them.
 
 mod entries;
 mod flood;
@@ -29,7 +29,7 @@ pub(crate) use patch::{NONE, axes, corners};
 pub(crate) use spot::{Spot, spot_on};
 pub(crate) use ways::{Corner, Ways};
 
-/// Where a climber can be on a creature, and how it gets from one place to another.
+/// The places where a climber can be on a creature, and the ways between them.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "cache", derive(serde::Serialize, serde::Deserialize))]
 pub struct ClimbGraph {
@@ -39,7 +39,7 @@ pub struct ClimbGraph {
     pub(crate) leaps: Leaps,
     pub(crate) entries: Vec<Entry>,
     pub(crate) clips: ClipFacts,
-    /// One triangle of each plate.
+    /// One triangle of each plate, by which its removal is noticed.
     pub(crate) plates: Vec<Option<TriangleId>>,
     pub(crate) locator: Locator,
 }
@@ -47,11 +47,11 @@ pub struct ClimbGraph {
 impl ClimbGraph {
     /// Builds the graph of a creature.
     ///
-    /// `progress` is called again and again, and cancels the build by [`ControlFlow::Break`].
+    /// `progress` is called repeatedly. If it returns [`ControlFlow::Break`], the build is cancelled.
     ///
     /// # Errors
-    /// [`NavigationError`] if a number of the configuration is out of its range, if the creature has no skin or cannot be
-    /// posed, if it has too many patches, and if the caller cancels.
+    /// [`NavigationError`] if a number of the configuration or the source is out of its range, if the creature has no
+    /// skin or cannot be posed, if it has too many patches or too long clips, and if the caller cancels.
     pub fn build(
         source: &GraphSource<'_>,
         config: &GraphConfig,
@@ -62,7 +62,7 @@ impl ClimbGraph {
         Ok(Self::of_survey(&survey, source, &mut tell)?.0)
     }
 
-    /// The graph, and the patch of each piece.
+    /// Builds the graph of a survey. Also returns the patch of each piece.
     pub(crate) fn of_survey(
         survey: &Survey,
         source: &GraphSource<'_>,
@@ -93,15 +93,16 @@ impl ClimbGraph {
         &self.patches
     }
 
-    /// Where it can be got onto from the ground. Holds are left out that a jump passes faster than hands catch them.
+    /// The patches onto which a climber gets from the ground. Holds that a jump passes too fast for hands to catch are
+    /// left out.
     pub fn entries(&self) -> &[Entry] {
         &self.entries
     }
 
-    /// Where plans of a climber begin that is on the ground with some stamina, 0 to 1: at all entries, with what is
+    /// The starts of plans for a climber on the ground with some stamina, 0 to 1: all entries, with the stamina that is
     /// left after the catch at the end of a jump
-    /// ([`StaminaConfig::catch_cost`](clamber_climber::StaminaConfig::catch_cost)). Holds that hands do not catch,
-    /// since the jump passes them too fast or stamina does not suffice, are left out.
+    /// ([`StaminaConfig::catch_cost`](clamber_climber::StaminaConfig::catch_cost)). Left out are holds that hands do
+    /// not catch, because the jump passes them too fast or because stamina does not suffice.
     pub fn starts_on_ground(&self, stamina: f64) -> impl Iterator<Item = Start> + '_ {
         let climber = &self.config.climber;
         let walks = climber.ground.walk_speed;
@@ -127,13 +128,14 @@ impl ClimbGraph {
         is_on_it.then_some(patch)
     }
 
-    /// The patch of a point of the skin, or the nearest one at rest; `None` if there is none within five radii of the
+    /// The patch of a point of the skin, or the nearest one at rest; `None` if no patch is within five radii of the
     /// climber.
     pub fn patch_near(&self, triangle: TriangleId, barycentric: [f32; 3]) -> Option<usize> {
         Some(self.locator.find(triangle, barycentric)?.0)
     }
 
-    /// True if a patch is there as the skin is now: its own triangle is, and the plate above it is not.
+    /// True if a patch exists in the skin's present state: its own triangle is enabled, and the plate above it is
+    /// removed.
     pub fn is_there(&self, patch: usize, surface: &SkinnedSurface) -> bool {
         self.patches.get(patch).is_some_and(|patch| {
             let plate = patch
@@ -144,7 +146,7 @@ impl ClimbGraph {
         })
     }
 
-    /// Of each patch, whether a climber that does not tire comes there from the ground, on the creature at rest.
+    /// For each patch, whether a climber that does not tire reaches it from the ground, on the creature at rest.
     pub fn reachable(&self) -> Vec<bool> {
         let reached = self.flood(self.entries.iter().map(|entry| entry.patch));
         (0..self.patches.len())
@@ -152,8 +154,8 @@ impl ClimbGraph {
             .collect()
     }
 
-    /// Of each patch, whether a climber with so much stamina, 0 to 1, comes there from the ground, on the creature at
-    /// rest. It rests wherever it can.
+    /// For each patch, whether a climber with this stamina, 0 to 1, reaches it from the ground, on the creature at
+    /// rest. The climber rests wherever it can.
     pub fn reachable_with(&self, stamina: f64) -> Vec<bool> {
         self.strength(self.starts_on_ground(stamina))
             .chunks_exact(2)
@@ -161,18 +163,18 @@ impl ClimbGraph {
             .collect()
     }
 
-    /// Number of ways between patches, each counted there and back.
+    /// Number of ways between patches; each counts twice, once per direction.
     pub fn ways(&self) -> usize {
         self.ways.len()
     }
 
-    /// Number of jumps from one part of the creature to another that were played, and landed at rest. A plan takes one
-    /// only while clips play in which it lands whenever it begins.
+    /// Number of jumps from one part of the creature to another that land at rest. A plan uses a jump only in clips in
+    /// which it lands whenever it begins.
     pub fn jumps(&self) -> usize {
         self.leaps.len()
     }
 
-    /// The settings that it was built with.
+    /// The settings that the graph was built with.
     pub fn config(&self) -> &GraphConfig {
         &self.config
     }

@@ -1,4 +1,4 @@
-//! Pieces of skin, merged into patches: places of about the size of the climber.
+//! Merges pieces of skin into patches: places of about the size of the climber.
 
 use std::collections::BTreeMap;
 
@@ -9,22 +9,22 @@ use glam::DVec3;
 use super::ways::{Corner, Way, Ways};
 use crate::survey::Survey;
 
-/// A place on the skin where a climber can be at rest.
+/// A place on the skin where a climber can be on the creature at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 #[cfg_attr(feature = "cache", derive(serde::Serialize, serde::Deserialize))]
 pub struct Patch {
-    /// The triangle in its middle.
+    /// The triangle at the patch's middle.
     pub triangle: TriangleId,
-    /// Weights of the triangle's corners for the middle.
+    /// Barycentric weights of the middle in that triangle.
     pub barycentric: [f64; 3],
-    /// The material there.
+    /// The material at the middle.
     pub tag: SurfaceTag,
     /// The middle at rest, in the world, metres.
     pub point: DVec3,
-    /// Outward unit normal there at rest.
+    /// Outward unit normal at the middle, at rest.
     pub normal: DVec3,
-    /// Where the climber's ball is when it is there, at rest.
+    /// The middle of the climber's ball on this patch, at rest.
     pub seat: DVec3,
     /// Area at rest, square metres.
     pub area: f64,
@@ -32,34 +32,35 @@ pub struct Patch {
     pub can_stand: bool,
     /// True if a climber can hold on there at rest.
     pub can_hold: bool,
-    /// The plate that has to be removed for a climber to have room there.
+    /// The plate that has to be removed before a climber has room there; `None` if it has room already.
     pub below: Option<u16>,
-    /// From the middle to the seat at rest, along the axes of the triangle, metres.
+    /// The vector from the middle to the seat at rest, along the axes of the triangle, metres.
     pub(crate) away: [f64; 3],
 }
 
-/// The corners of a triangle as the skin is, in the space of the model.
+/// The corners of a triangle of the skin in its present pose, in model space.
 pub(crate) fn corners(surface: &SkinnedSurface, triangle: TriangleId) -> Option<[DVec3; 3]> {
     let vertices = *surface.mesh().triangles().get(triangle.index())?;
     let [a, b, c] = vertices.map(|vertex| surface.in_model().position(vertex));
     Some([a?, b?, c?].map(|corner| corner.as_dvec3()))
 }
 
-/// Axes that go with a triangle: along its first side, across that, and outwards. `None` if it has no area.
+/// Axes that move with a triangle: along its first side, perpendicular to that in its plane, and its normal. `None` if
+/// the triangle has no area.
 pub(crate) fn axes([a, b, c]: [DVec3; 3]) -> Option<[DVec3; 3]> {
     let normal = (b - a).cross(c - a).try_normalize()?;
     let along = (b - a).try_normalize()?;
     Some([along, normal.cross(along), normal])
 }
 
-/// A piece that belongs to no patch: a climber can neither stand nor hold on there.
+/// The patch of a piece without one: a climber can neither stand nor hold on there. No patch has this number.
 pub(crate) const NONE: u32 = u32::MAX;
 
-/// Merges pieces into patches, and tells the patch of each piece.
+/// Merges pieces into patches, and returns the patch of each piece.
 ///
-/// The pieces of a patch are alike: a climber can stand on all of them or on none, and hold on at all of them or at
-/// none, and they face the same way. Each is reached from each within the patch. So whoever reaches one of them reaches
-/// all.
+/// All pieces of a patch are alike: a climber can stand on all or none of them, can hold on at all or none of them, and
+/// they face the same way. From each piece every other one is reached within the patch. So a climber that reaches one
+/// piece reaches all.
 pub(super) fn merge(survey: &Survey) -> (Vec<Patch>, Vec<u32>) {
     let (pieces, reach) = (&survey.pieces, survey.config.reach());
     let kinds: Vec<[bool; 2]> = (0..pieces.len())
@@ -134,10 +135,11 @@ fn patch(survey: &Survey, members: &[usize], [can_stand, can_hold]: [bool; 2]) -
     }
 }
 
-/// The ways from patch to patch, over the links between their pieces.
+/// The ways between patches, from the links between their pieces.
 pub(super) fn ways(survey: &Survey, patches: &[Patch], patch_of: &[u32]) -> Ways {
     let mut found: BTreeMap<(u32, u32), Way> = BTreeMap::new();
-    // Of pieces on both sides of a corner, those whose seats are nearest to each other: there the ball touches both.
+    // For each pair of patches with a corner between them, the two pieces with the nearest seats: there the ball
+    // touches both.
     let mut nearest: BTreeMap<(u32, u32), (f64, [usize; 2])> = BTreeMap::new();
     for piece in 0..survey.pieces.len() {
         let from = patch_of[piece];
@@ -146,7 +148,7 @@ pub(super) fn ways(survey: &Survey, patches: &[Patch], patch_of: &[u32]) -> Ways
         }
         for beside in survey.links.of(piece) {
             let to = patch_of[beside];
-            // The way back is the same.
+            // Each way is stored once, for both directions.
             if to == NONE || to <= from {
                 continue;
             }
@@ -183,7 +185,7 @@ pub(super) fn ways(survey: &Survey, patches: &[Patch], patch_of: &[u32]) -> Ways
 fn corner(survey: &Survey, pieces: [usize; 2]) -> Corner {
     let [here, there] = pieces.map(|piece| &survey.pieces[piece]);
     let away = here.seat.unwrap_or(here.point) - here.point;
-    // As a sum of both normals.
+    // The vector from the point to the ball as a sum of both normals.
     let cosine = here.normal.dot(there.normal);
     let (a, b) = (away.dot(here.normal), away.dot(there.normal));
     let squared = (1.0 - cosine * cosine).max(1e-3);

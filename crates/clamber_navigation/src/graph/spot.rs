@@ -1,4 +1,4 @@
-//! Patches, as a creature is now.
+//! Patches on the creature in its present pose.
 
 use clamber_surface::mesh::TriangleId;
 use clamber_surface::surface::SkinnedSurface;
@@ -6,18 +6,18 @@ use glam::DVec3;
 
 use super::{Patch, axes, corners};
 
-/// A place on the skin, as the creature is now.
+/// A place on the skin in its present pose, in the world.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Spot {
     pub(crate) point: DVec3,
-    /// Outward; zero where the skin has no area.
+    /// Outward unit normal; zero where the skin has no area.
     pub(crate) normal: DVec3,
-    /// Where the climber's ball is when it is there.
+    /// The middle of the climber's ball there.
     pub(crate) seat: DVec3,
 }
 
 impl Spot {
-    /// Where a patch is.
+    /// The spot of a patch.
     pub(crate) fn of(surface: &SkinnedSurface, patch: &Patch) -> Self {
         let known = spot_on(surface, patch.triangle, patch.barycentric);
         let Some((point, [along, across, normal])) = known else {
@@ -38,8 +38,8 @@ impl Spot {
     }
 }
 
-/// A point of the skin, by a triangle and the weights of its corners, and the triangle's axes, all in the space of the
-/// model. `None` if it has no area.
+/// A point of the skin, given by a triangle and barycentric weights, and the triangle's axes, all in model space.
+/// `None` if the triangle has no area.
 pub(crate) fn spot_on(
     surface: &SkinnedSurface,
     triangle: TriangleId,

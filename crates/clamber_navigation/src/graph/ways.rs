@@ -1,4 +1,4 @@
-//! Ways from patch to patch.
+//! Ways between patches.
 
 use std::collections::BTreeMap;
 
@@ -10,40 +10,43 @@ use super::Patch;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "cache", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Way {
-    /// It walks.
+    /// True if it can walk.
     pub(crate) walks: bool,
-    /// It climbs.
+    /// True if it can climb.
     pub(crate) climbs: bool,
 }
 
-/// A place in a corner, where the climber's ball touches the skin of two patches: it gets from one to the other there.
+/// A place in a corner where the climber's ball touches the skin of two patches. There the climber changes from one
+/// patch to the other.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "cache", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Corner {
-    /// A point of the skin of the patch with the lower number, and a triangle of the other one's.
+    /// The triangle of a point on the skin of the patch with the lower number.
     pub(crate) triangle: TriangleId,
+    /// Barycentric weights of that point.
     pub(crate) barycentric: [f64; 3],
+    /// A triangle of the other patch.
     pub(crate) other: TriangleId,
-    /// How far the ball is from that point, along the normals of both triangles, metres.
+    /// The vector from that point to the ball's middle, as factors of both triangles' normals, metres.
     pub(crate) apart: [f64; 2],
 }
 
-/// Of each patch, the ways that lead away from it.
+/// For each patch, the ways that lead away from it.
 #[derive(Clone, Debug, Default)]
 #[cfg_attr(feature = "cache", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Ways {
-    /// Those of patch p are `start[p]..start[p + 1]`.
+    /// The ways from patch p are `start[p]..start[p + 1]`.
     start: Vec<u32>,
     to: Vec<u32>,
     way: Vec<Way>,
     /// Length at rest, metres.
     length: Vec<f32>,
-    /// The corners of ways that lead around one, by their ends, the lower one first.
+    /// The corners on ways that lead around one, by the ways' ends, the lower one first.
     corners: BTreeMap<(u32, u32), Corner>,
 }
 
 impl Ways {
-    /// From ways that lead there and back, by their ends, the lower one first.
+    /// Creates the list from ways for both directions, by their ends, the lower one first.
     pub(super) fn new(
         patches: &[Patch],
         found: &BTreeMap<(u32, u32), Way>,
@@ -72,7 +75,7 @@ impl Ways {
         ways
     }
 
-    /// Those that lead away from a patch: where to, how, and how far it is at rest, metres.
+    /// The ways from a patch: the other end, how the climber moves, and the length at rest, metres.
     pub(crate) fn of(&self, patch: usize) -> impl Iterator<Item = (usize, Way, f64)> + '_ {
         let range = self.start[patch] as usize..self.start[patch + 1] as usize;
         range.map(|at| {
@@ -84,13 +87,13 @@ impl Ways {
         })
     }
 
-    /// The corner on the way between two patches, if there is one.
+    /// The corner on the way between two patches, if the way has one.
     pub(crate) fn corner(&self, from: usize, to: usize) -> Option<&Corner> {
         let ends = (from.min(to) as u32, from.max(to) as u32);
         self.corners.get(&ends)
     }
 
-    /// True if they lead from and to so many patches, over a mesh of so many triangles.
+    /// True if the ways fit this many patches, and their corners a mesh of this many triangles.
     #[cfg(feature = "cache")]
     pub(crate) fn is_sound(&self, patches: usize, triangles: usize) -> bool {
         let corner = |corner: &Corner| {
@@ -108,7 +111,7 @@ impl Ways {
             && self.corners.values().all(corner)
     }
 
-    /// Number of them.
+    /// Number of ways; both directions count.
     pub(crate) fn len(&self) -> usize {
         self.to.len()
     }

@@ -1,46 +1,46 @@
-//! What the creature is expected to do.
+//! Forecasts of the clips that the creature plays.
 
 use crate::ClimbGraph;
 use crate::clips::{Moment, SLICE};
 use crate::plan::search::slice_of;
 use crate::plan::{slips, throws};
 
-/// What the creature is expected to do from the beginning of a plan on: clips, one after the other, and all of them
-/// again and again.
+/// The clips that the creature is expected to play from the beginning of a plan on, one after the other. After the last
+/// one they start over.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Forecast {
-    /// Numbers of slices of clips.
+    /// The numbers of the clips' slices.
     slices: Vec<u32>,
 }
 
-/// A clip is expected for no longer than this, seconds.
+/// The longest time for which one clip is added, seconds.
 const LONGEST: f64 = 3600.0;
 
-/// All that is expected is no longer than this, slices: four hours.
+/// The most slices of a forecast: four hours. It limits the memory and the length of searches.
 const MOST: usize = 28_800;
 
-/// Who means to get on looks so many slices ahead: a minute.
+/// Number of slices that a climber which wants to get on looks ahead: a minute.
 const AHEAD: usize = 120;
 
-/// Getting on takes so many slices.
+/// Number of slices that getting on takes.
 const GETS_ON: usize = 3;
 
 impl Forecast {
-    /// It keeps still.
+    /// The forecast of a creature that keeps still.
     pub fn still() -> Self {
         Self::default()
     }
 
-    /// True if it keeps still.
+    /// True if the creature keeps still.
     pub fn is_still(&self) -> bool {
         self.slices.is_empty()
     }
 
-    /// And then it plays a clip. `from` is where in the clip it begins, in seconds of the file; `seconds` is for how
+    /// Appends a clip. `from` is the time in the clip at which it begins, in seconds of the file; `seconds` is for how
     /// long it plays, in seconds of the world, an hour at most. Both are rounded to half seconds. The clip is looped,
     /// with its length rounded up to half seconds. A forecast ends after four hours. A clip that the graph does not
-    /// know, a negative `from` and `seconds` that are not positive change nothing. A forecast is of use on its own
-    /// graph only: another one takes it for something else.
+    /// know, a negative `from` and `seconds` that are not positive change nothing. A forecast is valid only for its own
+    /// graph: another graph reads other clips from it.
     #[must_use]
     pub fn then(mut self, graph: &ClimbGraph, clip: &str, from: f64, seconds: f64) -> Self {
         let in_slices = |seconds: f64| (seconds.min(LONGEST) / SLICE).round() as usize;
@@ -48,7 +48,7 @@ impl Forecast {
             && (0.0..f64::INFINITY).contains(&from)
             && seconds > 0.0
         {
-            // Times of the clip pass at its rate.
+            // Clips pass at the graph's rate, so seconds of the file are scaled.
             let from = from / graph.clips.rate() % graph.clips.seconds(clip);
             let first = (from / SLICE).round() as usize;
             let slices = first..first + in_slices(seconds).max(1);
@@ -60,8 +60,8 @@ impl Forecast {
         self
     }
 
-    /// True if a climber that stands on a patch in the next seconds, or holds on there, feels no shake that costs
-    /// strength, is not thrown, and does not slip.
+    /// True if a climber that stands or holds on at a patch for the next `seconds` feels no shake that costs stamina,
+    /// is not thrown, and does not slip.
     pub(crate) fn is_calm_at(&self, graph: &ClimbGraph, patch: usize, seconds: f64) -> bool {
         let climber = &graph.config.climber;
         let slices = ((seconds / SLICE).ceil() as usize).clamp(1, self.len().max(1));
@@ -72,8 +72,8 @@ impl Forecast {
         self.is_still() || (0..slices).all(is_calm)
     }
 
-    /// After how many seconds from a time on a patch shakes no harder than `most` metres a second squared for as long
-    /// as it takes to get on; the length of the forecast, a minute at most, if it does not until then.
+    /// The wait, from a time on, until a patch shakes no harder than `most` metres per second squared for as long as
+    /// getting on takes, seconds. If the patch does not calm down, the length of the forecast, at most a minute.
     pub(crate) fn calms_after(
         &self,
         graph: &ClimbGraph,
@@ -89,8 +89,8 @@ impl Forecast {
         (0..longest).find(is_calm).unwrap_or(longest) as f64 * SLICE
     }
 
-    /// True if from a time on a patch shakes no harder than `most` metres a second squared for as long as it takes to
-    /// get on.
+    /// True if from a time on a patch shakes no harder than `most` metres per second squared for as long as getting on
+    /// takes.
     pub(crate) fn is_calm_from(
         &self,
         graph: &ClimbGraph,
@@ -103,10 +103,10 @@ impl Forecast {
         while_on.all(|slice| self.at(graph, slice, patch).shake <= most)
     }
 
-    /// After how long all is expected again, seconds.
+    /// The period after which the forecast repeats, seconds.
     ///
-    /// The period of a text by its longest border (Knuth, Morris and Pratt 1977), where it divides the length: what is
-    /// expected goes round.
+    /// The period of a sequence is its length less its longest border (Knuth, Morris and Pratt 1977). It counts only if
+    /// it divides the length, because the forecast starts over at its end.
     pub(crate) fn repeats_after(&self) -> f64 {
         let slices = &self.slices;
         let mut borders = vec![0; slices.len()];
@@ -122,13 +122,13 @@ impl Forecast {
         (if goes_round { period } else { slices.len() }) as f64 * SLICE
     }
 
-    /// Number of slices after which it begins again.
+    /// Number of slices after which the forecast starts over.
     pub(super) fn len(&self) -> usize {
         self.slices.len()
     }
 
-    /// True if a jump that begins after some seconds is over before the clip is that plays then, and lands whenever it
-    /// begins in that clip; always on a creature at rest.
+    /// True if a jump that begins after some seconds is over before the clip that plays then, and lands in that clip
+    /// whenever it begins. Always true on a creature that keeps still.
     pub(crate) fn lands(&self, graph: &ClimbGraph, number: usize, seconds: f64) -> bool {
         let Some(leap) = graph.leaps.get(number) else {
             return false;
@@ -143,13 +143,13 @@ impl Forecast {
             && (first..last).all(|slice| graph.clips.goes_on(at(slice), at(slice + 1)))
     }
 
-    /// True if a jump lands at some time.
+    /// True if a jump lands at some time of the forecast.
     pub(crate) fn ever_lands(&self, graph: &ClimbGraph, number: usize) -> bool {
         let mut slices = 0..self.slices.len().max(1);
         slices.any(|slice| self.lands(graph, number, slice as f64 * SLICE))
     }
 
-    /// What happens at a patch after so many slices.
+    /// The shake and tilt at a patch in a slice of the forecast.
     pub(super) fn at(&self, graph: &ClimbGraph, slice: usize, patch: usize) -> Moment {
         if self.slices.is_empty() {
             return Moment {
@@ -157,7 +157,7 @@ impl Forecast {
                 ..Moment::default()
             };
         }
-        // Divisions are slow.
+        // The remainder is computed only where it is needed, because divisions are slow.
         let slice = if slice < self.slices.len() {
             slice
         } else {

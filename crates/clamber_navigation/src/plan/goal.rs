@@ -1,4 +1,4 @@
-//! Where to go, and how long it takes at least from everywhere.
+//! Goals, with lower bounds of the time and stamina from every node to them.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -7,31 +7,33 @@ use glam::DVec3;
 
 use crate::{ClimbGraph, Footing};
 
-/// A goal: some patches, and for each place what it takes at least to come to the nearest of them.
+/// A goal: a set of patches, and lower bounds of the cost to come from each node to the nearest of them.
 #[derive(Clone, Debug)]
 pub struct Goal {
     patches: Vec<usize>,
-    /// Of each node.
+    /// The lower bounds of each node.
     least: Vec<Least>,
-    /// Factor on what holding on costs.
+    /// Factor on the stamina that holding on costs.
     pub(super) strain: f64,
-    /// What holding on costs, and standing brings, a second.
+    /// Stamina that holding on costs per second, with the strain.
     drain: f64,
+    /// Stamina that standing refills per second.
     refill: f64,
 }
 
-/// What it takes at least to come from a node to the goal; infinite if there is no way.
+/// Lower bounds of the cost from a node to the goal; infinite if no way leads there.
 #[derive(Clone, Copy, Debug)]
 struct Least {
+    /// Seconds of the way.
     seconds: f64,
-    /// Seconds for which it holds on.
+    /// Seconds for which the climber holds on.
     holds: f64,
-    /// Stamina, with rests; infinite if a whole stamina is not enough.
+    /// Stamina that is needed if the climber rests wherever it can; infinite if full stamina is not enough.
     stamina: f64,
 }
 
 impl Goal {
-    /// Its patches, in ascending order.
+    /// The goal's patches, in ascending order.
     pub fn patches(&self) -> &[usize] {
         &self.patches
     }
@@ -43,14 +45,14 @@ impl Goal {
         least.map_or(f64::INFINITY, |least| least.seconds)
     }
 
-    /// [`Goal::least_seconds`] from a patch, with the footing from which it is less.
+    /// The smaller [`Goal::least_seconds`] of both footings on a patch.
     pub fn least_seconds_from(&self, patch: usize) -> f64 {
         let footings = [Footing::Stands, Footing::Holds];
         let [stands, holds] = footings.map(|footing| self.least_seconds(patch, footing));
         stands.min(holds)
     }
 
-    /// The stamina from which on a climber comes from a patch to the goal on a creature at rest, 0 to 1, if it rests
+    /// The least stamina with which a climber gets from a patch to the goal on a creature at rest, 0 to 1, if it rests
     /// wherever it can; infinite if no stamina is enough.
     pub fn least_stamina(&self, patch: usize, footing: Footing) -> f64 {
         let least = self.of(patch, footing);
@@ -60,8 +62,8 @@ impl Goal {
     /// The least time from a patch to the goal on a creature at rest for a climber with some stamina, 0 to 1, rests
     /// included, seconds; infinite if that stamina is not enough. No plan is faster.
     ///
-    /// It holds on for some seconds at least, on whichever way that is. What that costs beyond its stamina is brought
-    /// by standing, for so much longer.
+    /// On every way the climber holds on for a least number of seconds. The stamina that this costs beyond its own has
+    /// to be refilled by standing, which takes the rest of the bound.
     pub fn least_seconds_with(&self, patch: usize, footing: Footing, stamina: f64) -> f64 {
         if self.of(patch, footing).is_some() {
             return self.at(node(patch, footing), stamina);
@@ -74,7 +76,7 @@ impl Goal {
         self.least.get(node)
     }
 
-    /// True if it is a goal on this graph, or on one with as many patches.
+    /// True if it is a goal of this graph, or of one with as many patches.
     pub(super) fn is_of(&self, graph: &ClimbGraph) -> bool {
         self.least.len() == 2 * graph.patches.len()
     }
@@ -97,10 +99,10 @@ impl Goal {
     }
 }
 
-/// Sums of stamina in another order differ by less than this.
+/// Tolerance for sums of stamina, which differ by less than this in another order.
 const ROUNDING: f64 = 1e-9;
 
-/// A patch and a footing, as a number.
+/// The index of a patch and a footing.
 pub(crate) fn node(patch: usize, footing: Footing) -> usize {
     2 * patch + usize::from(footing == Footing::Holds)
 }
@@ -115,20 +117,21 @@ pub(crate) fn of_node(node: usize) -> (usize, Footing) {
     (node / 2, footing)
 }
 
-/// A step on a way, from a node to the next.
+/// A step of a way, from one node to the next.
 #[derive(Clone, Copy, Debug)]
 struct Step {
-    /// How it begins.
+    /// The footing with which it begins.
     footing: Footing,
-    /// Seconds that it takes, and for how many of these it holds on.
+    /// Seconds that it takes.
     passes: f64,
+    /// Seconds of these for which the climber holds on.
     holds: f64,
-    /// Stamina.
+    /// Stamina that it costs.
     costs: f64,
 }
 
 impl Step {
-    /// With one footing all the way.
+    /// A step with one footing all the way.
     fn on(footing: Footing, passes: f64, drain: f64) -> Self {
         let holds = match footing {
             Footing::Stands => 0.0,
@@ -144,18 +147,18 @@ impl Step {
 }
 
 impl ClimbGraph {
-    /// The patches whose middles are within `radius` metres of a place, all at rest.
+    /// The patches whose middles are within `radius` metres of a place in the world, with the creature at rest.
     pub fn patches_near(&self, place: DVec3, radius: f64) -> Vec<usize> {
         let near = |patch: &usize| self.patches[*patch].point.distance(place) <= radius;
         (0..self.patches.len()).filter(near).collect()
     }
 
-    /// The goal to come to one of some patches. Numbers that are none of a patch are left out.
+    /// The goal to reach one of some patches. Numbers beyond the graph's patches are left out.
     pub fn goal(&self, patches: &[usize]) -> Goal {
         self.goal_strained(patches, 1.0)
     }
 
-    /// [`ClimbGraph::goal`] for a climber whom holding on costs `strain` times as much strength.
+    /// [`ClimbGraph::goal`] for a climber that spends `strain` times as much stamina on holding on.
     pub(crate) fn goal_strained(&self, patches: &[usize], strain: f64) -> Goal {
         let mut patches: Vec<usize> = patches
             .iter()
@@ -171,7 +174,7 @@ impl ClimbGraph {
             let need = beyond + strain * step.costs;
             match step.footing {
                 _ if need > 1.0 + ROUNDING => f64::INFINITY,
-                // It rests here until it has what the way on needs.
+                // The climber rests here until it has the stamina for the rest of the way.
                 Footing::Stands if refill > 0.0 => 0.0,
                 _ => need,
             }
@@ -194,11 +197,11 @@ impl ClimbGraph {
         }
     }
 
-    /// Of each node, the least that some cost comes to on a way to some patches. `cost` tells it for a step, from what it
-    /// is beyond that.
+    /// For each node, the least cost of a way to one of some patches. `cost` maps a step and the cost beyond it to the
+    /// cost from the step's beginning.
     ///
-    /// Dijkstra's search (1959), from the goal backwards: ways lead back as well as there. A cost that gets less on its
-    /// way, as what a rest leaves to be needed, has its node looked at again.
+    /// Dijkstra's search (1959), backwards from the goal, because ways lead in both directions. A rest can lower a cost
+    /// on the way. A node whose cost gets lower is visited again.
     fn backwards(&self, patches: &[usize], cost: impl Fn(f64, Step) -> f64) -> Vec<f64> {
         let mut least = vec![f64::INFINITY; 2 * self.patches.len()];
         let mut open = BinaryHeap::new();
@@ -214,7 +217,7 @@ impl ClimbGraph {
             .climber
             .stamina
             .map_or(0.0, |costs| costs.hold_drain);
-        // Costs are not negative, so that their bits have their order.
+        // Costs are not negative, so their bits sort like the floats.
         while let Some(Reverse((bits, at))) = open.pop() {
             let beyond = f64::from_bits(bits);
             if beyond > least[at] {
@@ -247,7 +250,7 @@ impl ClimbGraph {
                 let step = Step {
                     footing: Footing::Stands,
                     passes,
-                    // It counts as holding on for as long as that costs as much.
+                    // A jump counts as holding on for the time in which that costs as much stamina.
                     holds: if drain > 0.0 {
                         (leap.costs() / drain).min(passes)
                     } else {
@@ -264,7 +267,7 @@ impl ClimbGraph {
         least
     }
 
-    /// How a climber can be on a patch.
+    /// The footings that are possible on a patch.
     pub(crate) fn footings(&self, patch: usize) -> impl Iterator<Item = Footing> + use<> {
         let patch = self.patches[patch];
         let stands = patch.can_stand.then_some(Footing::Stands);
@@ -272,7 +275,7 @@ impl ClimbGraph {
         stands.into_iter().chain(holds)
     }
 
-    /// How fast it gets on, metres a second.
+    /// The climber's speed with a footing, metres per second.
     pub(crate) fn speed(&self, footing: Footing) -> f64 {
         let climber = &self.config.climber;
         match footing {

@@ -1,4 +1,4 @@
-//! Ways to a goal for a climber that tires.
+//! Plans: ways to a goal for a climber that tires.
 
 mod forecast;
 mod goal;

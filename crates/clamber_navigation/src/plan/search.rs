@@ -1,4 +1,4 @@
-//! The fastest way to a goal on which stamina lasts.
+//! Searches the fastest way to a goal on which stamina lasts.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -11,16 +11,16 @@ use crate::clips::{COSINE, Moment, SLICE};
 use crate::graph::Leap;
 use crate::{ClimbGraph, Footing};
 
-/// Where a plan begins.
+/// A patch and time at which a plan may begin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Start {
     /// The patch.
     pub patch: usize,
-    /// How the climber is on it.
+    /// How the climber is supported there.
     pub footing: Footing,
-    /// Seconds until it is there.
+    /// Seconds from the beginning of the plan until the climber is there.
     pub seconds: f64,
-    /// Stamina that it has there, 0 to 1.
+    /// The climber's stamina there, 0 to 1.
     pub stamina: f64,
 }
 
@@ -30,80 +30,86 @@ pub struct Start {
 pub struct PlanStep {
     /// The patch.
     pub patch: usize,
-    /// How the climber is on it.
+    /// How the climber is supported there.
     pub footing: Footing,
-    /// When it comes there or, if the step before is the same patch and footing, until when it rests there, seconds.
+    /// Time of arrival, seconds. If the step before has the same patch and footing, the time until which the climber
+    /// rests there.
     pub seconds: f64,
-    /// Stamina that it then has.
+    /// The climber's stamina at that time.
     pub stamina: f64,
-    /// It comes there by a jump, from the step before.
+    /// True if the climber comes from the step before by a jump.
     pub jumps: bool,
 }
 
-/// A way to a goal.
+/// A way to a goal, step by step.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Plan {
     /// The steps, from the start to the goal; never empty.
     pub steps: Vec<PlanStep>,
-    /// How many ways to places the search looked at.
+    /// Number of partial ways that the search has looked at.
     pub looked_at: usize,
 }
 
 impl Plan {
-    /// When it comes to the goal, seconds.
+    /// Time of arrival at the goal, seconds.
     pub fn seconds(&self) -> f64 {
         self.steps.last().map_or(0.0, |step| step.seconds)
     }
 
-    /// Stamina left there.
+    /// Stamina that is left at the goal.
     pub fn stamina(&self) -> f64 {
         self.steps.last().map_or(0.0, |step| step.stamina)
     }
 }
 
-/// Stamina is compared in so many steps, the last of which is a whole one: of two ways to a place that are as many
-/// steps high, the faster one is kept.
+/// Number of levels in which stamina is compared; the topmost one is full stamina. If two ways reach a place on the
+/// same level, the faster one is kept. More levels miss fewer ways, and cost more.
 const LEVELS: usize = 12;
 
-/// Sums in another order differ by less than this.
+/// Tolerance for sums of seconds or stamina, which differ by less than this in another order.
 const ROUNDING: f64 = 1e-9;
 
-/// A search looks at no more ways than this.
+/// The most partial ways of a search. It limits the time of a search that finds nothing.
 const MOST: usize = 2_000_000;
 
-/// No plan begins later than this, seconds.
+/// The latest start that is used, seconds.
 const LATEST: f64 = 1e6;
 
-/// A way to a place.
+/// A partial way, to a node.
 #[derive(Clone, Copy, Debug)]
 struct Label {
+    /// The node where the way ends.
     node: u32,
+    /// The label before it; [`NOTHING`] for a start.
     before: u32,
+    /// Time of arrival, seconds.
     seconds: f64,
+    /// Stamina at that time.
     stamina: f64,
 }
 
+/// The label before a start. No label has this number.
 const NOTHING: u32 = u32::MAX;
 
 impl ClimbGraph {
-    /// The fastest way from one of some starts to a goal on which stamina lasts, in the weather of a forecast; `None`
-    /// if there is none.
+    /// The fastest way from one of some starts to a goal on which stamina lasts, in the shakes of a forecast; `None` if
+    /// the search finds no such way.
     ///
     /// A label-setting search with a resource (Desrochers and Soumis 1988) in the order of A* (Hart, Nilsson and
     /// Raphael 1968): of two ways to a patch, one that is neither faster nor leaves more stamina is dropped. Stamina is
-    /// compared in 12 steps, so that a way that would leave less than an eleventh more may be missed, and in a forecast
-    /// with shakes one that comes later and fresher. The least time to the goal at rest, rests included, never exceeds
-    /// the time that is needed, so what comes to the goal first is fastest; and where stamina does not last at rest it
-    /// never lasts, so that such ways are not looked at.
+    /// compared in 12 levels, so the search may miss a way that would leave less than an eleventh more. In a forecast
+    /// with shakes it may also miss one that arrives later with more stamina. The heuristic is the least time to the
+    /// goal at rest, rests included. It never exceeds the time that is needed, so the first way that reaches the goal
+    /// is the fastest. Where stamina does not last at rest it never lasts, so such ways are not followed.
     ///
-    /// Starts whose numbers are not finite or that are later than a million seconds are left out. A search gives up
-    /// after two million ways. A goal of another graph is never reached.
+    /// Starts are left out if their numbers are not finite or they are later than a million seconds. A search gives up
+    /// after two million partial ways. A goal of a graph with another number of patches is never reached.
     pub fn plan(&self, starts: &[Start], goal: &Goal, forecast: &Forecast) -> Option<Plan> {
         self.plan_around(starts, goal, forecast, &Around::default())
     }
 
-    /// [`ClimbGraph::plan`] on some ways only, to some patches of the goal.
+    /// [`ClimbGraph::plan`] restricted to the ways, jumps and goal patches that `around` allows.
     pub(crate) fn plan_around(
         &self,
         starts: &[Start],
@@ -144,12 +150,12 @@ impl ClimbGraph {
     }
 }
 
-/// What a search goes round.
+/// Restrictions of a search.
 #[derive(Clone, Copy)]
 pub(crate) struct Around<'a> {
-    /// True if a way is open, from a patch to another.
+    /// True if the way from one patch to another is open.
     pub(crate) is_open: &'a dyn Fn(usize, usize) -> bool,
-    /// True if a jump may be taken, by its number.
+    /// True if a jump may be taken, by its index.
     pub(crate) lands: &'a dyn Fn(usize) -> bool,
     /// True if a patch of the goal counts.
     pub(crate) arrives: &'a dyn Fn(usize) -> bool,
@@ -171,12 +177,12 @@ struct Search<'a> {
     forecast: &'a Forecast,
     around: Around<'a>,
     labels: Vec<Label>,
-    /// Of each node and each level of stamina, when it is reached with that much or more.
+    /// For each node and level of stamina, the earliest time at which it is reached with that level or a higher one.
     best: Vec<[f32; LEVELS]>,
-    /// Labels by when they come to the goal at the earliest.
+    /// Labels by the earliest time at which they can reach the goal.
     open: BinaryHeap<Reverse<(u64, u32)>>,
-    /// Slice by slice, when the present one begins with how much stamina, and what it is like to stay in it: as far as
-    /// it is known.
+    /// The stay at the label that is expanded, slice by slice, as far as it is known: the time and stamina at the
+    /// slice's beginning, and the conditions in it.
     course: Vec<((f64, f64), Stay)>,
 }
 
@@ -299,7 +305,7 @@ impl Search<'_> {
         }
     }
 
-    /// What a slice is like, so many after the present one. `None` if it falls before.
+    /// The conditions `index` slices after the present one. `None` if the climber falls before.
     #[inline]
     fn slice(&mut self, index: usize) -> Option<((f64, f64), Stay)> {
         while self.course.len() <= index {
@@ -310,8 +316,8 @@ impl Search<'_> {
         Some(self.course[index])
     }
 
-    /// Goes so many metres, from a slice of its course on; gives when it is there, and its stamina. `None` if it falls
-    /// on the way.
+    /// Moves by `length` metres, beginning in slice `from` of the course. Returns the time of arrival and the stamina
+    /// then; `None` if the climber falls on the way.
     #[inline]
     fn go(&mut self, from: usize, length: f64) -> Option<(f64, f64)> {
         let (mut time, mut stay) = self.slice(from)?;
@@ -332,7 +338,7 @@ impl Search<'_> {
         None
     }
 
-    /// Waits until it can move. Returns the time and the stamina then, and how it stays there. `None` if it falls
+    /// Waits until the climber can move. Returns the time and the stamina then, and the conditions. `None` if it falls
     /// first, or can never move.
     #[inline]
     fn until_it_moves(&self, mut time: (f64, f64), mut stay: Stay) -> Option<((f64, f64), Stay)> {
@@ -346,7 +352,8 @@ impl Search<'_> {
         None
     }
 
-    /// [`Search::go`] to a patch where it can only stand: as soon as whoever comes there is not thrown or slips.
+    /// [`Search::go`] to a patch where the climber can only stand. It starts in the first slice that lets it arrive
+    /// without being thrown or slipping.
     fn wait_and_go(&mut self, to: usize, length: f64) -> Option<(f64, f64)> {
         for index in 0..=self.forecast.len() {
             let footing = self.slice(index)?.1.footing;
@@ -358,7 +365,8 @@ impl Search<'_> {
         None
     }
 
-    /// Jumps as soon as all that is expected until it has landed are clips in which that jump always lands.
+    /// Jumps in the first slice at which the jump is sure: the slice's clip plays until the landing, and the jump lands
+    /// in that clip whenever it begins.
     fn jump(&mut self, number: usize, leap: &Leap) -> Option<(f64, f64)> {
         let to = leap.to as usize;
         for index in 0..=self.forecast.len() {
@@ -373,12 +381,12 @@ impl Search<'_> {
         None
     }
 
-    /// The next slice of a stay.
+    /// The conditions of a stay at a later time.
     fn stay_on(&self, stay: Stay, seconds: f64) -> Option<Stay> {
         self.stay(stay.patch, stay.footing, seconds)
     }
 
-    /// What it is like on a patch from a time on, to the end of the slice. `None` if it falls.
+    /// The conditions on a patch from a time to the end of its slice. `None` if the climber falls.
     fn stay(&self, patch: usize, footing: Footing, seconds: f64) -> Option<Stay> {
         let climber = &self.graph.config.climber;
         let slice = slice_of(seconds);
@@ -447,22 +455,22 @@ impl Search<'_> {
     }
 }
 
-/// What it is like on a patch for a while.
+/// The conditions on a patch for a while.
 #[derive(Clone, Copy, Debug)]
 struct Stay {
     patch: usize,
     footing: Footing,
-    /// For so long, seconds.
+    /// Length of this while, seconds.
     lasts: f64,
-    /// True if it can move.
+    /// True if the climber can move.
     moves: bool,
-    /// Stamina that it costs a second; negative if it refills.
+    /// Stamina that the stay costs per second; negative if it refills.
     costs: f64,
 }
 
 impl Stay {
-    /// Lets time pass, as much as is wanted, or all of it if it cannot move: gives the time and the stamina then.
-    /// `None` if that is more than it has.
+    /// Lets `wanted` seconds pass, but not more than the stay lasts; the whole stay if the climber cannot move. Returns
+    /// the time and the stamina then. `None` if the stamina does not suffice.
     #[inline]
     fn pass(&self, (seconds, stamina): (f64, f64), wanted: f64) -> Option<(f64, f64)> {
         let passes = if self.moves {
@@ -475,10 +483,10 @@ impl Stay {
     }
 }
 
-/// A step takes at most so many slices.
+/// The most slices that one step takes. Longer steps are given up.
 const MOST_SLICES: usize = 256;
 
-/// The slice of a forecast in which a time is.
+/// The slice of a forecast that contains a time.
 pub(super) fn slice_of(seconds: f64) -> usize {
     (seconds / SLICE + ROUNDING) as usize
 }
@@ -487,7 +495,8 @@ fn level(stamina: f64) -> usize {
     ((stamina * (LEVELS - 1) as f64 + ROUNDING) as usize).min(LEVELS - 1)
 }
 
-/// True if whoever stands there without holding on is thrown or knocked down. As if it shook straight up and down.
+/// True if a climber that stands there without holding on is thrown or knocked down. Assumes that the patch shakes
+/// straight up and down.
 pub(crate) fn throws(climber: &ClimberConfig, moment: &Moment) -> bool {
     let knock = climber
         .tumble
@@ -496,7 +505,7 @@ pub(crate) fn throws(climber: &ClimberConfig, moment: &Moment) -> bool {
     moment.shake > (climber.ground.throw_acceleration + weight).min(knock)
 }
 
-/// True if it is too steep there to stand on: surely so, since slopes are stored in steps.
+/// True if the patch is too steep to stand on, beyond the step size in which slopes are stored.
 pub(crate) fn slips(climber: &ClimberConfig, moment: &Moment) -> bool {
     moment.upright + COSINE < libm::cos(climber.ground.stays_on_slope())
 }

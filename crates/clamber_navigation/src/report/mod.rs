@@ -1,4 +1,4 @@
-//! What a graph tells about a creature.
+//! The report on a creature, computed from its graph.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -16,7 +16,7 @@ use crate::{
     ClimbGraph, Forecast, GraphConfig, GraphSource, NavigationError, Plan, Progress, Start,
 };
 
-/// What a climber can reach on a creature, and how its clips treat it.
+/// The parts of a creature that a climber can reach, and how the creature's clips treat climbers.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
@@ -27,12 +27,13 @@ pub struct ClimbReport {
     pub grip_area: f64,
     /// Area on which a climber can stand, square metres.
     pub stand_area: f64,
-    /// Area that a climber from the ground can reach on the creature at rest, jumps between its parts included, square
+    /// Area that a climber reaches from the ground on the creature at rest, jumps between its parts included, square
     /// metres.
     pub reachable_area: f64,
-    /// Of that, area on which it can rest: it can stand there, and the slope is at most six tenths of the steepest one.
+    /// The part of `reachable_area` on which the climber can rest, square metres: it can stand there, and the slope is
+    /// at most six tenths of the steepest one that it can stand on.
     pub rest_area: f64,
-    /// Where it gets on, by how much it can reach from there, most first.
+    /// Groups of entries, sorted by the area that is reached from them, largest first.
     pub ways_on: Vec<WayOn>,
     /// The weak points, in their order in the file.
     pub weak_points: Vec<PointReport>,
@@ -47,82 +48,85 @@ pub struct ClimbReport {
 pub struct WayOn {
     /// Number of entries.
     pub entries: usize,
-    /// The lowest of them, at rest, in the world.
+    /// The seat of the lowest of these entries at rest, in the world.
     pub place: DVec3,
     /// Area that is reached from them without jumps between parts of the creature, square metres.
     pub area: f64,
 }
 
-/// What the report says about a weak point.
+/// The report on a weak point.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct PointReport {
-    /// Its name.
+    /// Name of the weak point.
     pub name: String,
-    /// Where it is at rest, in the world.
+    /// Position of the weak point at rest, in the world.
     pub place: DVec3,
-    /// True if a climber gets there from the ground on the creature at rest, with the strength that it has; to the skin
-    /// below the plates that cover it, as if they were gone by then.
+    /// True if a climber with full stamina gets there from the ground on the creature at rest. Plates that cover the
+    /// point are taken to be gone by then.
     pub reachable: bool,
-    /// The time that it takes, seconds, rests included; `None` if it is not reachable.
+    /// Seconds that it takes, rests included; `None` if the point is not reachable.
     pub seconds: Option<f64>,
-    /// Stamina that is left there; `None` if it is not reachable.
+    /// Stamina that is left there; `None` if the point is not reachable.
     pub stamina: Option<f64>,
-    /// What is missing if it is not.
+    /// The obstacle if the point is not reachable; `None` if it is.
     pub missing: Option<Missing>,
 }
 
-/// What keeps a climber from a weak point.
+/// The obstacle that keeps a climber from a weak point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Missing {
-    /// Hands would have to reach so much farther, metres: beside the best way there is nothing to grip.
+    /// The climber's hands would have to reach this much farther, metres. The best way leads past skin without a grip.
     Reach(f64),
-    /// It would have to hold on for so much longer without a rest, seconds.
+    /// The climber would have to hold on this much longer without a rest, seconds.
     Strength(f64),
-    /// No longer arms help: there is no room, or nothing to hold on to at all.
+    /// Longer arms do not help: the climber has no room, or no grip at all is near.
     Way,
 }
 
-/// How a clip treats climbers where they can get to.
+/// How a clip treats climbers on the patches that they can reach.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct ClipReport {
-    /// Its name.
+    /// Name of the clip.
     pub name: String,
-    /// The hardest shake, metres a second squared; [`ClipReport::HARDEST`] stands for all harder ones.
+    /// The hardest shake, metres per second squared; [`ClipReport::HARDEST`] stands for all harder ones.
     pub hardest_shake: f64,
-    /// Area from which whoever stands there slips, since it gets too steep, square metres.
+    /// Area on which a standing climber slips because it gets too steep, square metres.
     pub slips_from: f64,
-    /// Area from which whoever stands there is thrown or knocked down, square metres.
+    /// Area on which a standing climber is thrown or knocked down, square metres.
     pub throws_from: f64,
-    /// When that begins, seconds from the clip's beginning, at the rate at which it is played.
+    /// Earliest time at which a climber is thrown, to half a second: seconds from the clip's beginning at its rate.
     pub throws_at: Option<f64>,
-    /// Area on which whoever holds on in the clip's whole length, rested, loses its hold, square metres.
+    /// Area on which a climber loses its hold if it begins with full stamina and holds on for the clip's whole length,
+    /// square metres.
     pub exhausts_on: f64,
-    /// When that happens at the earliest, seconds from the clip's beginning.
+    /// Earliest time at which a climber loses its hold, to half a second: seconds from the clip's beginning at its
+    /// rate.
     pub exhausts_at: Option<f64>,
 }
 
 impl ClipReport {
-    /// Shakes of at least so many metres a second squared are not told apart: 63.75.
+    /// Shakes of at least this many metres per second squared are not told apart: 63.75.
     pub const HARDEST: f64 = HARDEST;
 }
 
-/// A weak point is reached from seats on pieces within its radius and so many radii of the climber.
+/// A weak point is reached from seats on pieces within its radius plus this many radii of the climber.
 const NEAR: f64 = 1.0;
 
-/// Rests are on slopes up to this share of the steepest that can be stood on.
+/// The steepest slope for rests, as a share of the steepest one that can be stood on.
 pub(crate) const LEVEL: f64 = 0.6;
 
 impl ClimbReport {
-    /// Looks at a creature. `progress` is called again and again, and cancels by [`ControlFlow::Break`].
+    /// Builds the graph of a creature and reports on it. `progress` is called repeatedly, and cancels by
+    /// [`ControlFlow::Break`].
     ///
-    /// It takes as long as building the graph, which it gives as well. A report is for studios and their CI; a game
-    /// takes the graph alone, by `ClimbGraph::cached`.
+    /// This takes as long as building the graph, which is returned as well. A report is for studios and their CI. A
+    /// game needs only the graph, from `ClimbGraph::cached`.
     ///
     /// # Errors
     /// As [`ClimbGraph::build`].
@@ -166,7 +170,7 @@ impl ClimbReport {
     }
 }
 
-/// The pieces of skin, and which of them are reached.
+/// The pieces of skin, and the patches that are reached.
 struct View<'a> {
     survey: &'a Survey,
     graph: &'a ClimbGraph,
@@ -180,7 +184,7 @@ impl View<'_> {
         patch != NONE && self.reached.has(patch as usize)
     }
 
-    /// Area of some pieces, square metres.
+    /// Area of the pieces for which `counts` is true, square metres.
     fn sum(&self, counts: impl Fn(usize) -> bool) -> f64 {
         let pieces = self.survey.pieces.iter().enumerate();
         let counted = pieces.filter(|(index, _)| counts(*index));
@@ -222,7 +226,8 @@ impl View<'_> {
         }
     }
 
-    /// The fastest way from the ground to some pieces, for a climber whom holding on costs `strain` times as much.
+    /// The fastest way from the ground to some pieces, for a climber that spends `strain` times as much stamina on
+    /// holding on.
     fn plan(&self, goals: &[usize], strain: f64) -> Option<Plan> {
         let patches = goals.iter().map(|piece| self.patch_of[*piece]);
         let patches: Vec<usize> = patches
@@ -234,7 +239,7 @@ impl View<'_> {
         self.graph.plan(&starts, &goal, &Forecast::still())
     }
 
-    /// How much longer it would have to hold on, to a tenth of a second.
+    /// How much longer the climber would have to hold on, to a tenth of a second.
     fn missing_strength(&self, goals: &[usize]) -> Missing {
         let stamina = self.survey.config.climber.stamina;
         let lasts = stamina.map_or(0.0, |stamina| 1.0 / stamina.hold_drain);
@@ -242,7 +247,8 @@ impl View<'_> {
         if !lasts.is_finite() || self.plan(goals, enough).is_none() {
             return Missing::Way;
         }
-        // Halving ends where numbers do, for a climber that lasts for ages.
+        // The bisection stops after 64 rounds: for a climber that lasts very long, floats cannot get as near as a tenth
+        // of a second.
         for _ in 0..64 {
             if lasts / enough - lasts / short <= 0.1 {
                 break;
@@ -358,10 +364,11 @@ impl View<'_> {
         report
     }
 
-    /// How much farther hands would have to reach, to come from what is reached to one of some pieces: the way whose
-    /// worst place asks for the shortest arms. It is found as the shortest way is (Dijkstra 1959), with the largest in
-    /// place of the sum. A link is measured only when it is its turn: until then it counts as if no place on it asked
-    /// more than its ends.
+    /// How much farther hands would have to reach to get from the reached pieces to one of the goals. Takes the way
+    /// whose worst place needs the shortest arms.
+    ///
+    /// The search is Dijkstra's (1959), with the largest reach on a way in place of the sum. A link is measured only
+    /// when it comes out of the heap. Before that it counts with the reach of its ends, which is a lower bound.
     fn missing(&self, goals: &[usize]) -> Missing {
         let survey = self.survey;
         let reach = survey.config.reach();
@@ -414,10 +421,10 @@ impl View<'_> {
     }
 }
 
-/// A link whose turn comes when all that ask for shorter arms are done.
+/// A link in the heap of the search, ordered by the reach that it needs.
 #[derive(Clone, Copy, Debug)]
 struct Turn {
-    /// How far a hand has to reach from what is reached to the link's end, metres.
+    /// The reach that a hand needs from the reached pieces to the link's end, metres.
     arm: f64,
     is_measured: bool,
     from: usize,
@@ -426,14 +433,14 @@ struct Turn {
 
 impl Turn {
     fn key(&self) -> (u64, bool, usize, usize) {
-        // Reaches are not negative: their bits have their order. What is measured comes first.
+        // Reaches are not negative, so their bits sort like the floats. Measured links come first.
         (self.arm.to_bits(), !self.is_measured, self.to, self.from)
     }
 }
 
 impl Ord for Turn {
     fn cmp(&self, other: &Self) -> Ordering {
-        // The heap gives the greatest.
+        // Reversed, because the heap returns the greatest.
         other.key().cmp(&self.key())
     }
 }

@@ -1,14 +1,14 @@
-//! How far hands have to reach from a seat, and on the way to the next one.
+//! Measures how far hands have to reach at a seat, and on the way to the next one.
 
 use clamber_surface::surface::SkinnedSurface;
 use glam::DVec3;
 
 use crate::GraphConfig;
 
-/// Something to grip is looked for within twice a climber's reach and so many of its radii.
+/// A grip is searched within twice the climber's reach and this many of its radii.
 const BEYOND: f64 = 2.5;
 
-/// How far a hand has to reach from a ball, metres; infinite if there is nothing to grip within twice the climber's
+/// How far a hand has to reach from the ball of a seat, metres; infinite if there is no grip within twice the climber's
 /// reach and some of its radii. `holds` is the skin that can be gripped.
 pub(super) fn arm(holds: &SkinnedSurface, seat: DVec3, config: &GraphConfig) -> f64 {
     if config.reach() < 0.0 {
@@ -20,14 +20,15 @@ pub(super) fn arm(holds: &SkinnedSurface, seat: DVec3, config: &GraphConfig) -> 
     hit.map_or(f64::INFINITY, |hit| (hit.distance - radius).max(0.0))
 }
 
-/// The longest reach on a straight way is known to this much, metres.
+/// Error up to which the longest reach on a straight way is computed, metres. Smaller values need more closest-point
+/// queries.
 pub(crate) const EXACT: f64 = 0.004;
 
 /// How far a hand has to reach at most on the straight way between two seats, from the arms at both ends: too long by
 /// at most [`EXACT`], and never too short.
 ///
-/// A hand's reach changes by no more than the ball moves. So the ends bound what is between them, and halving the way
-/// narrows the bound. A way on which no bound exceeds `enough` by more is not halved.
+/// A hand's reach changes by no more than the ball moves. So the ends give an upper bound for the way between them, and
+/// halving the way narrows the bound. A way whose bound is at most `enough` plus [`EXACT`] is not halved.
 pub(super) fn arm_between(
     seats: [DVec3; 2],
     arms: [f64; 2],
@@ -46,7 +47,7 @@ pub(super) fn arm_between(
     first.max(second)
 }
 
-/// A bound on how far a hand has to reach on a straight way, from the arms at both ends.
+/// An upper bound of a hand's reach on a straight way, from the arms at both ends.
 pub(super) fn longest(seats: [DVec3; 2], arms: [f64; 2]) -> f64 {
     let between = 0.5 * (arms[0] + arms[1] + seats[0].distance(seats[1]));
     arms[0].max(arms[1]).max(between)

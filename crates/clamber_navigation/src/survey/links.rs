@@ -1,4 +1,4 @@
-//! Which seats are near each other.
+//! Finds the seats that are near each other.
 
 use std::collections::BTreeMap;
 
@@ -6,7 +6,7 @@ use glam::{DVec3, IVec3};
 
 use super::pieces::Piece;
 
-/// For each piece, the pieces whose seats a ball gets to straight.
+/// For each piece, the pieces to whose seats a ball gets on a straight way.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Links {
     /// The links of piece p are `start[p]..start[p + 1]`.
@@ -17,7 +17,7 @@ pub(crate) struct Links {
 impl Links {
     /// Links seats that are at most `longest` metres apart.
     ///
-    /// The balls at both ends are free of skin and overlap, if `longest` is less than their diameter. So no skin
+    /// The balls at both ends are free of skin, and overlap if `longest` is less than their diameter. So no skin
     /// crosses the way between them.
     pub(super) fn new(pieces: &[Piece], longest: f64) -> Self {
         let cell = |seat: DVec3| (seat / longest).floor().as_ivec3();

@@ -1,5 +1,5 @@
-//! The skin at rest: its pieces, where the climber's ball rests on them, what hands reach from there, and which of
-//! these seats are beside each other.
+//! Surveys the skin at rest: divides it into pieces, finds the climber's seat on each piece and the reach of its hands
+//! there, and links seats that are near each other.
 
 mod arms;
 mod links;
@@ -18,22 +18,23 @@ use links::Links;
 use pieces::Division;
 pub(crate) use pieces::{Bit, Piece};
 
-/// The ball's middle is at least so high above the ground, as a share of its radius.
+/// Least height of the ball's middle above the ground, as a share of its radius.
 const LOWEST: f64 = 0.98;
 
-/// A ball that is no farther than this share of its radius above the skin still touches it: skin is rarely flat. In a
-/// corner it has to be nearer, since its hands let go of one side there.
+/// Largest gap between the ball and skin that still counts as touching, as a share of its radius. It is not 0 because
+/// skin is rarely flat.
 const OFF: f64 = 0.3;
+/// The same gap in a corner. It is smaller because hands let go of one side there.
 const OFF_IN_CORNER: f64 = 0.1;
 
 /// Two sides whose normals have a lower cosine than this meet in a corner.
 const CORNER: f64 = 0.7;
 
-/// Between sides whose normals have a lower cosine than this no input leads: who climbs along one does not push against
-/// the other.
+/// Two sides whose normals have a lower cosine than this are not linked: no input of a climber on one side pushes it
+/// against the other.
 const OPPOSITE: f64 = -0.87;
 
-/// What is known about the skin at rest, piece by piece.
+/// The survey of the skin at rest, piece by piece.
 #[derive(Clone, Debug)]
 pub(crate) struct Survey {
     pub(crate) config: GraphConfig,
@@ -41,15 +42,15 @@ pub(crate) struct Survey {
     pub(crate) ground: f64,
     /// The pieces, sorted by place.
     pub(crate) pieces: Vec<Piece>,
-    /// The parts of triangles that they are of.
+    /// The parts of triangles from which the pieces are made.
     pub(crate) bits: Vec<Bit>,
     pub(crate) links: Links,
-    /// Of each piece, how far a hand has to reach from the ball's seat for something to grip, metres; infinite if there
-    /// is nothing near.
+    /// For each piece, how far a hand has to reach from the ball of its seat to a grip, metres; infinite if no grip is
+    /// near.
     pub(crate) arms: Vec<f64>,
     /// The skin at rest.
     pub(crate) surface: SkinnedSurface,
-    /// The part of it that can be gripped.
+    /// The part of the skin that can be gripped, at rest.
     holds: SkinnedSurface,
 }
 
@@ -127,7 +128,8 @@ impl Survey {
         })
     }
 
-    /// How far a hand has to reach at most on the way between two pieces; more than `enough` only if that is so.
+    /// How far a hand has to reach at most on the way between two pieces. Exceeds `enough` plus [`EXACT`] only if the
+    /// reach exceeds `enough`.
     pub(crate) fn arm_between(&self, ends: [usize; 2], enough: f64) -> f64 {
         let [Some(from), Some(to)] = ends.map(|piece| self.pieces[piece].seat) else {
             return f64::INFINITY;
@@ -143,7 +145,7 @@ impl Survey {
         piece.seat.is_some() && self.slope(piece) <= self.config.climber.ground.max_slope
     }
 
-    /// True if a climber can hold on at a piece at rest and climb there, with arms of this reach.
+    /// True if a climber can hold on and climb at a piece at rest, with arms of this reach.
     pub(crate) fn can_hold(&self, piece: usize, reach: f64) -> bool {
         let grip = self.config.climber.grip;
         grip.is_some_and(|grip| {
@@ -151,22 +153,22 @@ impl Survey {
         })
     }
 
-    /// True if a climber gets from one of two pieces, where it can hold on, to the other and back: along the skin, with
-    /// hands that hold something all the way.
+    /// True if a climber can climb between two pieces, in either direction: along the skin, with a grip all the way. It
+    /// must be able to hold on at both pieces.
     pub(crate) fn can_climb(&self, ends: [usize; 2]) -> bool {
         let reach = self.config.reach();
         self.is_along(ends) && self.arm_between(ends, reach) <= reach + EXACT
     }
 
-    /// True if the ball comes from one of two pieces to the other along the skin: it does not have to rise off one of
-    /// them to where it does not touch the other yet. From a floor no hand gets to the ceiling, but by the wall.
+    /// True if the ball gets between two pieces along the skin: it does not rise off one piece where it does not touch
+    /// the other yet. So no hand gets from a floor to the ceiling, except by the wall.
     fn is_along(&self, ends: [usize; 2]) -> bool {
         let [from, to] = ends.map(|piece| &self.pieces[piece]);
         let (Some(a), Some(b)) = (from.seat, to.seat) else {
             return false;
         };
         let (leaves, arrives) = ((b - a).dot(from.normal), (a - b).dot(to.normal));
-        // Over an edge both are below each other's plane.
+        // At an outer edge, both seats are below the plane of the other piece.
         if leaves < 0.0 && arrives < 0.0 {
             return true;
         }
@@ -178,7 +180,7 @@ impl Survey {
         if cosine < OPPOSITE {
             return false;
         }
-        // In a corner the skin of one side goes on to where the ball touches the other one.
+        // In a corner, the skin of one side extends to where the ball touches the other side.
         let most = OFF_IN_CORNER * radius;
         let goes_on = |seat: DVec3, side: &Piece| {
             let surface = self.surface.in_world();
@@ -187,20 +189,20 @@ impl Survey {
         leaves.abs() <= most && goes_on(b, from) || arrives.abs() <= most && goes_on(a, to)
     }
 
-    /// True if two pieces do not face the same way.
+    /// True if the normals of two pieces differ by a corner's angle.
     pub(crate) fn bends(&self, ends: [usize; 2]) -> bool {
         let [from, to] = ends.map(|piece| self.pieces[piece].normal);
         from.dot(to) < CORNER
     }
 
-    /// True if the skin of two pieces, which a climber gets to and from, meets in a corner that is open to it.
+    /// True if two pieces between which a climber moves meet in an inner corner.
     pub(crate) fn is_corner(&self, ends: [usize; 2]) -> bool {
         let [from, to] = ends.map(|piece| &self.pieces[piece]);
         let between = to.point - from.point;
         self.bends(ends) && between.dot(from.normal) - between.dot(to.normal) > 0.0
     }
 
-    /// Distance of the seats of two pieces, metres.
+    /// Distance between the seats of two pieces, metres; infinite if one has no seat.
     pub(crate) fn apart(&self, ends: [usize; 2]) -> f64 {
         match ends.map(|piece| self.pieces[piece].seat) {
             [Some(a), Some(b)] => a.distance(b),
@@ -208,7 +210,7 @@ impl Survey {
         }
     }
 
-    /// True if a climber walks from one of two pieces, where it can stand, to the other and back.
+    /// True if a climber can walk between two pieces, in either direction. It must be able to stand on both pieces.
     pub(crate) fn can_walk(&self, ends: [usize; 2]) -> bool {
         let climber = &self.config.climber;
         let (Some(a), Some(b)) = (self.pieces[ends[0]].seat, self.pieces[ends[1]].seat) else {
@@ -225,10 +227,10 @@ impl Survey {
     }
 }
 
-/// Of a triangle that is of no plate.
+/// The plate of a triangle that belongs to no plate.
 const NO_PLATE: u32 = u32::MAX;
 
-/// Finds where the ball rests on a piece: on its own bit, or on another one of it.
+/// Finds the seat of a piece: on its own bit, or on one of its other bits.
 fn settle(piece: &mut Piece, others: &[Piece], find: impl Fn(&Piece) -> Option<DVec3>) {
     piece.seat = find(piece);
     for other in others {
@@ -244,7 +246,7 @@ fn settle(piece: &mut Piece, others: &[Piece], find: impl Fn(&Piece) -> Option<D
     }
 }
 
-/// A surface without a part of it.
+/// A copy of a surface without some triangles.
 fn without(
     surface: &SkinnedSurface,
     triangles: &[TriangleId],

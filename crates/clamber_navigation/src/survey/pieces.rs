@@ -1,7 +1,7 @@
-//! The skin, divided into pieces at rest, and where the climber's ball rests on each.
+//! Divides the skin at rest into pieces.
 //!
-//! Triangles are cut into bits; bits beside each other that face the same way are one piece. So the number of pieces
-//! grows as the area of the skin, however finely it is divided into triangles.
+//! Triangles are cut into bits. Neighbouring bits that face the same way form one piece. So the number of pieces grows
+//! with the area of the skin, and not with its number of triangles.
 
 use clamber_surface::mesh::{ColliderMesh, SurfaceTag, TriangleId, VertexId};
 use clamber_surface::surface::SkinnedSurface;
@@ -10,32 +10,33 @@ use glam::DVec3;
 use super::split;
 use crate::{GraphConfig, NavigationError};
 
-/// Most pieces of a graph.
+/// The most pieces, and bits, of a graph. It limits its memory and the time of its build.
 const MOST: u64 = 4_000_000;
 
-/// Where skin bends outwards by more than this angle, radians, the ball rolls over the edge through seats of its own.
+/// Angle between two triangles, radians, above which an outward edge gets seats of its own: the ball rolls over such an
+/// edge.
 const SHARP: f64 = 0.35;
 
-/// A piece of skin: one or more bits that face the same way, of which one stands for all.
+/// A piece of skin: one or more bits that face the same way. One of them stands for all.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Piece {
-    /// The triangle of that bit.
+    /// The triangle of the bit that stands for the piece.
     pub(crate) triangle: TriangleId,
-    /// Weights of the triangle's corners for its middle.
+    /// Barycentric weights of that bit's middle.
     pub(crate) barycentric: [f64; 3],
     /// Area at rest, square metres. Zero for a seat on an edge.
     pub(crate) area: f64,
     /// The material.
     pub(crate) tag: SurfaceTag,
-    /// That middle at rest, in the world.
+    /// That bit's middle at rest, in the world.
     pub(crate) point: DVec3,
-    /// Outward unit normal at rest. On an edge, a direction between those of both sides.
+    /// Outward unit normal at rest. On an edge, a direction between the normals of both sides.
     pub(crate) normal: DVec3,
-    /// Where the climber's ball rests on it, at rest; `None` if it has no room there.
+    /// The middle of the climber's ball on this piece, at rest; `None` if the ball has no room there.
     pub(crate) seat: Option<DVec3>,
-    /// The plate that has to be removed for the ball to have room.
+    /// The plate that has to be removed before the ball has room; `None` if it has room already or never.
     pub(crate) below: Option<u16>,
-    /// The plate that it is of, if any.
+    /// The plate that the piece belongs to, or `NO_PLATE`.
     pub(crate) plate: u32,
 }
 
@@ -44,24 +45,24 @@ pub(crate) struct Piece {
 pub(crate) struct Bit {
     /// The triangle.
     pub(crate) triangle: TriangleId,
-    /// Weights of the triangle's corners for its middle.
+    /// Barycentric weights of the bit's middle.
     pub(crate) barycentric: [f32; 3],
-    /// The piece that it is of.
+    /// The piece that the bit belongs to.
     pub(crate) piece: u32,
 }
 
-/// The skin, divided.
+/// The divided skin.
 #[derive(Clone, Debug)]
 pub(super) struct Division {
     pub(super) pieces: Vec<Piece>,
-    /// All bits, by their pieces.
+    /// All bits, sorted by their pieces.
     pub(super) bits: Vec<Bit>,
-    /// Of each piece, other bits of it on which a ball may have room if it has none on the piece's own.
+    /// For each piece, other bits of it on which the ball is tried if it has no room on the first one.
     pub(super) others: Vec<Vec<Piece>>,
 }
 
-/// Divides a surface, which stands at rest, into pieces. They are sorted by place, so that the numbers of triangles do
-/// not matter, and what is near in space is near in memory. `plate` tells of which plate a triangle is.
+/// Divides a surface in its rest pose into pieces. They are sorted by position, so that the order of triangles does not
+/// matter, and neighbours in space are near in memory. `plate` returns the plate of a triangle.
 pub(super) fn divide(
     surface: &SkinnedSurface,
     config: &GraphConfig,
@@ -112,13 +113,14 @@ pub(super) fn divide(
     Ok(gather(bits, CELL * config.spacing))
 }
 
-/// Bits are of one piece within a cell of this size, as a share of the largest side of a patch; if their normals have
-/// no lower cosine than this; and if they lie no farther off each other's plane than this share of the cell.
+/// Size of the cells within which bits are gathered into pieces, as a share of the largest side of a patch.
 const CELL: f64 = 0.5;
+/// Bits of one piece have normals with at least this cosine.
 const ALIKE: f64 = 0.94;
+/// Bits of one piece lie at most this far off the first bit's plane, as a share of the cell's size.
 const LEVEL: f64 = 0.3;
 
-/// A ball is tried on no more bits of a piece than this.
+/// The most bits of a piece on which a ball is tried. More find more seats, and cost more.
 const TRIED: usize = 4;
 
 /// Gathers bits into pieces.
@@ -176,7 +178,7 @@ impl Division {
         }));
         let area = group.iter().map(|bit| bit.area).sum();
         self.pieces.push(Piece { area, ..**first });
-        // The outermost first: what lies under other skin has no room.
+        // The outermost bit first: bits that lie under other skin have no room.
         let out = |bit: &&&Piece| (bit.point - middle).dot(first.normal);
         let outermost = others.iter().max_by(|a, b| out(a).total_cmp(&out(b)));
         let others = outermost.into_iter().chain(others.iter().take(TRIED - 2));
@@ -185,7 +187,7 @@ impl Division {
     }
 }
 
-/// What bits are sorted by: their cells, and then their places.
+/// Sort key of bits: the cell, then the position.
 struct Key(u64, Piece);
 
 impl PartialEq for Key {
@@ -208,8 +210,8 @@ impl Ord for Key {
     }
 }
 
-/// The bits of a place's coordinates, whole and not negative, in turn: the order of numbers that are near each other
-/// where the places are (Morton 1966).
+/// Interleaves the bits of a position's coordinates, which are rounded down and must not be negative. Positions that
+/// are near each other get near numbers (Morton 1966).
 fn morton(place: DVec3) -> u64 {
     let bits = |coordinate: f64| {
         let whole = coordinate as u64;
@@ -230,7 +232,7 @@ fn order(a: &Piece, b: &Piece) -> std::cmp::Ordering {
         .then(a.1.cmp(&b.1))
 }
 
-/// A triangle that stands at rest.
+/// A triangle of the skin at rest.
 struct Face {
     triangle: TriangleId,
     vertices: [VertexId; 3],
@@ -241,7 +243,7 @@ struct Face {
 }
 
 impl Face {
-    /// `None` for a triangle without an area.
+    /// The face of a triangle; `None` for a triangle without area.
     fn new(mesh: &ColliderMesh, places: &[DVec3], triangle: TriangleId) -> Option<Self> {
         let vertices = *mesh.triangles().get(triangle.index())?;
         let [a, b, c] = vertices.map(|vertex| places[vertex.index()]);
@@ -264,7 +266,7 @@ impl Face {
         }));
     }
 
-    /// Seats on the edges over which it bends outwards: the ball rolls over them.
+    /// Adds seats on the edges at which the skin bends outwards: the ball rolls over them.
     fn add_edges(
         &self,
         mesh: &ColliderMesh,
@@ -274,7 +276,7 @@ impl Face {
     ) {
         for (k, beyond) in mesh.neighbours(self.triangle).into_iter().enumerate() {
             let other = beyond.and_then(|triangle| Self::new(mesh, places, triangle));
-            // Once for both sides.
+            // Each edge once, not from both sides.
             let Some(other) = other.filter(|other| self.is_first(k, other)) else {
                 continue;
             };
@@ -302,7 +304,8 @@ impl Face {
         }
     }
 
-    /// True if this one adds the seats of an edge between both: by place, so that numbers of triangles do not matter.
+    /// True if this face, and not `other`, adds the seats of their common edge. Decided by position, so that the order
+    /// of triangles does not matter.
     fn is_first(&self, corner: usize, other: &Self) -> bool {
         let edge = [self.vertices[corner], self.vertices[(corner + 1) % 3]];
         let apex = |face: &Self| {

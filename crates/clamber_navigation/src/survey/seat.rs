@@ -1,20 +1,19 @@
-//! Where the climber's ball has room at a piece.
+//! Finds the seat of a piece: a position of the climber's ball on it.
 
 use clamber_surface::surface::SkinnedSurface;
 use glam::DVec3;
 
-/// Most corrections until a ball has room.
+/// The most corrections of a ball's position. A ball that is not free after these has no seat.
 const ROUNDS: u32 = 16;
 
-/// How deep a ball may be in skin and still have room, as a share of its radius: a climber's margin is 1/40.
+/// Depth in skin up to which a ball still has room, as a share of its radius. A climber's own margin is 1/40.
 const GIVE: f64 = 0.02;
 
-/// A ray from a piece to its ball starts so far above the piece, as a share of the radius, so that it does not meet the
-/// piece itself.
+/// Offset of a ray's start above its piece, as a share of the radius, so that the ray does not hit the piece itself.
 const ABOVE: f64 = 0.01;
 
-/// Finds where a ball of `radius` rests at a point of the skin: above it, moved out of the skin around. `None` if it
-/// has no room within its radius, or other skin lies between it and the point.
+/// Finds where a ball of `radius` rests at a point of the skin: above the point, moved out of the skin around. `None`
+/// if that moves it by more than its radius, or if other skin lies between it and the point.
 pub(super) fn seat(
     surface: &SkinnedSurface,
     point: DVec3,
@@ -38,12 +37,13 @@ pub(super) fn seat(
     None
 }
 
-/// How deep a ball is in the skin that is nearest to its middle, and the way out; `None` if it touches nothing.
+/// Depth of a ball in the skin nearest to its middle, and the direction out of the skin; `None` if the ball touches no
+/// skin.
 fn deepest(surface: &SkinnedSurface, center: DVec3, radius: f64) -> Option<(f64, DVec3)> {
     let hit = surface.in_world().closest_point(center, radius)?;
     let apart = center - hit.point;
     if apart.dot(hit.normal) < 0.0 {
-        // Its middle is behind the skin.
+        // The ball's middle is behind the skin.
         return Some((radius + hit.distance, hit.normal));
     }
     Some((radius - hit.distance, apart.normalize_or(hit.normal)))

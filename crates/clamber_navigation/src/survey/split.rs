@@ -1,23 +1,23 @@
-//! Divides a triangle into equal ones.
+//! Divides a triangle into equal parts.
 
 use glam::DVec3;
 
-/// A piece of a triangle: its middle, and its share of the area.
+/// A part of a triangle: its middle, and its share of the area.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Piece {
     pub(super) barycentric: [f64; 3],
     pub(super) share: f64,
 }
 
-/// Into how many parts each side of a triangle is divided, so that none is longer than `spacing`.
+/// Number of parts into which each side of a triangle is divided, so that no part is longer than `spacing`.
 pub(super) fn parts(corners: &[DVec3; 3], spacing: f64) -> u32 {
     let [a, b, c] = *corners;
     let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
-    // Beyond this the number of patches is refused anyway.
+    // More parts would exceed the limit of patches in any case.
     (longest / spacing).ceil().clamp(1.0, 65_536.0) as u32
 }
 
-/// The n^2 pieces of a triangle whose sides are divided into n parts.
+/// The n^2 parts of a triangle whose sides are divided into n parts.
 pub(super) fn pieces(n: u32) -> impl Iterator<Item = Piece> {
     let (size, share) = (f64::from(n), 1.0 / (f64::from(n) * f64::from(n)));
     let at = move |x: f64, y: f64| Piece {

@@ -1,4 +1,4 @@
-//! Bodies of known area: how much of them is reached.
+//! Bodies of known area: how much of it is reached.
 
 use std::ops::ControlFlow;
 
@@ -9,7 +9,7 @@ use clamber_surface::mesh::TriangleId;
 use clamber_surface::rig::{JointId, WeakPoint};
 use glam::Vec3;
 
-/// A box of fur from `low` to `high`, its sides' materials by their order: -x, +x, -y, +y, -z, +z.
+/// A box from `low` to `high`. `kinds` are the materials of its sides in the order -x, +x, -y, +y, -z, +z.
 fn cube(low: Vec3, high: Vec3, kinds: [clamber_surface::mesh::SurfaceKind; 6]) -> Body {
     let size = high - low;
     let mut body = Body::default();
@@ -47,7 +47,7 @@ fn all_of_a_cube_of_fur_that_hangs_low_is_reached() {
     let (_, report) = cube(low, low + Vec3::splat(6.0), [Fur; 6]).report(&climber());
     close(report.area, 216.0);
     close(report.reachable_area, 216.0);
-    // Its top can be stood on.
+    // A climber can stand on its top.
     close(report.stand_area, 36.0);
 }
 
@@ -57,7 +57,8 @@ fn sides_of_stone_are_not_reached_and_what_is_above_neither() {
     let low = Vec3::new(-3.0, 0.0, -3.0);
     let kinds = [Fur, Stone, Stone, Stone, Stone, Stone];
     let (_, report) = cube(low, low + Vec3::splat(6.0), kinds).report(&climber());
-    // The side and the top, from where nothing else can be gripped but at its edges, within an arm.
+    // The fur side and the top are reached. The other sides are reached only at their edges, within an arm's length of
+    // the fur.
     let arms = report.reachable_area - 72.0;
     assert!((0.0..20.0).contains(&arms), "{report:?}");
     let high = low + Vec3::Y * 6.0;
@@ -73,12 +74,12 @@ fn a_ball_is_reached_wholly_and_by_a_climber_that_cannot_climb_overhangs_up_to_i
     close(report.reachable_area, whole);
     let mut careful = climber();
     careful.climber.grip.as_mut().unwrap().max_overhang = 120f64.to_radians();
-    // Entries are at its bottom, which it cannot climb: a skirt of walls leads up.
+    // The entries are at its bottom, which this climber cannot climb. The lower ball gives it entries on walls.
     let (_, report) = fur.report(&careful);
     assert_eq!(report.reachable_area, 0.0);
     let low = ball(Vec3::Y * 1.0, 5.0, |_, _| Fur);
     let (_, report) = low.report(&careful);
-    // What is above the ground by a body's middle, and not steeper than the limit.
+    // The part that is above the ground by a ball's middle, and not steeper than the limit.
     let from = 5.0 * (0.4 - 1.0) / 5.4;
     close(
         report.reachable_area,
@@ -104,7 +105,7 @@ fn a_torus_is_reached_where_its_hole_has_room() {
         |ring: f64, tube: f64| 4.0 * std::f64::consts::PI * std::f64::consts::PI * ring * tube;
     let (_, report) = torus(4.0, 1.5).report(&climber());
     close(report.reachable_area, area(4.0, 1.5));
-    // A hole of 0.1 m radius: a ball of 0.4 m touches both sides of it from above, and what is below that never.
+    // A hole of 0.1 m radius: from above, a ball of 0.4 m touches both sides of it, and never reaches the skin below.
     let (ring, tube) = (1.6, 1.5);
     let (_, report) = torus(ring as f32, tube as f32).report(&climber());
     let least = libm::acos(ring / (tube + 0.4));
@@ -139,7 +140,7 @@ fn the_order_of_triangles_does_not_matter() {
     }
 }
 
-/// B61: fur below and above a belt of stone around a pillar.
+/// B61: a pillar with fur below and above a belt of stone.
 #[test]
 fn a_belt_of_stone_is_missed_by_as_much_as_longer_arms_need() {
     for width in [1.5f64, 1.8, 2.4] {

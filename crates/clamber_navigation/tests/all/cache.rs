@@ -1,4 +1,4 @@
-//! Graphs in files are the same as built ones, and damaged files are built anew.
+//! Graphs from files equal built ones, and damaged files are built again.
 
 #![allow(clippy::unwrap_used, reason = "a test")]
 
@@ -13,7 +13,7 @@ use clamber_surface::mesh::SurfaceKind::Fur;
 use fastrand::Rng;
 use glam::Vec3;
 
-/// An empty folder of a test.
+/// An empty folder for a test.
 fn folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     let _ = std::fs::remove_dir_all(&folder);
@@ -29,7 +29,7 @@ fn cached(folder: &Path, body: &Body, config: &GraphConfig) -> CachedGraph {
     body.with_source(|source| ClimbGraph::cached(folder, source, config, go_on).unwrap())
 }
 
-/// What a graph tells: its patches, and plans on it.
+/// The content of a graph as text: its patches and entries, and plans on it.
 fn told(graph: &ClimbGraph) -> String {
     let mut rng = Rng::with_seed(28);
     let all = graph.patches().len();
@@ -162,13 +162,13 @@ fn many_may_use_a_folder_at_the_same_time() {
         all.into_iter().map(|one| one.join().unwrap()).collect()
     });
     assert!(told.iter().all(|other| *other == told[0]));
-    // No half a file is left.
+    // No temporary file is left.
     assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 1);
     let again = cached(&folder, &body(), &climber());
     assert!(matches!(again.origin, GraphOrigin::Read));
 }
 
-/// What processes left that were killed does not keep graphs from being saved, and what is no plain file is not read.
+/// Temporary files of killed processes do not keep graphs from being saved, and only regular files are read.
 #[test]
 #[cfg(unix)]
 fn leftovers_and_devices_do_no_harm() {
@@ -176,7 +176,7 @@ fn leftovers_and_devices_do_no_harm() {
     let built = cached(&folder, &body(), &climber());
     assert!(matches!(built.origin, GraphOrigin::Built));
     std::fs::remove_file(&built.file).unwrap();
-    // Those of this process, whatever their numbers are by now.
+    // Temporary names of this process, for any counter that it may have reached.
     for count in 0..200 {
         let name = format!("{}-{count}-0.part", std::process::id());
         std::fs::write(built.file.with_extension(name), "half").unwrap();
@@ -185,7 +185,7 @@ fn leftovers_and_devices_do_no_harm() {
     assert!(matches!(again.origin, GraphOrigin::Built));
     let read = cached(&folder, &body(), &climber());
     assert!(matches!(read.origin, GraphOrigin::Read));
-    // A link to a device without an end.
+    // A link to an endless device.
     std::fs::remove_file(&built.file).unwrap();
     std::os::unix::fs::symlink("/dev/zero", &built.file).unwrap();
     let again = cached(&folder, &body(), &climber());

@@ -1,4 +1,4 @@
-//! Catches at the end of jumps from the ground: what starts on the ground say of them is true of climbers.
+//! Catches at the end of jumps from the ground: climbers fare as `starts_on_ground` says.
 
 #![expect(
     clippy::unwrap_used,
@@ -12,7 +12,7 @@ use clamber_surface::mesh::SurfaceKind::{Fur, Skin};
 use clamber_world::{HalfSpace, Obstacle, ObstacleId};
 use glam::{DVec3, Vec3};
 
-/// A wall above the ground, with fur from a height on.
+/// A wall above the ground, with fur from a height upwards.
 fn wall(fur_from: f32) -> Body {
     let place = |u: f32, v: f32| Vec3::new(8.0 * (u - 0.5), 12.0 * v, 0.0);
     Body::grid([16, 48], place, move |_, v| {
@@ -20,7 +20,7 @@ fn wall(fur_from: f32) -> Body {
     })
 }
 
-/// Holds that a climber takes from the ground.
+/// The starts at which a climber from the ground holds on.
 fn holds(graph: &ClimbGraph, stamina: f64) -> Vec<Start> {
     let starts = graph.starts_on_ground(stamina);
     starts
@@ -28,18 +28,18 @@ fn holds(graph: &ClimbGraph, stamina: f64) -> Vec<Start> {
         .collect()
 }
 
-/// How a climber that jumps at the wall, gripping, fares.
+/// The result of a gripping climber's jump at the wall.
 #[derive(Debug, PartialEq)]
 enum Jumped {
-    /// It holds on, with so much stamina left.
+    /// The climber holds on, with this much stamina left.
     Holds(f64),
-    /// Its hands slipped.
+    /// The climber's hands slipped.
     Slips,
-    /// It came down again.
+    /// The climber came down again.
     Misses,
 }
 
-/// A jump from so many radii before the wall, at a share of the speed of a walk.
+/// A jump from a distance in radii before the wall, at a share of the walking speed.
 fn jump(body: &Body, climber: &ClimberConfig, stamina: f64, (away, share): (f64, f64)) -> Jumped {
     let surface = body.surface();
     let ground = HalfSpace::below(0.0);
@@ -52,7 +52,7 @@ fn jump(body: &Body, climber: &ClimberConfig, stamina: f64, (away, share): (f64,
     for tick in 0..180 {
         let input = ClimberInput {
             walk: DVec3::Z * share,
-            // It is up to speed by then.
+            // The climber is up to speed by then.
             jump: tick == 12,
             grip: true,
             ..ClimberInput::IDLE
@@ -69,7 +69,7 @@ fn jump(body: &Body, climber: &ClimberConfig, stamina: f64, (away, share): (f64,
     Jumped::Misses
 }
 
-/// Jumps from several places at several speeds.
+/// The results of jumps from several places at several speeds.
 fn jumps(body: &Body, climber: &ClimberConfig, stamina: f64) -> Vec<Jumped> {
     let places = (0..8).flat_map(|k| [(k, 0.0), (k, 0.5), (k, 1.0)]);
     let places = places.map(|(k, share)| (1.1 + 0.3 * f64::from(k) + 2.0 * share, share));
@@ -78,11 +78,11 @@ fn jumps(body: &Body, climber: &ClimberConfig, stamina: f64) -> Vec<Jumped> {
         .collect()
 }
 
-/// The climber of the presets, for whom catches are this dear.
+/// The climber of the presets with this cost of a catch.
 fn config(catch_cost: f64) -> GraphConfig {
     let mut config = climber();
     if let Some(stamina) = &mut config.climber.stamina {
-        // Standing would refill it before the jump.
+        // Standing would refill stamina before the jump, and holding on would drain it.
         (stamina.catch_cost, stamina.refill, stamina.hold_drain) = (catch_cost, 0.0, 0.0);
     }
     config
@@ -108,21 +108,21 @@ fn a_catch_leaves_at_least_what_the_graph_says() {
             }
         }
     }
-    // And not much less.
+    // The bound is not much too low either.
     assert!(dearest > 0.9, "{dearest}");
 }
 
 #[test]
 fn holds_that_hands_do_not_catch_are_no_starts() {
     let body = wall(1.6);
-    // Who has less than a catch takes.
+    // A climber with less stamina than a catch costs.
     let config = config(0.05);
     let (graph, _) = body.report(&config);
     assert!(!holds(&graph, 1.0).is_empty());
     let rests = |starts: Vec<Start>| starts.iter().all(|start| start.stamina >= 0.0);
     assert!(rests(holds(&graph, 0.02)));
     assert!(holds(&graph, 0.02).len() < holds(&graph, 1.0).len());
-    // Whose hands catch what is slow only.
+    // A climber whose hands catch only slow holds.
     let mut slow = config.clone();
     if let Some(grip) = &mut slow.climber.grip {
         grip.catch_speed = 2.0;

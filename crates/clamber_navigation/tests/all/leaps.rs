@@ -1,4 +1,4 @@
-//! Jumps from one part of a creature to another: whoever is told of one lands it.
+//! Jumps from one part of a creature to another: a bot with a forecast lands each planned jump.
 
 #![allow(clippy::unwrap_used, reason = "a test whose body does not fit fails")]
 
@@ -17,9 +17,10 @@ use clamber_world::{HalfSpace, Obstacle, ObstacleId};
 use fastrand::Rng;
 use glam::{DVec3, Vec3};
 
+/// Ticks per second, for a climber of the usual size.
 const RATE: f64 = 60.0;
 
-/// A block of 4 m by 4 m, from a height down, that begins at some x.
+/// A block of 4 m by 4 m between two heights, which begins at `x`.
 fn block(x: f32, [top, bottom]: [f32; 2], kind: SurfaceKind) -> Body {
     let side = 4.0;
     let level = |u: f32, v: f32| Vec3::new(x + side * u, top, side * (0.5 - v));
@@ -40,13 +41,14 @@ fn block(x: f32, [top, bottom]: [f32; 2], kind: SurfaceKind) -> Body {
     block
 }
 
-/// Two blocks with a gap; the top of the other one is higher by `rise`. Nobody gets onto it from the ground.
+/// Two blocks with a gap between them. The top of the second one is higher by `rise`. The second one cannot be reached
+/// from the ground.
 fn blocks(gap: f32, rise: f32, [first, second]: [SurfaceKind; 2]) -> Body {
     let other = [6.0 + rise, 5.0 + rise.min(0.0)];
     block(-4.0, [6.0, 0.0], first).and_on_its_own(&block(gap, other, second))
 }
 
-/// Blocks and a climber, so many times as large as usual.
+/// The transform of blocks and a climber that are `size` times as large as usual.
 fn place(size: f64) -> Similarity {
     Similarity {
         scale: size,
@@ -60,7 +62,7 @@ fn graph(body: &Body, size: f64, clips: &[Clip]) -> Arc<ClimbGraph> {
     graph_of(body, &config, clips, place(size))
 }
 
-/// The top of the other block.
+/// The goal on top of the second block.
 fn goal(graph: &ClimbGraph, size: f64, gap: f32) -> Goal {
     let is_on_it = |patch: &usize| {
         let patch = &graph.patches()[*patch];
@@ -70,7 +72,7 @@ fn goal(graph: &ClimbGraph, size: f64, gap: f32) -> Goal {
     graph.goal(&patches)
 }
 
-/// From the middle of the first block.
+/// A start in the middle of the first block.
 fn start(graph: &ClimbGraph, size: f64) -> Start {
     let near = graph.patches_near(DVec3::new(-2.0, 6.0, 0.0) * size, 0.5 * size);
     Start {
@@ -81,17 +83,18 @@ fn start(graph: &ClimbGraph, size: f64) -> Start {
     }
 }
 
-/// How a bot fares in twenty seconds.
+/// The result of a bot's try to cross.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Went {
     Across,
     Nowhere,
-    /// It found no way, said so, and got off.
+    /// The bot found no way, reported it, and got off.
     Back,
     Down,
 }
 
-/// What the blocks do: clips, each for so many seconds, over and over, from a time on, and whether the bot is told.
+/// The motion of the blocks: clips, each with its seconds, over and over; the time at which they begin; and whether the
+/// bot gets a forecast of them.
 #[derive(Clone, Copy)]
 struct Moves<'a> {
     clips: &'a [(&'a Clip, f64)],
@@ -100,7 +103,7 @@ struct Moves<'a> {
 }
 
 impl Moves<'_> {
-    /// The clip that plays at a time, its time, and for how long it goes on.
+    /// The clip that plays at a time, the time in it, and the seconds for which it still plays.
     fn at(&self, seconds: f64) -> (usize, f64, f64) {
         let all: f64 = self.clips.iter().map(|(_, lasts)| lasts).sum();
         let mut time = (self.begins + seconds) % all;
@@ -125,7 +128,7 @@ impl Moves<'_> {
     }
 }
 
-/// A bot goes to the other block.
+/// Lets a bot try to cross to the second block.
 fn crosses(
     (body, size): (&Body, f64),
     graph: &Arc<ClimbGraph>,
@@ -190,8 +193,8 @@ fn crosses(
     Went::Nowhere
 }
 
-/// Whatever the graph says can be crossed is crossed, from anywhere; what is within a standing jump can be, and what is
-/// out of reach cannot.
+/// A bot crosses every gap for which the graph has a plan, from any place. Gaps within a standing jump have a plan, and
+/// gaps out of reach have none.
 #[test]
 fn gaps_and_ledges_are_crossed_where_the_graph_says_so() {
     let mut rng = Rng::with_seed(19);
@@ -208,7 +211,7 @@ fn gaps_and_ledges_are_crossed_where_the_graph_says_so() {
         if gap < 1.8 && (-1.0..0.8).contains(&rise) {
             assert!(plan.is_some(), "{told}");
         }
-        // A jump rises 1.3 m and goes 3.1 m far, and hands reach up a ledge.
+        // A jump rises 1.3 m and goes 3.1 m far, and hands reach up to a ledge.
         if gap > 3.9 && rise > -0.5 || rise > 2.6 {
             assert!(plan.is_none(), "{told}");
             not += 1;
@@ -229,7 +232,7 @@ fn gaps_and_ledges_are_crossed_where_the_graph_says_so() {
     assert!(crossed > 25 && not > 5, "{crossed} {not}");
 }
 
-/// A jump that needs no hands is made without strength too, also by somebody who never rests.
+/// A jump that needs no hands is possible without stamina, also for a climber that never rests.
 #[test]
 fn who_has_no_strength_left_jumps() {
     let body = blocks(1.6, -1.0, [Skin, Skin]);
@@ -244,7 +247,7 @@ fn who_has_no_strength_left_jumps() {
     }
 }
 
-/// A clip in which a joint goes from one place to another and back.
+/// A clip in which a joint moves to another place and back.
 fn sways(name: &str, joint: u32, by: Vec3, seconds: f32) -> Clip {
     let times: Vec<f32> = (0..=60).map(|step| seconds * step as f32 / 60.0).collect();
     let share = |time: f32| 0.5 - 0.5 * libm::cosf(std::f32::consts::TAU * time / seconds);
@@ -258,12 +261,12 @@ fn sways(name: &str, joint: u32, by: Vec3, seconds: f32) -> Clip {
     Clip::new(name, vec![channel.unwrap()])
 }
 
-/// Of what moves away there is no plan while it does; what sways is jumped to at all times, and landed on.
+/// No plan jumps to a block while it moves away. Blocks that sway have plans at all times, and the bot lands on them.
 #[test]
 fn jumps_are_planned_in_clips_in_which_they_always_land() {
     let gap = 1.6;
     let from = DVec3::new(-1.0, 6.0, 0.0);
-    // Where a clip that ends elsewhere leaves a joint, another one does not find it.
+    // A clip that ends with a joint in another place must not affect the next clip.
     let times = vec![0.0, 4.0];
     let places = Keyframes::Translation(vec![Vec3::ZERO, Vec3::Y * 6.0]);
     let channel = Channel::new(JointId(1), Interpolation::Linear, times, places);
@@ -285,7 +288,7 @@ fn jumps_are_planned_in_clips_in_which_they_always_land() {
         let forecast =
             |name: &str, seconds: f64| Forecast::still().then(&graph, name, 0.0, seconds);
         assert!(plan(&forecast("away", 6.0)).is_none(), "{kind:?}");
-        // It waits until that is over.
+        // The plan waits until the clip `away` is over.
         let later = plan(&forecast("away", 6.0).then(&graph, "sways", 0.0, 4.0)).unwrap();
         let jump = later.steps.iter().position(|step| step.jumps).unwrap();
         assert!(later.steps[jump].seconds > 6.0, "{kind:?}");
@@ -311,7 +314,7 @@ fn jumps_are_planned_in_clips_in_which_they_always_land() {
             };
             let went = crosses((&body, 1.0), &graph, &goal, Some(both), (from, 1.0));
             assert_eq!(went, Went::Across, "{kind:?} {phase}, in turns");
-            // Nobody jumps to what moves away, told of it or not.
+            // A bot never jumps to the block that moves away, with a forecast or without.
             for told in [true, false] {
                 let moves = Moves {
                     clips: &[(away, 6.0)],

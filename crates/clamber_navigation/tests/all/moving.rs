@@ -1,4 +1,4 @@
-//! Clips at their rates, and a bot on skin that moves.
+//! Clips at several rates, and bots on skin that moves or is removed.
 
 #![allow(clippy::unwrap_used, reason = "a test whose body does not fit fails")]
 
@@ -33,7 +33,7 @@ fn wall(height: f32) -> Body {
     front.and(&top)
 }
 
-/// A clip that moves everything along x, as a function of the time says.
+/// A clip that moves everything along x by a function of time.
 fn sways(seconds: f32, x: impl Fn(f32) -> f32) -> Clip {
     let times: Vec<f32> = (0..=600).map(|k| seconds * k as f32 / 600.0).collect();
     let places = times.iter().map(|time| Vec3::X * x(*time)).collect();
@@ -46,7 +46,7 @@ fn sways(seconds: f32, x: impl Fn(f32) -> f32) -> Clip {
     Clip::new("sways", vec![channel.unwrap()])
 }
 
-/// The hardest shake of a clip that is played at some rate.
+/// The hardest shake of a clip at a rate.
 fn shake(clip: &Clip, rate: f64) -> Result<f64, NavigationError> {
     let (mesh, skeleton) = (wall(4.0).mesh(), skeleton());
     let source = GraphSource {
@@ -68,7 +68,7 @@ fn shakes_go_with_the_square_of_the_rate() {
     let clip = sways(2.0, |t| libm::sinf(std::f32::consts::PI * t));
     for rate in [0.25, 0.5, 1.0, 2.0] {
         let found = shake(&clip, rate).unwrap();
-        // A climber feels shakes after a low pass of the first order; they are stored in steps of 0.25, rounded up.
+        // A climber feels shakes through a first-order low-pass filter. They are stored in steps of 0.25, rounded up.
         let turns = std::f64::consts::PI * rate;
         let smooth = turns * climber().climber.shake_time;
         let wanted = turns * turns / (1.0 + smooth * smooth).sqrt();
@@ -86,11 +86,11 @@ fn shakes_go_with_the_square_of_the_rate() {
 
 #[test]
 fn the_seam_of_a_loop_is_felt_and_that_of_another_clip_is_not() {
-    // At the seam it turns back at once, and nowhere else.
+    // This motion reverses abruptly at the seam, and nowhere else.
     let turns_back = sways(2.0, |t| (t - 1.0) * (t - 1.0));
     let found = shake(&turns_back, 1.0).unwrap();
     assert!(found > 15.0, "{found}");
-    // It goes on at a steady speed, and would jump.
+    // This motion has a steady speed, and would jump at a seam.
     let goes_on = sways(2.0, |t| 3.0 * t);
     let found = shake(&goes_on, 1.0).unwrap();
     assert!(found <= 0.25, "{found}");
@@ -105,7 +105,7 @@ fn clips_of_years_are_refused_at_once() {
     }
 }
 
-/// A ball in so many times as many triangles has as many pieces.
+/// A ball of many times as many triangles has about as many pieces.
 #[test]
 fn what_is_looked_at_grows_with_the_skin_and_not_with_its_triangles() {
     let round = |cells: [u32; 2]| {
@@ -136,8 +136,8 @@ fn what_is_looked_at_grows_with_the_skin_and_not_with_its_triangles() {
     assert!(grows(fine.2, coarse.2) <= 2.0, "{coarse:?} {fine:?}");
 }
 
-/// Two walls that no way joins: who holds on to one of them and means to come onto the other says so, lets go, and
-/// goes there.
+/// Two walls that no way joins: a bot that holds on to one of them and wants to get to the other reports that it is
+/// lost, lets go, and goes there.
 #[test]
 fn who_finds_no_way_says_so_and_tries_another_one() {
     let mut other = wall(8.0);
@@ -185,7 +185,7 @@ fn who_finds_no_way_says_so_and_tries_another_one() {
     assert!(there.is_some(), "{:?}", who.state());
 }
 
-/// Skin that is gone, as a plate that was shot off, is no way: who has no other one says so.
+/// Removed skin, such as a plate that was shot off, is no way: a bot without another way reports that it is lost.
 #[test]
 fn a_way_over_skin_that_is_gone_is_none() {
     for gone in [false, true] {

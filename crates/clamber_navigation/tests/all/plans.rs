@@ -1,4 +1,4 @@
-//! B62: more stamina, reach or fur never takes a place away, and no way is faster than the least time says.
+//! B62: more stamina, reach or fur never makes a place unreachable, and no plan is faster than the least time.
 
 use std::collections::BTreeSet;
 
@@ -23,7 +23,7 @@ fn patched(seed: u64, fur: f32) -> Body {
     ball(Vec3::Y * 11.5, 4.0, kind).and(&Body::grid([24, 24], pillar, kind))
 }
 
-/// Where the reachable patches of a graph are, to a tenth of a millimetre.
+/// The points of a graph's reachable patches, rounded to a tenth of a millimetre.
 fn places(graph: &ClimbGraph, reached: &[bool]) -> BTreeSet<[i64; 3]> {
     let patches = graph.patches().iter().zip(reached);
     let places = patches.filter(|(_, reached)| **reached);
@@ -50,7 +50,7 @@ fn more_reach_and_more_fur_never_take_anything_away() {
     assert!(grew >= 8, "it grew only {grew} times");
 }
 
-/// How often the reachable area of a body grows with more reach, and with more fur. It must never shrink.
+/// The number of times that a body's reachable area grows with more reach, and with more fur. It must never shrink.
 fn growths(seed: u64) -> u32 {
     let (mut before, mut grew) = ((0.0, 0.0), 0);
     for step in 0..3 {
@@ -60,7 +60,7 @@ fn growths(seed: u64) -> u32 {
         }
         let reach = area(&patched(seed, 0.6).report(&config).0);
         let fur = area(&patched(seed, 0.4 + 0.15 * step as f32).report(&climber()).0);
-        // Areas are sums of the same pieces in another order.
+        // Areas are sums of the same pieces in another order, so they may differ by rounding.
         assert!(
             reach >= before.0 - 1e-9,
             "{seed}, reach: {reach} after {}",
@@ -79,7 +79,8 @@ fn growths(seed: u64) -> u32 {
 
 #[test]
 fn more_stamina_never_takes_anything_away() {
-    // Skin that cannot be gripped, but for a wall of fur: the way up is too long without a rest for who is weak.
+    // Skin that cannot be gripped, with a strip of fur: the way up is too long for a climber with little stamina, which
+    // cannot rest on it.
     let wall = |u: f32, v: f32| Vec3::new(8.0 * (u - 0.5), 30.0 * v, 0.0);
     let kind = |u: f32, _: f32| if (0.3..0.7).contains(&u) { Fur } else { Skin };
     let (graph, _) = Body::grid([16, 60], wall, kind).report(&climber());
@@ -135,7 +136,7 @@ fn no_plan_is_faster_than_the_least_time() {
             );
             rests += u32::from(least > goal.least_seconds(patch, footing) + 1e-6);
             for pair in plan.steps.windows(2) {
-                // Never up by more than the time between allows, and never down: consistent.
+                // The least times are consistent: along a step they fall by at most the step's time.
                 let [a, b] = [&pair[0], &pair[1]];
                 let [from, to] = [a, b].map(|step| goal.least_seconds(step.patch, step.footing));
                 assert!(from <= to + (b.seconds - a.seconds) + 1e-9);
@@ -147,7 +148,7 @@ fn no_plan_is_faster_than_the_least_time() {
 
 #[test]
 fn a_plan_is_found_wherever_stamina_is_enough() {
-    // Ledges to rest on, and long ways of fur between them.
+    // Ledges for rests, and long ways of fur between them.
     let stairs = |u: f32, v: f32| {
         let (up, step) = (v * 12.0, libm::floorf(v * 12.0 / 4.0));
         let out = if up - 4.0 * step < 1.0 {
@@ -197,7 +198,7 @@ fn a_plan_is_found_wherever_stamina_is_enough() {
     );
 }
 
-/// Level ground, a metre above the floor, of skin that cannot be gripped.
+/// A horizontal sheet of skin that cannot be gripped, one metre above the ground.
 fn table() -> Body {
     let place = |u: f32, v: f32| Vec3::new(6.0 * (u - 0.5), 1.0, -6.0 * (v - 0.5));
     Body::grid([12, 12], place, |_, _| Skin)

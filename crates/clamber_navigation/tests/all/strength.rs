@@ -1,4 +1,5 @@
-//! A climber that tires: what it can reach, and a bot that does not begin what its strength is not enough for.
+//! A climber that tires: the patches that it reaches, and a bot that does not start a way for which its stamina does
+//! not suffice.
 
 #![allow(clippy::unwrap_used, reason = "a test whose body does not fit fails")]
 
@@ -17,21 +18,22 @@ use clamber_world::{HalfSpace, Obstacle, ObstacleId};
 use fastrand::Rng;
 use glam::{DVec3, Vec3};
 
+/// Ticks per second.
 const RATE: f64 = 60.0;
 
-/// A wall of fur, 6 m wide, from some height to another; in front of it is +z.
+/// A wall of fur, 6 m wide, from one height to another at `z`. It faces +z.
 fn wall(x: f32, from: f32, to: f32, z: f32) -> Body {
     let place = |u: f32, v: f32| Vec3::new(x + 6.0 * (u - 0.5), from + (to - from) * v, z);
     Body::grid([12, (2.0 * (to - from)) as u32], place, |_, _| Fur)
 }
 
-/// Level fur behind the top of a wall.
+/// Horizontal fur behind the top of a wall.
 fn top(x: f32, height: f32, from: f32, to: f32) -> Body {
     let place = |u: f32, v: f32| Vec3::new(x + 6.0 * (u - 0.5), height, from + (to - from) * v);
     Body::grid([12, 6], place, |_, _| Fur)
 }
 
-/// A wall of 16 m with a step at half of its height, and level ground on top. The step rises by a share of its depth.
+/// A wall of 16 m with a step at half of its height, and a horizontal top. The step rises by `rises` times its depth.
 fn step_wall(x: f32, deep: f32, rises: f32) -> Body {
     let step = |u: f32, v: f32| Vec3::new(x + 6.0 * (u - 0.5), 8.0 + rises * deep * v, -deep * v);
     wall(x, 0.0, 8.0, 0.0)
@@ -40,7 +42,7 @@ fn step_wall(x: f32, deep: f32, rises: f32) -> Body {
         .and(&top(x, 16.0, -deep, -6.0))
 }
 
-/// A climber that holds on for so long, seconds.
+/// The configuration of a climber that can hold on for this many seconds.
 fn lasts(seconds: f64) -> GraphConfig {
     let mut config = climber();
     if let Some(stamina) = &mut config.climber.stamina {
@@ -49,15 +51,15 @@ fn lasts(seconds: f64) -> GraphConfig {
     config
 }
 
-/// The graph of a body with a clip.
+/// The graph of a body with clips.
 fn graph(body: &Body, config: &GraphConfig, clips: &[Clip]) -> Arc<ClimbGraph> {
     graph_of(body, config, clips, Similarity::IDENTITY)
 }
 
-/// How a climb went.
+/// The result of a climb.
 #[derive(Debug, Default)]
 struct Went {
-    /// When it first was on the body, and with how much stamina.
+    /// Time and stamina when the climber was on the body first.
     on: Option<(f64, f64)>,
     there: Option<f64>,
     falls: u32,
@@ -67,9 +69,9 @@ struct Went {
 #[derive(Clone, Copy, Default)]
 struct Played<'a> {
     clip: Option<&'a Clip>,
-    /// Before, the body keeps still, and that is what is expected.
+    /// Before this time the body keeps still, and the bot's forecast is still as well.
     from: f64,
-    /// Until then the bot is to keep away.
+    /// Until this time the bot is told to keep away.
     away_until: f64,
 }
 
@@ -82,7 +84,7 @@ impl<'a> From<&'a Clip> for Played<'a> {
     }
 }
 
-/// A bot on a body that plays a clip, from a place on the ground, with some stamina.
+/// Lets a bot climb a body that plays a clip, from a place on the ground, with some stamina.
 fn climb(
     (body, played): (&Body, Played<'_>),
     graph: &Arc<ClimbGraph>,
@@ -166,8 +168,8 @@ fn goal_near(graph: &ClimbGraph, place: DVec3) -> Goal {
     graph.goal(&graph.patches_near(place, 1.0))
 }
 
-/// A patch is reached with some strength if there is a plan to it. Plans compare strength in twelve steps: with one step
-/// more there is a plan to whatever is reached.
+/// A patch that is reached with some stamina has a plan to it. Plans compare stamina in twelve levels, so one level
+/// more is given to the plan.
 #[test]
 fn what_is_reached_with_some_strength_has_a_plan() {
     let mut rng = Rng::with_seed(53);
@@ -196,8 +198,8 @@ fn what_is_reached_with_some_strength_has_a_plan() {
     assert!(reached > 200 && not > 200, "{reached} {not}");
 }
 
-/// Its strength is enough for half of the wall: it rests on the step, however narrow that is, and walks on it, though
-/// it comes there holding on.
+/// The bot's stamina is enough for half of the wall. It rests on the step, however narrow that is, and walks on it,
+/// although it arrives there holding on.
 #[test]
 fn a_bot_takes_the_rests_that_it_planned() {
     let config = lasts(9.0);
@@ -217,13 +219,13 @@ fn a_bot_takes_the_rests_that_it_planned() {
         let from = (DVec3::new(0.5, 0.0, 3.0), 1.0);
         let went = climb((&body, Played::default()), &graph, &goal, from, (0.0, 60.0));
         assert_eq!(went.falls, 0, "{deep}, {rises}: {went:?}");
-        // Who holds on across the step as well takes 14.6 to 16.6 s.
+        // A bot that also holds on across the step takes 14.6 to 16.6 s.
         let there = went.there.unwrap();
         assert!(there < 14.3, "{deep}, {rises}: {went:?}");
     }
 }
 
-/// The nearer wall is too high for its strength; the other one has a step.
+/// The nearer wall is too high for the bot's stamina. The other wall has a step.
 #[test]
 fn a_bot_gets_on_where_its_strength_is_enough() {
     let sheer = wall(0.0, 0.0, 16.0, -1.5);
@@ -238,7 +240,7 @@ fn a_bot_gets_on_where_its_strength_is_enough() {
     assert!(went.there.is_some() && went.falls == 0, "{went:?}");
 }
 
-/// After a fall it gets its breath back on the ground, even if it walks into the wall.
+/// A tired bot refills its stamina on the ground, even if it walks into the wall.
 #[test]
 fn a_tired_bot_rests_before_it_gets_on() {
     let body = step_wall(0.0, 1.5, 0.0);
@@ -253,10 +255,10 @@ fn a_tired_bot_rests_before_it_gets_on() {
     }
 }
 
-/// It is calm for so long, and shakes for as long, seconds.
+/// The time for which [`shakes`] is calm, and then the time for which it shakes, seconds.
 const CALM: f64 = 14.0;
 
-/// Half of the time it shakes harder than anybody holds on.
+/// A clip that shakes half of the time harder than any climber can hold on.
 fn shakes() -> Clip {
     let calm = CALM as f32;
     let times: Vec<f32> = (0..=2800).map(|step| step as f32 / 100.0).collect();
@@ -278,7 +280,7 @@ fn shakes() -> Clip {
     Clip::new("shakes", vec![channel.unwrap()])
 }
 
-/// It waits for the calm half, whenever that comes.
+/// The bot waits for the calm half, whenever it comes.
 #[test]
 fn a_bot_that_is_told_waits_for_calm() {
     let clip = shakes();
@@ -301,7 +303,7 @@ fn a_bot_that_is_told_waits_for_calm() {
     }
 }
 
-/// Who kept away from a creature that walked about, or that kept still, has not waited for anything yet.
+/// Time in which the bot kept away from a creature that walked about or kept still does not count as waiting for calm.
 #[test]
 fn a_bot_that_had_to_keep_away_waits_all_the_same() {
     let clip = shakes();
@@ -311,7 +313,7 @@ fn a_bot_that_had_to_keep_away_waits_all_the_same() {
     for from in [0.0, 46.0] {
         let played = Played {
             from,
-            // It shakes then, for ten seconds more.
+            // The body shakes at that time, for ten seconds more.
             away_until: 46.0,
             ..Played::from(&clip)
         };

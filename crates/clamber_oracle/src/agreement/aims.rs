@@ -1,10 +1,10 @@
-//! Questions around triangles: aimed at what is hard for a query, and anywhere.
+//! Questions around triangles: aimed at places that are hard for a query, and at random places.
 
 use glam::{DVec3, Vec3};
 
 use super::{Among, Cast, Question, Shape};
 
-/// Random points, shapes and questions around triangles.
+/// Makes random points, shapes and questions around triangles.
 #[derive(Debug)]
 pub struct Aims<'a> {
     triangles: &'a [[Vec3; 3]],
@@ -22,8 +22,8 @@ pub fn extent(triangles: &[[Vec3; 3]]) -> f32 {
 }
 
 impl<'a> Aims<'a> {
-    /// Aims at these triangles, in the pose in which they are asked. `unit` is the size that all lengths are shares of,
-    /// such as the [`extent`]. Without triangles, all aims are around the origin.
+    /// Aims at these triangles; pass them in the pose that the questions are asked about. All lengths are shares of
+    /// `unit`, a size such as the [`extent`]. Without triangles, all aims are around the origin.
     pub fn new(triangles: &'a [[Vec3; 3]], unit: f32, rng: &'a mut fastrand::Rng) -> Self {
         let triangles = if triangles.is_empty() {
             &[[Vec3::ZERO; 3]]
@@ -37,7 +37,7 @@ impl<'a> Aims<'a> {
         }
     }
 
-    /// One question of every kind and aim, and one of every kind at any place.
+    /// Replaces `questions` by one question of every kind and aim, and one of every kind at a random place.
     pub fn all(&mut self, questions: &mut Vec<Question>) {
         let mut named = Vec::new();
         self.named(&mut named);
@@ -46,7 +46,8 @@ impl<'a> Aims<'a> {
         self.anywhere(questions);
     }
 
-    /// One question of every name. Questions with the same name are alike.
+    /// Replaces `questions` by one question of every name. Questions with the same name have the same kind and the same
+    /// aim.
     pub fn named(&mut self, questions: &mut Vec<(&'static str, Question)>) {
         questions.clear();
         self.rays(questions);
@@ -159,8 +160,8 @@ impl<'a> Aims<'a> {
         questions.push(("sweep, all", Question::CastCapsuleAll { cast }));
     }
 
-    /// Appends one question of every kind, from a place on the skin, near it or far from it. Lengths may be 0 or
-    /// infinite, and half of all boxes are turned inside out.
+    /// Appends one or more questions of every kind, from a place on the skin, near it or far from it. Lengths may be 0
+    /// or infinite. In half of all boxes, `low.x` is above `high.x`, so the box is inside out.
     pub fn anywhere(&mut self, questions: &mut Vec<Question>) {
         let spread = self.unit * [0.0, 0.01, 0.3, 2.0][self.rng.usize(0..4)];
         let origin = self.vertex() + self.offset(spread);
@@ -250,12 +251,12 @@ impl<'a> Aims<'a> {
         self.triangle()[self.rng.usize(0..3)]
     }
 
-    /// A point in a random direction, so many units from `p`.
+    /// A point at the distance of `units` units from `p`, in a random direction.
     pub fn off(&mut self, p: Vec3, units: f32) -> Vec3 {
         p + self.direction() * (units * self.unit)
     }
 
-    /// A random unit vector, evenly distributed.
+    /// A random unit vector, evenly distributed over the sphere.
     pub fn direction(&mut self) -> Vec3 {
         let up = 2.0 * self.rng.f64() - 1.0;
         let angle = self.rng.f64() * core::f64::consts::TAU;
@@ -283,7 +284,7 @@ impl<'a> Aims<'a> {
         }
     }
 
-    /// A ball off the skin, and a displacement that moves it through the skin.
+    /// A ball beside the skin, and a displacement that moves it through the skin.
     fn towards_skin(&mut self) -> (Shape, Vec3) {
         let (p, away) = (self.skin(), self.direction());
         let off = Shape::ball(p + away * (0.2 * self.unit), 0.02 * self.unit);

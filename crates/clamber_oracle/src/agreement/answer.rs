@@ -3,7 +3,7 @@ use glam::Vec3;
 /// One row of an answer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Found {
-    /// There is something.
+    /// The query found a hit, and returns no details.
     Any,
     /// A point of the surface.
     Hit(Hit),
@@ -33,9 +33,9 @@ pub enum Found {
     Triangle {
         /// The triangle's id.
         triangle: u32,
-        /// Its corners a tick ago, in the current model frame.
+        /// The triangle's corners a tick ago, in the current model frame.
         previous: [Vec3; 3],
-        /// Its corners now.
+        /// The triangle's corners now.
         current: [Vec3; 3],
     },
 }
@@ -43,13 +43,13 @@ pub enum Found {
 /// A point of the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
-    /// The mesh that the hit names, as any number that tells meshes apart.
+    /// The mesh that the hit names, as any number that differs between meshes.
     pub mesh: u64,
     /// The triangle's id.
     pub triangle: u32,
     /// The part that the triangle belongs to.
     pub part: u32,
-    /// The triangle's tag, as any number that tells tags apart.
+    /// The triangle's tag, as any number that differs between tags.
     pub tag: u64,
     /// Weights of the triangle's corners.
     pub barycentric: [f32; 3],
@@ -61,11 +61,12 @@ pub struct Hit {
     pub distance: f64,
 }
 
-/// Weights add up to 1, and normals have length 1, up to this.
+/// Largest difference from 1 of the sum of a valid hit's weights, and of the length of a normal. Both are rounded to
+/// f32, so a much smaller value rejects valid hits.
 const ROUNDED: f64 = 1e-6;
 
 impl Found {
-    /// The surface's point, if this is one.
+    /// The surface's point, if this row has one.
     pub fn hit(&self) -> Option<&Hit> {
         match self {
             Self::Hit(hit) | Self::Nearest { hit, .. } | Self::Contact { hit, .. } => Some(hit),
@@ -84,8 +85,9 @@ impl Found {
         )
     }
 
-    /// Name of a number that no valid answer has: weights that are negative or do not add up to 1, a coordinate that is
-    /// not finite, a normal that has not length 1, a negative distance, a time outside 0..=1.
+    /// Name of a field whose value no valid answer has: weights that are negative or do not add up to 1, a coordinate
+    /// or distance that is not finite, a normal whose length is not 1, a negative distance, a time outside 0..=1, a
+    /// time other than 0 of a contact that started inside. `None` if the row is valid.
     pub fn fault(&self) -> Option<&'static str> {
         let own = match self {
             Self::Any | Self::Hit(_) => None,
@@ -120,7 +122,7 @@ impl Found {
         differs.map(|((field, _), _)| *field)
     }
 
-    /// Every number, bit by bit, with its field: unlike `==`, this tells -0 from 0, and NaN equals itself.
+    /// The bits of every number, each with its field: unlike with `==`, -0 differs from 0, and NaN equals itself.
     fn bits(&self) -> Bits {
         let mut bits = Bits::default();
         match self {
@@ -171,7 +173,7 @@ impl Found {
     }
 }
 
-/// The numbers of a row as bits, each with its field; as many as the longest row has.
+/// The numbers of a row as bits, each with its field, and how many there are. The longest row has 21.
 struct Bits([(&'static str, u64); 21], usize);
 
 impl Default for Bits {

@@ -2,7 +2,7 @@ use core::fmt;
 
 use super::{Found, Question};
 
-/// Something that can be asked: a surface, a reference, a peer.
+/// An implementation of the queries: a surface, a reference, a peer.
 pub trait Answers {
     /// Appends the answer to `found`, which is empty, in the order that [`Question`] states.
     fn answer(&self, question: &Question, found: &mut Vec<Found>);
@@ -17,18 +17,18 @@ pub struct Comparison {
 }
 
 impl Comparison {
-    /// Asks the reference.
+    /// Asks the reference, and keeps its answer.
     pub fn ask(&mut self, reference: &impl Answers, question: &Question) {
         self.question = Some(*question);
         self.wanted.clear();
         reference.answer(question, &mut self.wanted);
     }
 
-    /// Puts the last question to `tested`, and compares its answer with the reference's in every bit; returns the
-    /// answer. Before the first question there is nothing to compare.
+    /// Asks `tested` the last question, compares its answer with the reference's in every bit, and returns the answer.
+    /// Before the first question, returns an empty answer.
     ///
     /// # Errors
-    /// [`Disagreement`] if the answers differ, or both hold a number that no answer may have ([`Found::fault`]).
+    /// [`Disagreement`] if the answers differ, or if both have the same invalid number ([`Found::fault`]).
     pub fn hold(&mut self, tested: &impl Answers) -> Result<&[Found], Box<Disagreement>> {
         self.found.clear();
         let Some(question) = &self.question else {
@@ -79,9 +79,9 @@ pub struct Disagreement {
     pub field: &'static str,
     /// The first row that differs or is invalid.
     pub row: usize,
-    /// The row of the tested answer, if it has so many.
+    /// That row of the tested answer; `None` if the answer has fewer rows.
     pub found: Option<Found>,
-    /// The row of the reference, if it has so many.
+    /// That row of the reference's answer; `None` if the answer has fewer rows.
     pub wanted: Option<Found>,
 }
 
@@ -108,11 +108,11 @@ impl core::error::Error for Disagreement {}
 pub struct Agreement {
     /// Number of answers that were compared.
     pub questions: usize,
-    /// Number of rows in those that agree.
+    /// Number of rows in the answers that agree.
     pub found: usize,
     /// Number of answers that differ from the reference in any bit or are invalid.
     pub disagreements: usize,
-    /// The first of them.
+    /// The first disagreement.
     pub first: Option<Disagreement>,
 }
 
@@ -129,7 +129,7 @@ impl Agreement {
         }
     }
 
-    /// Puts questions to a surface and to a reference, and counts.
+    /// Asks a reference and the tested implementation every question, and counts the results.
     pub fn compare(
         &mut self,
         reference: &impl Answers,
@@ -160,11 +160,13 @@ mod tests {
         }
     }
 
+    /// The question of the tests; the answers do not depend on it.
     const QUESTION: Question = Question::ClosestPoint {
         point: Vec3::ZERO,
         max_distance: 1.0,
     };
 
+    /// A valid hit.
     const HIT: Hit = Hit {
         mesh: 7,
         triangle: 3,

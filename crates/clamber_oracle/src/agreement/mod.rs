@@ -1,8 +1,8 @@
-//! Holds every query of a surface against a reference, bit for bit.
+//! Compares every query of a surface with a reference, bit for bit.
 //!
-//! A [`Question`] is a query with its arguments in plain numbers, and its answer is a list of [`Found`]. Whatever can
-//! be asked implements [`Answers`]. [`Aims`] makes questions around any triangles. A [`Comparison`] asks a reference,
-//! and then as many other implementations as one likes; [`Agreement`] counts.
+//! A [`Question`] is a query with its arguments in plain numbers. Its answer is a list of [`Found`]. Each
+//! implementation that is compared implements [`Answers`]. [`Aims`] makes questions around any triangles. A
+//! [`Comparison`] asks a reference, and then any number of other implementations; [`Agreement`] counts the results.
 //!
 //! ```
 //! use clamber_oracle::agreement::{Aims, Agreement, Answers, Comparison, Found, Question};

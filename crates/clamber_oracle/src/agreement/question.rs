@@ -1,7 +1,7 @@
 use glam::Vec3;
 
 /// A query of a posed surface with its arguments, in the surface's model space. Lengths are in model units and may be
-/// infinite; invalid arguments are allowed, and find nothing.
+/// infinite. Invalid arguments are allowed; the answer to them is empty.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Question {
     /// The first hit along a ray: at most one [`Found::Hit`](super::Found::Hit).
@@ -13,7 +13,7 @@ pub enum Question {
         /// Largest distance of a hit.
         max_distance: f32,
     },
-    /// Whether a ray hits anything: [`Found::Any`](super::Found::Any) or nothing.
+    /// Whether a ray hits the surface: one [`Found::Any`](super::Found::Any) if it does, otherwise no row.
     IntersectsRay {
         /// Start of the ray.
         origin: Vec3,
@@ -63,7 +63,8 @@ pub enum Question {
         /// The capsule and its motion.
         cast: Cast,
     },
-    /// The triangles that meet a box now or a tick ago: one [`Found::Triangle`](super::Found::Triangle) each, by id.
+    /// The triangles that touch a box now or did so a tick ago: one [`Found::Triangle`](super::Found::Triangle) each,
+    /// by id.
     VisitBox {
         /// Corner of the box with the smallest coordinates.
         low: Vec3,
@@ -99,14 +100,14 @@ pub struct Cast {
 pub enum Among {
     /// All of them.
     All,
-    /// Those of triangles that the capsule does not overlap at the start.
+    /// Contacts with triangles that the capsule does not overlap at the start.
     OutsideAtStart,
-    /// Those of triangles whose id is a multiple of three.
+    /// Contacts with triangles whose id is a multiple of three.
     EveryThirdTriangle,
 }
 
 impl Question {
-    /// The three questions about one ray: its first hit, whether there is one, and all of them.
+    /// The three questions about one ray: its first hit, whether it has a hit, and all its hits.
     pub fn along_ray(origin: Vec3, direction: Vec3, max_distance: f32) -> [Self; 3] {
         [
             Self::CastRay {

@@ -8,10 +8,10 @@ use super::Case;
 use super::place::{across, direction, point, turned};
 use crate::{Core, MovingPair};
 
-/// What is hard about a case.
+/// The difficulty of a case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// Nothing: a random case.
+    /// No particular difficulty: a random case.
     Random,
     /// The triangle has a height of 1e-7 m.
     Sliver,
@@ -21,7 +21,7 @@ pub enum Kind {
     Grazing,
     /// The core slides along a face, at a distance of the radius plus twice the tolerance.
     Slide,
-    /// The triangle's corners move to where a rotation of up to a full turn takes them.
+    /// The triangle's corners move in straight lines to their places after a rotation of up to a full turn.
     Spin,
     /// Halfway, the triangle collapses to a line or a point.
     Collapse,
@@ -124,7 +124,7 @@ fn core(ends: [Vec3; 2], motions: [Vec3; 2], is_sphere: bool) -> Core {
     }
 }
 
-/// The core moves roughly towards the place where the triangle ends.
+/// A random draft: the core moves roughly towards the triangle's place at time 1.
 fn random(rng: &mut fastrand::Rng) -> Draft {
     let start = [(); 3].map(|()| point(rng));
     let shift = point(rng) * [0.0, 0.1, 2.0][rng.usize(0..3)];
@@ -161,8 +161,8 @@ fn between_powers(rng: &mut fastrand::Rng, low: f64, high: f64) -> f64 {
     libm::exp10(low + (high - low) * rng.f64())
 }
 
-/// Often the triangle has a corner at the origin and lies along an axis or in a coordinate plane, where f32
-/// can hold such small heights.
+/// Makes the triangle a needle. Often it has a corner at the origin and lies along an axis or in a coordinate plane,
+/// where f32 can hold such small heights.
 fn needle(draft: &mut Draft, rng: &mut fastrand::Rng) {
     let long = point(rng) * [DVec3::X, DVec3::new(1.0, 1.0, 0.0), DVec3::ONE][rng.usize(0..3)];
     let base = [DVec3::ZERO, point(rng)][rng.usize(0..2)];
@@ -192,8 +192,8 @@ fn needle(draft: &mut Draft, rng: &mut fastrand::Rng) {
     draft.tolerance = [0.0, 1e-9, 1e-6, 1e-4][rng.usize(0..4)];
 }
 
-/// At some time the core is at about the radius from a point of the triangle, and the whole triangle is on the
-/// other side of the plane through that point.
+/// Moves the core so that it grazes the triangle: at some time, the core is at about the radius from a point of the
+/// triangle, and the whole triangle is on the other side of the plane through that point.
 fn grazing(draft: &mut Draft, rng: &mut fastrand::Rng) {
     let n = direction(rng);
     let top = draft.corners[0][0];
@@ -226,7 +226,8 @@ fn grazing(draft: &mut Draft, rng: &mut fastrand::Rng) {
     draft.motions = [motion; 2];
 }
 
-/// The triangle is in coordinate planes, so that rounding does not tilt it.
+/// A core that slides along the triangle's face. The triangle is parallel to a coordinate plane, so that rounding does
+/// not tilt it.
 fn slide(draft: &Draft, rng: &mut fastrand::Rng) -> Case {
     let tolerance = [1e-4, 1e-3, 1e-6][rng.usize(0..3)];
     let mut case = draft.rounded(rng.bool());
@@ -261,7 +262,7 @@ fn spin(draft: &mut Draft, rng: &mut fastrand::Rng) {
         draft.motions = ends.map(|p| turned(p - hub, axis, angle) - (p - hub));
     }
     if rng.bool() {
-        // Near the hub, where the triangle has to pass.
+        // Near the hub, which the triangle passes.
         draft.ends = draft
             .ends
             .map(|p| p - draft.ends[0] + hub + point(rng) * 0.3);

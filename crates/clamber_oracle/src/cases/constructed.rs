@@ -1,22 +1,23 @@
-//! Cases in multiples of powers of two, whose answer is partly known from their construction.
+//! Cases whose coordinates are multiples of powers of two, and whose answer is partly known from their construction.
 
 use glam::{DMat3, DVec3};
 
 use super::Case;
 use crate::{Core, MovingPair};
 
-/// What is known about the answer to a case.
+/// The known part of the answer to a case.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Known {
     /// At this time the distance is at most the radius.
     Touches(f64),
     /// The distance is always greater than the radius plus the tolerance.
     Misses,
-    /// Nothing is known.
+    /// The answer is not known.
     Nothing,
 }
 
-/// Integer matrices that rotate or mirror, and scale by the factor beside them: 1, 3 and 9.
+/// Integer matrices that rotate or mirror, and scale by the factor beside them: 1, 3 and 9. Integers keep a turned case
+/// exact.
 const TURNS: [(DMat3, f64); 3] = [
     (DMat3::IDENTITY, 1.0),
     (
@@ -37,7 +38,7 @@ const TURNS: [(DMat3, f64); 3] = [
     ),
 ];
 
-/// The tolerance, before the case is scaled.
+/// The tolerance, in the units of a draft. A power of two, so that heights in tolerances are exact.
 const TOLERANCE: f64 = 1.0 / 4096.0;
 
 /// A case before it is turned and scaled. All numbers are exact.
@@ -51,7 +52,7 @@ struct Draft {
     known: Known,
 }
 
-/// A random case of a vertex and a face or of two edges, and what is known about its answer.
+/// A random case of a vertex and a face or of two edges, and the known part of its answer.
 pub fn constructed(rng: &mut fastrand::Rng) -> (Case, Known) {
     loop {
         let draft = match rng.usize(0..5) {
@@ -59,7 +60,7 @@ pub fn constructed(rng: &mut fastrand::Rng) -> (Case, Known) {
             2 | 3 => above_plane(rng),
             _ => random(rng),
         };
-        // Few cases need more digits than f32 has; these are drawn again.
+        // A few cases need more digits than f32 has; they are drawn again.
         if let Some(case) = draft.placed(rng) {
             return (case, draft.known);
         }
@@ -67,7 +68,7 @@ pub fn constructed(rng: &mut fastrand::Rng) -> (Case, Known) {
 }
 
 impl Draft {
-    /// The case, turned, mirrored and scaled; `None` if a number of it is not exact in f32.
+    /// The case, turned or mirrored, and scaled; `None` if a number of it is not exact in f32.
     fn placed(&self, rng: &mut fastrand::Rng) -> Option<Case> {
         let (turn, factor) = TURNS[rng.usize(0..TURNS.len())];
         let scale = [1.0, 1.0 / 64.0, 1024.0, 1.0 / (1u64 << 40) as f64][rng.usize(0..4)];
@@ -173,8 +174,8 @@ fn above_plane(rng: &mut fastrand::Rng) -> Draft {
         }
     }
     let radius = [0.0, 1.0 / 64.0, 1.0, 40.0][rng.usize(0..4)];
-    // Height over the radius in tolerances: below, at and above the limits of contact and of what may be
-    // reported. A height below the plane becomes 0.
+    // Height minus radius, in tolerances: below, at and above the limits of a true contact (0) and of a contact that
+    // may be reported (1). A height below the plane becomes 0.
     let over = [-1.0, 0.0, 0.0, 0.5, 1.0, 1.0 + 1.0 / 16.0, 2.0, 2.0][rng.usize(0..8)];
     let time = f64::from(rng.u32(0..=32)) / 32.0;
     let support = if is_edge { supports.min(2) } else { supports };

@@ -1,4 +1,4 @@
-//! Test cases for sweeps: hard ones, and ones whose answer is partly known.
+//! Test cases for sweeps: hard cases, and cases whose answer is partly known.
 
 mod adversarial;
 mod constructed;

@@ -89,7 +89,7 @@ fn from_segment(p: &Exact, [a, b]: [&Exact; 2]) -> Exact {
     }
 }
 
-/// The vector between the nearest points of two segments, from the first to the second; each may be a point.
+/// The vector between the nearest points of two segments, from the first to the second; each segment may be a point.
 fn between_segments([a, b]: [&Exact; 2], [c, d]: [&Exact; 2]) -> Exact {
     let to_ends = shorter(from_segment(c, [a, b]), from_segment(d, [a, b]));
     let from_ends = shorter(from_segment(a, [c, d]), from_segment(b, [c, d]));
@@ -162,7 +162,7 @@ fn crosses([p, q]: [&Exact; 2], corners: &[Exact; 3]) -> bool {
     let (from, to) = (dot(&minus(p, a), &n), dot(&minus(q, a), &n));
     let zero = Relaxed::ZERO;
     let one_side = (from > zero && to > zero) || (from < zero && to < zero);
-    // A segment in the plane meets the face at an edge, or has an end in it.
+    // A segment in the plane of the face touches the face at an edge, or has an end in it; callers test edges and ends.
     if one_side || from == to {
         return false;
     }
@@ -197,7 +197,8 @@ mod tests {
         length_sq(&apart)
     }
 
-    /// Asserts that along the vector no corner and end are nearer than the vector is long. So it is the shortest.
+    /// Asserts that the distance of every corner and end along `apart` is at least the length of `apart`. Then `apart`
+    /// is the shortest vector between the shapes.
     fn assert_separates(apart: &Exact, corners: &[Exact; 3], ends: [&Exact; 2]) {
         for (corner, end) in corners.iter().flat_map(|c| ends.map(|end| (c, end))) {
             let gap = dot(apart, &minus(end, corner));

@@ -1,14 +1,15 @@
 //! Proofs that a triangle and a core stay apart during an interval of time.
 //!
-//! For any vector n, the gap is `min n.(p(t) - a(t))` over the core's ends p and the corners a. It is a
-//! minimum of linear functions of time, hence concave, and it is at most |n| times the distance. So if it
-//! is above `radius |n|` at two times, the distance is above the radius at all times between them. If no n
-//! proves this for an interval, a vector is tried that changes linearly from the interval's first time to
-//! its last. Each `n(t).(p(t) - a(t))` is then quadratic in time, and nowhere less than the least of its
-//! Bernstein coefficients. If that fails too, the interval is halved.
+//! For any vector n, the gap is `min n.(p(t) - a(t))` over the core's ends p and the corners a. The gap is a minimum of
+//! linear functions of time, hence concave, and it is at most |n| times the distance. So if the gap is above
+//! `radius |n|` at two times, the distance is above the radius at all times between them. If no n proves this for an
+//! interval, a vector n(t) is tried that changes linearly from the interval's first time to its last. Each
+//! `n(t).(p(t) - a(t))` is then quadratic in time, and nowhere less than the least of its Bernstein coefficients. If
+//! that fails too, the interval is halved.
 //!
-//! The gap is first bounded in f64, with all rounding errors taken against the proof. Where that cannot
-//! decide, it is computed in rational numbers. So the choice of n decides only how soon a proof is found.
+//! The gap is first bounded in f64, with all rounding errors counted against the proof. Where f64 cannot decide, the
+//! gap is computed in rational numbers. So the choice of n does not affect whether a proof is right, only how soon it
+//! is found.
 
 use std::cell::LazyCell;
 
@@ -20,21 +21,24 @@ use super::nearest::{Nearest, nearest};
 use super::pair::ExactPair;
 use crate::MovingPair;
 
-/// Most intervals that a proof may take. Pairs that can be proved take far fewer.
+/// Largest number of intervals in a proof; beyond it, the result is [`Apart::Unknown`]. Pairs that can be proved take
+/// far fewer.
 const STRETCHES: usize = 20_000;
 
-/// Twice the largest relative error of a gap's lines at a time: of each difference of points, its
-/// products, their sums and their means, ten roundings of 2^-53.
+/// Bound on the relative error of one line's gap at a time. The difference of points, its products, their sums and
+/// their means take ten roundings of 2^-53; the bound is more than twice that. A value below the true error makes
+/// proofs wrong.
 const LOST: f64 = 24.0 / (1u64 << 53) as f64;
 
-/// In intervals shorter than this, directions are computed in rational numbers if those in f64 fail.
+/// In intervals shorter than this share of the motion, directions are computed in rational numbers if the directions in
+/// f64 fail. Rational numbers are slow, and wider intervals are halved instead.
 const SHORT: f64 = 1e-9;
 
-/// More than products lose by underflow.
+/// Bound on the loss of a gap by underflow of its products, in the unit of the points.
 const UNDERFLOW: f64 = 1e-300;
 
-/// What is proved about the distance between a triangle and a core in an interval of time: whether it stays greater
-/// than the radius.
+/// The proved result about an interval of time: whether the distance between a triangle and a core stays greater than
+/// the radius.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Apart {
     /// The distance is greater than the radius at all times.
@@ -50,7 +54,7 @@ pub enum Apart {
 pub enum Last {
     /// The interval includes its last time.
     Included,
-    /// It does not: at its last time the distance may equal the radius.
+    /// The interval excludes its last time: the distance may equal the radius then.
     Excluded,
 }
 
@@ -97,7 +101,7 @@ impl<'a> Motion<'a> {
         let exact_radius = number(radius);
         let size = self.size();
         let is_met = |time: f64| {
-            // The guess rules out most times: its error is far smaller than the margin here.
+            // The approximate distance rules out most times: its error is far smaller than this margin.
             let about = self.nearest(time).distance;
             about <= radius * (1.0 + 1e-6) + size * 1e-9
                 && self.exact.is_within(time, &exact_radius)
@@ -155,7 +159,7 @@ impl<'a> Motion<'a> {
         if open.iter().any(|n| is_shown(&n.to_array().map(number))) {
             return true;
         }
-        // For a sliver, rounding may choose the wrong edge. In rational numbers the edge is right.
+        // For a sliver, rounding in f64 may choose the wrong nearest edge. In rational numbers, the edge is right.
         to - from < SHORT
             && [to, from]
                 .iter()

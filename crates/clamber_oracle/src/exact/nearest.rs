@@ -1,5 +1,5 @@
-//! The nearest features of triangle and core, in f64: a guess that certificates start from. It proves
-//! nothing.
+//! The nearest features of triangle and core, in f64: an approximation that certificates start from, and that proves
+//! nothing by itself.
 
 use glam::DVec3;
 
@@ -8,13 +8,13 @@ use glam::DVec3;
 pub(super) struct Nearest {
     /// Approximate distance.
     pub(super) distance: f64,
-    /// Unit vector from the triangle to the core. It is perpendicular to the nearest features, so that it
-    /// stays a separating direction however near they come. Zero if there is none.
+    /// Unit vector from the triangle to the core. It is perpendicular to the nearest features, so that it stays a
+    /// separating direction however near they come. Zero if no direction is known.
     pub(super) direction: DVec3,
     features: Features,
 }
 
-/// The nearest features, ordered by how many dimensions of them are perpendicular to the direction.
+/// The nearest features, ordered by the number of their dimensions that are perpendicular to the direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Features {
     /// No direction is known.
@@ -27,12 +27,13 @@ enum Features {
     Plane,
 }
 
-/// Distances that differ by less than this share count as equal.
+/// Distances that differ by less than this share count as equal: more than f64 rounds, so that rounding does not choose
+/// the features.
 const EQUAL: f64 = 1e-13;
 
 impl Nearest {
-    /// Takes new features if they are nearer. Of equally near ones, the higher kind wins: if a point is almost
-    /// above a line's end, only the line gives a direction that separates all of it.
+    /// Takes new features if they are nearer. Among equally near features, the higher kind wins: if a point is almost
+    /// above a line's end, only the line gives a direction that separates the whole line from the point.
     fn offer(&mut self, distance: f64, direction: DVec3, features: Features) {
         let features = if direction == DVec3::ZERO {
             Features::None

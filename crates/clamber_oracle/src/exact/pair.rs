@@ -10,7 +10,7 @@ use crate::MovingPair;
 pub struct ExactPair {
     /// Corners of the triangle, at time 0 and at time 1.
     pub corners: [[Exact; 3]; 2],
-    /// Ends of the core, at time 0 and at time 1. Those of a sphere are equal.
+    /// Ends of the core, at time 0 and at time 1. The two ends of a sphere's core are equal.
     pub ends: [[Exact; 2]; 2],
 }
 

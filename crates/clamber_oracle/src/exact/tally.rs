@@ -1,10 +1,10 @@
 use super::verdict::Claim;
 use crate::cases::{Case, Known};
 
-/// Number of false answers whose descriptions are kept.
+/// Number of false claims whose descriptions are kept. More would fill a failed test's message.
 const SHOWN: usize = 3;
 
-/// Counts of answers of sweeps, and of false ones among them.
+/// Counts of the answers of sweeps, and of the false answers among them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tally {
     /// Number of claims.
@@ -13,8 +13,8 @@ pub struct Tally {
     pub hits: usize,
     /// Claims of a time after the first contact, or of no contact where there is one.
     pub late: usize,
-    /// Claims of a contact whose distance exceeds radius plus tolerance or which is a known miss, and which are not
-    /// flagged as undecided.
+    /// Claims of a contact that are not flagged as undecided, although the distance exceeds radius plus tolerance or
+    /// the pair is known to miss.
     pub too_far: usize,
     /// Claims for which it could be neither proved nor refuted that they are late.
     pub unproved: usize,

@@ -16,11 +16,13 @@ pub struct Claim {
 pub struct Verdict {
     /// Whether the pair is apart before the claimed time; without one, whether it is apart from time 0 to 1.
     pub before: Apart,
-    /// True if the distance at the claimed time is at most radius plus tolerance, and for a claim without a time.
+    /// True if the distance at the claimed time is at most radius plus tolerance. Always true for a claim without a
+    /// time.
     pub near: bool,
 }
 
-/// The least tolerance as a share of [`MovingPair::size`], as sweeps document it. A smaller one is raised to this.
+/// The least tolerance as a share of [`MovingPair::size`], as sweeps document it. A smaller tolerance is raised to
+/// this.
 const LEAST_TOLERANCE: f64 = 1.0 / (1u64 << 45) as f64;
 
 impl Claim {

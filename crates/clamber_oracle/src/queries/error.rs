@@ -14,7 +14,7 @@ pub enum QueryFileError {
         /// The system's error.
         source: std::io::Error,
     },
-    /// The path of a file does not tell the kind of its queries.
+    /// The path of a file does not contain the kind of its queries.
     #[error("{}: expected `edge-edge` or `vertex-face` in the path", .file.display())]
     Kind {
         /// Path of the file.
@@ -27,7 +27,7 @@ pub enum QueryFileError {
         file: PathBuf,
         /// Number of the row, from 1.
         line: usize,
-        /// What was expected and found.
+        /// The expected and the found content.
         reason: RowError,
     },
     /// A file ends within a query.
@@ -40,7 +40,7 @@ pub enum QueryFileError {
     },
 }
 
-/// What is wrong with a row.
+/// Why a row is not valid.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum RowError {

@@ -11,14 +11,15 @@ use super::error::{QueryFileError, RowError};
 use super::query::{FileQuery, QueryKind};
 use crate::exact::Exact;
 
-/// Rows of a query.
+/// Number of rows of a query in a file: four points at two times.
 const ROWS: usize = 8;
 
 /// Reads the queries of a file, whose path must contain `edge-edge` or `vertex-face`. The last of these in
 /// the path is the kind of the queries.
 ///
 /// # Errors
-/// [`QueryFileError`] if the file cannot be read, the path contains neither, or a row is not valid.
+/// [`QueryFileError`] if the file cannot be read, the path contains neither kind, a row is not valid, or the file ends
+/// within a query.
 pub fn read_queries(file: &Path) -> Result<Vec<FileQuery>, QueryFileError> {
     let text = std::fs::read_to_string(file).map_err(|source| QueryFileError::Read {
         file: file.to_owned(),
@@ -67,7 +68,7 @@ pub fn parse_queries(file: &Path, text: &str) -> Result<Vec<FileQuery>, QueryFil
 
 fn kind_of(file: &Path) -> Option<QueryKind> {
     let path = file.to_string_lossy();
-    // The last one counts: folders above may have any name.
+    // The last kind in the path counts: folders above may have any name.
     match (path.rfind("edge-edge"), path.rfind("vertex-face")) {
         (None, None) => None,
         (edge, vertex) if edge > vertex => Some(QueryKind::EdgeEdge),
@@ -117,6 +118,7 @@ mod tests {
     use super::*;
     use crate::exact::number;
 
+    /// A row with two fractions, and a number larger than 64 bits.
     const ROW: &str = "1,2,-3,4,162259276829213363391578010288128,1,1\n";
 
     #[test]

@@ -26,10 +26,11 @@ pub struct FileQuery {
     extent: f64,
 }
 
-/// Extents that f32 can hold, with room for the squares that queries compute.
+/// Extents that f32 can hold with room to spare, in the units of the file. A query outside of this range is an error.
 const EXTENTS: std::ops::RangeInclusive<f64> = 1e-30..=1e30;
 
-/// The radius, and the tolerance before rounding, each as a share of a query's extent.
+/// The radius, and the tolerance before rounding, each as a share of a query's extent. It is far larger than
+/// [`ROUNDED`], so a sweep of the rounded points must find every contact.
 const REACH: f64 = 1e-5;
 
 /// Bound on the change of the distance when the points are rounded, as a share of the extent. No coordinate
@@ -82,8 +83,8 @@ impl FileQuery {
         f64::from(self.radius()) + self.extent * REACH
     }
 
-    /// The tolerance for a sweep of the rounded points: [`FileQuery::reach`] less the radius and less what
-    /// rounding may change the distance by.
+    /// The tolerance for a sweep of the rounded points: [`FileQuery::reach`] less the radius, and less the largest
+    /// change of the distance by rounding.
     pub fn tolerance(&self) -> f32 {
         let tolerance = (self.extent * (REACH - ROUNDED)) as f32;
         tolerance.next_down().max(0.0)
@@ -109,7 +110,7 @@ impl FileQuery {
         let round = |p: &Exact| rounded(p).as_vec3();
         let [starts, lasts] = &ends;
         let starts_rounded = starts.each_ref().map(round);
-        // Measured from the rounded start, so that the end too is off by only one rounding.
+        // The displacement is computed from the rounded start, so that the end, too, is off by only one rounding.
         let motion = |k: usize| round(&minus(&lasts[k], &exact(starts_rounded[k])));
         let motions: [Vec3; 2] = [motion(0), motion(1)];
         MovingPair {

@@ -9,16 +9,16 @@ use crate::{RecordError, RecordingInfo};
 /// The metadata of a recording of an arena.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ArenaInfo {
-    /// [`Arena::config_hash`]: it tells whether the arena's configuration has changed since.
+    /// [`Arena::config_hash`], to find out whether the arena's configuration has changed since.
     pub config: u64,
     /// Duration of a tick, seconds.
     pub tick_seconds: f64,
-    /// Names of the creatures, by number, also of those that have left; of 1,000 at most. Others, and those that join later,
-    /// are called `creature N`.
+    /// Names of the first 1,000 creatures, by number, also of creatures that have left. Creatures with higher numbers,
+    /// and those that join later, are called `creature N`.
     pub creatures: Vec<String>,
-    /// Names of the fighters, by number, as those of the creatures.
+    /// Names of the fighters, by number, under the same rules as the creatures' names.
     pub fighters: Vec<String>,
-    /// What the arena was made from, in the caller's own entries: seed, options, files.
+    /// The caller's own entries about what the arena was made from: seed, options, files.
     pub settings: BTreeMap<String, String>,
     /// The version of this crate that wrote the recording. A recorder always writes its own.
     pub version: String,
@@ -53,7 +53,7 @@ impl ArenaInfo {
         name.unwrap_or_else(|| self.free(format!("fighter {number}")))
     }
 
-    /// A name of somebody who joined later, unless it is given to another one.
+    /// A name for a creature or fighter that joined later, with ` (joined)` added while another one has that name.
     fn free(&self, name: String) -> String {
         if self.creatures.contains(&name) || self.fighters.contains(&name) {
             self.free(format!("{name} (joined)"))
@@ -62,8 +62,8 @@ impl ArenaInfo {
         }
     }
 
-    /// Refuses names that are not one each for an arena's creatures and fighters, or that two of them share: frames and
-    /// channels are told apart by them.
+    /// Refuses names if their number does not fit the arena's creatures or fighters, or if a name is used twice or
+    /// reserved: frames and entities of the recording are told apart by these names.
     pub(crate) fn check_names(&self, arena: &Arena) -> Result<(), RecordError> {
         let counts = [
             (
@@ -144,7 +144,8 @@ impl ArenaInfo {
     }
 }
 
-/// How many of those that were given numbers have names of their own.
+/// How many of the first `next` numbers have names of their own: the names of a state with very high numbers would take
+/// too much memory.
 fn named_of(next: u32) -> u32 {
     next.min(1000)
 }

@@ -1,4 +1,4 @@
-//! Events of an arena in words.
+//! Events and orders of an arena as log lines.
 
 use clamber_fight::{Arena, ArenaEvent, CreatureId, FighterId, Order, Weapon, creature_obstacle};
 use clamber_surface::mesh::TriangleId;
@@ -10,13 +10,13 @@ use super::ArenaInfo;
 use crate::names::{ObstacleNames, Part, name_of};
 use crate::views::{creature_line, line, log};
 
-/// What a log line needs to name things.
+/// The data from which log lines are made.
 pub(super) struct Words<'a> {
     pub(super) arena: &'a Arena,
-    /// Those of the last step.
+    /// Orders of the last step.
     pub(super) orders: &'a [Order],
     pub(super) info: &'a ArenaInfo,
-    /// Of creatures, fighters, and of the terrain that the caller has named.
+    /// Names of creatures, fighters, and the terrain that the caller has named.
     pub(super) names: &'a ObstacleNames,
 }
 
@@ -27,7 +27,7 @@ impl Words<'_> {
         let events = events.filter_map(|event| self.line(nanoseconds, event));
         let orders = self.orders.iter().filter_map(|order| {
             let what = match order {
-                // Events tell who has joined.
+                // A creature or fighter that joins has an event of its own.
                 Order::AddFighter { .. } | Order::AddCreature { .. } => return None,
                 order => format!("{order:?}"),
             };
@@ -140,7 +140,7 @@ impl Words<'_> {
         self.info.fighter(fighter.0 as usize)
     }
 
-    /// A creature with the joint that moves a triangle of its skin.
+    /// The name of a creature, with the joint that moves a triangle of its skin.
     fn part(&self, creature: CreatureId, triangle: u64) -> String {
         let name = self.creature(creature);
         let joint = || {
@@ -155,7 +155,8 @@ impl Words<'_> {
         }
     }
 
-    /// What a fighter is on: a creature with the part of it, or other terrain.
+    /// The name of an obstacle. If it is a creature and the fighter is on it, the name includes the part of the
+    /// creature.
     fn obstacle(&self, fighter: FighterId, obstacle: ObstacleId) -> String {
         let name = name_of(self.names, obstacle);
         let on = || {

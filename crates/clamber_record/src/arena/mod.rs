@@ -1,4 +1,4 @@
-//! Recordings of an arena: several creatures and climbers, which fight.
+//! Recordings of an arena, in which several creatures and climbers fight.
 
 mod info;
 mod lines;

@@ -18,24 +18,25 @@ use crate::recorder::create;
 use crate::views::{FigureJoints, SceneryNames};
 use crate::{OfArena, RecordError, RecordOptions, RecorderOf};
 
-/// Writes a recording of an arena: its inputs and fingerprints in each tick, so that
-/// [`ArenaRecording::replay`](super::ArenaRecording::replay) can play it again and compare; a saved state at the
-/// beginning of each chunk, to start from; and for people to look at, creatures, climbers, arrows, brains, and all
-/// events in words.
+/// Writes a recording of an arena.
 ///
-/// It writes on a thread of its own, chunk by chunk, as [`Recorder`](crate::Recorder) does, and what is said there of
-/// files that were cut holds here too.
+/// Each tick has its inputs, orders and fingerprints, which [`ArenaRecording::replay`](super::ArenaRecording::replay)
+/// plays again and compares. Each chunk begins with a saved state, from which a replay can start. Creatures, climbers,
+/// arrows, brains, and log lines of the events are for people to look at.
+///
+/// Like [`Recorder`](crate::Recorder), it writes chunk by chunk on a thread of its own, and a file that was cut is
+/// readable up to its last whole chunk.
 pub type ArenaRecorder<W> = RecorderOf<OfArena, W>;
 
-/// What a recorder of an arena remembers.
+/// Data that an arena's recorder keeps from tick to tick.
 #[derive(Debug)]
 pub struct ArenaMemory {
     info: ArenaInfo,
-    /// Of the creatures that were seen.
+    /// Joints of the creatures that were seen.
     joints: BTreeMap<CreatureId, Arc<FigureJoints>>,
     /// Fighters at the end of the tick recorded last.
     fighters: usize,
-    /// The numbers that the next creature and the next fighter got then: those below have names.
+    /// The numbers of the next creature and the next fighter at the end of that tick. All lower numbers have names.
     named: [u32; 2],
 }
 
@@ -58,9 +59,9 @@ impl<W: Write + Send + 'static> ArenaRecorder<W> {
     /// A recorder that writes to `out`, which it owns. The recording begins with the arena as it is now.
     ///
     /// # Errors
-    /// [`RecordError::OtherArena`] if `info` is of another arena, [`RecordError::Names`] if its names are not one each,
-    /// [`RecordError::TickSeconds`], [`RecordError::Write`] if `out` fails, [`RecordError::Io`] if the thread cannot be
-    /// started.
+    /// [`RecordError::OtherArena`] if `info` is of another arena, [`RecordError::Names`] if its names do not fit the
+    /// arena, [`RecordError::TickSeconds`] if its duration of a tick is not positive or not finite,
+    /// [`RecordError::Write`] if `out` fails, [`RecordError::Io`] if the thread cannot be started.
     pub fn new(
         out: W,
         info: &ArenaInfo,
@@ -90,12 +91,11 @@ impl<W: Write> ArenaRecorder<W> {
     /// Records the arena after a step, with the inputs, the orders and the terrain of that step.
     ///
     /// # Errors
-    /// [`RecordError::Order`] unless it was stepped once since the last call, [`RecordError::Inputs`] for a wrong number of
-    /// inputs, [`RecordError::OtherArena`] if it is another arena. Such a tick is not recorded, but recording can go
-    /// on. [`RecordError::Joined`] if creatures or fighters were added between two ticks other than by an order, as
-    /// before the first step: recording cannot go on then. [`RecordError::Write`] or another error if an earlier chunk
-    /// could not be written, and [`RecordError::Ended`]
-    /// at every call after that.
+    /// [`RecordError::Order`] unless the arena was stepped exactly once since the last call, [`RecordError::Inputs`]
+    /// for a wrong number of inputs, [`RecordError::OtherArena`] if it is another arena. Such a tick is not recorded,
+    /// but recording can go on. [`RecordError::Joined`] if creatures or fighters were added between two ticks, or
+    /// before the first step, other than by an order: recording cannot go on then. [`RecordError::Write`] or another
+    /// error if an earlier chunk could not be written, and [`RecordError::Ended`] at every call after that.
     ///
     /// # Panics
     /// If `out` panicked while an earlier chunk was written: that panic is resumed here.
@@ -134,10 +134,11 @@ impl<W: Write> ArenaRecorder<W> {
         self.chunks.check(arena.tick())
     }
 
-    /// Gives names to who has joined.
+    /// Names the creatures and fighters that have joined.
     fn name_all(&mut self, arena: &Arena) {
         let next = [arena.next_creature().0, arena.next_fighter().0];
-        // Only those who are there: a state may count further than there is memory for names.
+        // Only creatures and fighters that are present get names: the next number of a state may be so high that the
+        // names of all lower numbers do not fit in memory.
         let creatures = arena.creatures().map(|(id, _)| id);
         let creatures = creatures.filter(|id| id.0 >= self.memory.named[0]);
         let creatures = creatures.map(|id| {

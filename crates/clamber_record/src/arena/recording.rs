@@ -4,8 +4,8 @@ use clamber_fight::{ArenaPart, CreatureId, FighterId, Order};
 use crate::messages::{ArenaSnapshot, ArenaTick};
 use crate::{OfArena, RecordError, RecordingOf, topics};
 
-/// The largest message of a tick that is written and read, bytes: an input may take two, and more than a hundred in
-/// memory. 20,000 fighters fit.
+/// The largest message of a tick that is written and read, bytes (2 MiB): enough for 20,000 fighters. It bounds memory:
+/// an input may take two bytes in a message, but more than a hundred in memory.
 pub(crate) const LARGEST_TICK: usize = 2 << 20;
 
 /// A tick of an arena as it was recorded.
@@ -14,7 +14,7 @@ pub(crate) const LARGEST_TICK: usize = 2 << 20;
 pub struct RecordedArenaTick {
     /// Number of the tick.
     pub tick: u64,
-    /// The inputs of the step that led to it, by fighter; none for the first tick of a recording.
+    /// The inputs of the step that led to it, in the order of the fighters; empty for the first tick of a recording.
     pub inputs: Vec<ClimberInput>,
     /// The orders of that step.
     pub orders: Vec<Order>,
@@ -25,7 +25,7 @@ pub struct RecordedArenaTick {
 }
 
 impl RecordedArenaTick {
-    /// What a message says, or what is wrong with it.
+    /// Decodes the message of a tick; `Err` says why it cannot be read.
     pub(crate) fn decode(message: &[u8]) -> Result<Self, String> {
         if message.len() > LARGEST_TICK {
             return Err("a tick of more than 2 MiB".to_owned());
@@ -50,7 +50,7 @@ impl RecordedArenaTick {
         })
     }
 
-    /// The numbers of the fighters at its end, to whom the inputs of the next step belong.
+    /// The numbers of the fighters at its end. The inputs of the next step belong to them, in this order.
     pub fn fighters(&self) -> impl Iterator<Item = usize> + '_ {
         self.parts.iter().filter_map(|(part, _)| match part {
             ArenaPart::Fighter(FighterId(number)) => Some(*number as usize),
@@ -59,7 +59,7 @@ impl RecordedArenaTick {
     }
 }
 
-/// A recording of an arena, by an [`ArenaRecorder`](crate::ArenaRecorder).
+/// A recording of an arena, written by an [`ArenaRecorder`](crate::ArenaRecorder).
 pub type ArenaRecording = RecordingOf<OfArena>;
 
 impl ArenaRecording {

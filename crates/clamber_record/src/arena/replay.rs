@@ -20,8 +20,8 @@ pub struct ArenaDifference {
 }
 
 impl ArenaDifference {
-    /// Compares a recorded tick with the fingerprints of another run's: [`Arena::fingerprint`] and
-    /// [`Arena::part_fingerprints`]. `None` if they are equal. Names are those of `info`.
+    /// Compares a recorded tick with the same tick of another run, given by [`Arena::fingerprint`] and
+    /// [`Arena::part_fingerprints`]. `None` if the fingerprints are equal. The parts get their names from `info`.
     pub fn between(
         info: &ArenaInfo,
         recorded: &RecordedArenaTick,
@@ -33,7 +33,7 @@ impl ArenaDifference {
             ArenaPart::Fighter(id) => info.fighter(id.0 as usize),
             _ => "projectiles or noises".to_owned(),
         };
-        // Also those that are only in one of them.
+        // Parts that only one of the two has differ, too.
         let [ours, theirs] = [parts, &recorded.parts];
         let mut differ: Vec<ArenaPart> = Vec::new();
         for (one, other) in [(ours, theirs), (theirs, ours)] {
@@ -68,26 +68,26 @@ impl fmt::Display for ArenaDifference {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ArenaReplay {
-    /// The tick that it started from.
+    /// The tick that the replay started from.
     pub from: u64,
-    /// Ticks that agree, the first one included.
+    /// Number of ticks that agree, the first one included.
     pub agreed: u64,
     /// The first tick that differs; `None` if all agree.
     pub difference: Option<ArenaDifference>,
 }
 
 impl ArenaRecording {
-    /// Plays a recording again and compares every tick, up to the first one that differs.
+    /// Replays the recording and compares every tick, up to the first one that differs.
     ///
-    /// `arena` is made with the configuration of the recorded one, and knows the kinds of its creatures. It is brought to the
-    /// last saved state at or before the tick `from`, or to the first tick. Then `step` is called with the inputs and
-    /// orders of one tick after another, and steps it over the same terrain. After a gap ([`ArenaRecording::runs`]) it goes
-    /// on from the state that was saved there.
+    /// `arena` must have the configuration of the recorded arena and know the kinds of its creatures. It is restored to
+    /// the last saved state at or before the tick `from`; `None` means the first tick. Then `step` is called with the
+    /// inputs and orders of each later tick in order, and has to step the arena over the same terrain. After a gap
+    /// ([`ArenaRecording::runs`]) the arena is restored to the state that was saved there.
     ///
     /// # Errors
-    /// [`RecordError::OtherArena`] if the arena is another one, [`RecordError::NoTick`] and [`RecordError::NoSnapshot`] if there
-    /// is nothing to start from, [`RecordError::Message`] for a tick that cannot be read, and [`RecordError::Arena`] if
-    /// a state cannot be restored or `step` fails.
+    /// [`RecordError::OtherArena`] if the arena is another one, [`RecordError::NoTick`] and [`RecordError::NoSnapshot`]
+    /// if there is no state to start from, [`RecordError::Message`] for a tick that cannot be read, and
+    /// [`RecordError::Arena`] if a state cannot be restored or `step` fails.
     pub fn replay(
         &self,
         arena: &mut Arena,
@@ -104,7 +104,7 @@ impl ArenaRecording {
         let mut last = from;
         let (agreed, difference) = compare(self.ticks_from(from), |recorded| {
             if recorded.tick > last && recorded.tick - last > 1 {
-                // After a gap it goes on from what was saved there.
+                // After a gap the replay continues from the state that was saved there.
                 let (at, saved) = self.saved(recorded.tick)?;
                 if at != recorded.tick {
                     return Err(RecordError::NoSnapshot(recorded.tick));

@@ -1,4 +1,4 @@
-//! The copy of an arena's tick that is made while the game waits.
+//! The copy of an arena's tick that is made on the game's thread.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -16,7 +16,7 @@ use crate::chunks::TakenTick;
 use crate::messages::{ArenaTick, Brain};
 use crate::views::{FigureJoints, TakenFigure, TakenScenery, brain};
 
-/// A tick of an arena.
+/// A copy of an arena's tick.
 #[derive(Debug)]
 pub struct TakenArena {
     pub(crate) message: ArenaTick,
@@ -27,9 +27,9 @@ pub struct TakenArena {
     pub(crate) fighters: Vec<TakenFighter>,
     pub(crate) projectiles: Vec<ProjectilePlace>,
     pub(crate) scenery: Vec<TakenScenery>,
-    /// [`Arena::to_bytes`].
+    /// [`Arena::to_bytes`] in the first tick of a chunk, otherwise `None`.
     pub(crate) saved: Option<Vec<u8>>,
-    /// How many ticks before this one were left out.
+    /// Number of ticks left out before this one.
     pub(crate) gap: u64,
 }
 
@@ -52,7 +52,7 @@ pub(crate) struct TakenFighter {
     pub(crate) blade: Option<Blade>,
 }
 
-/// What is taken in a tick.
+/// Which views are due in a tick.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Due {
     pub(super) views: bool,
@@ -161,7 +161,7 @@ impl TakenCreature {
     }
 }
 
-/// Waves that have struck all at once in this tick.
+/// Waves that began in this tick and reached their whole radius at once: they are not among [`Creature::waves`].
 fn sudden_waves(creature: &Creature) -> impl Iterator<Item = ActiveWave> + '_ {
     let begun = creature.report().events.iter();
     let begun = begun.filter_map(|event| match event {

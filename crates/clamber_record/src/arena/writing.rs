@@ -24,7 +24,8 @@ use crate::{RecordError, RecordingInfo, topics};
 /// Length of an arrow as it is drawn, metres.
 const ARROW: f64 = 0.8;
 
-/// Brain and skin of so many creatures are written for people to look at: each takes two of a file's 65,535 channels.
+/// Largest number of creatures whose brains and skins are written for people to look at: each takes two of a file's
+/// 65,535 channels.
 const MOST_SEEN: usize = 10_000;
 
 /// Encodes ticks of an arena and writes them.
@@ -36,18 +37,18 @@ pub(super) struct ArenaWriting<W: Write> {
     scene: Channel,
     scenery: Channel,
     log: Channel,
-    /// Brain and skin of each creature that was seen.
+    /// Channels for brain and skin of each creature that was seen.
     creatures: BTreeMap<CreatureId, (Channel, Channel)>,
-    /// The frame of each creature whose skin is drawn.
+    /// Frame of each creature whose skin is drawn.
     drawn: BTreeMap<CreatureId, String>,
-    /// Name of each fighter that was seen, and how its body is drawn.
+    /// Name of each fighter that was there in the last view, and the drawing of its body.
     fighters: BTreeMap<FighterId, (String, Scene)>,
     info: ArenaInfo,
     skin: Skin,
     meshes: Sceneries,
-    /// Kept for its memory.
+    /// Posed positions of a creature's vertices, kept so that their memory is reused.
     positions: Vec<Vec3>,
-    /// Whether the log says that creatures are left out of the views.
+    /// True once the log has said that creatures are left out of the views.
     has_told: bool,
 }
 
@@ -121,7 +122,7 @@ impl<W: Write> ArenaWriting<W> {
             transforms.extend(creature.figure.message(now).transforms);
         }
         let mut entities: Vec<SceneEntity> = Vec::new();
-        // Who has left is drawn no longer.
+        // Fighters that have left are no longer drawn.
         let is_here = |id: &FighterId| taken.fighters.iter().any(|fighter| fighter.id == *id);
         let gone = self.fighters.extract_if(.., |id, _| !is_here(id));
         let deletions = gone.map(|(_, (name, _))| deletion(now, &name)).collect();
@@ -156,7 +157,7 @@ impl<W: Write> ArenaWriting<W> {
         Ok(())
     }
 
-    /// The channels of a creature, which are added when it is seen first; `None` for those beyond [`MOST_SEEN`].
+    /// The channels of a creature, which are added when it is seen first; `None` for creatures beyond [`MOST_SEEN`].
     fn channels(
         &mut self,
         creature: CreatureId,
@@ -227,7 +228,7 @@ impl<W: Write + Send + 'static> WriteTicks<TakenArena, W> for ArenaWriting<W> {
     }
 }
 
-/// A climber's body and its sword.
+/// The entity of a climber's body and its sword.
 fn body(now: u64, name: &str, scene: &Scene, fighter: &TakenFighter) -> SceneEntity {
     let mut entity = entity(now, name);
     scene.body(&fighter.state, &mut entity);
@@ -238,7 +239,7 @@ fn body(now: u64, name: &str, scene: &Scene, fighter: &TakenFighter) -> SceneEnt
     entity
 }
 
-/// Arrows and stones.
+/// The entity of arrows and stones.
 fn arrows(now: u64, projectiles: &[ProjectilePlace]) -> SceneEntity {
     let mut entity = entity(now, PROJECTILES);
     let drawn = projectiles.iter().map(|place| {
@@ -249,7 +250,7 @@ fn arrows(now: u64, projectiles: &[ProjectilePlace]) -> SceneEntity {
     entity
 }
 
-/// What creatures' attacks have let out: shots, waves as far as they have come, and beams.
+/// The entity of the creatures' attacks: shots, waves as far as they have spread, and beams.
 fn attacks(now: u64, creatures: &[TakenCreature]) -> SceneEntity {
     let mut entity = entity(now, ATTACKS);
     for creature in creatures {
@@ -279,7 +280,7 @@ fn attacks(now: u64, creatures: &[TakenCreature]) -> SceneEntity {
 /// An arrow from a place to another one, with the diameters of its shaft and its head.
 fn arrow(from: DVec3, to: DVec3, [shaft, head]: [f64; 2], [r, g, b]: [f64; 3]) -> ArrowPrimitive {
     let (along, length) = ((to - from).normalize_or(DVec3::Z), from.distance(to));
-    // Its arrows point along x: the turn from z after that from x to z.
+    // foxglove's arrows point along +X: the second factor turns +X to +Z, the first turns +Z to `along`.
     let turn = from_z_to(along)
         * glam::DQuat::from_xyzw(
             0.0,

@@ -110,7 +110,7 @@ fn read_back(state: &ClimberState, input: &ClimberInput) -> (ClimberState, Climb
     (read.state.to_climber().unwrap(), read.input.into())
 }
 
-/// A state and an input as text. Two texts are equal if all bits are, and a negative zero has its sign.
+/// A state and an input as text. Texts differ if any bit differs: the text of a negative zero has its sign.
 fn words(state: &ClimberState, input: &ClimberInput) -> String {
     format!("{state:?} {input:?}")
 }

@@ -10,13 +10,13 @@ use crate::messages::{Brain, Named};
 /// A creature's brain in a tick.
 #[derive(Debug)]
 pub(crate) struct TakenBrain {
-    /// `None` if it is not due.
+    /// The brain; `None` if it is not due.
     pub(crate) brain: Option<Brain>,
     lines: Vec<String>,
 }
 
 impl TakenBrain {
-    /// Copies a brain if that is due or its state has changed, and what happened.
+    /// Copies the brain if it is due or its state has changed, and makes log lines of its events and blows.
     pub(crate) fn new(creature: &Creature, is_due: bool) -> Self {
         let events = &creature.report().events;
         let entered = |event: &CreatureEvent| matches!(event, CreatureEvent::Entered { .. });
@@ -35,7 +35,7 @@ impl TakenBrain {
         }
     }
 
-    /// The log lines of what happened.
+    /// The log lines of events and blows.
     pub(crate) fn log(&self, nanoseconds: u64, name: &str) -> impl Iterator<Item = Log> {
         self.lines
             .iter()
@@ -43,7 +43,7 @@ impl TakenBrain {
     }
 }
 
-/// All of a creature's brain.
+/// The brain of a creature, as a message.
 pub(crate) fn brain(creature: &Creature) -> Brain {
     let (brain, state) = (creature.kind().brain(), creature.state());
     let named = |(name, value): (&str, f64)| Named {
@@ -52,7 +52,7 @@ pub(crate) fn brain(creature: &Creature) -> Brain {
     };
     let moods = brain.moods().enumerate();
     let moods = moods.map(|(index, name)| (name, state.brain().mood(brain, index)));
-    // Those that are 0 or infinite are left out below.
+    // Senses that are 0 or not finite are left out below.
     let senses =
         clamber_colossus::Sense::all().map(|sense| (sense.name(), state.senses().get(sense)));
     let own = brain.own_senses().iter().enumerate();
@@ -77,7 +77,7 @@ fn name(creature: &Creature, state: clamber_colossus::brain::StateId) -> &str {
     creature.kind().brain().path(state)
 }
 
-/// What an event says; `None` for steps and markers, of which there are many.
+/// The text of an event; `None` for footfalls and markers, which are frequent.
 pub(crate) fn line(creature: &Creature, event: &CreatureEvent) -> Option<String> {
     Some(match event {
         CreatureEvent::Entered { from, to } => {

@@ -11,7 +11,7 @@ use super::{WORLD, place, rotation, upright, vector};
 #[derive(Debug)]
 pub(crate) struct FigureJoints {
     pub(crate) figure: String,
-    /// For each joint the name of its frame, and its parent's number.
+    /// For each joint, the name of its frame and the index of its parent.
     joints: Vec<(String, Option<usize>)>,
 }
 
@@ -59,8 +59,8 @@ impl TakenFigure {
         }
     }
 
-    /// The transforms of the figure and of its joints, each from its parent, so that viewers join them by lines.
-    /// In metres and without scale.
+    /// The transforms of the figure and of its joints, each relative to its parent, so that viewers draw lines between
+    /// joints. In metres and without scale.
     pub(crate) fn message(&self, nanoseconds: u64) -> FrameTransforms {
         let now = super::timestamp(nanoseconds);
         let frame = |parent: &str, child: &str, translation: DVec3, turn: DQuat| {

@@ -8,13 +8,13 @@ use glam::{DMat3, DQuat, DVec3};
 use super::{CLIMBER, CREATURE, WORLD, Z_UP, place, rotation, timestamp, upright, vector};
 use crate::taken::Taken;
 
-/// Number of transforms before the joints' transforms.
+/// Number of transforms before the joints' transforms: world, creature and climber.
 const OWN: usize = 3;
 
-/// Transforms of creature, climber and joints. The parent of every joint is the creature, not the parent joint,
-/// since these transforms have no scale.
+/// Transforms of creature, climber and joints. The parent of every joint is the creature, not the parent joint, because
+/// these transforms have no scale.
 pub(crate) struct Frames {
-    /// Kept for its names and its memory.
+    /// Updated in place in every tick, so that its names and its memory are reused.
     message: FrameTransforms,
 }
 
@@ -66,7 +66,7 @@ impl Frames {
     }
 }
 
-/// The world in the frame with Z up: a quarter turn about X takes Y up to Z up.
+/// Transform of the world in the frame with Z up: a quarter turn about X, which takes +Y to +Z.
 pub(crate) fn z_up(nanoseconds: u64) -> FrameTransform {
     let half = core::f64::consts::FRAC_1_SQRT_2;
     let turn = DQuat::from_xyzw(half, 0.0, 0.0, half);

@@ -105,13 +105,13 @@ pub(crate) fn log(nanoseconds: u64, level: Level, name: &str, message: String) -
     }
 }
 
-/// Tells that views of something are left out from here on.
+/// The log line that says that views of `what` are left out from here on.
 pub(crate) fn left_out(nanoseconds: u64, what: &str) -> Log {
     let what = format!("{what} are not drawn in this recording; a replay has them all");
     log(nanoseconds, Level::Warning, "recorder", what)
 }
 
-/// Tells that ticks were left out here, if there were some.
+/// The log line that says that ticks were left out here; `None` for 0 ticks.
 pub(crate) fn gap_line(nanoseconds: u64, ticks: u64) -> Option<Log> {
     let what = format!("{ticks} ticks are not recorded here: the disk was too slow");
     (ticks > 0).then(|| log(nanoseconds, Level::Warning, "recorder", what))

@@ -23,26 +23,27 @@ use foxglove::messages::{
 };
 use glam::{DMat3, DQuat, DVec3};
 
-/// Frames and entities of an arena's recording that are neither creatures nor fighters.
+/// Names of frames and entities in an arena's recording that creatures and fighters must not have.
 pub(crate) const RESERVED: [&str; 4] = [WORLD, Z_UP, PROJECTILES, ATTACKS];
 
-/// The frame of world space.
+/// Name of the frame of world space.
 const WORLD: &str = "world";
 
-/// Entities of an arena.
+/// Name of the entity of an arena's arrows and stones.
 pub(crate) const PROJECTILES: &str = "projectiles";
+/// Name of the entity of the creatures' shots, waves and beams.
 pub(crate) const ATTACKS: &str = "attacks";
 
-/// The creature's frame: model space times its scale, in metres, rotated and translated into the world.
+/// Name of the creature's frame: model space times its scale, in metres, rotated and translated into the world.
 const CREATURE: &str = "creature";
 
-/// The climber's frame: its centre, with +Z along its heading.
+/// Name of the climber's frame: its centre, with +Z along its heading.
 const CLIMBER: &str = "climber";
 
-/// A frame with Z up, for viewers that expect that.
+/// Name of the frame with Z up, for viewers that expect Z up.
 const Z_UP: &str = "z_up";
 
-/// Converts a time, which wraps after 136 years.
+/// Converts a time in nanoseconds. It wraps after 136 years.
 pub(crate) fn timestamp(nanoseconds: u64) -> Timestamp {
     let second = 1_000_000_000;
     Timestamp::new((nanoseconds / second) as u32, (nanoseconds % second) as u32)
@@ -90,7 +91,7 @@ fn upright(map: &DMat3) -> DQuat {
     DQuat::from_mat3(&DMat3::from_cols(x, z.cross(x), z))
 }
 
-/// Takes an entity away.
+/// A message that removes an entity.
 pub(crate) fn deletion(nanoseconds: u64, id: &str) -> SceneEntityDeletion {
     SceneEntityDeletion {
         timestamp: Some(timestamp(nanoseconds)),
@@ -99,7 +100,7 @@ pub(crate) fn deletion(nanoseconds: u64, id: &str) -> SceneEntityDeletion {
     }
 }
 
-/// An entity of a scene without anything in it, in the world.
+/// An empty entity of a scene, in the frame of the world.
 pub(crate) fn entity(nanoseconds: u64, id: &str) -> SceneEntity {
     SceneEntity {
         timestamp: Some(timestamp(nanoseconds)),

@@ -9,7 +9,7 @@ use glam::{DQuat, DVec3, Vec3};
 use super::{CREATURE, WORLD, color, pose, rotation, timestamp, vector};
 use crate::taken::{Taken, TakenSkin};
 
-/// Marks a vertex that is not among the points.
+/// Marks a vertex that is not among the points. No point has this index.
 const NOWHERE: u32 = u32::MAX;
 
 /// The view of the scene: triangles that this tick's queries reached, the triangle that supports the climber, and
@@ -17,9 +17,10 @@ const NOWHERE: u32 = u32::MAX;
 pub(crate) struct Scene {
     tick_seconds: f64,
     radius: f64,
-    /// From the climber's lower ball to its upper one, while it is upright.
+    /// Vector from the centre of the climber's lower ball to the centre of its upper ball while it is upright, metres.
     upright: DVec3,
-    /// For each vertex, its index among the points. Kept for its memory; all are [`NOWHERE`] between calls.
+    /// For each vertex, its index among the points; all are [`NOWHERE`] between calls. Kept so that its memory is
+    /// reused.
     places: Vec<u32>,
 }
 
@@ -33,7 +34,7 @@ impl Scene {
         }
     }
 
-    /// `positions` are the posed positions of all vertices of the surface, in model space.
+    /// The message of a tick. `positions` are the posed positions of all vertices of the surface, in model space.
     pub(crate) fn message(
         &mut self,
         nanoseconds: u64,
@@ -52,7 +53,7 @@ impl Scene {
         };
         let mut touched = entity("touched", CREATURE);
         if let Some(triangles) = &skin.triangles {
-            // The skin moves on with the next view.
+            // The triangles are shown until the next view of the skin, which moves on.
             let shown = self.tick_seconds * f64::from(skin.every);
             touched.lifetime = foxglove::messages::Duration::try_from_secs_f64(shown).ok();
             let triangles = triangles.iter().copied();
@@ -61,8 +62,8 @@ impl Scene {
         }
 
         let mut support = entity("support", CREATURE);
-        // The key of a support on another obstacle has another meaning, and may name a triangle by chance. So the
-        // triangle counts only if the contact lies on it.
+        // The key of a support on another obstacle has another meaning, and may equal a triangle's index by chance. So
+        // the triangle is drawn only if the contact lies on it.
         let key = state.support.map(|support| support.attachment.material.key);
         let on = key.filter(|_| contact_is_on(taken, mesh, positions));
         let triangle = on.map(|key| TriangleId(key as u32)).into_iter();
@@ -80,7 +81,7 @@ impl Scene {
         }
     }
 
-    /// Adds the climber's body: a ball, or a capsule while it is upright and has a height.
+    /// Adds the climber's body: a ball, or a capsule if the climber is upright and has a height.
     pub(crate) fn body(&self, state: &ClimberState, climber: &mut SceneEntity) {
         let tint = Some(color_of(state.mode));
         let diameter = 2.0 * self.radius;
@@ -153,7 +154,7 @@ impl Scene {
 }
 
 /// The colour of a mode: green on the feet, amber to red on the hands, blue in the air, grey when knocked down, violet
-/// in the game's own modes.
+/// in the game's custom modes.
 fn color_of(mode: ClimberMode) -> Color {
     match mode {
         ClimberMode::Standing => color(0.2, 0.7, 0.3, 0.9),
@@ -167,7 +168,7 @@ fn color_of(mode: ClimberMode) -> Color {
     }
 }
 
-/// The shortest rotation from +Z to a unit vector; about X where they are opposite.
+/// The shortest rotation from +Z to a unit vector; a half turn about X if the vector is -Z.
 pub(crate) fn from_z_to(to: DVec3) -> DQuat {
     let axis = DVec3::Z.cross(to);
     let real = 1.0 + to.z;

@@ -1,4 +1,4 @@
-//! What is neither climber nor creature: ground, rocks, buildings.
+//! Meshes that are neither climber nor creature, such as ground, rocks and buildings.
 
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -11,17 +11,16 @@ use glam::{DQuat, DVec3, Vec3};
 
 use super::{WORLD, color, left_out, place, pose, rotation, timestamp, vector};
 
-/// What a game passes to a recorder to be looked at: a mesh in the world, at rest or moving, such as the ground or a
-/// rock.
+/// A mesh in the world for a recorder, for people to look at: at rest or moving, such as the ground or a rock.
 #[derive(Clone, Copy, Debug)]
 pub struct SceneryView<'a> {
-    /// Its name, which no joint, figure or other mesh has.
+    /// Its name. No joint, figure or other mesh may have the same name.
     pub name: &'a str,
-    /// Where it is: world space from its own space. Its scale counts only when the mesh is recorded first.
+    /// Transform from the mesh's own space to world space. The scale counts only when the mesh is recorded first.
     pub world_from_own: Similarity,
-    /// Corners of its triangles, metres.
+    /// Corners of its triangles in its own space; metres at a scale of 1.
     pub points: &'a [Vec3],
-    /// Triangles, as indices of points. Triangles with other indices are left out.
+    /// Triangles, as indices of points. Triangles with an index out of range are left out.
     pub triangles: &'a [[u32; 3]],
     /// Red, green, blue, from 0 to 1.
     pub color: [f32; 3],
@@ -41,12 +40,12 @@ pub struct TakenScenery {
     name: Arc<str>,
     position: DVec3,
     rotation: DQuat,
-    /// The first time.
+    /// `Some` in the tick in which the mesh is recorded first.
     shape: Option<Shape>,
 }
 
 impl TakenScenery {
-    /// True if the mesh is new, so that its shape is here and nowhere else.
+    /// True if the mesh is new. Only this tick has its shape.
     pub(crate) fn has_shape(&self) -> bool {
         self.shape.is_some()
     }
@@ -57,7 +56,7 @@ impl TakenScenery {
 pub(crate) struct SceneryNames(HashSet<Arc<str>>);
 
 impl SceneryNames {
-    /// Copies a mesh if it is new, and its place if that is due.
+    /// Copies the shape and the place of a new mesh, or the place of a known one if it is due; otherwise `None`.
     pub(crate) fn take(&mut self, view: &SceneryView<'_>, is_due: bool) -> Option<TakenScenery> {
         let known = self.0.get(view.name).cloned();
         let is_new = known.is_none();
@@ -103,28 +102,30 @@ impl Shape {
     }
 }
 
-/// What a point and an index take in a message, bytes, at most.
+/// Upper bounds of the bytes that a point and an index take in a message.
 const BYTES: [usize; 2] = [29, 5];
 
-/// What a mesh takes beside those and its name.
+/// Bytes that a mesh is assumed to take besides its points, indices and name.
 const FIXED: usize = 256;
 
-/// All meshes that were recorded. A viewer that is wound back shows the last message alone, so each has all of them.
+/// All meshes recorded so far. A viewer that seeks back shows only the last message, so each message has all of them.
 #[derive(Debug, Default)]
 pub(crate) struct Sceneries {
     entities: Vec<SceneEntity>,
-    /// Bytes that they take, about.
+    /// Approximate size of the meshes in a message, bytes.
     bytes: usize,
-    /// True if some were left out, and once the log has told that.
+    /// True once a mesh was left out because of [`MOST`].
     is_full: bool,
+    /// True once the log has said that meshes were left out.
     has_told: bool,
 }
 
-/// All meshes together take no more than this, bytes: more would be written again for each new one.
+/// Largest size of all meshes together, bytes (64 MiB). All of them are written again for each new mesh, so a higher
+/// limit makes files and chunks much larger.
 const MOST: usize = 64 << 20;
 
 impl Sceneries {
-    /// The places of these meshes; `None` without any.
+    /// The transforms of these meshes; `None` if `taken` is empty.
     pub(crate) fn frames(
         &self,
         nanoseconds: u64,
@@ -151,13 +152,13 @@ impl Sceneries {
         })
     }
 
-    /// Tells once that meshes were left out.
+    /// The log line that says that meshes were left out; `Some` only once.
     pub(crate) fn take_line(&mut self, nanoseconds: u64) -> Option<Log> {
         let tells = self.is_full && !std::mem::replace(&mut self.has_told, self.is_full);
         tells.then(|| left_out(nanoseconds, "further meshes"))
     }
 
-    /// All meshes, if there are new ones among these.
+    /// A message with all meshes; `None` if no new one was added.
     pub(crate) fn shapes(
         &mut self,
         nanoseconds: u64,

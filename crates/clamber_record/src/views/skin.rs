@@ -8,20 +8,20 @@ use super::{CREATURE, pose, timestamp};
 /// Bytes of a point: three f32.
 const STRIDE: usize = 12;
 
-/// The view of the skin: vertices as posed, in the creature's frame, metres.
+/// The view of the skin: posed vertices, in the creature's frame, metres.
 pub(crate) struct Skin {
     at_most: usize,
 }
 
 impl Skin {
-    /// A view of at most `at_most` points, or 1, picked at even steps from the vertices.
+    /// A view of at most `at_most` points (0 means 1), picked at even steps from the vertices.
     pub(crate) fn new(at_most: usize) -> Self {
         Self {
             at_most: at_most.max(1),
         }
     }
 
-    /// `positions` are the posed positions of all vertices of the mesh, in model space.
+    /// The message of a tick. `positions` are the posed positions of all vertices of the mesh, in model space.
     pub(crate) fn message(
         &self,
         nanoseconds: u64,

@@ -1,4 +1,4 @@
-//! Arenas with several creatures and climbers are recorded and replayed, cut files too.
+//! Records arenas with several creatures and climbers and replays them, from cut files, too.
 
 #![expect(
     clippy::unwrap_used,
@@ -28,7 +28,9 @@ use foxglove::Decode;
 use foxglove::messages::{PointCloud, SceneUpdate};
 use glam::{DVec3, Vec3};
 
+/// Length of the recordings, ticks: five seconds, for several chunks.
 const TICKS: u64 = 300;
+/// The ground's obstacle id.
 const GROUND: ObstacleId = ObstacleId(7);
 
 fn kind() -> &'static Arc<CreatureKind> {
@@ -36,7 +38,7 @@ fn kind() -> &'static Arc<CreatureKind> {
     KIND.get_or_init(|| Duel::kind().unwrap())
 }
 
-/// Two giants, and three fighters: one on each of them, and one before them.
+/// Two giants and three fighters: one on each giant, and one in front of the second.
 fn arena() -> Arena {
     let mut arena = Arena::new(ArenaConfig::default()).unwrap();
     for x in [0.0, 40.0] {
@@ -135,7 +137,7 @@ fn a_recording_replays_from_its_beginning_and_from_every_second() {
 fn a_difference_names_who_is_different() {
     let recording = ArenaRecording::from_bytes(file().to_vec()).unwrap();
     let mut arena = arena();
-    // Another input of the archer in one tick.
+    // The archer has another input in one tick.
     let replay = recording
         .replay(&mut arena, None, |arena, inputs, orders| {
             let mut inputs = inputs.to_vec();
@@ -152,7 +154,7 @@ fn a_difference_names_who_is_different() {
     assert_eq!(difference.parts.first(), Some(&archer), "{difference}");
     assert!(difference.to_string().contains("not the same archer"));
 
-    // Ground that is a nanometre lower.
+    // The ground is a nanometre lower.
     let replay = recording
         .replay(&mut arena, None, |arena, inputs, _| {
             let ground = HalfSpace::below(-1e-9);
@@ -179,7 +181,7 @@ fn other_arenas_orders_and_recordings_are_refused() {
         "{refused}"
     );
     assert_eq!(other.fingerprint(), before);
-    // An arena that does not know the giant.
+    // This arena does not know the giant's kind.
     let mut other = Arena::new(ArenaConfig::default()).unwrap();
     let refused = recording.replay(&mut other, None, step).unwrap_err();
     let unknown = ArenaError::Kind {
@@ -200,7 +202,7 @@ fn other_arenas_orders_and_recordings_are_refused() {
     assert!(ArenaRecorder::new(Vec::new(), &info, &other, options).is_err());
     let mut recorder = ArenaRecorder::new(Vec::new(), &info, &arena, options).unwrap();
     let idle = [ClimberInput::IDLE; 3];
-    // Not stepped.
+    // The arena was not stepped.
     let again = recorder.tick(&arena, &idle, &[], &[]).unwrap_err();
     assert!(matches!(again, RecordError::Order { .. }), "{again}");
     step(&mut arena, &idle, &[]).unwrap();
@@ -211,7 +213,7 @@ fn other_arenas_orders_and_recordings_are_refused() {
     assert!(matches!(twice, RecordError::Order { .. }), "{twice}");
 }
 
-/// Wherever a file is cut, what is left of it is read up to its last whole chunk, and replays.
+/// A file that is cut or changed anywhere is read up to its last whole chunk, and replays.
 #[test]
 fn files_that_were_cut_or_changed_give_what_is_whole() {
     let whole = file();
@@ -243,7 +245,7 @@ fn files_that_were_cut_or_changed_give_what_is_whole() {
     assert!(read > 200 && most > 200, "{read} {most}");
 }
 
-/// Names of creatures, their joints, fighters and terrain are in the log; what is drawn is there for each of them.
+/// The log has the names of creatures, joints, fighters and terrain, and each creature has its views.
 #[test]
 fn the_views_name_and_hold_everybody() {
     let mut counts: BTreeMap<String, u64> = BTreeMap::new();
@@ -305,7 +307,7 @@ fn the_python_reader_reads_a_cut_file_to_its_last_chunk() {
     }
 }
 
-/// Names that are too few, too many, or shared are refused before anything is written.
+/// Names that are too few, too many, shared or reserved are refused before anything is written.
 #[test]
 fn names_are_one_each() {
     let arena = arena();
@@ -339,14 +341,14 @@ fn names_are_one_each() {
         assert!(matches!(error, RecordError::Names(_)), "{error}");
         assert!(error.to_string().contains(words), "{error}");
     }
-    // Who joins later has a name that nobody has.
+    // A fighter that joins later has a name that no other has.
     let mut info = ArenaInfo::of(&arena);
     info.fighters[0] = "fighter 3".into();
     assert_eq!(info.fighter(3), "fighter 3 (joined)");
     assert_eq!(info.fighter(4), "fighter 4");
 }
 
-/// What a game does to the arena in the step to a tick.
+/// The game's orders in the step to a tick.
 fn orders(tick: u64, arena: &Arena) -> Vec<Order> {
     let (fighter, creature) = (FighterId(1), CreatureId(0));
     let kind = clamber_fight::KindId(kind().fingerprint());
@@ -382,7 +384,7 @@ fn orders(tick: u64, arena: &Arena) -> Vec<Order> {
                 },
             },
         ],
-        // Somebody who has left.
+        // This fighter has left before.
         90 => vec![Order::Hurt {
             fighter: FighterId(0),
             damage: 0.5,
@@ -404,8 +406,8 @@ fn orders(tick: u64, arena: &Arena) -> Vec<Order> {
     }
 }
 
-/// Orders are recorded, and played again from any tick, by an arena that knows nothing but the kind of creature; who
-/// joins and leaves is told by name, with frames and channels of its own.
+/// Orders are recorded, and replayed from any tick by an arena that knows only the kind of the creatures. Creatures and
+/// fighters that join and leave are logged, and a creature that joins has channels of its own.
 #[test]
 fn orders_are_recorded_and_played_again() {
     let mut arena = arena();
@@ -431,7 +433,7 @@ fn orders_are_recorded_and_played_again() {
         assert_eq!(replay.difference, None, "{from:?}");
         assert_eq!(fresh.fingerprint(), arena.fingerprint());
     }
-    // Without them it is another fight, from the tick of the first one on.
+    // Without the orders, a replay differs from the tick of the first order on.
     let replay = recording.replay(&mut arena, None, |arena, inputs, _| {
         step(arena, inputs, &[])
     });
@@ -439,7 +441,7 @@ fn orders_are_recorded_and_played_again() {
     assert_eq!(difference.recorded.tick, 20);
     let part = (ArenaPart::Creature(CreatureId(0)), "creature 0".to_owned());
     assert_eq!(difference.parts.first(), Some(&part));
-    // A fighter more than was recorded.
+    // The replay has one fighter more than was recorded.
     let replay = recording.replay(&mut arena, None, |arena, inputs, orders| {
         let mut orders = orders.to_vec();
         if arena.tick() == 9 {
@@ -487,8 +489,7 @@ fn orders_are_recorded_and_played_again() {
     }
 }
 
-/// An arena whose numbers are far on, as of a forged or a very old state, is recorded in as little memory as another
-/// one.
+/// An arena with very high numbers, as in a forged or very old state, takes no more memory to record than another one.
 #[test]
 fn numbers_that_are_far_on_cost_nothing() {
     let mut arena = arena();
@@ -505,7 +506,7 @@ fn numbers_that_are_far_on_cost_nothing() {
     assert!(recorder.finish().unwrap().len() < 1 << 20);
 }
 
-/// What a giant throws, sends out over the ground and shines is drawn where it is, as long as it is there.
+/// A giant's shots, waves and beams are drawn where they are, as long as they exist.
 #[test]
 fn what_attacks_have_let_out_is_drawn() {
     let mut file: serde_json::Value =
@@ -540,7 +541,7 @@ fn what_attacks_have_let_out_is_drawn() {
     let ground = HalfSpace::below(0.0);
     let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &ground)];
     let inputs = [ClimberInput::IDLE];
-    // Balls: place and radius; beams: from where, and how long.
+    // Balls (shots and waves): place and radius. Beams: start and length.
     let drawn = |arena: &Arena| {
         let giant = arena.creature(CreatureId(0)).unwrap();
         let shots = giant.shots().map(|shot| (shot.place, shot.radius));

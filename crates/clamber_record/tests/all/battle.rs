@@ -18,10 +18,10 @@ use clamber_scenes::giant::giant;
 use clamber_surface::rig::Palette;
 use glam::DVec3;
 
-/// Length of a climb, seconds.
+/// Length of a climb, seconds: the giant has to strike the climber within it for one of 99 seeds.
 const CLIMB: f64 = 90.0;
 
-/// Long enough for a landing and a jump.
+/// Length of a battle, ticks: long enough for a landing and a jump.
 const TICKS: u64 = 300;
 
 fn options(rocks: u32, seed: u64) -> BattleOptions {
@@ -62,7 +62,8 @@ fn a_battle_replays_bit_for_bit() {
     assert!(inputs.filter(|input| input.jump).count() == 1);
 }
 
-/// A climb from the outcrop onto the giant with the first seed with which the giant strikes the climber.
+/// A climb from the outcrop onto the giant, with the first seed with which the climber gets onto the giant and is
+/// struck.
 static CLIMBS: LazyLock<BattleOptions> = LazyLock::new(|| {
     let creature = giant().unwrap();
     let options = |seed| BattleOptions {
@@ -100,14 +101,14 @@ fn a_climb_replays_bit_for_bit() {
     });
     let ticks: Vec<_> = recording.ticks().map(|tick| tick.unwrap()).collect();
     let inputs: Vec<_> = ticks.iter().map(|tick| tick.input).collect();
-    // The blows are the arena's own, and follow from the inputs.
+    // The inputs have no blows: the arena deals them itself, as a result of the inputs.
     assert!(inputs.iter().all(|input| input.blow.is_none()));
     let is_struck = |tick: &RecordedTick| tick.state.hit_points < 1.0;
     assert!(ticks.iter().any(is_struck));
     assert!(inputs.iter().any(|input| input.climb != DVec3::ZERO));
 }
 
-/// What a test reads of a brain's message.
+/// The fields of a brain's message that a test reads.
 #[derive(Clone, PartialEq, prost::Message)]
 struct Brain {
     #[prost(string, tag = "1")]
@@ -199,7 +200,7 @@ fn a_climb_has_the_brain_of_its_giant() {
             )
         })
         .collect();
-    // The first message is of the tick before the first one.
+    // The first message is from before the first step.
     assert_eq!(read[1..], lived);
     let log = messages(topics::LOG).concat();
     let log = String::from_utf8_lossy(&log);
@@ -242,7 +243,7 @@ fn two_recordings_of_a_battle_have_the_same_bytes_but_not_with_another_seed() {
     );
 }
 
-/// Replays a battle with recorded ticks that `change` has modified. Gives the first tick that differs.
+/// Replays a battle with recorded ticks that `change` has modified. Returns the first tick that differs.
 fn first_difference(
     recording: &Recording,
     options: &BattleOptions,
@@ -280,7 +281,7 @@ fn a_changed_tick_is_the_first_difference() {
     let options = options(2, 1);
     let recording = Recording::from_bytes(record(&options)).unwrap();
     assert_eq!(first_difference(&recording, &options, |_| {}), None);
-    // Bit 20 of one input, in the first tick in which the climber walks.
+    // Bit 20 of one input is flipped, in the first tick in which the climber walks.
     let walking = |tick: &RecordedTick| tick.input.walk.x != 0.0;
     let ticks: Vec<RecordedTick> = recording.ticks().map(Result::unwrap).collect();
     let at = ticks.iter().find(|tick| walking(tick)).unwrap().tick;
@@ -344,7 +345,8 @@ fn a_third_party_reader_finds_every_tick_in_order_and_the_metadata() {
         *counts.entry(message.channel.topic.clone()).or_default() += 1;
     }
     assert_eq!(counts[topics::TICK], TICKS + 1);
-    // One message has the joints, one the rocks; the first places the ground.
+    // Each view has a message for the joints and one for the rocks; the first message for the rocks also places the
+    // ground.
     assert_eq!(counts[topics::TRANSFORMS], 2 * (TICKS / 4 + 1));
     assert_eq!(counts[topics::SCENERY], 1);
     assert_eq!(counts[topics::SKIN], TICKS / 4 + 1);

@@ -1,4 +1,4 @@
-//! Reads files that were cut, changed or emptied, and files that are no recordings.
+//! Reads files that were cut, changed or emptied, and files that are not recordings.
 
 #![expect(
     clippy::unwrap_used,
@@ -13,6 +13,7 @@ use clamber_record::{Ending, RecordError, RecordOptions, Recording};
 use clamber_scenes::battle::{Battle, BattleOptions, BattleRecorder};
 use clamber_scenes::giant::giant;
 
+/// Length of the recording, ticks: three seconds, for several chunks.
 const TICKS: u64 = 180;
 
 fn file() -> &'static [u8] {
@@ -35,7 +36,7 @@ fn file() -> &'static [u8] {
     })
 }
 
-/// Reads bytes, and asserts that each tick that is found can be read and is as it was recorded. Gives the number of
+/// Reads bytes, and asserts that each tick that is found can be read and is as it was recorded. Returns the number of
 /// ticks and the ending; `None` if the bytes are refused.
 fn check(bytes: Vec<u8>, what: &str) -> Option<(usize, Ending)> {
     static WHOLE: OnceLock<Recording> = OnceLock::new();
@@ -96,7 +97,7 @@ fn a_flipped_bit_is_noticed_or_harmless() {
     let (mut refused, mut damaged, mut unseen) = (0, 0, 0);
     for round in 0..1500 {
         let mut bytes = whole.to_vec();
-        // A third of the flips is at the front, where the lengths and the metadata are, and a third at the end.
+        // A third of the flips are at the front, where the lengths and the metadata are, and a third at the end.
         let at = match round % 3 {
             0 => rng.usize(..2500),
             1 => whole.len() - 1 - rng.usize(..4000),
@@ -107,7 +108,7 @@ fn a_flipped_bit_is_noticed_or_harmless() {
             None => refused += 1,
             Some((_, Ending::Whole)) => {
                 unseen += 1;
-                // Only bytes after the data may change unseen: they are not read.
+                // Only changes after the data may go unnoticed, because those bytes are not read.
                 assert!(at > whole.len() - 20_000, "byte {at} changed unseen");
             }
             Some(_) => damaged += 1,
@@ -144,7 +145,7 @@ fn files_that_are_no_recordings_are_refused() {
         assert!(matches!(error, RecordError::NotARecording(_)), "{error}");
     };
     no_recording(mcap::MAGIC.to_vec());
-    // Another program's file.
+    // A file of another program.
     let mut foreign = mcap::Writer::new(std::io::Cursor::new(Vec::new())).unwrap();
     foreign
         .add_channel(0, topics_of_others(), "json", &Default::default())
@@ -204,7 +205,7 @@ fn a_writer_that_fails_gives_its_error() {
         }
         told.extend(recorder.finish().err());
         let told: Vec<String> = told.iter().map(ToString::to_string).collect();
-        // The cause is told once, then only that the recording has ended.
+        // The cause is returned once. Later errors only say that the recording has ended.
         let ended = |text: &String| text.contains("has ended");
         assert!(told[0].contains("the disk is full"), "{}", told[0]);
         assert_eq!(told.len() > 1, ticks > 50, "{}", told.len());

@@ -1,5 +1,5 @@
-//! Files as other programs write them: compressed chunks, no checksums; files that are longer than memory, and disks that are
-//! slower than the game.
+//! Files as other programs write them: compressed chunks, no checksums; files that are longer than memory, and disks
+//! that are slower than the game.
 
 #![expect(
     clippy::unwrap_used,
@@ -22,6 +22,7 @@ use clamber_surface::geometry::Similarity;
 use clamber_world::{HalfSpace, Obstacle, ObstacleId};
 use glam::{DVec3, Vec3};
 
+/// Length of the recording, ticks.
 const TICKS: u64 = 200;
 
 pub(crate) fn arena() -> Arena {
@@ -63,12 +64,14 @@ pub(crate) fn file() -> &'static [u8] {
     })
 }
 
-/// Kinds of records.
+/// Kind of MCAP's chunk record.
 pub(crate) const CHUNK: u8 = 0x06;
+/// Kind of MCAP's attachment record.
 const ATTACHMENT: u8 = 0x09;
+/// Kind of MCAP's record at the end of the data.
 pub(crate) const DATA_END: u8 = 0x0f;
 
-/// A file's records up to the end of its data: what each is, and its body.
+/// The kinds and bodies of a file's records, up to the end of its data.
 pub(crate) fn records(file: &[u8]) -> Vec<(u8, Vec<u8>)> {
     let (mut at, mut all) = (8, Vec::new());
     loop {
@@ -92,9 +95,10 @@ pub(crate) fn written(records: &[(u8, Vec<u8>)]) -> Vec<u8> {
     file
 }
 
-/// A chunk's body with its data compressed, with its checksum or without.
+/// A chunk's body with its data compressed as `how` says, with its checksum or without.
 pub(crate) fn compressed(body: &[u8], how: &str, has_checksum: bool) -> Vec<u8> {
-    // Times of its first and last message, size, checksum; name of the compression; length of the data.
+    // A chunk's head has the times of its first and last message, the size and the checksum. The name of the
+    // compression and the length of the data follow.
     let (head, data) = (&body[..28], &body[40..]);
     let data = match how {
         "zstd" => {
@@ -119,7 +123,7 @@ pub(crate) fn compressed(body: &[u8], how: &str, has_checksum: bool) -> Vec<u8> 
     new
 }
 
-/// The file with other chunks, and without the checksum of all data.
+/// The file with its chunks compressed as `how` says, and without the checksum of all data.
 fn rewritten(how: &str, has_checksum: bool) -> Vec<u8> {
     let mut all = records(file());
     for (kind, body) in &mut all {
@@ -159,7 +163,7 @@ fn compressed_chunks_and_files_without_checksums_are_read() {
     }
 }
 
-/// Compressed files that were changed or cut are refused from there on, whatever their headers claim.
+/// Compressed files that were changed or cut are read up to the damage, whatever their headers claim.
 #[test]
 fn damaged_compressed_files_give_what_is_whole() {
     let mut rng = fastrand::Rng::with_seed(11);
@@ -169,7 +173,7 @@ fn damaged_compressed_files_give_what_is_whole() {
         for round in 0..150 {
             let mut file = whole.clone();
             if how == "brotli" {
-                // A compression that nobody knows.
+                // A compression that the reader does not know.
                 let mut all = records(&file);
                 let chunk = all.iter_mut().find(|(kind, _)| *kind == CHUNK).unwrap();
                 chunk.1 = [&chunk.1[..28], &[6, 0, 0, 0], b"brotli", &chunk.1[32..]].concat();
@@ -200,10 +204,12 @@ fn damaged_compressed_files_give_what_is_whole() {
     }
 }
 
-/// A file of more than 4 GiB, most of which is somebody's attachment (and no disk: it is sparse), is read in little memory.
+/// A file of more than 4 GiB is read in little memory. Most of it is an attachment, which takes no disk space, because
+/// the file is sparse.
 #[test]
 #[cfg(target_os = "linux")]
 fn a_file_of_any_length_is_read() {
+    /// Length of the attachment, bytes: it does not fit in 32 bits.
     const LONG: u64 = (1 << 32) + 12_345;
     let path = format!("{}/long.mcap", env!("CARGO_TARGET_TMPDIR"));
     let all = records(&rewritten("zstd", true));
@@ -228,14 +234,14 @@ fn a_file_of_any_length_is_read() {
     let AnyRecording::Arena(recording) = AnyRecording::open(&path).unwrap() else {
         unreachable!("it is an arena's");
     };
-    // Other tests run beside this one.
+    // Other tests run at the same time.
     let most = peak("VmHWM:").saturating_sub(resident);
     assert!(most < 1 << 20, "{most} kB more");
     replays(&recording, "a long file");
     std::fs::remove_file(&path).unwrap();
 }
 
-/// A file on a disk that takes its time.
+/// A file on a slow disk: each write of more than 1,000 bytes takes this long.
 struct Slow(Vec<u8>, std::time::Duration);
 
 impl Write for Slow {
@@ -252,9 +258,11 @@ impl Write for Slow {
     }
 }
 
-/// On a slow disk the game goes on, what is lost is counted and told, and a replay of what is there works from any tick.
+/// On a slow disk the game is not held up, ticks that are lost are counted and logged, and a replay works from any
+/// recorded tick.
 #[test]
 fn a_slow_disk_leaves_gaps_and_never_holds_up_the_game() {
+    /// Length of the run, ticks: 100 chunks of 20, more than the disk can take in that time.
     const TICKS: u64 = 2000;
     let ground = HalfSpace::below(0.0);
     let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(0), &ground)];
@@ -275,7 +283,7 @@ fn a_slow_disk_leaves_gaps_and_never_holds_up_the_game() {
     }
     let dropped = recorder.dropped();
     let file = recorder.finish().unwrap().0;
-    // One that waits does so for most of its 100 chunks; a busy machine may hold it up a few times.
+    // A game that waits would do so for most of its 100 chunks. A busy machine may hold it up a few times.
     assert!(waits < 20, "{waits} waits");
     let recording = ArenaRecording::from_bytes(file.clone()).unwrap();
     assert_eq!(*recording.ending(), Ending::Whole);
@@ -297,15 +305,16 @@ fn a_slow_disk_leaves_gaps_and_never_holds_up_the_game() {
         let ticks = recording.ticks_from(replay.from).count() as u64;
         assert_eq!(replay.agreed, ticks, "from {from}");
     }
-    // Of a tick that is not there nothing can be told.
+    // A replay from a tick in a gap is refused.
     let gap = runs[0].end() + 1;
     let none = recording.replay(&mut self::arena(), Some(gap), |_, _, _| Ok(()));
     assert!(none.is_err());
 }
 
-/// A rock that is there for the first time in a tick which is left out is drawn all the same.
+/// A rock that is recorded first in a tick that is left out is drawn all the same.
 #[test]
 fn what_appears_in_a_gap_is_drawn() {
+    /// Length of the run, ticks: 60 chunks of 20, more than the disk can take in that time.
     const TICKS: u64 = 1200;
     let ground = HalfSpace::below(0.0);
     let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(0), &ground)];
@@ -351,7 +360,7 @@ fn what_appears_in_a_gap_is_drawn() {
     assert_eq!(drawn, names);
 }
 
-/// What is recorded can be read: chunks are ended before they are too large, and what is too large in itself is refused.
+/// Every recording can be read: chunks end before they are too large, and metadata that are too large are refused.
 #[test]
 fn what_is_recorded_is_never_too_large_to_be_read() {
     let ground = HalfSpace::below(0.0);
@@ -363,7 +372,7 @@ fn what_is_recorded_is_never_too_large_to_be_read() {
         ..RecordOptions::waiting()
     };
     let mut recorder = ArenaRecorder::new(Vec::new(), &info, &arena, options).unwrap();
-    // Of 2 MB each; a viewer that is wound back shows the last message alone, so each has all of them.
+    // Each mesh takes 2 MB. A viewer that seeks back shows only the last message, so each message has all meshes.
     let points = vec![Vec3::ONE; 80_000];
     for tick in 0..12 {
         arena.step(&inputs(tick), &terrain).unwrap();
@@ -394,8 +403,8 @@ fn what_is_recorded_is_never_too_large_to_be_read() {
     assert!(error.to_string().contains("16 MiB"), "{error}");
 }
 
-/// A climber's recording with gaps: each run is replayed from what was saved at its beginning, and who replays it as one
-/// is told.
+/// In a climber's recording with gaps, each run is replayed from the snapshot at its beginning. A replay of all ticks
+/// as one run returns an error.
 #[test]
 fn a_climbers_recording_with_gaps_is_replayed_run_by_run() {
     let creature = giant().unwrap();
@@ -438,7 +447,7 @@ fn a_climbers_recording_with_gaps_is_replayed_run_by_run() {
     );
 }
 
-/// A disk that stands still for a while.
+/// A disk whose writes wait while the flag is set.
 #[derive(Clone, Default)]
 struct Stalled(Arc<(AtomicBool, Mutex<Vec<u8>>)>);
 
@@ -456,8 +465,8 @@ impl Write for Stalled {
     }
 }
 
-/// Who saves a snapshot at its start and at a checkpoint, and nothing after its disk has stood still, reads how much is
-/// missing at the end.
+/// A recording with snapshots only before its disk stalls ends at the stall, and reports how many ticks are missing at
+/// the end.
 #[test]
 fn what_is_lost_at_the_end_is_told() {
     let creature = giant().unwrap();
@@ -500,7 +509,7 @@ fn what_is_lost_at_the_end_is_told() {
                 disk.0.0.store(stalls && tick == 60, Ordering::Relaxed);
             }
             if !stalls {
-                // A busy machine is slow, too.
+                // The pause lets the recorder keep up on a busy machine.
                 std::thread::sleep(std::time::Duration::from_millis(2));
             }
         }

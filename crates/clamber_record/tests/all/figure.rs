@@ -100,7 +100,7 @@ fn figures(file: &[u8]) -> Vec<FrameTransforms> {
         .collect()
 }
 
-/// The place of each joint in the world: its transform after those of its parents, as a viewer composes them.
+/// The place of each joint in the world, composed from its transform and its parents' transforms, as in a viewer.
 fn composed(message: &FrameTransforms) -> Vec<DVec3> {
     let frames = message.transforms.iter();
     let frames: HashMap<_, _> = frames.map(|f| (f.child_frame_id.as_str(), f)).collect();
@@ -126,7 +126,7 @@ fn a_viewer_finds_every_joint_where_it_was_drawn() {
     for scale in [1.0, 2.5] {
         let (file, drawn) = record(40, scale);
         let messages = figures(&file);
-        // One in four ticks, as the options say. The first tick that is recorded has the number 1.
+        // One message in four ticks, as the default options say. The first recorded tick has the number 1.
         assert_eq!(messages.len(), 10);
         for (message, drawn) in messages.iter().zip(drawn.iter().skip(3).step_by(4)) {
             let found = composed(message);
@@ -194,8 +194,8 @@ fn a_snapshot_whose_text_cannot_be_made_fails_the_recording() {
     );
 }
 
-/// A snapshot that fails, or panics, ends the recording before its tick: what was recorded before is there, and nobody
-/// takes the file for a whole one.
+/// A snapshot that fails or panics ends the recording before its tick, and the file does not look whole. After a
+/// failure, the ticks before it are there.
 #[test]
 fn a_recording_that_fails_ends_before_the_tick_that_fails() {
     let creature = giant().unwrap();
@@ -228,7 +228,7 @@ fn a_recording_that_fails_ends_before_the_tick_that_fails() {
         let bytes = out.0.lock().unwrap().clone();
         let recording = Recording::from_bytes(bytes).unwrap();
         assert_eq!(*recording.ending(), Ending::Early, "panics: {panics}");
-        // A panic takes the chunk with it.
+        // A panic loses the whole chunk.
         let last = if panics { None } else { Some(29) };
         assert_eq!(recording.last(), last, "panics: {panics}");
     }

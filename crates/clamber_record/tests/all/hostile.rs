@@ -1,5 +1,5 @@
-//! Files that somebody made to do harm, or that other programs have cut: without checksums, so that what they hold is
-//! looked at.
+//! Files that were made to do harm, or that other programs have cut. They have no checksums, so that the reader has to
+//! check their contents.
 
 #![expect(
     clippy::unwrap_used,
@@ -18,10 +18,12 @@ use glam::{DVec3, Vec3};
 
 use crate::elsewhere::{CHUNK, DATA_END, arena, compressed, file, inputs, records, written};
 
+/// Kind of MCAP's channel record.
 const CHANNEL: u8 = 0x04;
+/// Kind of MCAP's message record.
 const MESSAGE: u8 = 0x05;
 
-/// The records of a chunk that is not compressed: what each is, and its body.
+/// The kinds and bodies of the records of a chunk that is not compressed.
 fn inner(chunk: &[u8]) -> Vec<(u8, Vec<u8>)> {
     let (mut data, mut all) = (&chunk[40..], Vec::new());
     while !data.is_empty() {
@@ -32,7 +34,7 @@ fn inner(chunk: &[u8]) -> Vec<(u8, Vec<u8>)> {
     all
 }
 
-/// A chunk of other records, compressed and without a checksum.
+/// A chunk of the given records, compressed and without a checksum.
 fn chunk(records: &[(u8, Vec<u8>)]) -> Vec<u8> {
     let mut data = Vec::new();
     for (kind, body) in records {
@@ -46,7 +48,7 @@ fn chunk(records: &[(u8, Vec<u8>)]) -> Vec<u8> {
     compressed(&plain, "zstd", false)
 }
 
-/// The recording, with its chunks changed, without checksums.
+/// The recording with its chunks changed, without checksums.
 fn with_chunks(change: impl Fn(&mut Vec<Vec<(u8, Vec<u8>)>>)) -> ArenaRecording {
     let mut all = records(file());
     let mut chunks = Vec::new();
@@ -62,7 +64,7 @@ fn with_chunks(change: impl Fn(&mut Vec<Vec<(u8, Vec<u8>)>>)) -> ArenaRecording 
     ArenaRecording::from_bytes(written(&all)).unwrap()
 }
 
-/// The number of the channel of a topic.
+/// The id of a topic's channel.
 fn channel(records: &[(u8, Vec<u8>)], topic: &str) -> [u8; 2] {
     let named = [&(topic.len() as u32).to_le_bytes()[..], topic.as_bytes()].concat();
     let is_it = |(kind, body): &&(u8, Vec<u8>)| *kind == CHANNEL && body[4..].starts_with(&named);
@@ -86,8 +88,8 @@ fn chunks_that_are_written_again_are_read() {
     assert_eq!(recording.len(), 201);
 }
 
-/// Two bytes in a tick make a hundred and more in memory, and two in a file that is compressed next to none: what is
-/// larger than a tick can be is refused.
+/// Two bytes of a tick's message can take more than a hundred bytes in memory, and next to none in a compressed file.
+/// So messages that are larger than a tick can be are refused.
 #[test]
 fn ticks_that_take_much_more_memory_than_the_file_are_refused() {
     for pattern in [&[0x12, 0][..], &[0x22, 0], &[0x1a, 0], &[0x08, 1]] {
@@ -103,7 +105,7 @@ fn ticks_that_take_much_more_memory_than_the_file_are_refused() {
     }
 }
 
-/// Any number of saved states of one tick are read, and the last one counts.
+/// A tick may have any number of saved states; the last one counts.
 #[test]
 fn saved_states_of_one_tick_are_kept_once() {
     let recording = with_chunks(|chunks| {
@@ -117,7 +119,7 @@ fn saved_states_of_one_tick_are_kept_once() {
     assert!(recording.saved(0).unwrap().1.len() > 100);
 }
 
-/// Bits that are flipped anywhere in what a chunk holds, without a checksum: an error or another tick, no panic.
+/// Bits that are flipped anywhere in a chunk without a checksum give an error or other ticks, but no panic.
 #[test]
 fn changed_messages_are_read_or_refused() {
     let mut random = fastrand::Rng::with_seed(3);
@@ -146,7 +148,7 @@ fn changed_messages_are_read_or_refused() {
         }
         let ground = HalfSpace::below(0.0);
         let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(0), &ground)];
-        // What can be restored can be stepped.
+        // A state that can be restored can be stepped.
         let _ = recording.replay(&mut arena(), None, |arena, inputs, orders| {
             let rules = clamber_climber::StepRules::default();
             arena.step_with(inputs, orders, &terrain, &rules).map(drop)
@@ -156,8 +158,8 @@ fn changed_messages_are_read_or_refused() {
     assert!(whole > 20 && damaged > 20, "{whole} {damaged}");
 }
 
-/// A file from which a chunk was taken has a gap, over which a replay goes on from what is saved there; and not from
-/// before it, if nothing is saved.
+/// A file from which a chunk was taken has a gap. A replay continues after it from the state that is saved there, and
+/// fails if there is no saved state.
 #[test]
 fn a_gap_that_somebody_made_is_a_gap() {
     let ground = HalfSpace::below(0.0);
@@ -172,7 +174,7 @@ fn a_gap_that_somebody_made_is_a_gap() {
     let replay = play(&recording).unwrap();
     assert_eq!(replay.difference, None);
     assert_eq!(replay.agreed, recording.len() as u64);
-    // The same, but after the gap there is one tick alone, of which nothing is saved.
+    // The same file, but after the gap there is a single tick, without a saved state.
     let recording = with_chunks(|chunks| {
         drop(chunks.remove(1));
         chunks.truncate(2);
@@ -188,7 +190,7 @@ fn a_gap_that_somebody_made_is_a_gap() {
     assert!(matches!(error, RecordError::NoSnapshot(_)), "{error}");
 }
 
-/// Who is added to the arena behind the recorder's back is told, in the step in which it is seen.
+/// A fighter that was added to the arena without an order is reported at the next tick that is recorded.
 #[test]
 fn who_joins_without_an_order_is_told() {
     let mut arena = clamber_fight::Arena::new(ArenaConfig::default()).unwrap();
@@ -204,7 +206,7 @@ fn who_joins_without_an_order_is_told() {
     assert!(matches!(error, RecordError::Joined), "{error}");
 }
 
-/// Meshes that are more than anybody looks at are left out, and the log says so; the ticks go on.
+/// Meshes beyond the limit are left out, and the recording goes on.
 #[test]
 fn meshes_without_end_do_not_end_the_recording() {
     let mut arena = arena();
@@ -216,7 +218,7 @@ fn meshes_without_end_do_not_end_the_recording() {
     let mut recorder = ArenaRecorder::new(std::io::sink(), &info, &arena, options).unwrap();
     let ground = HalfSpace::below(0.0);
     let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(0), &ground)];
-    // Of 20 MB each: more than a chunk may have, in all.
+    // Each mesh takes 20 MB, so that all of them together are larger than a chunk may be.
     let points = vec![Vec3::ONE; 800_000];
     for tick in 0..30 {
         arena.step(&inputs(tick), &terrain).unwrap();

@@ -1,4 +1,4 @@
-//! Recordings: what is written is read back, by this crate and by others.
+//! Recordings are read back, by this crate and by other programs.
 
 mod arena;
 mod battle;

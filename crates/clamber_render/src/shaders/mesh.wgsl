@@ -1,4 +1,4 @@
-// Meshes in sun, shadow and fog, and the sky behind them. Linear colours; the target is sRGB.
+// Draws meshes in sun, shadow and fog, and the sky behind them. Colours are linear; the target is sRGB.
 
 struct Globals {
     // View space is world space relative to the eye, without rotation.
@@ -6,7 +6,8 @@ struct Globals {
     view_from_clip: mat4x4f,
     shadow_from_view: mat4x4f,
     to_sun: vec4f,
-    // Share of light that a metre of air absorbs; size of a texel of the shadow map; two unused numbers.
+    // The share of light that a metre of air absorbs; the size of a texel of the shadow map, as a share of the map's
+    // side; two unused numbers.
     air: vec4f,
 }
 
@@ -19,22 +20,26 @@ struct Instance {
 @group(1) @binding(0) var shadow_map: texture_depth_2d;
 @group(1) @binding(1) var shadow_sampler: sampler_comparison;
 
+// Light of the sun. Above 1, since tone mapping compresses it.
 const SUN = vec3f(4.2, 3.5, 2.6);
+// Colour of the sky overhead.
 const ZENITH = vec3f(0.14, 0.28, 0.60);
+// Colour of the sky at the horizon.
 const HORIZON = vec3f(0.80, 0.74, 0.62);
-// Texels of the shadow map by which a face is lifted. With less, bands of the face's own shadow show on it.
+// Texels of the shadow map by which a face is lifted for its test. With less, the face shows bands of its own shadow.
 const LIFT = 3.0;
 
 // Texels by which a round face is also lifted along its smooth normal.
 const LIFT_ROUND = 2.0;
 
-// Cosines of the angle between a face and its smooth normal. From the first to the second (37 to 18 degrees) the face
-// goes from flat to part of a round shape. Balls and capsules of two dozen sides have angles up to 15 degrees.
+// Cosines of the angle between a face and its smooth normal. At the first (37 degrees) the face counts as flat, at the
+// second (18 degrees) as part of a round shape. Balls and capsules of two dozen sides have angles up to 15 degrees.
 const ROUND = vec2f(0.80, 0.95);
 
-// Cosines of the angle to the sun between which a face of a round shape goes dark.
+// Cosines of the angle to the sun: at the second, a face of a round shape is fully lit, at the first it is dark.
 const TURNED = vec2f(-0.3, -0.1);
 
+// Light from below, reflected by the ground.
 const BOUNCE = vec3f(0.13, 0.12, 0.08);
 
 struct Vertex {
@@ -99,15 +104,15 @@ fn noise(p: vec3f) -> f32 {
 
 // The share of sunlight that reaches a point of a flat face: the mean over 3 x 3 texels around it.
 //
-// These texels and their filter reach 2 sqrt(2) texels to the side. There the face is nearer to the sun by that
-// length times the tangent of its slope. So the point is lifted along the face's normal by that length times the
-// sine, in front of all these texels. A face of a round shape is lifted along its smooth normal as well, out of the
-// shadow of the next face where the shape turns away. On fur the two normals are hardly related.
+// These texels and their filter reach 2 sqrt(2) texels to the side. There, the face is nearer to the sun by that length
+// times the tangent of its slope. So the point is lifted along the face's normal by that length times the sine of the
+// slope, in front of all these texels. A face of a round shape is lifted along its smooth normal as well, out of the
+// shadow of the next face where the shape turns away. On fur, face and smooth normal are hardly related.
 fn sunlit(view: vec3f, face: vec3f, smooth_normal: vec3f) -> f32 {
     let facing = dot(face, globals.to_sun.xyz);
     let slope = sqrt(max(1.0 - facing * facing, 0.0));
     let round = smoothstep(ROUND.x, ROUND.y, dot(face, smooth_normal));
-    // A flat face that is turned away from the sun is dark, whatever its smooth normal.
+    // A flat face that is turned away from the sun is dark, independent of its smooth normal.
     let flat = smoothstep(0.0, 0.1, facing);
     let turned = mix(flat, smoothstep(TURNED.x, TURNED.y, facing), round);
     if (turned <= 0.0) {
@@ -121,7 +126,8 @@ fn sunlit(view: vec3f, face: vec3f, smooth_normal: vec3f) -> f32 {
     if (any(at < vec2f(0.0)) || any(at > vec2f(1.0)) || lifted.z < 0.0 || lifted.z > 1.0) {
         return turned;
     }
-    // Depth covers four radii of the shadow and the map two, so this is the depth of one texel.
+    // Half a texel's size in the map is one texel in depth: depth covers four radii of the shadow region, the map's
+    // side two.
     let depth = lifted.z - 0.5 * globals.air.y;
     var sum = 0.0;
     for (var x = -1; x <= 1; x++) {
@@ -212,7 +218,7 @@ fn sky_vertex(@builtin(vertex_index) index: u32) -> Ray {
 
 @fragment
 fn sky_fragment(in: Ray) -> @location(0) vec4f {
-    // On the near plane, where depth is 1.
+    // The pixel's point on the near plane, where depth is 1.
     let near = globals.view_from_clip * vec4f(in.ndc, 1.0, 1.0);
     return vec4f(tone(sky(normalize(near.xyz / near.w))), 1.0);
 }

@@ -1,4 +1,5 @@
-// Lines of a width in pixels, and triangles, over the picture. Parts behind a mesh are faint.
+// Draws lines, whose width is in pixels, and triangles over the picture. The opacity is a uniform, so that a second
+// pass draws the parts behind a mesh faintly.
 
 struct Globals {
     clip_from_view: mat4x4f,
@@ -9,7 +10,7 @@ struct Globals {
 @group(0) @binding(0) var<uniform> globals: Globals;
 
 struct Vertex {
-    // Position relative to the eye, and the width of the line, 0 for triangles.
+    // The position relative to the eye, and the width of the line; 0 for triangles.
     @location(0) position: vec4f,
     // The line's other end, and the side of the line: -1 or 1.
     @location(1) other: vec4f,
@@ -21,7 +22,7 @@ struct Seen {
     @location(0) color: vec4f,
 }
 
-// Factor of depth towards the eye, so that overlays on a surface are in front of it.
+// Factor that moves depth towards the eye, so that overlays on a surface are in front of it.
 const NEARER = 1.002;
 
 fn project(position: vec3f) -> vec4f {
@@ -37,7 +38,7 @@ fn vertex(in: Vertex) -> Seen {
     var here = project(in.position.xyz);
     if (in.position.w > 0.0) {
         var there = project(in.other.xyz);
-        // The part behind the eye is cut off at the near plane.
+        // The part of a line behind the eye is cut off at the near plane, metres, as in `camera.rs`.
         let near = 0.1;
         if (here.w < near && there.w > near) {
             here = mix(here, there, (near - here.w) / (there.w - here.w));

@@ -18,7 +18,9 @@ struct Influence {
 @group(0) @binding(3) var<storage, read> palette: array<vec4f>;
 @group(0) @binding(4) var<storage, read_write> posed: array<Vertex>;
 
+// Number of vertices in a workgroup, as in `skinning.rs`.
 const GROUP = 64u;
+// Largest number of workgroups along the first axis, as in `skinning.rs`.
 const ROW = 32768u;
 
 @compute @workgroup_size(GROUP)
@@ -44,7 +46,7 @@ fn skin(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lo
             rows[row] += influence.weight * m.xyz;
         }
     }
-    // Normals are transformed by the cofactors, which is right for stretched skin too.
+    // Normals are transformed by the matrix of cofactors, which is right for stretched skin too.
     let n = vertex.normal.xyz;
     let normal = vec3f(
         dot(cross(rows[1], rows[2]), n),

@@ -1,4 +1,4 @@
-//! The rendered skin agrees with the surface that is queried: on the giant, and on models from files.
+//! The rendered skin agrees with the surface that queries use: on the giant, and on models from files.
 
 #![allow(
     clippy::unwrap_used,
@@ -76,7 +76,9 @@ fn mean(places: &[[f64; 2]]) -> [f64; 2] {
 
 #[test]
 fn the_climber_stands_on_the_creature_and_its_triangle_lies_under_its_foot() {
+    /// Width of the picture, pixels.
     const WIDTH: u32 = 480;
+    /// Height of the picture, pixels.
     const ROWS: u32 = 360;
     let Some(gpu) = common::gpu("contact") else {
         return;
@@ -138,7 +140,7 @@ fn the_climber_stands_on_the_creature_and_its_triangle_lies_under_its_foot() {
         let is_green = |[r, g, b]: [u8; 3]| g > 120 && r < 80 && b < 80;
         let green = find(&renderer.draw(&frame).unwrap(), is_green);
         assert!(green.len() > 20, "{} pixels of the triangle", green.len());
-        // The contact, which is the middle of the picture, lies among them.
+        // The contact, which is in the middle of the picture, lies among the triangle's pixels.
         let middle = [f64::from(WIDTH) / 2.0, f64::from(ROWS) / 2.0];
         let apart = |p: &[f64; 2]| {
             let [x, y] = [p[0] - middle[0], p[1] - middle[1]];

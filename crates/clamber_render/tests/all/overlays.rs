@@ -1,11 +1,13 @@
-//! Tests that overlays have the length and width that they are given.
+//! Tests that arrows and lines are drawn with their length and width.
 
 use crate::common;
 
 use clamber_render::{Camera, Frame, Image, Light, Overlay, Renderer};
 use glam::DVec3;
 
+/// Width of the picture, pixels.
 const WIDTH: u32 = 240;
+/// Height of the picture, pixels.
 const ROWS: u32 = 120;
 
 /// First and last column, and first and last row, of the red pixels.
@@ -23,6 +25,7 @@ fn extent(image: &Image) -> [u32; 4] {
 
 #[test]
 fn arrows_and_lines_have_their_ends_and_width() {
+    /// Colour of the overlay, which [`extent`] looks for.
     const RED: [f32; 4] = [1.0, 0.0, 0.0, 1.0];
     let Some(gpu) = common::gpu("an arrow") else {
         return;

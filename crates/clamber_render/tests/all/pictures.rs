@@ -1,4 +1,4 @@
-//! Tests that meshes, shadows and overlays are where they should be, and that bad input is an error.
+//! Tests that meshes, shadows and overlays are drawn at their right places, and that bad input is an error.
 
 #![allow(
     clippy::unwrap_used,
@@ -16,9 +16,12 @@ use clamber_surface::mesh::Influence;
 use clamber_surface::rig::{JointId, Palette};
 use glam::{DVec3, Vec3};
 
+/// Width of the picture, pixels.
 const WIDTH: u32 = 200;
+/// Height of the picture, pixels.
 const ROWS: u32 = 120;
 
+/// Corners of a square of 2 m around the origin, perpendicular to Z.
 const SQUARE: [Vec3; 4] = [
     Vec3::new(-1.0, -1.0, 0.0),
     Vec3::new(1.0, -1.0, 0.0),

@@ -1,4 +1,4 @@
-//! Tests that faces in the sun are lit evenly, and faces behind a wall are not lit.
+//! Tests that faces in the sun are lit evenly, and that faces behind a wall are not lit.
 
 #![allow(
     clippy::unwrap_used,
@@ -11,6 +11,7 @@ use clamber_render::{Camera, Drawn, Frame, Light, Overlay, RenderMesh, Renderer}
 use clamber_surface::geometry::Similarity;
 use glam::{DVec3, Vec3};
 
+/// Width and height of the picture, pixels.
 const SIDE: u32 = 120;
 
 /// Whether a wall stands between the ground and the sun.

@@ -1,4 +1,4 @@
-//! Tests that the device poses vertices as the collider's skinning does.
+//! Tests that the device poses vertices like the collider's skinning.
 
 use crate::common;
 
@@ -8,6 +8,7 @@ use clamber_surface::mesh::Influence;
 use clamber_surface::rig::{JointId, Palette};
 use glam::{DVec3, Vec3};
 
+/// Number of joints of the test body.
 const JOINTS: usize = 12;
 
 /// Vertices with one to eight influences each.

@@ -1,12 +1,13 @@
 //! Tests that pictures of a battle look like the pictures in `tests/stored`.
 //!
 //! Two pictures look alike if two measures of `image-compare` are above their bounds: the structure (SSIM) at a quarter
-//! of their size, and the colours (root mean square) at a sixteenth. The bounds allow what another driver may change:
-//! edges moved by a pixel, and noise of two levels. They do not allow mistakes: no shadow, another pose, fur or stone
-//! drawn plain, another light, no overlay. The test asserts both with each stored picture.
+//! of their size, and the colours (root mean square) at a sixteenth. The bounds allow the differences of another
+//! driver: edges moved by a pixel, and noise of two levels. They do not allow mistakes: no shadow, another pose, fur or
+//! stone drawn plain, another light, no overlay. The test asserts this for each stored picture: such differences pass,
+//! and such mistakes fail.
 //!
-//! After a failure, the new picture and a picture of the differences are in `tmp` in cargo's target folder. If the new
-//! pictures are right, `CLAMBER_BLESS=1 cargo test -p clamber_render --test all stored` stores them; look at them first.
+//! After a failure, the new picture and a picture of the differences are in `tmp` in cargo's target folder. Look at the
+//! new pictures first. If they are right, `CLAMBER_BLESS=1 cargo test -p clamber_render --test all stored` stores them.
 
 #![allow(
     clippy::unwrap_used,
@@ -31,14 +32,16 @@ use glam::{DAffine3, DVec3};
 use image_compare::prelude::RgbImage;
 use image_compare::{Algorithm, rgb_similarity_structure};
 
+/// Width of a picture, pixels.
 const WIDTH: u32 = 320;
+/// Height of a picture, pixels.
 const ROWS: u32 = 180;
 
-/// The lowest allowed likeness in structure; 1 is the same. Simulated drivers have 0.942 at worst.
+/// The lowest allowed likeness in structure; 1 means equal. Simulated drivers have 0.942 at worst.
 const STRUCTURE: f64 = 0.92;
 
-/// The lowest allowed likeness in colours; 1 is the same. Simulated drivers have 0.995 at worst. Of the mistakes,
-/// stone drawn plain has 0.991, and so has a sun with a tenth more blue.
+/// The lowest allowed likeness in colours; 1 means equal. Simulated drivers have 0.995 at worst. Two mistakes have
+/// 0.991: stone drawn plain, and a sun with a tenth less blue.
 const COLOR: f64 = 0.993;
 
 /// A picture at a tick.
@@ -48,11 +51,12 @@ struct Shot {
     camera: fn(&Battle<'_>, f64) -> Camera,
     /// A joint whose motion is visible.
     joint: &'static str,
-    /// Surface kinds that are near enough that drawing them plain is visible.
+    /// Surface kinds so near the camera that drawing them plain is visible.
     near: &'static [SurfaceKind],
     overlay: bool,
 }
 
+/// The stored pictures, by ascending tick.
 const SHOTS: [Shot; 4] = [
     Shot {
         name: "rider",
@@ -273,7 +277,7 @@ fn load(path: &Path) -> Image {
     }
 }
 
-/// The overlay of a shot, if it is wanted: the skeleton, and shapes around the climber.
+/// The overlay of a shot: the skeleton, and shapes around the climber; empty if it is not wanted.
 fn overlay(battle: &Battle<'_>, wanted: bool) -> Overlay {
     let mut over = Overlay::default();
     if !wanted {
@@ -324,8 +328,8 @@ fn bent(battle: &Battle<'_>, name: &str) -> Palette {
     }))
 }
 
-/// Simulates another driver, and more: each pixel becomes one of its neighbours or stays, with at most two levels of
-/// noise.
+/// Simulates more than the difference of another driver: each pixel stays or becomes one of its neighbours, with at
+/// most two levels of noise.
 fn another_driver(image: &Image) -> Image {
     let mut rng = fastrand::Rng::with_seed(3);
     let mut other = image.clone();
@@ -348,6 +352,7 @@ fn another_driver(image: &Image) -> Image {
 
 /// Simulates a sun with about a tenth less red, green or blue: sky and tone mapping halve the change.
 fn dimmed(image: &Image, channel: usize) -> Image {
+    /// Share of the channel's light that is left.
     const LEFT: f64 = 0.95;
     let mut dimmed = image.clone();
     for pixel in dimmed.pixels.chunks_exact_mut(4) {

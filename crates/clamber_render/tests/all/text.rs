@@ -2,8 +2,11 @@
 
 use clamber_render::{Image, TextSize};
 
+/// Width of the picture, pixels.
 const WIDTH: u32 = 120;
+/// Height of the picture, pixels.
 const ROWS: u32 = 60;
+/// Each channel of the background.
 const GREY: u8 = 200;
 
 fn grey(width: u32, height: u32) -> Image {
@@ -14,7 +17,7 @@ fn grey(width: u32, height: u32) -> Image {
     }
 }
 
-/// What a pixel belongs to.
+/// The object that a pixel shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Shown {
     Picture,

@@ -32,7 +32,7 @@ impl Boxes {
         }
     }
 
-    /// The box around all that are not empty; `None` if all are.
+    /// The box around all boxes that are not empty; `None` if all boxes are empty.
     pub(crate) fn union(&self) -> Option<[[f32; 3]; 2]> {
         let (mut lowest, mut highest) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
         let sides = lowest.iter_mut().zip(&mut highest);
@@ -47,7 +47,7 @@ impl Boxes {
         (lowest[0] <= highest[0]).then_some([lowest, highest])
     }
 
-    /// Spheres about the boxes; of infinite radius about boxes that are empty or too large to be squared.
+    /// Spheres around the boxes. The radius is infinite if a box is empty, or too large to be squared.
     #[cfg_attr(not(unoptimized), inline(always))]
     pub(crate) fn spheres<S: Simd>(&self, simd: S) -> Spheres {
         let zero = f32x8::splat(simd, 0.0);
@@ -56,7 +56,7 @@ impl Boxes {
             let low = f32x8::simd_from(simd, self.low[axis]) * 0.5;
             let high = f32x8::simd_from(simd, self.high[axis]) * 0.5;
             *center = low + high;
-            // Halves of f32 are exact, unless they underflow: the slack is larger.
+            // Halving an f32 is exact unless it underflows. The slack covers that.
             let half = high - low;
             let size = low.abs() + high.abs();
             let half = half + size * SLACK + f32::MIN_POSITIVE;
@@ -73,8 +73,9 @@ impl Boxes {
     }
 }
 
-/// More than the roundings in a radius, and in a centre as a share of the coordinates.
+/// Allowance for rounding, as a share of a sphere's radius, and of the coordinates for its centre. It is more than all
+/// roundings together.
 const SLACK: f32 = 4.0 * f32::EPSILON;
 
-/// 2^-56, the least radius of bounds from the palette. Squares that underflow are smaller.
+/// 2^-56, added to every radius as in bounds from the palette. Squares that underflow are smaller.
 const LEAST_RADIUS: f32 = 1.0 / (1u64 << 56) as f32;

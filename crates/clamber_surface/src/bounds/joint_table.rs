@@ -102,12 +102,11 @@ impl Stretch {
     }
 }
 
-/// More than the relative error of the computed bound: some 90 roundings of 2^-53, of which the eighth root leaves
-/// one eighth.
+/// More than the relative error of the computed bound: some 90 roundings of 2^-53. The eighth root reduces this error
+/// to one eighth.
 const STRETCH_SLACK: f64 = 1e-14;
 
-/// The exponent bits of an f64. On their own, those of a positive number are the largest power of two that is not
-/// above it.
+/// The exponent bits of an f64. A positive number masked by them is the largest power of two that is not above it.
 const EXPONENT: u64 = 0x7ff << 52;
 
 /// This minus the bits of a power of two gives the bits of its inverse.

@@ -43,7 +43,7 @@ pub(crate) enum Bounds {
 }
 
 impl Bounds {
-    /// Changes to spheres, which `write` writes in place.
+    /// Makes the bounds spheres; `write` fills the spheres in place.
     #[cfg_attr(not(unoptimized), inline(always))]
     pub(crate) fn write_spheres(&mut self, write: impl FnOnce(&mut Spheres)) {
         if let Self::Boxes(_) = self {
@@ -54,7 +54,7 @@ impl Bounds {
         }
     }
 
-    /// Spheres that hold the same.
+    /// Spheres that hold everything that these bounds hold.
     #[cfg_attr(not(unoptimized), inline(always))]
     pub(crate) fn spheres<S: Simd>(&self, simd: S) -> Spheres {
         match self {
@@ -78,7 +78,7 @@ impl Bounds {
         in_box && spheres.sphere(lane).contains(p)
     }
 
-    /// True if a lane holds nothing.
+    /// True if the bound of a lane is empty.
     pub(crate) fn is_empty(&self, lane: usize) -> bool {
         match self {
             Self::Spheres(spheres) => spheres.radius[lane] < 0.0,

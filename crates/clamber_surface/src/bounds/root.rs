@@ -84,7 +84,7 @@ fn radius(joint: &Joint, rest: &JointBall, lost: &Lost) -> f64 {
     let (stretch, shift) = (f64::from(joint.stretch), f64::from(joint.shift));
     let lost = lost.relative * (stretch * f64::from(rest.reach) + shift) + lost.underflow;
     let radius = stretch * f64::from(rest.ball.radius) + lost;
-    // Infinity times 0: an infinite stretch of a ball of radius 0.
+    // NaN is infinity times 0: the infinite stretch of a ball of radius 0.
     if radius.is_nan() {
         f64::INFINITY
     } else {

@@ -5,10 +5,10 @@
 //! sphere about c^ has the radius `min(r max s_i + sum e_i d_i, max (d_i + s_i r))`: weight interval and hull about
 //! one centre, over the joints that move the child.
 //!
-//! This radius is then enlarged by what rounding may have lost. Let `u = 2^-24`, let `g(k) = k u / (1 - k u)` be
-//! the largest relative change of a number by k roundings, let m be the number of joints of the child, let n be the
-//! most influences of one of its vertices, and let `D = sum e_i` and `S = max s_i max(|p|, |c|) + max |t_i|`. Then
-//! `|M_i||p| + |t_i| <= sqrt(3) S`; the factor is that of the Frobenius norm. There are three kinds of loss:
+//! This radius is then enlarged to cover the loss by rounding. Let `u = 2^-24`, let `g(k) = k u / (1 - k u)` be the
+//! largest relative change of a number by k roundings, let m be the number of joints of the child, let n be the most
+//! influences of one of its vertices, and let `D = sum e_i` and `S = max s_i max(|p|, |c|) + max |t_i|`. Then
+//! `|M_i||p| + |t_i| <= sqrt(3) S`; the factor comes from the Frobenius norm. There are three kinds of loss:
 //!
 //! **Relative to S** ([`Node::inflation`], precomputed as a factor of S):
 //! - The vertex itself is skinned in f32: `sqrt(3) g(n + 4) S`, see [`crate::skin`].

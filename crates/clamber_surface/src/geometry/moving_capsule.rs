@@ -30,7 +30,7 @@ pub struct MovingCapsule {
     pub radius: f64,
 }
 
-/// Where a moving capsule first touches a triangle.
+/// The first contact of a moving capsule with a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct TriangleTouch {

@@ -1,4 +1,4 @@
-//! Lets a surface and its brute force be asked by `clamber_oracle`.
+//! Lets `clamber_oracle` ask a surface and its brute force.
 
 use clamber_oracle::agreement::{Among, Answers, Cast, Found, Hit, Question, Shape};
 use glam::Vec3;
@@ -10,7 +10,7 @@ use crate::surface::{
     CapsuleHit, CastOptions, ModelSpace, MovingTriangle, SurfaceHit, SweepHit, TargetMotion,
 };
 
-/// Both have the same queries under the same names.
+/// Answers a question. A surface and its brute force have the same queries under the same names.
 macro_rules! answer {
     ($of:expr, $question:expr, $found:expr) => {{
         let (of, found) = ($of, $found);
@@ -196,7 +196,7 @@ impl From<&MovingTriangle> for Found {
     }
 }
 
-/// The triangles of a surface in its current pose, in model space: what `clamber_oracle`'s `Aims` aim at.
+/// The triangles of a surface in its current pose, in model space: the targets of `clamber_oracle`'s `Aims`.
 pub fn posed_triangles(space: ModelSpace<'_>) -> Vec<[Vec3; 3]> {
     let brute_force = BruteForce::new(space);
     let positions = brute_force.positions();

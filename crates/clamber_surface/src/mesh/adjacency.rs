@@ -57,7 +57,7 @@ impl ColliderMesh {
 /// One side of a triangle, from `corner` to the next corner.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct HalfEdge {
-    /// Its two vertices, the smaller first.
+    /// The two vertices of the side, the smaller one first.
     edge: [u32; 2],
     triangle: u32,
     corner: u8,
@@ -112,7 +112,7 @@ fn half_edges(mesh: &ColliderMesh) -> Vec<HalfEdge> {
     found
 }
 
-/// Pairs the half-edges of one edge: first those of opposite directions, then the remaining ones.
+/// Pairs the half-edges of one edge: first half-edges of opposite directions, then the remaining ones.
 fn pairs(around: &[HalfEdge]) -> impl Iterator<Item = [&HalfEdge; 2]> {
     let that = |ascends| around.iter().filter(move |half| half.ascends == ascends);
     let opposite = that(true).count().min(that(false).count());

@@ -1,5 +1,5 @@
-//! Builds a [`ColliderMesh`] from slices: normalises weights, welds vertices, drops unusable triangles, assigns
-//! parts. The steps are those of the import in the thesis that this library grew from (5.4, "Import and setup").
+//! Builds a [`ColliderMesh`] from slices: normalises weights, welds vertices, drops unusable triangles, assigns parts.
+//! The steps follow the import in the thesis that this library grew from (5.4, "Import and setup").
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
@@ -40,7 +40,7 @@ pub struct MeshSource<'a> {
     pub joint_count: usize,
 }
 
-/// What to do with vertices that coincide at rest but have different influences.
+/// Treatment of vertices that coincide at rest but have different influences.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Cracks {
@@ -65,13 +65,13 @@ pub enum Winding {
 /// Options of [`ColliderMesh::build`]. The default suits a well-made file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct BuildOptions {
-    /// What to do with coincident vertices that have different influences.
+    /// Treatment of coincident vertices that have different influences.
     pub cracks: Cracks,
     /// Which side of the triangles is outside.
     pub winding: Winding,
 }
 
-/// What [`ColliderMesh::build`] found and changed.
+/// The findings and changes of [`ColliderMesh::build`].
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct BuildReport {
@@ -299,7 +299,7 @@ fn validate(source: &MeshSource<'_>) -> Result<(), MeshError> {
     Ok(())
 }
 
-/// True for a position within 2^99 of the origin; false if it is not finite. The bound is half of that on skinned
+/// True for a position within 2^99 of the origin; false if it is not finite. The bound is half of the bound on skinned
 /// positions: the identity, whose Frobenius norm is sqrt(3), then passes [`ColliderMesh::check_palette`].
 pub(super) fn is_usable(position: Vec3) -> bool {
     // This comparison is false for NaN.

@@ -86,7 +86,7 @@ pub struct ColliderMesh {
 impl ColliderMesh {
     /// The mesh's id as it is now. Each vertex or triangle that an edit adds changes it; removals and tags do not.
     ///
-    /// Hits and anchors carry the id from when their triangle was built or added. So do not compare theirs with this
+    /// Hits and anchors carry the id from when their triangle was built or added. So do not compare their ids with this
     /// one: ask [`ColliderMesh::continues`].
     pub fn id(&self) -> MeshId {
         self.lineage.id()
@@ -123,8 +123,8 @@ impl ColliderMesh {
         &self.tags
     }
 
-    /// The same mesh with other tags: `tag` is called once for each triangle, in ascending order, removed ones included,
-    /// with the tag that it has. Ids, and points on the one mesh, are those of the other.
+    /// The same mesh with other tags: `tag` is called once for each triangle, in ascending order, removed ones
+    /// included, with the tag that it has. Ids and points of either mesh are valid on both.
     ///
     /// ```
     /// use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource, SurfaceKind, SurfaceTag};

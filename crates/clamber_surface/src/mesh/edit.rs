@@ -2,8 +2,8 @@
 //!
 //! When an edit touches a part, the clusters of the part die, and new clusters, cut from the triangles of the part
 //! alone, are appended. The clusters of other parts stay as they are. When more clusters are dead than living, all
-//! clusters are rebuilt. This bounds the memory that dead clusters take, whatever the number of edits. On average,
-//! the cost of an edit is proportional to the parts that it touches.
+//! clusters are rebuilt. This bounds the memory that dead clusters take, for any number of edits. On average, the cost
+//! of an edit is proportional to the parts that it touches.
 
 use std::collections::BTreeSet;
 

@@ -2,7 +2,7 @@ use thiserror::Error;
 
 use crate::rig::JointId;
 
-/// Why a mesh cannot be posed with a palette. Nothing was changed.
+/// The reason why a mesh rejects a palette. The call changed nothing.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum PaletteError {
@@ -20,7 +20,7 @@ pub enum PaletteError {
     Matrix(JointId),
 }
 
-/// Why a mesh could not be built or edited. Nothing was changed.
+/// The reason why a mesh cannot be built or edited. The call changed nothing.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum MeshError {
@@ -102,11 +102,11 @@ pub enum MeshError {
     /// There are more vertices, influences, triangles or joints than a mesh can have.
     #[error("{found} {what} are more than a mesh can have: {most}")]
     TooLarge {
-        /// What there are too many of, such as `"vertices"`.
+        /// Name of the items that are too many, such as `"vertices"`.
         what: &'static str,
-        /// How many there are.
+        /// Number of these items.
         found: usize,
-        /// How many there can be.
+        /// Largest number of these items that a mesh can have.
         most: usize,
     },
     /// The hierarchy over the clusters is too deep for a query to descend. The hierarchy is balanced, so a mesh

@@ -27,7 +27,7 @@ impl Influences {
         self.pairs.len()
     }
 
-    /// The joints and weights of a vertex; none of a vertex out of range.
+    /// The joints and weights of a vertex; none for a vertex out of range.
     #[inline]
     pub(super) fn of(
         &self,
@@ -52,8 +52,8 @@ impl Influences {
         counts.max().unwrap_or(0)
     }
 
-    /// All weights, then for each vertex the number of influences of the vertices before it, then the number of all
-    /// influences, then all joints: what a mesh's fingerprint is made of.
+    /// The data of a mesh's fingerprint: all weights, then for each vertex the number of influences of the vertices
+    /// before it, then the number of all influences, then all joints.
     pub(super) fn words(&self) -> impl Iterator<Item = u32> + '_ {
         let pairs = (0..self.pairs.len()).map(|index| self.pairs.get(index));
         let weights = pairs.clone().map(|(_, units)| weight_of(units).to_bits());

@@ -26,7 +26,7 @@ pub struct MeshId {
 
 #[cfg(any(test, feature = "oracle"))]
 impl MeshId {
-    /// A number that tells ids apart, in all likelihood.
+    /// A 64-bit hash of the id.
     pub(crate) fn number(self) -> u64 {
         // 2^64 divided by the golden ratio: an odd number with well spread bits.
         self.fingerprint ^ self.added.wrapping_mul(0x9e37_79b9_7f4a_7c15)

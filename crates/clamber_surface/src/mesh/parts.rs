@@ -25,7 +25,7 @@ impl Part {
         }
     }
 
-    /// Updates the vertices from the triangles. `corners` are those of all triangles of the mesh.
+    /// Updates the vertices from the triangles. `corners` holds the corners of all triangles of the mesh.
     fn collect_vertices(&mut self, corners: &[[VertexId; 3]]) {
         self.vertices.clear();
         let own = self.triangles.iter().flat_map(|t| corners[t.index()]);
@@ -36,8 +36,8 @@ impl Part {
 }
 
 /// The joint of every part, and the part of every triangle. Most queries need no more than this, so the lists of a
-/// part's triangles and vertices are made on first use: by edits, by spheres around parts, and by those who ask for
-/// them.
+/// part's triangles and vertices are made on first use: by edits, by spheres around parts, and by callers of
+/// [`Parts::lists`].
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Parts {
     /// By part.
@@ -83,7 +83,7 @@ impl Parts {
         self.of.get(triangle.index()).map(PartId)
     }
 
-    /// All parts with their lists. `corners` are those of all triangles.
+    /// All parts with their lists. `corners` holds the corners of all triangles.
     pub(super) fn lists(&self, corners: &[[VertexId; 3]]) -> &[Part] {
         self.lists.get_or(|| self.list(corners))
     }
@@ -114,8 +114,8 @@ impl Parts {
         }
     }
 
-    /// Adds the next triangle to the part of a joint, and the part if there is none yet. Its lists are out of date
-    /// then, until [`Parts::renew`].
+    /// Adds the next triangle to the part of a joint; adds the part if the joint has none. From then on the part's
+    /// lists are out of date, until [`Parts::renew`].
     pub(super) fn push(&mut self, triangle: TriangleId, joint: JointId) -> PartId {
         let known = self.joints.iter().position(|other| *other == joint);
         let part = known.unwrap_or(self.joints.len());
@@ -132,12 +132,12 @@ impl Parts {
         PartId(part as u32)
     }
 
-    /// Takes a triangle out of its part, whose lists are out of date then, until [`Parts::renew`].
+    /// Takes a triangle out of its part. From then on the part's lists are out of date, until [`Parts::renew`].
     pub(super) fn remove(&mut self, triangle: TriangleId) {
         self.of.remove(triangle.index());
     }
 
-    /// Brings the lists of a part up to date, if there are lists. `corners` are those of all triangles.
+    /// Brings the lists of a part up to date, if there are lists. `corners` holds the corners of all triangles.
     pub(super) fn renew(&mut self, part: PartId, corners: &[[VertexId; 3]]) {
         let of = &self.of;
         if let Some(lists) = self.lists.get_mut() {

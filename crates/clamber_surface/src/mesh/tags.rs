@@ -74,7 +74,7 @@ impl SurfaceTags {
         match (&mut self.0, place) {
             (Kept::Few { places, .. }, Some(place)) => places.push(place),
             (Kept::Many(tags), _) => tags.push(tag),
-            // Without a place there are many.
+            // A tag without a place: there are many different tags.
             (Kept::Few { .. }, None) => {}
         }
     }
@@ -175,7 +175,7 @@ mod tests {
         SurfaceTag::new(SurfaceKind::Fur).with_user(user)
     }
 
-    /// The same as a plain list, whatever is done to both, with few different tags and with many.
+    /// Behaves as a plain list under the same operations, with few different tags and with many.
     #[test]
     fn tags_are_those_of_a_plain_list() {
         let mut rng = fastrand::Rng::with_seed(17);

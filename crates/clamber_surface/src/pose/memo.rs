@@ -9,7 +9,7 @@ use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 /// same time, one waits for the other. Forgetting takes `&mut`, and costs O(values), and one bit per entry if entries
 /// were filled ahead.
 ///
-/// Entries without a value take a pointer each. What was forgotten is written again, the last one first, so few values
+/// Entries without a value take a pointer each. Forgotten values are written again, the last one first, so few values
 /// are in use, and stay in the processor's caches, however many entries there are. With a few more values than were
 /// ever needed, a steady use allocates nothing.
 #[derive(Debug)]
@@ -17,14 +17,15 @@ pub(super) struct Memo<T> {
     entries: Vec<OnceLock<Box<T>>>,
     /// A bit for every entry that was requested, kept only while `ahead`.
     asked: Bits,
-    /// True if entries were filled before anybody requested them. Otherwise those that have a value were requested.
+    /// True if entries were filled before they were requested. If false, every entry with a value was requested.
     ahead: bool,
     shelf: Mutex<Shelf<T>>,
     /// The most values that were ever needed at once.
     most: usize,
 }
 
-/// What a thread needs that fills an entry. Under one lock: taking a lock costs as much as bounding a joint.
+/// The data that a thread needs to fill an entry. It is under one lock: taking a lock costs as much as bounding a
+/// joint.
 #[derive(Debug)]
 struct Shelf<T> {
     /// Forgotten values, and some that were never used.
@@ -34,7 +35,7 @@ struct Shelf<T> {
     filled: Vec<u32>,
 }
 
-/// Number of values that are made ahead, beside an eighth of the most that were ever needed.
+/// Spare values are made in advance: the most that were ever needed, an eighth more, and this number more.
 const AHEAD: usize = 32;
 
 impl<T: Default> Memo<T> {
@@ -60,8 +61,8 @@ impl<T: Default> Memo<T> {
         self.asked.grow(entries);
     }
 
-    /// The value of an entry, and marks it as requested. `compute` writes it over a default or forgotten value, if
-    /// there is none yet.
+    /// The value of an entry, and marks it as requested. If the entry has no value, `compute` writes it over a default
+    /// or forgotten value.
     #[cfg_attr(not(unoptimized), inline(always))]
     pub(super) fn get(&self, entry: usize, compute: impl FnOnce(&mut T)) -> &T {
         if self.ahead {

@@ -1,4 +1,4 @@
-//! One pose of a surface, with caches of what queries have computed: bounds of nodes, skinned clusters.
+//! One pose of a surface, with caches of the values that queries have computed: bounds of nodes, skinned clusters.
 
 mod memo;
 mod whole;
@@ -55,8 +55,8 @@ impl PosedMesh {
         self.clusters.grow(mesh.clusters().clusters.len());
     }
 
-    /// Updates the pose after an edit of the mesh in which some clusters died and others were appended. What was
-    /// computed of the other clusters stays valid. O(joints, clusters edited and clusters skinned).
+    /// Updates the pose after an edit of the mesh in which some clusters died and others were appended. Cached values
+    /// of the other clusters stay valid. O(joints, clusters edited and clusters skinned).
     pub(crate) fn follow(&mut self, mesh: &ColliderMesh, dead: &[u32]) {
         self.clusters.forget(dead);
         self.grow(mesh);

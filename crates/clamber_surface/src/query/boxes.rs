@@ -16,9 +16,9 @@ use crate::pose::PosedMesh;
 pub struct MovingTriangle {
     /// The triangle's id.
     pub triangle: TriangleId,
-    /// Its corners a tick ago.
+    /// The corners a tick ago.
     pub previous: [Vec3; 3],
-    /// Its corners now.
+    /// The corners now.
     pub current: [Vec3; 3],
 }
 
@@ -43,7 +43,7 @@ impl ModelSpace<'_> {
     /// Also visits some triangles that stay outside although their [bounding box](MovingTriangle::meets_box) enters.
     /// The order is unspecified.
     ///
-    /// Nothing is visited if `low` is above `high` on any axis, or if a coordinate is not finite.
+    /// Visits no triangle if `low` is above `high` on any axis, or if a coordinate is not finite.
     pub fn visit_box(&self, low: Vec3, high: Vec3, mut visit: impl FnMut(&MovingTriangle)) {
         let instance = self.instance;
         let poses = [&instance.previous, &instance.current];

@@ -52,13 +52,13 @@ pub struct CastOptions {
     /// `None` stands for 1/4,000 of the shape's radius, or for 2^-23 of the mesh's radius (the spacing of f32 at that
     /// size) if that is larger. Such a gap is too small to see.
     pub tolerance: Option<f64>,
-    /// The part of the tick that the cast takes, from which share of it to which, 0..=1 and in order; the whole tick by
-    /// default. Skin that [moves](TargetMotion::Moving) goes this part of its way meanwhile. What moves on an arc is
-    /// cast in several parts, one after the other. Times of contacts are shares of the cast, not of the tick. A cast
-    /// with another order or NaN finds nothing.
+    /// The part of the tick that the cast takes: the shares of the tick at which it begins and ends, 0..=1 and in
+    /// order; the whole tick by default. Skin that [moves](TargetMotion::Moving) covers this part of its motion
+    /// meanwhile. To cast on an arc, cast several parts, one after the other. Times of contacts are shares of the cast,
+    /// not of the tick. A cast with another order or NaN finds nothing.
     pub during: [f64; 2],
     /// Ignores the triangles that the shape overlaps at the start ([`SweepHit::started_inside`]): for a body that is
-    /// pressed into skin, and asks what else is in its way. Costs less than to reject these contacts one by one.
+    /// pressed into skin and looks for other obstacles on its way. Costs less than rejecting these contacts one by one.
     pub past_overlaps: bool,
 }
 
@@ -94,7 +94,8 @@ impl CastOptions {
         }
     }
 
-    /// The same options, past what the shape overlaps at the start: see [`CastOptions::past_overlaps`].
+    /// The same options, without the triangles that the shape overlaps at the start: see
+    /// [`CastOptions::past_overlaps`].
     #[must_use]
     pub const fn past_overlaps(self) -> Self {
         Self {
@@ -146,7 +147,7 @@ impl ModelSpace<'_> {
     /// smaller triangle id. A capsule that overlaps the skin at the start is in contact at time 0 with the triangle
     /// nearest to its segment.
     ///
-    /// Nothing is found if a displacement is not finite, or if the tolerance is negative or not finite.
+    /// Finds no contact if a displacement is not finite, or if the tolerance is negative or not finite.
     pub fn cast_capsule(
         &self,
         capsule: &Capsule,
@@ -240,7 +241,7 @@ impl Instance {
     ) -> Option<SweepHit> {
         let sweep = &near(poses, sweep)?;
         let mut earliest = Earliest::default();
-        // The triangle that is touched by then may be one that `counts` rejects.
+        // The touch of a vertex may be a contact that `counts` rejects.
         let every_one_counts = counts.is_none() && !sweep.past_overlaps;
         self.visit_contacts::<true, N, P>(poses, sweep, every_one_counts, &mut |first| {
             earliest.offer_if(first, |first| {
@@ -270,9 +271,9 @@ impl Instance {
         }
     }
 
-    /// Calls `visit` with the first contact of every triangle that is touched before contacts stop mattering. `visit`
-    /// returns the last time that still matters. If `every_one_counts`, nothing matters that is later than a touch of a
-    /// vertex.
+    /// Calls `visit` with the first contact of every triangle that is touched up to the limit of time. `visit` returns
+    /// the new limit: the last time that still matters. If `every_one_counts`, a touch of a vertex lowers the limit as
+    /// well.
     fn visit_contacts<const EARLIEST_FIRST: bool, const N: usize, const P: usize>(
         &self,
         poses: [&PosedMesh; P],
@@ -296,7 +297,7 @@ impl Instance {
     }
 }
 
-/// Most clusters that are set aside until all touches of vertices are known.
+/// The largest number of clusters that are set aside until the touches of their vertices are known.
 const ASIDE: usize = 16;
 
 /// The exact tests of a cast.
@@ -312,8 +313,8 @@ struct Tests<'a, const N: usize, const P: usize> {
 }
 
 impl<const N: usize, const P: usize> Tests<'_, N, P> {
-    /// Descends to the clusters on the way. If `every_one_counts`, they are set aside first, and their vertices tell by
-    /// when something is touched: few triangles are then left for the exact test.
+    /// Descends to the clusters on the sweep's path. If `every_one_counts`, they are set aside first, and the touches
+    /// of their vertices lower the limit: few triangles are then left for the exact test.
     #[cfg_attr(not(unoptimized), inline(always))]
     fn descend<S: Simd, const EARLIEST_FIRST: bool>(&mut self, simd: S, every_one_counts: bool) {
         let (instance, poses, sweep) = (self.instance, self.poses, self.sweep);
@@ -355,7 +356,7 @@ impl<const N: usize, const P: usize> Tests<'_, N, P> {
         }
     }
 
-    /// Tests the triangles of some clusters, those of several clusters together.
+    /// Tests the triangles of some clusters. Triangles of several clusters are tested together.
     fn test(&mut self, clusters: &[u32]) {
         let level = self.instance.simd_level.level();
         dispatch!(level, simd => self.test_on(simd, clusters));

@@ -44,8 +44,8 @@ impl<'a, const P: usize> PosedCluster<'a, P> {
         })
     }
 
-    /// The same for a part of the motion: the cluster moves from where it is at the start of the span to where it is at
-    /// its end. `ends` takes its positions there, if the span is not the whole motion.
+    /// The same cluster over a span, a part of the motion. `ends` stores its positions at both ends of the span, if the
+    /// span is not the whole motion.
     #[cfg_attr(not(unoptimized), inline(always))]
     pub(super) fn during<'b>(
         self,
@@ -118,7 +118,7 @@ impl<'a, const P: usize> PosedCluster<'a, P> {
             square += apart * apart;
         }
         let reach = distance * (1.0 + SLACK);
-        // Squares that overflow are beyond any reach whose square does not; so are those of NaN, which do not occur.
+        // A square that overflows is beyond any reach whose square does not overflow. NaN does not occur.
         square <= reach * reach || square <= f32::MIN_POSITIVE
     }
 
@@ -140,7 +140,7 @@ impl<'a, const P: usize> PosedCluster<'a, P> {
     }
 
     /// The given triangles that have a corner in a probe before it moves, by more than rounding. The exact test would
-    /// find them within the probe too, since its distances exceed that of a corner by rounding at most.
+    /// find them within the probe too, since its distance exceeds the distance of a corner by rounding at most.
     #[cfg_attr(not(unoptimized), inline(always))]
     pub(super) fn surely_within<S: Simd, const N: usize>(
         &self,

@@ -90,8 +90,8 @@ impl FoundPoint {
     }
 }
 
-/// Orders lengths, none of which is NaN. -0 equals 0: the sign of a distance of zero depends on the order of a
-/// triangle's corners.
+/// Orders lengths that are not NaN. -0 equals 0: the sign of a distance of zero depends on the order of a triangle's
+/// corners.
 fn by_length(a: f64, b: f64) -> Ordering {
     a.partial_cmp(&b).unwrap_or(Ordering::Equal)
 }
@@ -107,7 +107,7 @@ pub(super) fn sort_by_distance(hits: &mut [SurfaceHit]) {
 /// tested does not matter.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Best {
-    /// With the triangle's part and corners.
+    /// The nearest point, with the part and the corners of its triangle.
     nearest: Option<(FoundPoint, PartId, [Vec3; 3])>,
     limit: f64,
 }
@@ -186,7 +186,7 @@ impl Earliest {
         self.offer_if(candidate, |_| true);
     }
 
-    /// Offers a contact that `counts` accepts. It is asked only about one that would be the earliest.
+    /// Takes a contact if it would be the earliest and `counts` accepts it. Calls `counts` only for such a contact.
     pub(super) fn offer_if(&mut self, candidate: First, counts: impl FnOnce(&First) -> bool) {
         if self.first.is_none_or(|first| candidate.precedes(&first)) && counts(&candidate) {
             self.first = Some(candidate);
@@ -284,7 +284,7 @@ impl Instance {
         let outward = outward.map(|n| if self.is_mirrored(part) { -n } else { n });
         let core = sweep.core.nearest(contact.time, point);
         let (ab, ac) = (b - a, c - a);
-        // At least the lengths, which are seldom needed.
+        // An upper bound of the lengths. The lengths themselves are seldom needed.
         let most = taxicab(ab) + taxicab(ac) + taxicab(core);
         let is_apart = contact.distance > most * ALL_BUT_TOUCHING || {
             let size = ab.length() + ac.length() + core.length();

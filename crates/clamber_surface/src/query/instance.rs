@@ -9,7 +9,7 @@ use crate::mesh::{ColliderMesh, PartId, TriangleId, VertexId};
 use crate::pose::PosedMesh;
 use crate::simd::SimdLevel;
 
-/// A mesh with its current and its previous pose, and which parts and triangles are hidden: all that queries read.
+/// A mesh with its current and its previous pose, and its hidden parts and triangles: all data that queries read.
 pub(crate) struct Instance {
     pub(crate) mesh: Arc<ColliderMesh>,
     pub(crate) current: PosedMesh,
@@ -23,7 +23,7 @@ pub(crate) struct Instance {
     pub(crate) triangle_hidden: Vec<bool>,
     /// Number of triangles that are hidden.
     pub(crate) hidden_triangles: usize,
-    /// Hash of what is hidden: of a number for each such triangle and part, all of them combined by exclusive or. So it
+    /// Hash of the hidden triangles and parts: a number for each of them, all combined by exclusive or. So the hash
     /// does not depend on the order of changes.
     pub(crate) mask: u64,
     pub(crate) triangles_tested: AtomicU64,

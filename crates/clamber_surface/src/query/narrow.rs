@@ -19,7 +19,7 @@ use crate::skin::ClusterPositions;
 pub(super) struct Survivors([u32; MAX_TRIANGLES / BLOCK]);
 
 impl Survivors {
-    /// Drops all from `count` on.
+    /// Drops all triangles from number `count` on.
     #[cfg_attr(not(unoptimized), inline(always))]
     pub(super) fn truncate(&mut self, count: usize) {
         for (block, bits) in self.0.iter_mut().enumerate() {
@@ -30,7 +30,7 @@ impl Survivors {
         }
     }
 
-    /// Keeps those that `keeps` accepts.
+    /// Keeps the triangles that `keeps` accepts.
     #[inline(never)]
     pub(super) fn retain(&mut self, keeps: impl Fn(usize) -> bool) {
         for triangle in (*self).iter() {
@@ -40,7 +40,7 @@ impl Survivors {
         }
     }
 
-    /// Those that are in both.
+    /// The triangles that are in both.
     #[cfg_attr(not(unoptimized), inline(always))]
     pub(super) fn and(mut self, other: Self) -> Self {
         for (bits, other) in self.0.iter_mut().zip(other.0) {
@@ -49,7 +49,7 @@ impl Survivors {
         self
     }
 
-    /// Those that are not in `other`.
+    /// The triangles that are not in `other`.
     #[cfg_attr(not(unoptimized), inline(always))]
     pub(super) fn without(mut self, other: Self) -> Self {
         for (bits, other) in self.0.iter_mut().zip(other.0) {

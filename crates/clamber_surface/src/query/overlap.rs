@@ -145,8 +145,8 @@ impl Instance {
         self.count_tested(tested, 0);
     }
 
-    /// Calls `visit` with those of some triangles that are within the probe by the exact test, and with their corners.
-    /// Returns how many were tested.
+    /// Calls `visit` with each of the given triangles that is within the probe by the exact test, and with its corners.
+    /// Returns the number of tested triangles.
     #[cfg_attr(not(unoptimized), inline(always))]
     fn each_within<const N: usize>(
         &self,

@@ -13,12 +13,14 @@ use crate::geometry::{round_to_f32, widen};
 /// Number of planes: as many as a code has bits.
 pub(super) const PLANES: usize = 8;
 
-/// Above this size, products overflow, and nothing is ruled out.
+/// Largest size of the lengths involved. Above it, products overflow, and no triangle is ruled out.
 const LARGEST: f32 = 1e30;
 
-/// Cosine and sine of the angles between the planes' normals and the direction to the cluster: 25 degrees, for a sphere
-/// that rests on flat skin, and 55, for a sphere in a corner.
+/// Cosine and sine of the angle between the normals of the near planes and the direction to the cluster: 25 degrees,
+/// for a sphere that rests on flat skin.
 const NEAR: [f32; 2] = [0.906_307_8, 0.422_618_26];
+
+/// The same of the far planes: 55 degrees, for a sphere in a corner.
 const FAR: [f32; 2] = [0.573_576_45, 0.819_152];
 
 /// Half-spaces `normal . (p - origin) > limit` that contain nothing of a probe. For vertices that move (P = 2) there is

@@ -155,9 +155,9 @@ impl<const N: usize> Probe<N> {
 pub(super) struct Sweep<const N: usize> {
     pub(super) probe: Probe<N>,
     pub(super) core: MovingCore<N>,
-    /// The part of the tick that it takes.
+    /// The part of the tick that the sweep takes.
     pub(super) span: Span,
-    /// If true, triangles that it overlaps at the start do not count.
+    /// If true, triangles that the sweep overlaps at the start do not count.
     pub(super) past_overlaps: bool,
 }
 
@@ -180,7 +180,7 @@ impl<const N: usize> Sweep<N> {
         contact.time == 0.0 && contact.distance <= self.core.radius
     }
 
-    /// False for contacts that it ignores.
+    /// False for contacts that the sweep ignores.
     pub(super) fn counts(&self, contact: &Contact) -> bool {
         !(self.past_overlaps && self.started_inside(contact))
     }

@@ -7,18 +7,19 @@ use crate::mesh::clusters::ROW;
 use crate::mesh::hierarchy::LANES;
 use crate::skin::ClusterPositions;
 
-/// From which share of the tick to which, 0..=1.
+/// A part of the tick, from one share of it to another, 0..=1 and in order.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Span {
     from: f32,
     to: f32,
 }
 
-/// Allowance for rounding in a sphere between two others, as a share of the coordinates: that of a vertex and that of
-/// the centre are each off by at most three halves of [`f32::EPSILON`] of both ends, along each of three axes.
+/// Allowance for rounding in a sphere between two others, as a share of the coordinates. The positions of a vertex and
+/// of the centre are each off by at most three halves of [`f32::EPSILON`] of both ends, along each of three axes.
 const SLACK: f32 = 16.0 * f32::EPSILON;
 
 impl Span {
+    /// The whole tick.
     pub(super) const WHOLE: Self = Self { from: 0.0, to: 1.0 };
 
     /// `None` unless both shares are from 0 to 1 and in order.
@@ -34,7 +35,8 @@ impl Span {
         *self == Self::WHOLE
     }
 
-    /// Where a triangle that moves from the first corners to the last is at both ends of the span.
+    /// The corners, at both ends of the span, of a triangle that moves from the first corners to the last over the
+    /// tick.
     pub(super) fn corners(&self, [first, last]: [[Vec3; 3]; 2]) -> [[Vec3; 3]; 2] {
         [self.from, self.to].map(|share| {
             let mut corners = first;
@@ -60,8 +62,8 @@ impl Span {
         }
     }
 
-    /// Replaces spheres at both ends of the tick by those at both ends of the span. Where the contents of a sphere are
-    /// at a share of their way, they lie in the sphere at this share of its own.
+    /// Replaces spheres at both ends of the tick by those at both ends of the span. At any share of the motion, the
+    /// contents of a sphere lie in the sphere interpolated at that share.
     pub(super) fn spheres(&self, [first, last]: [&mut Spheres; 2]) {
         for lane in 0..LANES {
             let size =

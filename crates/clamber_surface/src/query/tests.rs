@@ -63,7 +63,7 @@ fn queries_and_skinning_agree_in_any_pose_at_every_simd_level() {
         Spread::Constant,
     ];
     let mut found = 0;
-    // Steps of 5 are through all counts of joints and all spreads too.
+    // Steps of 5 also go through all counts of joints and all spreads.
     for case in (0..120).step_by(120 / cases(120)) {
         let (mesh, _) = creature(&mut rng, 1 + case % 16, spreads[case / 16 % 5]);
         let mesh = Arc::new(mesh);
@@ -87,7 +87,7 @@ fn queries_and_skinning_agree_in_any_pose_at_every_simd_level() {
     assert!(found > cases(100_000), "{found} hits");
 }
 
-/// Rounding of numbers this small is no share of them.
+/// The rounding error of numbers this small is not a share of their size.
 #[test]
 fn queries_agree_on_skin_that_is_smaller_than_normal_numbers() {
     let mut rng = fastrand::Rng::with_seed(70);

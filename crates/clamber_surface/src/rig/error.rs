@@ -2,7 +2,7 @@ use thiserror::Error;
 
 use super::JointId;
 
-/// Why a skeleton, pose or clip was refused. Nothing was changed.
+/// The reason why a skeleton, pose or clip was rejected. The call changed nothing.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum RigError {
@@ -22,7 +22,7 @@ pub enum RigError {
     /// A transform, matrix, key frame, time or blend weight is infinite or NaN, or a rotation has length zero.
     #[error("{what} is not finite, or has a rotation of length zero")]
     NotFinite {
-        /// Which value.
+        /// Name of the value.
         what: String,
     },
     /// A pose does not have as many joints as the skeleton or the other pose, or a stored palette does not have one
@@ -60,10 +60,10 @@ pub enum RigError {
         /// Index of the key frame that has the earlier time.
         index: usize,
     },
-    /// A time is before the one that came before it.
+    /// A time is earlier than the time before it.
     #[error("{what} is {time} s, which is before {last} s")]
     TimeGoesBack {
-        /// Which time.
+        /// Name of the time.
         what: &'static str,
         /// The time, seconds.
         time: f64,
@@ -82,7 +82,7 @@ pub enum RigError {
     MarkerOutOfRange {
         /// Name of the marker.
         name: String,
-        /// Its time, seconds after the clip's first key frame.
+        /// Time of the marker, seconds after the clip's first key frame.
         time: f64,
         /// Duration of the clip, seconds.
         duration: f64,

@@ -2,7 +2,7 @@
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Marker {
-    /// What happens then. Several markers may have the same name.
+    /// Name of the event. Several markers may have the same name.
     pub name: String,
     /// Seconds after the clip's first key frame, 0 to its duration.
     pub time: f64,

@@ -4,30 +4,31 @@ use super::{PoseMotion, RigError};
 /// of these is as long.
 const INTERVALS: usize = 32;
 
-/// Largest change of the lag in a tick, as a share of the tick. Motion is seen faster or slower by as much.
+/// Largest change of the lag in a tick, as a share of the tick. Motion appears faster or slower by the same share.
 const DRIFT: f64 = 1.0 / 200.0;
 
-/// A tick whose time is this much later than the last one's, as a share of the tick, too much or too little, is a jump.
+/// Largest deviation of the seen time's step from the length of the tick, as a share of the tick. A larger one is a
+/// jump.
 const JUMP: f64 = 1.0 / 100.0;
 
-/// The time whose pose a tick sees, where poses come less often than ticks, or at other times.
+/// Chooses the time whose pose a tick sees, for poses that come less often than ticks, or at other times.
 ///
-/// A tick sees a pose between two that are known, so it looks back by a lag: one interval, where poses come regularly.
-/// Where they do not, the lag is a little longer than all of the last 32 intervals but the longest, which may be a
-/// single pose that came late. It changes by at most 1/200 of a tick in each tick, unless it is more than twice as long
-/// as it should be. Where a tick should see a later time than that of the newest pose, that pose stays, and the tick is
-/// [`PoseMotion::Placed`]. So is the first tick that is on time again.
+/// A tick sees a time between two known poses, so the clock looks back by a lag. If poses come regularly, the lag is
+/// one interval. Otherwise it is a little longer than the second longest of the last 32 intervals, since the longest
+/// one may be a single pose that came late. The lag changes by at most 1/200 of a tick in each tick, unless it is more
+/// than twice as long as it should be. If a tick would see a later time than the newest pose has, it sees the newest
+/// pose, and is [`PoseMotion::Placed`]. The first tick that is on time again is placed as well.
 ///
-/// For poses of joints, [`PoseTrack`](super::PoseTrack) does all of it. A clock alone is for engines with poses of
-/// their own, beside a [`PoseHistory`](super::PoseHistory). Times are in seconds, from any zero.
+/// For poses of joints, [`PoseTrack`](super::PoseTrack) does all of this. A clock alone is for engines that have their
+/// own poses, together with a [`PoseHistory`](super::PoseHistory). Times are in seconds, from any zero.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PoseClock {
     /// Time of the newest pose.
     newest: Option<f64>,
-    /// How old the newest pose was at most in a tick, seconds.
+    /// Largest age of the newest pose in a tick so far, seconds.
     waited: f64,
-    /// A ring of the last intervals, seconds.
+    /// The last intervals between poses, seconds, as a ring.
     intervals: [f64; INTERVALS],
     /// Number of intervals so far.
     count: u64,
@@ -39,7 +40,8 @@ pub struct PoseClock {
 }
 
 impl PoseClock {
-    /// A pose of this time has come. It may come later than that: an interval is at least as long as ticks have waited.
+    /// Records that a pose of this time has come. The pose may come late: an interval counts as at least as long as
+    /// ticks have waited for it.
     ///
     /// # Errors
     /// [`RigError::NotFinite`] for a time that is infinite or NaN, [`RigError::TimeGoesBack`] for one before the newest
@@ -73,9 +75,9 @@ impl PoseClock {
         Ok(())
     }
 
-    /// Makes a tick of `dt` seconds that ends `now`. [`PoseClock::time`] is the time whose pose it sees. If that is not
-    /// `dt` later than in the last tick, the result is [`PoseMotion::Placed`]; so it is in the first tick, and before
-    /// the first pose. A tick before the last one sees the same time.
+    /// Makes a tick of `dt` seconds that ends at `now`, and chooses the time whose pose it sees: [`PoseClock::time`].
+    /// Returns [`PoseMotion::Placed`] if this time is not `dt` later than in the last tick, in the first tick, and
+    /// before the first pose. A tick before the last one sees the same time as the last one.
     ///
     /// # Errors
     /// [`RigError::NotFinite`] for a number that is infinite or NaN, [`RigError::TimeGoesBack`] for a negative `dt`.
@@ -128,7 +130,8 @@ impl PoseClock {
         self.newest
     }
 
-    /// How much earlier than the tick the time is that it sees, seconds, unless the newest pose is older than that.
+    /// The lag, seconds: how much earlier than the tick's end the seen time is, unless the newest pose is older than
+    /// that.
     pub fn lag(&self) -> f64 {
         self.lag
     }
@@ -147,7 +150,7 @@ impl PoseClock {
         let Some(first) = last.next() else {
             return 0.0;
         };
-        // The longest but one; the only one, if there are no others.
+        // The second longest interval; the only one, if there are no others.
         let (mut shortest, mut longest, mut second) = (first, first, 0.0f64);
         for interval in last {
             shortest = shortest.min(interval);

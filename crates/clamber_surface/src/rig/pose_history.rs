@@ -26,11 +26,11 @@ pub struct PoseHistory<P> {
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Sample<P> {
-    /// When the creature got into this pose, seconds.
+    /// Time at which the creature reached this pose, seconds.
     from: f64,
-    /// Until when it stayed in it, seconds.
+    /// Time until which the creature stayed in this pose, seconds.
     until: f64,
-    /// How the creature got here from the pose before.
+    /// The motion from the pose before to this one.
     motion: PoseMotion,
     pose: P,
 }
@@ -38,9 +38,9 @@ struct Sample<P> {
 /// A time among the poses of a [`PoseHistory`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Between {
-    /// How far the time is on the way from the first pose to the second, 0 to 1.
+    /// Share of the way from the first pose to the second, 0 to 1.
     pub fraction: f64,
-    /// [`PoseMotion::Placed`] if the creature was placed since the time that was asked for before.
+    /// [`PoseMotion::Placed`] if the creature was placed since the last time that was asked for.
     pub motion: PoseMotion,
 }
 
@@ -53,8 +53,8 @@ impl<P> PoseHistory<P> {
         }
     }
 
-    /// Adds a pose, and how the creature got there from the last one: where it was placed, nothing lies between the
-    /// two. A pose of the same time as the last one replaces it.
+    /// Adds a pose, and the creature's motion from the last pose to it. If the creature was placed, the two poses are
+    /// not blended. A pose of the same time as the last one replaces it.
     ///
     /// # Errors
     /// [`RigError::NotFinite`] for a time that is infinite or NaN, [`RigError::TimeGoesBack`] for one before the last
@@ -88,7 +88,7 @@ impl<P> PoseHistory<P> {
         Ok(())
     }
 
-    /// The creature has stayed in the last pose until this time. `same` is that pose, or the first one.
+    /// Records that the creature has stayed in the last pose until this time. `same` is that pose, or the first one.
     ///
     /// # Errors
     /// As [`PoseHistory::record`].
@@ -114,13 +114,13 @@ impl<P> PoseHistory<P> {
         self.record(time, pose, PoseMotion::Moved)
     }
 
-    /// The last pose, and until when the creature stayed in it.
+    /// The last pose, and the time until which the creature stayed in it.
     pub fn last(&self) -> Option<(&P, f64)> {
         let last = self.samples.back()?;
         Some((&last.pose, last.until))
     }
 
-    /// Number of poses that are kept: 1 where the creature stands still.
+    /// Number of poses that are kept: 1 if the creature stands still.
     pub fn len(&self) -> usize {
         self.samples.len()
     }
@@ -160,8 +160,8 @@ impl<P> PoseHistory<P> {
         }
     }
 
-    /// The poses that are to be blended at the time that [`PoseHistory::advance`] has found, or the one that counts
-    /// alone; `None` before the first pose.
+    /// The two poses to blend at the time that [`PoseHistory::advance`] has found, or the one that counts alone; `None`
+    /// before the first pose.
     pub fn poses(&self, at: Between) -> Option<(&P, Option<&P>)> {
         let pose = |index: usize| self.samples.get(index).map(|sample| &sample.pose);
         let first = pose(0)?;

@@ -1,12 +1,13 @@
-/// How a creature got from one pose to the next.
+/// The motion of a creature from one pose to the next.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum PoseMotion {
-    /// It moved there: [`SkinnedSurface::advance`](crate::surface::SkinnedSurface::advance).
+    /// The creature moved there: pose the surface by
+    /// [`SkinnedSurface::advance`](crate::surface::SkinnedSurface::advance).
     #[default]
     Moved,
-    /// It was teleported there, or nobody knows how it moved. That is no motion:
-    /// [`SkinnedSurface::place`](crate::surface::SkinnedSurface::place).
+    /// The creature was teleported there, or its motion is not known: pose the surface by
+    /// [`SkinnedSurface::place`](crate::surface::SkinnedSurface::place), without motion.
     Placed,
 }
 

@@ -7,7 +7,7 @@ use crate::geometry::{Similarity, slerp};
 /// A surface that gets a new pose only in every third tick stands still in two ticks, and moves at three times its
 /// speed in the next. Riders feel that, and are shaken off. A track blends the last two poses instead, so that the skin
 /// moves evenly: one interval between poses late, by the rules of [`PoseClock`]. Poses may come in any rhythm, late, or
-/// be missed; a skin without a new pose stands still, is then placed where it should be, and shakes nobody.
+/// be missed. A skin without a new pose stands still, and is then placed where it should be, so no rider is shaken off.
 ///
 /// Local transforms are blended as by [`Pose::blend`]: a limb keeps its length, and no joint may turn by half a turn or
 /// more between two poses. A local translation, scale or angle that accelerates by `a` is off by at most `a h²/8` at
@@ -52,18 +52,18 @@ use crate::geometry::{Similarity, slerp};
 pub struct PoseTrack {
     clock: PoseClock,
     history: PoseHistory<Posed>,
-    /// What the last tick sees.
+    /// The pose and the place of the last tick.
     seen: Posed,
-    /// Time of the first pose since it began or was restarted.
+    /// Time of the first pose since the track began or was restarted.
     start: Option<f64>,
     /// Time of the last tick.
     ticked: Option<f64>,
 }
 
-/// The share of a tick that has to lie after the first pose if the tick is to be motion: all of it, but for rounding.
+/// Smallest share of a tick that must lie after the first pose for the tick to be motion: all of it, up to rounding.
 const WHOLE: f64 = 0.99;
 
-/// The joints of a creature, and where it is.
+/// The joints of a creature, and its place in the world.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Posed {
@@ -74,7 +74,7 @@ struct Posed {
 impl PoseTrack {
     /// Adds a pose of this time, seconds, and the creature's place in the world then. Call it before the
     /// [`PoseTrack::tick`] of that time, or later if the pose is late. For a creature that is moved in every tick, pass
-    /// [`Similarity::IDENTITY`], and its place to the surface.
+    /// [`Similarity::IDENTITY`], and give its place to the surface.
     ///
     /// # Errors
     /// [`RigError::JointCount`] if the pose does not have as many joints as the last one. [`RigError::NotFinite`] if
@@ -123,8 +123,8 @@ impl PoseTrack {
         Ok(())
     }
 
-    /// Makes a tick of `dt` seconds that ends `now`: computes [`PoseTrack::pose`] and [`PoseTrack::world_from_model`],
-    /// and says whether the surface is to be advanced or placed there.
+    /// Makes a tick of `dt` seconds that ends at `now`: computes [`PoseTrack::pose`] and
+    /// [`PoseTrack::world_from_model`]. Returns whether the surface is to be advanced or placed there.
     ///
     /// # Errors
     /// [`RigError::NoPose`] before the first pose. [`RigError::NotFinite`] if a number is not finite,
@@ -136,7 +136,7 @@ impl PoseTrack {
         self.ticked = Some(now);
         let time = self.clock.time();
         if time < start + dt * WHOLE {
-            // How it moved before its first pose is not known, and a velocity that jumps would shake riders.
+            // The motion before the first pose is not known, and a velocity that jumps would shake riders off.
             motion = PoseMotion::Placed;
         }
         let at = self.history.advance(time);
@@ -154,7 +154,7 @@ impl PoseTrack {
         &self.seen.pose
     }
 
-    /// Where the creature is in the last tick; the identity before the first.
+    /// The creature's place in the last tick; the identity before the first tick.
     pub fn world_from_model(&self) -> &Similarity {
         &self.seen.world_from_model
     }

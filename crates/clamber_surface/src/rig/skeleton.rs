@@ -80,7 +80,7 @@ impl Skeleton {
         &self.joints
     }
 
-    /// The first joint with this name; `None` if there is none.
+    /// The first joint with this name; `None` if no joint has it.
     pub fn find(&self, name: &str) -> Option<JointId> {
         let index = self.joints.iter().position(|joint| joint.name == name)?;
         Some(JointId(index as u32))

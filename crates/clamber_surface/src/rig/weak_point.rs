@@ -19,7 +19,7 @@ pub struct WeakPoint {
     pub hit_points: f64,
     /// True if the creature dies when the weak point is used up.
     pub major: bool,
-    /// It is hidden, and cannot be wounded, until all weak points of lower order are used up.
+    /// The weak point is hidden, and cannot be wounded, until all weak points of lower order are used up.
     pub order: u32,
 }
 

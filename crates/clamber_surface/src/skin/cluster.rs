@@ -12,6 +12,7 @@ use crate::simd::SimdLevel;
 pub(crate) struct ClusterPositions(pub(crate) [[f32; MAX_SLOTS]; 3]);
 
 impl ClusterPositions {
+    /// All positions at the origin.
     pub(crate) const ZERO: Self = Self([[0.0; MAX_SLOTS]; 3]);
 }
 

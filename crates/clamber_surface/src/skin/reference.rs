@@ -5,8 +5,8 @@ use crate::mesh::{ColliderMesh, VertexId};
 
 /// Skins a vertex in f64 on the same f32 palette: the reference for every f32 kernel.
 ///
-/// Its own error is about 2^-29 of that of an f32 kernel. `None` if the vertex is out of range, or if the number of
-/// matrices differs from the number of joints of the mesh.
+/// The reference's own error is about 2^-29 times the error of an f32 kernel. `None` if the vertex is out of range, or
+/// if the number of matrices differs from the number of joints of the mesh.
 pub fn skin_vertex_reference(
     mesh: &ColliderMesh,
     palette: &[Affine],

@@ -6,8 +6,8 @@ use crate::mesh::{ColliderMesh, MeshId, TriangleId};
 use crate::query::{CapsuleHit, SurfaceHit, SweepHit};
 use crate::rig::rotation_f32;
 
-/// Largest deviation of barycentric coordinates from a sum of 1, and of one of them below 0: some rounding of three
-/// f32.
+/// Largest deviation of the sum of barycentric coordinates from 1, and of one coordinate below 0: covers the rounding
+/// of three f32.
 const BARYCENTRIC_TOLERANCE: f32 = 1e-5;
 
 /// A material point of a mesh: a triangle and the weights of its corners.

@@ -48,7 +48,7 @@ impl Rest {
     /// The rotation of the material from rest to now; `None` if the triangle has collapsed. A sliver without an
     /// orientation even at rest turns with the joint of its part.
     pub(super) fn frame(&self, now: Option<&Flattened>, joint: &Affine) -> Option<DQuat> {
-        // What cannot be flattened although it has not collapsed, by overflow, has no frame.
+        // A triangle that has not collapsed but overflows when it is flattened has no frame.
         if self.flat.is_some() || !is_collapsed(self.corners) {
             return frame_between(self.flat.as_ref()?, now?);
         }
@@ -84,12 +84,12 @@ impl Flattened {
         })
     }
 
-    /// Its counter-clockwise unit normal.
+    /// The triangle's counter-clockwise unit normal.
     pub(super) fn normal(&self) -> DVec3 {
         self.axes.z_axis
     }
 
-    /// The in-plane map from this triangle's edges to those of `to`, each in its own axes: `[[a, b], [0, d]]` with
+    /// The in-plane map from this triangle's edges to the edges of `to`, each in its own axes: `[[a, b], [0, d]]` with
     /// positive a and d, returned as (a, b, d).
     fn gradient(&self, to: &Self) -> (f64, f64, f64) {
         let a = to.first / self.first;

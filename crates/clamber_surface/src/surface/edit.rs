@@ -99,7 +99,7 @@ impl SkinnedSurface {
         self.instance.is_enabled(triangle)
     }
 
-    /// Hash of which triangles and parts are hidden: the same whenever the same ones are, and 0 if none is.
+    /// Hash of the hidden triangles and parts: the same whenever the same ones are hidden, and 0 if none is hidden.
     #[doc(hidden)]
     pub fn mask(&self) -> u64 {
         self.instance.mask

@@ -2,7 +2,7 @@ use thiserror::Error;
 
 use crate::mesh::{MeshError, MeshId, PaletteError, PartId, TriangleId, VertexId};
 
-/// Why a surface refused a palette, a point or an edit; nothing was changed.
+/// The reason why a surface rejects a palette, a point or an edit. The call changed nothing.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum SurfaceError {

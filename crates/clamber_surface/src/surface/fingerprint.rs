@@ -12,6 +12,7 @@ use crate::rig::{Clip, Interpolation, Keyframes, Palette, Skeleton, Transform};
 struct Fold(u64);
 
 impl Fold {
+    /// The first state: the offset basis of 64-bit FNV-1a.
     const START: Self = Self(0xcbf2_9ce4_8422_2325);
 
     fn word(&mut self, word: u64) {
@@ -88,7 +89,7 @@ pub fn matrices_fingerprint(matrices: &[Affine]) -> u64 {
 
 /// A 64-bit hash of everything that determines a creature's motion, for comparing creatures.
 ///
-/// It covers the joints, the clips with every key frame, and the mesh with its influences and tags. It leaves out
+/// The hash covers the joints, the clips with every key frame, and the mesh with its influences and tags. It leaves out
 /// [`SurfaceTag::user`](crate::mesh::SurfaceTag::user).
 pub fn creature_fingerprint(skeleton: &Skeleton, clips: &[Clip], mesh: &ColliderMesh) -> u64 {
     let mut fold = Fold::START;

@@ -39,7 +39,8 @@ pub struct Motion {
     pub stretches: [f32; 2],
 }
 
-/// Where a material point was and is, in the *current* model frame: the part of its [`Motion`] that needs no frame.
+/// The current and previous position of a material point, in the *current* model frame: the part of its [`Motion`] that
+/// needs no frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct PointPath {
@@ -52,7 +53,7 @@ pub struct PointPath {
 }
 
 impl ModelSpace<'_> {
-    /// Where a point was a tick of `dt` seconds ago, and is now. These are the positions and the velocity of
+    /// The positions of a point now and a tick of `dt` seconds ago, and its velocity. They equal the results of
     /// [`ModelSpace::motion`], for a fraction of the time. Skins the triangle's three vertices.
     ///
     /// # Errors

@@ -42,7 +42,7 @@ use crate::query::MovingTriangle;
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct Patch {
-    /// Ascending.
+    /// Ids, in ascending order.
     triangles: Vec<TriangleId>,
     /// In the order in which triangles use them.
     vertices: Vec<VertexId>,
@@ -57,7 +57,7 @@ pub struct Patch {
     is_taken: Vec<bool>,
 }
 
-/// What an update did to a [`Patch`].
+/// The effect of an update on a [`Patch`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum PatchChange {

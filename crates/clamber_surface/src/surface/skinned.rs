@@ -78,9 +78,9 @@ impl SkinnedSurface {
     /// Needs a new pose in every tick: with the same pose the skin has stood still. Where poses are made less often, a
     /// [`PoseTrack`](crate::rig::PoseTrack) blends them.
     ///
-    /// Costs O(joints), and O(nodes and clusters that the last two ticks touched). Nothing is skinned, unless the last
-    /// tick touched at least three quarters of all clusters; then all are. That depends on which clusters queries
-    /// reached, not on how many threads they ran on.
+    /// Costs O(joints), and O(nodes and clusters that the last two ticks touched). No vertex is skinned, unless the
+    /// last tick touched at least three quarters of all clusters; then all clusters are skinned. That depends on which
+    /// clusters queries reached, not on how many threads they ran on.
     ///
     /// # Errors
     /// [`SurfaceError::Palette`] about the given palette, or about the previous one re-expressed in the new model
@@ -146,7 +146,7 @@ impl SkinnedSurface {
     /// Puts the surface to sleep: it stands still in its current pose, without motion, until it is placed or advanced
     /// again.
     ///
-    /// For a creature that nobody touches or draws: its clips, its palette and [`SkinnedSurface::advance`] can be
+    /// For a creature that is neither touched nor drawn: its clips, its palette and [`SkinnedSurface::advance`] can be
     /// skipped. Queries still work. Costs O(joints), once.
     ///
     /// To wake the surface, [`SkinnedSurface::place`] it where it is by then. `advance` would take the whole way since
@@ -166,7 +166,7 @@ impl SkinnedSurface {
     /// Centre and radius, in world space, of a ball that holds all skin over the tick that ends now, from its start to
     /// its end. `None` if the mesh has no vertices, or if the ball is not finite.
     ///
-    /// It follows from the palettes alone: a ball about a box about the joints' bounding balls.
+    /// The ball follows from the palettes alone: it surrounds a box around the joints' bounding balls.
     pub fn bounding_ball(&self) -> Option<(DVec3, f64)> {
         self.ball
     }

@@ -10,7 +10,7 @@ use crate::query::{CastOptions, SurfaceHit, SweepHit};
 /// in the world. [`SkinnedSurface::in_world`] returns it.
 ///
 /// Queries are transformed to model space and their results back, so a creature far from the world's origin is as exact
-/// as one near it. Ray lengths and the distances of closest-point queries may be infinite. Nothing is found for an
+/// as one near it. Ray lengths and the distances of closest-point queries may be infinite. Queries find nothing for an
 /// infinite radius or displacement, for a length that is NaN or negative, or for a point or direction that is not
 /// finite.
 #[derive(Clone, Copy, Debug)]
@@ -87,7 +87,7 @@ pub struct WorldMotion {
     pub stretches: [f32; 2],
 }
 
-/// Where a material point was a tick ago and is now, in world space: the part of its motion that needs no frame.
+/// The current and previous position of a material point, in world space: the part of its motion that needs no frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WorldPath {
     /// The point's current position.
@@ -99,7 +99,7 @@ pub struct WorldPath {
 }
 
 impl WorldPath {
-    /// True if all of it is finite.
+    /// True if all numbers are finite.
     pub fn is_finite(&self) -> bool {
         self.position.is_finite() && self.previous_position.is_finite() && self.velocity.is_finite()
     }
@@ -248,7 +248,7 @@ impl WorldSpace<'_> {
         Ok(self.motion_of(&motion))
     }
 
-    /// Where a point was a tick of `dt` seconds ago, and is now: the positions and the velocity of
+    /// The positions of a point now and a tick of `dt` seconds ago, and its velocity: the results of
     /// [`WorldSpace::motion`], for a fraction of the time.
     ///
     /// # Errors

@@ -1,5 +1,5 @@
-//! After the step: bodies that skin entered are put back in front of it, and those around which it appeared are put
-//! out.
+//! After the step: puts bodies that skin entered back in front of it, and moves bodies around which skin appeared out
+//! of the creature.
 
 use clamber_surface::surface::{SkinnedSurface, SurfaceHit};
 use glam::DVec3;
@@ -19,7 +19,7 @@ use crate::ObstacleId;
 impl Debris {
     /// Puts bodies that skin entered during the step back in front of it, and makes them at least as fast as the skin.
     /// If this would press a body into something immovable, skin passes through the body instead, from then on until
-    /// the body is outside. Bodies around which skin appeared are moved on their way out.
+    /// the body is outside. Bodies around which skin appeared are moved further out of the creature.
     ///
     /// # Errors
     /// As for [`Debris::before_step`]. On [`DebrisError::OutOfReach`], earlier bodies have been moved already, and
@@ -68,7 +68,7 @@ impl Debris {
     }
 }
 
-/// What all bodies of a tick share.
+/// Data that all bodies of a tick share.
 struct Tick<'a> {
     /// World position of rapier's origin.
     origin: DVec3,
@@ -79,7 +79,7 @@ struct Tick<'a> {
 }
 
 impl Tick<'_> {
-    /// Keeps a body out of one surface, as far as they collide. `None` if it is out of reach of the surface.
+    /// Handles a body and one surface, as their passage says. `None` if the body is out of reach of the surface.
     fn keep(
         &mut self,
         piece: &mut Piece,
@@ -133,7 +133,7 @@ impl Tick<'_> {
                 .immovable
                 .blocks(bodies, &piece.core, &end, kept.shift)
                 .is_some();
-            // A fold of the skin closes on the body, which has no way out.
+            // A fold of the skin closes on the body, so that the body has no way out.
             if blocked || !kept.free {
                 patch.passage = Passage::LetThrough;
             }
@@ -154,8 +154,8 @@ impl Tick<'_> {
         Some(())
     }
 
-    /// Moves a body on its way out of a surface. If something immovable is in its way, or something else holds it for
-    /// long, it is let through.
+    /// Moves a body further out of a surface. If an immovable collider is in its way, or it does not come out in time,
+    /// it is let through.
     fn put_out(
         &mut self,
         piece: &mut Piece,
@@ -193,7 +193,7 @@ impl Tick<'_> {
             body.set_translation(end.translation + leg.shift.as_vec3(), true);
             body.set_linvel((velocity + leg.push).as_vec3(), true);
             if leg.state == State::Out {
-                // What is in other skin by now is not out.
+                // A body that is inside other skin by now is not out.
                 let [a, b] = piece.core.ends_at(body.position());
                 let middle = (a + b) * 0.5 + self.origin;
                 let middle = surface

@@ -1,15 +1,16 @@
-//! The corners of a moving triangle by coordinate, so that loops over them become SIMD instructions by themselves.
+//! The corners of a moving triangle, stored by coordinate, so that the compiler turns loops over them into SIMD
+//! instructions.
 
 use clamber_surface::surface::MovingTriangle;
 use glam::{Mat3, Vec3};
 
-/// Eight points: the corners of a triangle before and after its motion, each time with the first one twice.
+/// Number of points: the corners of a triangle before and after its motion, each time with the first one twice.
 const LANES: usize = 8;
 
-/// One number for each of them.
+/// One number for each point.
 type Lanes = [f32; LANES];
 
-/// A transform of the corners before the motion, and one of those after it, in rows.
+/// A transform of the corners before the motion, and one of the corners after it, in rows.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Transforms {
     rows: [[Lanes; 3]; 3],
@@ -64,7 +65,7 @@ impl Corners {
         Vec3::new(x[corner % 4], y[corner % 4], z[corner % 4])
     }
 
-    /// The low and the high corner of the box around them.
+    /// The low and the high corner of the box around the corners.
     #[inline(always)]
     pub(super) fn bounds(&self) -> (Vec3, Vec3) {
         let [x, y, z] = &self.0;

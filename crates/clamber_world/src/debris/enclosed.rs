@@ -1,4 +1,4 @@
-//! Whether skin encloses a point, however little of a creature's skin is closed.
+//! Tests whether skin encloses a point, however little of a creature's skin is closed.
 //!
 //! A ray from inside a closed surface to infinity leaves it once more than it enters it
 //! ([`ModelSpace::is_inside`](clamber_surface::surface::ModelSpace::is_inside) has the sources). Models are often made
@@ -6,8 +6,8 @@
 //! pairs: behind a flat sheet of any size, at most half of them leave through it. Nearly all of them leave from inside
 //! a creature, also where a neck is open below the head.
 //!
-//! An edit may add skin above a creature's own: a scab, a plate. Nothing gets out of the hollow between them. From its
-//! floor, half of all rays leave, and the others meet the creature's skin.
+//! An edit may add skin above a creature's own: a scab, a plate. A body cannot leave the hollow between them. From the
+//! hollow's floor, half of all rays leave, and the others meet the creature's skin.
 
 use clamber_surface::geometry::Ray;
 use clamber_surface::surface::{ModelSpace, SurfaceHit};
@@ -26,13 +26,14 @@ const DIRECTIONS: [Vec3; 8] = [
     Vec3::new(0.893, -0.107, 0.437),
 ];
 
+/// Number of rays: both directions of each pair.
 const RAYS: usize = 2 * DIRECTIONS.len();
 
 /// A point is enclosed if at least this many rays leave. With fewer, rocks in an open bowl or under a dome would count
 /// as enclosed; with more, rocks inside creatures with openings would not.
 const ENCLOSED: usize = 14;
 
-/// A point is in the open if at most this many rays leave: behind a flat sheet they are half of all.
+/// A point is in the open if at most this many rays leave: behind a flat sheet, half of all rays leave.
 const OPEN: usize = RAYS / 2;
 
 /// A point is in a hollow if [`ENCLOSED`] rays meet skin, and at least this many leave: skin that was added above other
@@ -52,7 +53,7 @@ pub(super) fn is_within(space: ModelSpace<'_>, point: Vec3, hits: &mut Vec<Surfa
     at_least(OPEN + 1, space, point, hits)
 }
 
-/// True if at least `enough` rays leave, or if the point is in a hollow. Stops as soon as that is decided.
+/// True if at least `enough` rays leave, or if the point is in a hollow. Stops as soon as the result is certain.
 fn at_least(enough: usize, space: ModelSpace<'_>, point: Vec3, hits: &mut Vec<SurfaceHit>) -> bool {
     let (mut leaving, mut meeting) = (0, 0);
     let directions = DIRECTIONS.into_iter().flat_map(|one| [one, -one]);
@@ -73,11 +74,11 @@ fn at_least(enough: usize, space: ModelSpace<'_>, point: Vec3, hits: &mut Vec<Su
     false
 }
 
-/// What a ray did on its way to infinity.
+/// How a ray met skin on its way to infinity.
 struct Met {
-    /// It met skin.
+    /// True if the ray met skin.
     meets: bool,
-    /// It left the skin more often than it entered it.
+    /// True if the ray left the skin more often than it entered it.
     leaves: bool,
 }
 

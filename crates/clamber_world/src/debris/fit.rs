@@ -2,8 +2,8 @@
 
 use glam::{DMat3, DVec3};
 
-/// This fraction of the inertia's trace is added to it. About an axis with all points on it, the rotation is not
-/// determined, and comes out as zero.
+/// Fraction of the inertia's trace that is added to the inertia. If all points are on one axis, the rotation about it
+/// is not determined; with this addition, it comes out as zero.
 const FLAT: f64 = 1e-6;
 
 /// A linear velocity at the origin, and an angular velocity, axis times radians a second.
@@ -89,6 +89,7 @@ mod tests {
     use super::*;
     use clamber_surface::geometry::rotation_from_axis_angle;
 
+    /// Points that are not in one plane, metres.
     const POINTS: [DVec3; 5] = [
         DVec3::new(0.5, 0.1, 0.2),
         DVec3::new(-0.4, 0.3, 0.1),

@@ -12,7 +12,7 @@ use rapier3d::parry::shape::Triangle;
 
 use super::corners::{Corners, Transforms};
 
-/// A box around all solid colliders of a body, in the body's space, or a ball if that is all it has.
+/// A box around all solid colliders of a body, in the body's space, or a ball if the only collider is a ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Hull {
     middle: DVec3,
@@ -43,12 +43,12 @@ impl Hull {
         })
     }
 
-    /// True for a ball, which is its own core.
+    /// True for a ball, which is the body's core, too.
     pub(super) fn is_ball(&self) -> bool {
         self.is_ball
     }
 
-    /// Radius of a ball about its middle that encloses it.
+    /// Radius of a ball about the middle that encloses the hull.
     pub(super) fn radius(&self) -> f64 {
         if self.is_ball {
             self.half.x
@@ -57,8 +57,8 @@ impl Hull {
         }
     }
 
-    /// True if skin may have touched it in this tick, on the way from one pose to the other. `origin` is the world
-    /// position of rapier's origin.
+    /// True if skin may have touched the hull in this tick, on the way from one pose to the other. `origin` is the
+    /// world position of rapier's origin.
     pub(super) fn may_touch(
         &self,
         surface: &SkinnedSurface,
@@ -73,12 +73,12 @@ impl Hull {
         touched
     }
 
-    /// Its middle under a pose, in rapier's space.
+    /// The hull's middle under a pose, in rapier's space.
     pub(super) fn middle_at(&self, pose: &Pose) -> DVec3 {
         self.frame_at(pose).middle
     }
 
-    /// Its middle and axes under a pose, in rapier's space; those of a ball never turn.
+    /// The hull's middle and axes under a pose, in rapier's space. The axes of a ball never turn.
     fn frame_at(&self, pose: &Pose) -> Frame {
         let rotation = pose.rotation.as_dquat().normalize();
         Frame {
@@ -128,7 +128,7 @@ impl Reach {
         self.frames[0].middle
     }
 
-    /// Radius of a ball about its middle that encloses the enlarged hull, metres.
+    /// Radius of a ball about the middle that encloses the enlarged hull, metres.
     pub(super) fn radius(&self) -> f64 {
         self.hull.radius() + self.around
     }
@@ -181,7 +181,7 @@ pub(super) struct ReachOnSurface {
 }
 
 impl ReachOnSurface {
-    /// Half of the longest side of its box.
+    /// Half of the longest side of the region's box.
     pub(super) fn half_side(&self) -> f32 {
         ((self.high - self.low) * 0.5).max_element()
     }
@@ -192,7 +192,7 @@ impl ReachOnSurface {
     /// Corners are taken to move in straight lines from the first frame to the second. In a frame that turns by the
     /// angle a, a point that moves evenly by m, and is never farther than f from the middle, has an acceleration of at
     /// most `a^2 f + 2 a m`. So it is at most an eighth of that off the straight line.
-    // Inlined into the query that calls it, whose instruction set is wider.
+    // Inlined into the query that calls it, which uses wider instructions.
     #[inline(always)]
     pub(super) fn apart(&self, moving: &MovingTriangle) -> f32 {
         let corners = Corners::new(moving, &self.transforms);
@@ -216,7 +216,7 @@ impl ReachOnSurface {
     fn beyond_plane(&self, corners: &Corners) -> f32 {
         let [a, b, c] = [corners.before(0), corners.before(1), corners.before(2)];
         let normal = (b - a).cross(c - a);
-        // A shorter one may not become a unit vector: its square has few bits.
+        // A shorter normal may not become a unit vector, because its square has few bits.
         if normal.length_squared() < 1e-30 {
             return f32::NEG_INFINITY;
         }

@@ -88,7 +88,7 @@ impl InnerCapsule {
         (self.radius * LOOK_AHEAD) as f32
     }
 
-    /// Its ends under a pose, in rapier's space.
+    /// The capsule's ends under a pose, in rapier's space.
     pub(super) fn ends_at(&self, pose: &Pose) -> [DVec3; 2] {
         self.ends.map(|end| place(pose, end))
     }

@@ -16,8 +16,8 @@ const TOLERANCE: f64 = 1e-3;
 /// A sweep meets no skin that stays farther than this from the core's segment, as a fraction of the core's radius.
 pub(super) const MET: f64 = SWEPT * (1.0 + 2.0 * TOLERANCE);
 
-/// A body is free of skin that it is pushed out of by less than this fraction of the core's radius: that is rounding,
-/// or within the tolerance of a sweep.
+/// A body that is pushed out of skin by less than this fraction of the core's radius is free: that is rounding, or
+/// within the tolerance of a sweep.
 const FREE: f64 = 2.0 * TOLERANCE;
 
 /// Rounds of pushing out: one for each piece of skin that a body can be caught between, and one to find that it is

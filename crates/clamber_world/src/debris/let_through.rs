@@ -1,6 +1,5 @@
-//! Bodies caught between skin and something immovable: under a foot, or between a flank and a cliff. Nothing ever
-//! pushes a creature, so the skin gives way: it passes through the body. It also passes through bodies around which it
-//! has appeared.
+//! Bodies caught between skin and something immovable: under a foot, or between a flank and a cliff. No body pushes a
+//! creature, so the skin passes through the caught body. It also passes through bodies around which it has appeared.
 
 use clamber_surface::geometry;
 use clamber_surface::surface::{SkinnedSurface, SurfaceHit};
@@ -34,7 +33,7 @@ impl Immovable<'_> {
     /// The place up to which a step of `dt` seconds could take the body from the pose `start` without pressing it into
     /// immovable colliders, in rapier's space. `None` if the body touches none, or is not pressed into any.
     ///
-    /// What moves evenly with such a collider is not pressed into it, however fast both are.
+    /// A body that moves evenly with such a collider is not pressed into it, however fast both are.
     pub(super) fn pressed(
         &self,
         bodies: &RigidBodySet,

@@ -1,4 +1,4 @@
-//! How a body and a creature's skin get past each other.
+//! Whether a body and a creature's skin collide, or skin passes through the body.
 
 use clamber_surface::surface::{CastOptions, SkinnedSurface, SurfaceHit};
 use glam::DVec3;
@@ -9,11 +9,11 @@ use super::inner_capsule::InnerCapsule;
 use super::put_out::PutOut;
 use crate::WorldCapsule;
 
-/// Radius of the point whose way through the skin is looked at, as a fraction of the inner radius: what is nearer to
-/// the skin than that may count as on either side of it.
+/// Radius of the point that is swept against the skin, as a fraction of the inner radius. A body nearer to the skin
+/// than this may count as on either side of it.
 const POINT: f64 = 0.01;
 
-/// How a body and a creature's skin get past each other.
+/// Whether a body and a creature's skin collide, or skin passes through the body.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) enum Passage {
     /// They collide.
@@ -25,7 +25,7 @@ pub(super) enum Passage {
     PutOut(PutOut),
 }
 
-/// A body that is to be looked at, on its way through a tick if nothing stops it.
+/// A body that is tested for skin around it, with its way through a tick if nothing stops it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Looked<'a> {
     pub(super) core: &'a InnerCapsule,
@@ -51,8 +51,8 @@ impl Passage {
         matches!(self, Self::PutOut(_))
     }
 
-    /// For a body that skin may have appeared around: [`Passage::Closed`] if it is outside. A body of which something
-    /// still shows is put out, as long as its place outside is free of skin. One that is deeper is let through.
+    /// For a body that skin may have appeared around: [`Passage::Closed`] if the body is outside. A body that partly
+    /// shows is put out if its place outside is free of skin. A deeper body is let through.
     ///
     /// Skin and body are taken as they are at the end of the tick. A body that skin reaches during the tick collides
     /// with it, so it counts as outside. `hits` is reused memory.

@@ -14,10 +14,11 @@ use rapier3d::parry::shape::{
 
 /// The triangles of a patch, which move from tick to tick.
 ///
-/// This is what parry's `TriMesh` is with the flag `FIX_INTERNAL_EDGES_TWO_SIDED`, so that bodies do not catch on the
-/// edges between triangles: contact normals stay within the cones of a triangle and its neighbours, on either side,
-/// since mirrored joints turn triangles inside out. `TriMesh` looks up the edges in hash maps whenever a vertex moves,
-/// which takes longer than all else that a tick does to a patch. Here, the edges are sorted out once per rebuild.
+/// The shape works as parry's `TriMesh` does with the flag `FIX_INTERNAL_EDGES_TWO_SIDED`: contact normals stay within
+/// the cones of a triangle and its neighbours, so that bodies do not catch on the edges between triangles. This holds
+/// on either side, because mirrored joints turn triangles inside out. `TriMesh` looks up the edges in hash maps
+/// whenever a vertex moves, which takes longer than all other work of a tick on a patch. Here, the edges are found once
+/// per rebuild.
 #[derive(Clone, Debug)]
 pub(crate) struct PatchShape {
     vertices: Vec<Vector>,
@@ -58,8 +59,8 @@ impl PatchShape {
         self.set_normals();
     }
 
-    /// Computes the tree's boxes after the vertices have changed. The first time, this inserts the triangles one by
-    /// one, which is sooner done than a build for all of them at once. The tree is not as good, but a patch has few
+    /// Computes the tree's boxes after the vertices have changed. The first call inserts the triangles one by one,
+    /// which is faster than building the tree for all of them at once. The tree is not as good, but a patch has few
     /// triangles, most of them near the body.
     fn set_bounds(&mut self) {
         for index in 0..self.triangles.len() {

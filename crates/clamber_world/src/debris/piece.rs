@@ -26,7 +26,7 @@ pub(super) struct Piece {
     pub(super) course: [Pose; 2],
     /// The body's pose after the last step; `None` if there was none.
     pub(super) left_at: Option<Pose>,
-    /// One for each surface of the last tick, by ascending id.
+    /// One patch for each surface of the last tick, by ascending id.
     pub(super) patches: Vec<(ObstacleId, SkinPatch)>,
 }
 
@@ -48,12 +48,12 @@ impl Piece {
         self.left_at = None;
     }
 
-    /// Stores the body's expected motion in a step of `dt` seconds. Returns where skin is needed for it.
+    /// Stores the body's expected motion in a step of `dt` seconds. Returns the place where the body needs skin.
     pub(super) fn set_course(&mut self, body: &RigidBody, origin: DVec3, dt: f64) -> Place {
         let end = body.predict_position_using_velocity(dt as f32);
         self.course = [*body.position(), end];
         if self.left_at != Some(self.course[0]) {
-            // The body is new, or somebody has moved it.
+            // The body is new, or was moved from outside.
             for (_, patch) in &mut self.patches {
                 patch.is_looked_at = false;
             }
@@ -113,8 +113,8 @@ impl Piece {
         changed
     }
 
-    /// Finds how to move the body out of one surface, after the step has moved it to the pose `end`. `None` if it is
-    /// out of reach of the surface.
+    /// Finds how to move the body out of one surface, after the step has moved it to the pose `end`. `None` if the body
+    /// is out of reach of the surface.
     pub(super) fn keep_out(
         &self,
         obstacle: ObstacleId,

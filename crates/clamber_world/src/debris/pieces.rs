@@ -15,14 +15,14 @@ use super::skin_patch::SkinPatch;
 use super::{DebrisConfig, DebrisError};
 use crate::ObstacleId;
 
-/// Dynamic bodies of a rapier world that collide with the skin of moving creatures: rocks, tree trunks,
-/// the stones of a wall.
+/// Dynamic bodies of a rapier world that collide with the skin of moving creatures: rocks, tree trunks, the stones of a
+/// wall.
 ///
 /// Near each body, the skin becomes a kinematic rapier body: a skin patch, made of the few triangles that the body may
 /// reach in this tick. The patch collides with that body only. It starts where the skin was a tick ago, and moves to
-/// where the skin is now, so rapier's own solver finds contacts and friction against moving skin. Forces go one way:
-/// nothing ever pushes a creature. If skin is too fast for rapier, such as a limb that moves by a metre in a tick, a
-/// sweep of the inside of the body against the moving skin finds it.
+/// where the skin is now, so rapier's own solver finds contacts and friction against moving skin. Forces go one way: no
+/// body pushes a creature. If skin is too fast for rapier, such as a limb that moves by a metre in a tick, a sweep of
+/// the inside of the body against the moving skin finds it.
 ///
 /// A creature cannot be pushed, so it would drive a body that it steps on through the ground. Such a body is left where
 /// it is, and skin passes through it until it is outside the creature again. The same happens to a body on which a fold
@@ -31,26 +31,27 @@ use crate::ObstacleId;
 /// Skin may also appear around a body: a stone breaks off below the skin, or a creature is new, is
 /// [placed](SkinnedSurface::place), is [edited](SkinnedSurface::edit) or shows a part again where bodies are. A body
 /// that is no deeper below the skin than the radius of the largest ball in it is moved out of the creature within a
-/// split second, by the shortest way ([`Debris::is_put_out`]). Skin passes through a deeper one, and through one whose
-/// way out is blocked ([`Debris::is_let_through`]): it falls through the creature, or lies on the ground until the
-/// creature goes on. [`DebrisReport::enclosed`](crate::DebrisReport::enclosed) counts such bodies when they are found.
-/// A game that wants something else moves the body itself, before the next tick, or removes it. Open skin encloses
-/// nothing: a body behind a sheet, or in a flat bowl, collides with it as ever. Only a body in a closed hollow, between
-/// added skin and the skin below it, counts as inside.
+/// split second, by the shortest way ([`Debris::is_put_out`]). Skin passes through a deeper body, and through a body
+/// whose way out is blocked ([`Debris::is_let_through`]): such a body falls through the creature, or lies on the ground
+/// until the creature moves on. [`DebrisReport::enclosed`](crate::DebrisReport::enclosed) counts such bodies when they
+/// are found. A game that wants another result moves the body itself, before the next tick, or removes it. Open skin
+/// does not enclose a body: behind a sheet, or in a flat bowl, a body collides with the skin as usual. Only a body in a
+/// closed hollow, between added skin and the skin below it, counts as inside.
 ///
 /// The state of a body against a creature is stored under the creature's [`ObstacleId`], which must stay the same from
 /// tick to tick. The order of the list does not change any result. The state of a creature that leaves the list is
 /// dropped.
 ///
-/// Skin patches are colliders of the rapier world. Their `user_data`, and that of their bodies, is their creature's
-/// [`ObstacleId`]. If a climber gets both the creature and a [`RapierTerrain`](crate::RapierTerrain) without a filter,
-/// it touches that skin twice. Leave the patches out with
+/// Skin patches are colliders of the rapier world. The `user_data` of a patch's collider and of its body is the
+/// creature's [`ObstacleId`]. If a climber gets both the creature and a [`RapierTerrain`](crate::RapierTerrain) without
+/// a filter, it touches that skin twice. Leave the patches out with
 /// [`RapierTerrain::with_filter`](crate::RapierTerrain::with_filter): by [`DebrisConfig::groups`], or by
 /// [`Debris::triangle_at`], which gives `Some` for subshape 0 of a patch.
 ///
-/// They have a shape of their own, which rapier's debug renderer does not draw and serde does not save. Remove the
-/// bodies of patches from a world before serde saves it; they come back in the next tick. Rapier's continuous collision
-/// detection (`ccd_enabled`) is weaker against such a shape, and not needed: a sweep of `Debris`'s own finds fast skin.
+/// Patches have a shape type of their own, which rapier's debug renderer does not draw and serde does not save. Remove
+/// the bodies of patches from a world before serde saves it; they come back in the next tick. Rapier's continuous
+/// collision detection (`ccd_enabled`) is weaker against such a shape, and not needed: a sweep of `Debris`'s own finds
+/// fast skin.
 ///
 /// Make these calls each tick, in this order. `Debris` is the step's [`PhysicsHooks`], which keep a patch from
 /// colliding with anything but its body:
@@ -170,8 +171,8 @@ impl Debris {
         Ok(())
     }
 
-    /// Stops a body from colliding with skin; true if it did collide. Bodies that are removed from rapier's set leave
-    /// by themselves.
+    /// Stops a body from colliding with skin; true if it did collide. `Debris` itself drops bodies that were removed
+    /// from rapier's set.
     ///
     /// The kinematic bodies of its skin patches stay in rapier's sets for later bodies, with disabled colliders. They
     /// also stay when the `Debris` is dropped, and colliders that are enabled then stay enabled. So remove all bodies
@@ -206,14 +207,14 @@ impl Debris {
         self.passes(body, Passage::is_put_out)
     }
 
-    /// True if a body gets past the skin of some creature in a certain way.
+    /// True if the body's passage through the skin of some creature is of a certain kind.
     fn passes(&self, body: RigidBodyHandle, way: impl Fn(&Passage) -> bool) -> bool {
         let piece = self.place_of(body).map(|index| &self.pieces[index]);
         piece.is_ok_and(|piece| piece.patches.iter().any(|(_, patch)| way(&patch.passage)))
     }
 
-    /// The surface and the triangle of a contact. `collider` and `subshape` are those of the contact's side that is not
-    /// a debris body. `None` if that side is not skin.
+    /// The surface and the triangle of a contact. `collider` and `subshape` name the contact's side that is not a
+    /// debris body. `None` if that side is not skin.
     pub fn triangle_at(
         &self,
         collider: ColliderHandle,
@@ -254,11 +255,11 @@ impl Debris {
         shown
     }
 
-    /// Finds the surfaces whose skin may have appeared around bodies, whatever becomes of this tick.
+    /// Finds the surfaces whose skin may have appeared around bodies, even if the rest of this tick fails.
     fn look_at_surfaces(&mut self, surfaces: &[(ObstacleId, &SkinnedSurface)]) {
         self.enclosed = 0;
         if self.pieces.is_empty() {
-            // Bodies to come are looked at anyway.
+            // New bodies are tested for skin around them in any case.
             return;
         }
         seen::look(&mut self.seen, &self.order, surfaces);
@@ -285,7 +286,7 @@ impl Debris {
             };
             let place = piece.set_course(body, self.origin, dt);
             let enabled = body.is_enabled();
-            // A patch that another body had belongs to this one now.
+            // A reused patch belongs to this body now.
             *changed |= piece.follow(&self.order, &mut self.spare, colliders);
             let looked = Looked {
                 core: &piece.core,

@@ -1,4 +1,4 @@
-//! A body that is put out of a creature whose skin has appeared around it.
+//! Moves a body out of a creature whose skin has appeared around it.
 
 use clamber_surface::surface::{Anchor, SkinnedSurface};
 use glam::{DQuat, DVec3};
@@ -7,25 +7,27 @@ use rapier3d::math::Pose;
 use super::inner_capsule::InnerCapsule;
 use crate::WorldCapsule;
 
-/// A body is put out if no part of its core's segment is deeper below the skin than this fraction of the inner radius:
-/// something of it shows. A larger value would move bodies visibly far; a smaller one would let bodies fall through a
-/// creature that lie on it for the player's eyes.
+/// Largest depth of any part of the core's segment below the skin at which a body is put out, as a fraction of the
+/// inner radius: a part of the body still shows. A larger value would move bodies visibly far. With a smaller one,
+/// bodies that seem to lie on a creature would fall through it.
 const DEPTH: f64 = 1.0;
 
-/// Time in which a body is put out by its inner radius, seconds. In a shorter one, it would push others away hard.
+/// Time in which a body is put out by its inner radius, seconds. In a shorter time, the body would push other bodies
+/// away hard.
 const TIME: f64 = 0.2;
 
-/// A body that has not come out in this multiple of the time that its way takes is let through: something holds it.
+/// Multiple of the time that the way out takes. A body that is not out by then is let through, because something holds
+/// it.
 const PATIENCE: f64 = 2.0;
 
-/// Skin nearer to the core's segment than this fraction of the inner radius gives its own normal for the way out: the
-/// direction to it would be little more than rounding.
+/// If skin is nearer to the core's segment than this fraction of the inner radius, the skin's normal is the way out:
+/// the direction to the skin would be little more than rounding.
 const NEAR: f64 = 0.05;
 
 /// A body faster than this multiple of the speed at which it is put out keeps its own speed.
 const OWN: f64 = 1.01;
 
-/// Straight way out of a creature, from the skin that was nearest to the body.
+/// A straight way out of a creature, from the skin that was nearest to the body.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PutOut {
     /// The point of the skin, and the frame of its material when the body was found.
@@ -39,7 +41,7 @@ pub(super) struct PutOut {
     left: f64,
 }
 
-/// What a tick does to a body on its way out, in world space.
+/// The changes that a tick makes to a body on its way out, in world space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Leg {
     /// Displacement in this tick, metres.
@@ -51,7 +53,7 @@ pub(super) struct Leg {
     pub(super) state: State,
 }
 
-/// How skin got to where it is.
+/// How skin got to its current place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Skin {
     Moved,
@@ -62,15 +64,15 @@ pub(super) enum Skin {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum State {
     OnTheWay,
-    /// The shift puts it in front of the skin.
+    /// The shift puts the body in front of the skin.
     Out,
-    /// Something holds it.
+    /// The body has not come out in time.
     Held,
 }
 
 impl PutOut {
-    /// The way out of a creature for a body whose core ends at `core`, a segment in world space inside the creature,
-    /// and where the middle of the segment will then be about. `None` if the body is too deep.
+    /// The way out of a creature for a body, and about where the middle of its core will be outside. `core` is the
+    /// core's segment at the end of the tick, in world space, inside the creature. `None` if the body is too deep.
     pub(super) fn new(
         surface: &SkinnedSurface,
         core: &WorldCapsule,
@@ -80,7 +82,8 @@ impl PutOut {
             .in_world()
             .closest_to_capsule(core, radius * DEPTH)?;
         let nearest = core.nearest_on_axis(hit.point);
-        // The segment is inside, so the skin is on its way out, unless the segment passes through the skin.
+        // The segment is inside, so the direction to the skin is the way out, unless the segment passes through the
+        // skin.
         let normal = if hit.distance > radius * NEAR {
             (hit.point - nearest) / hit.distance
         } else {
@@ -116,9 +119,9 @@ impl PutOut {
     /// Goes on over a tick of `dt` seconds, which took the body to the pose `end` with a velocity. `None` if the skin
     /// at which the way begins is gone.
     ///
-    /// The body gets ahead of the skin at an even speed. Sideways it moves freely. When it is out, it is as fast as the
-    /// skin, so that it does not jump, unless it was faster by itself, as what is blown off is. If `skin` was placed in
-    /// this tick, nobody knows how it moves, so the body waits.
+    /// The body moves out at a constant speed, relative to the skin. Sideways it moves freely. When it is out, it gets
+    /// the skin's velocity along the way, so that it does not jump, unless it was faster by itself, as a piece that is
+    /// blown off is. If `skin` was placed in this tick, its motion is unknown, so the body waits.
     pub(super) fn go_on(
         &mut self,
         (surface, skin): (&SkinnedSurface, Skin),
@@ -149,7 +152,7 @@ impl PutOut {
         }
         let speed = core.radius / TIME;
         let wanted = (self.height + speed * dt).min(core.radius);
-        // What gravity takes back in a tick may be more than that.
+        // Gravity may have taken the body back by more than this tick's way.
         let shift = (wanted - height).max(0.0);
         self.height = wanted.max(height);
         let state = if self.height >= core.radius {

@@ -1,4 +1,4 @@
-/// Counts of what a tick did to debris.
+/// Counts of debris bodies in a tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct DebrisReport {
@@ -7,9 +7,9 @@ pub struct DebrisReport {
     /// Bodies that skin entered in rapier's step and that were put back in front of it. A body counts once for each
     /// creature.
     pub put_back: u32,
-    /// Bodies that skin passes through, since they are caught in a closing fold, or between skin and something
-    /// immovable, such as the ground under a foot, or since skin appeared around them and they are too deep to be put
-    /// out. A body counts once for each creature.
+    /// Bodies that skin passes through. They are caught in a closing fold, or between skin and something immovable,
+    /// such as the ground under a foot, or skin appeared around them and they are too deep to be put out. A body counts
+    /// once for each creature.
     pub caught: u32,
     /// Bodies around which skin was found in this tick without having moved there: new bodies inside a creature, bodies
     /// that were moved into one, and bodies where a creature is new, was placed, got skin by an edit or shows hidden

@@ -1,4 +1,4 @@
-//! Surfaces as debris saw them last, to notice skin that got somewhere without moving there.
+//! Surfaces as they were in the last tick, to notice skin that is at a place without having moved there.
 
 use clamber_surface::mesh::{MeshId, VertexId};
 use clamber_surface::surface::SkinnedSurface;
@@ -10,7 +10,7 @@ use crate::ObstacleId;
 /// skinning of a vertex, twice a tick.
 const MARKS: usize = 16;
 
-/// Skin has jumped if a vertex did not start its tick where the last one ended, as a fraction of the surface's radius:
+/// Skin has jumped if a vertex starts its tick farther from its last place than this fraction of the surface's radius:
 /// less than a rock could hide in, and far more than rounding.
 const JUMP: f64 = 1e-4;
 
@@ -20,16 +20,16 @@ const ROUNDING: f64 = 16.0 * f32::EPSILON as f64;
 
 /// A surface as it was in the last tick.
 ///
-/// It is known by where its skin was, not by calls of [`SkinnedSurface::place`] or a count of poses: debris that was
-/// restored from a snapshot would see others, and so go on differently.
+/// A jump is noticed by where the skin was, not by calls of [`SkinnedSurface::place`] or a count of poses. These may
+/// differ after debris was restored from a snapshot, and the run would then go on differently.
 #[derive(Clone, Debug)]
 pub(super) struct Seen {
     mesh: MeshId,
-    /// What of it is hidden: skin that shows again appears.
+    /// The surface's mask of hidden skin: hidden skin that shows again counts as having appeared.
     mask: u64,
     /// Positions in world space of vertices that are spread evenly over the mesh; `None` for removed ones.
     marks: [Option<DVec3>; MARKS],
-    /// The surface is new, or has jumped or got other skin since the tick before.
+    /// True if the surface is new, or has jumped or got other skin since the tick before.
     pub(super) jumped: bool,
 }
 
@@ -48,7 +48,7 @@ impl Seen {
         }
     }
 
-    /// True if the surface's tick starts where this one has ended, with the same skin.
+    /// True if the surface's tick starts where this one ended, with the same skin.
     fn goes_on(&self, surface: &SkinnedSurface) -> bool {
         if surface.mesh().id() != self.mesh || surface.mask() != self.mask {
             return false;
@@ -73,7 +73,7 @@ fn vertex(surface: &SkinnedSurface, mark: usize) -> VertexId {
     VertexId((count * (2 * mark + 1) / (2 * MARKS)) as u32)
 }
 
-/// Notes how the surfaces of this tick are, and which of them have jumped. `order` holds their ids, ascending, with
+/// Stores the surfaces of this tick in `seen`, and which of them have jumped. `order` holds their ids, ascending, with
 /// their indices; `seen` gets the same order.
 pub(super) fn look(
     seen: &mut Vec<(ObstacleId, Seen)>,

@@ -36,9 +36,9 @@ pub(super) struct SkinPatch {
     motion: RigidMotion,
     /// Distance of the skin from the middle of the body's hull a tick ago; `None` if it was not measured in this tick.
     gap: Option<f64>,
-    /// Unless skin and body collide, rapier gets no patch.
+    /// Whether skin and body collide. If they do not, rapier gets no patch.
     pub(super) passage: Passage,
-    /// Skin that had appeared around the body would have been found. False for a new patch.
+    /// True if skin that appeared around the body would have been found. False for a new patch.
     pub(super) is_looked_at: bool,
     /// The surface's `world_from_model`, if the patch's skin is at rest in model space.
     still_at: Option<Similarity>,
@@ -91,14 +91,14 @@ impl SkinPatch {
             && self.still_at == Some(*world_from_model)
             && self.shown(bodies, colliders).is_some()
         {
-            // Nothing has changed. If the patch is left alone, rapier lets rocks fall asleep on it.
+            // The patch is unchanged. If it is left alone, rapier lets rocks fall asleep on it.
             return Some(());
         }
         self.still_at = still.then_some(*world_from_model);
         self.place_vertices(surface, place);
         self.fit(place);
         self.show(change, place, config, bodies, colliders);
-        // The patch may have been another creature's.
+        // The patch may have belonged to another creature.
         let id = u128::from(obstacle.0);
         if let Some((body, collider)) = self.handles
             && colliders
@@ -135,8 +135,8 @@ impl SkinPatch {
         }
     }
 
-    /// Looks whether the skin has appeared around the body, and decides what becomes of the body then. True if it has.
-    /// A body that is let through already stays so until it is outside.
+    /// Tests whether skin has appeared around the body, and sets the passage. True if it has appeared. A body that is
+    /// let through already stays so until it is outside.
     pub(super) fn look(
         &mut self,
         body: &Looked<'_>,
@@ -198,8 +198,8 @@ impl SkinPatch {
         self.now.extend(self.patch.positions().iter().map(local));
     }
 
-    /// Fits the patch's rigid motion. Nearer vertices have more weight. The velocity at the point nearest to the body
-    /// is that of this point alone, so the first skin to touch the body moves as the skin does.
+    /// Fits the patch's rigid motion. Nearer vertices have more weight. At the point nearest to the body, the patch has
+    /// exactly the skin's velocity, so the first skin to touch the body moves as the skin does.
     fn fit(&mut self, place: &Place) {
         let reach = place.reach.radius() * place.reach.radius();
         let pairs = self.before.iter().zip(&self.now);
@@ -237,7 +237,7 @@ impl SkinPatch {
         nearest.map(|(_, [before, now])| (before, now))
     }
 
-    /// Its body and collider, if they are in rapier's sets.
+    /// The patch's body and collider, if they are in rapier's sets.
     fn shown(
         &self,
         bodies: &RigidBodySet,
@@ -301,7 +301,8 @@ fn insert(
     (body, collider)
 }
 
-/// Squared distance from the origin to the box around a triangle: at most that to the triangle.
+/// Squared distance from the origin to the box around a triangle: a lower bound of the squared distance to the
+/// triangle.
 fn least_square([a, b, c]: [DVec3; 3]) -> f64 {
     let (low, high) = (a.min(b).min(c), a.max(b).max(c));
     low.max(-high).max(DVec3::ZERO).length_squared()

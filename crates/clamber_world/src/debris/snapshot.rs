@@ -2,11 +2,11 @@ use rapier3d::prelude::*;
 
 use super::Debris;
 
-/// A rapier world and its debris as they were between two ticks: what is to be saved beside an arena where rocks have
-/// to be rolled back with it.
+/// A copy of a rapier world and its debris between two ticks. Save it with an arena if rocks have to be rolled back,
+/// too.
 ///
-/// It is dear beside a saved arena, since all of rapier's sets are copied; the bench `arena` measures it. Where rocks
-/// are decoration, leave them out.
+/// A snapshot costs much more than a saved arena, because it copies all of rapier's sets; the bench `arena` measures
+/// it. Leave out rocks that are only decoration.
 ///
 /// ```
 /// use clamber_world::rapier3d::prelude::*;
@@ -38,7 +38,7 @@ pub struct DebrisSnapshot {
 }
 
 impl DebrisSnapshot {
-    /// Copies what changes in a world, and its debris.
+    /// Copies the parts of a world that change, and its debris.
     pub fn save(world: &PhysicsWorld, debris: &Debris) -> Self {
         Self {
             islands: world.islands.clone(),
@@ -53,8 +53,8 @@ impl DebrisSnapshot {
         }
     }
 
-    /// Goes back to it: world and debris go on with the same bits as they did then, if the skin does too. Gravity and
-    /// parameters of the integration stay as they are.
+    /// Restores world and debris. They go on with the same bits as they did then, if the skin does too. Gravity and
+    /// integration parameters stay as they are.
     pub fn restore(&self, world: &mut PhysicsWorld, debris: &mut Debris) {
         let saved = self.clone();
         world.islands = saved.islands;

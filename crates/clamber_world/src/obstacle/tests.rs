@@ -133,7 +133,7 @@ fn defaults_find_nothing_for_invalid_input() {
     assert_eq!(least.cast_ray(place, DVec3::ZERO, 1.0), None);
 }
 
-/// Every axis of every vector counts, and the largest numbers are finite.
+/// A number that is not finite is found on each axis of each vector, and the largest finite numbers pass.
 #[test]
 fn one_number_that_is_not_finite_is_found_wherever_it_stands() {
     let most = DVec3::splat(f64::MAX);

@@ -2,10 +2,10 @@ use glam::DVec3;
 
 use crate::{MaterialPoint, WorldCapsule};
 
-/// What a physics engine needs to know of a climber, so that dynamic bodies collide with it.
+/// A climber's data for a physics engine, so that dynamic bodies collide with the climber.
 ///
-/// `Climber::proxy_body` of `clamber_climber` makes it; a controller of your own fills it in. It is plain data, the
-/// same for every engine. All vectors are in world space.
+/// `Climber::proxy_body` of `clamber_climber` makes it; a controller of your own fills it in. The data are the same for
+/// every engine. All vectors are in world space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProxyBody {
     /// The climber's body, its margin included.
@@ -18,38 +18,39 @@ pub struct ProxyBody {
     pub mass: f64,
     /// The climber's velocity, metres a second.
     pub velocity: DVec3,
-    /// The part of it that bodies feel, metres a second: without walking and climbing, by which a climber stops in
-    /// front of what is in its way instead of running it over.
+    /// The part of `velocity` that bodies feel, metres a second. Walking and climbing are left out: a climber stops in
+    /// front of an obstacle on its way instead of running it over.
     pub drift: DVec3,
-    /// Velocity of the climber's frame, metres a second: its support's, or in the air, that of what it touched last.
-    /// Only bodies that approach in this frame strike the climber; those that it runs or jumps into do not.
+    /// Velocity of the climber's frame, metres a second: the velocity of its support, or in the air, of the obstacle
+    /// that it touched last. Only bodies that approach in this frame strike the climber; bodies that it runs or jumps
+    /// into do not.
     pub frame_velocity: DVec3,
-    /// Unit vector opposite to gravity. What comes from below does not strike the climber, which lands on it.
+    /// Unit vector opposite to gravity. A body from below does not strike the climber: the climber lands on it.
     pub up: DVec3,
-    /// Unit normal of the ground or wall that the climber stands on, lies on or holds. An impact against it is taken by
-    /// the support, which gets it by the climber's pushes. `None` in the air.
+    /// Unit normal of the ground or wall that the climber stands on, lies on or holds. The support takes an impact
+    /// against it, and gets it as a push of the climber. `None` in the air.
     pub support_normal: Option<DVec3>,
-    /// Impacts slower than this are no blows, metres a second, not negative: the body is stopped, and the climber does
-    /// not feel it.
+    /// Speed, metres a second, not negative, below which an impact is no blow: the body is stopped, and the climber
+    /// does not feel it.
     pub gentle: f64,
-    /// The point of the engine's world that carries the climber, which gets its weight by pushes and does not collide
-    /// with it.
+    /// The point of the engine's world that carries the climber. Its body gets the climber's weight by pushes, and does
+    /// not collide with the proxy.
     pub support: Option<MaterialPoint>,
 }
 
 impl ProxyBody {
-    /// Coefficient of friction that the engine's body of a climber has: what lies on a climber slides off where it is
-    /// steep.
+    /// Coefficient of friction of the engine's body of a climber. A body that lies on a climber slides off where the
+    /// climber is steep.
     pub const FRICTION: f32 = 0.5;
 }
 
-/// A contact that the climber found by itself: it moves along the body there, and pushes it by its own rules.
+/// A contact that the climber found by itself. The climber moves along the body there, and pushes it by its own rules.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProxyTouch {
     /// The touched point.
     pub material: MaterialPoint,
-    /// Its position, in world space.
+    /// Position of the point, in world space.
     pub position: DVec3,
-    /// Unit vector from it towards the climber, in world space.
+    /// Unit vector from the point towards the climber, in world space.
     pub normal: DVec3,
 }

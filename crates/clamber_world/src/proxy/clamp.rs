@@ -6,21 +6,23 @@ use super::ProxyBody;
 use crate::shapes::{FirstContact, Moved, overlap_shape};
 use crate::{RigidPose, SweepContact, WorldCapsule};
 
-/// A body is stopped in this share of the layer around the climber. It then overlaps the engine's body of the climber,
-/// so that the engine's next step finds the contact; and it is above the depth to which engines let resting bodies
-/// overlap.
+/// Distance from the climber at which a body is stopped, as a fraction of the layer around the climber. The body then
+/// overlaps the engine's body of the climber, so that the engine's next step finds the contact. The overlap is larger
+/// than the depth to which engines let resting bodies overlap.
 const STOPS: f64 = 0.4;
 
 /// Rounding error of a bounding sphere in f32, several times over, as a share of its radius.
 const ROUNDING: f64 = 1e-6;
 
 impl ProxyBody {
-    /// Where to put a body that entered the climber by its own motion in a step of a physics engine: where it touched
-    /// the climber first, and for the rest of the tick with it. `None` if it did not enter, or is below the climber.
+    /// The pose for a body that entered the climber by its own motion in a step of a physics engine: where it first
+    /// touched the climber, and carried along with the climber for the rest of the tick. `None` if it did not enter, or
+    /// is below the climber.
     ///
-    /// Engines find contacts once a step. Without this, a fast body is in the climber for a tick before they stop it,
-    /// and presses it away. It is the motion clamping of continuous collision detection, in the climber's frame. A body
-    /// that turns by at most one radian in the step ends outside of the climber; a faster one may end in it.
+    /// Engines find contacts once a step. Without this correction, a fast body is inside the climber for a tick before
+    /// the engine stops it, and presses the climber away. The method is the motion clamping of continuous collision
+    /// detection, in the climber's frame. A body that turns by at most one radian in the step ends outside of the
+    /// climber; a body that turns faster may end in it.
     ///
     /// `from` and `to` are the body's poses before the step and after it, in a space with its origin at `origin`.
     /// `solids` are its shapes, with their poses on the body. `dt` is the length of the tick, seconds.
@@ -43,21 +45,22 @@ impl ProxyBody {
         let touch = self.entered(&capsule, [from, to], solids.clone(), dt)?;
         let (mut pose, mut was) = (*to, 0.0);
         if touch.started_inside {
-            // The engine has the contact already. It gets no deeper than it was.
+            // The engine has the contact already. The body gets no deeper than it was.
             was = deepest(from, solids.clone(), &capsule).map_or(0.0, |(depth, _)| depth);
         } else {
-            // For the rest of the tick it stays where it is relative to the climber.
+            // For the rest of the tick the body stays where it is relative to the climber.
             pose = between(from, to, touch.time);
             pose.translation += way * (1.0 - touch.time);
         }
-        // The search takes the points of a body that turns to move in straight lines.
+        // The search assumes that the points of a turning body move in straight lines, so the body may still be too
+        // deep.
         if let Some((depth, out)) = deepest(&pose, solids, &capsule.moved(way)) {
             pose.translation += out * (depth - was).max(0.0);
         }
         (pose != *to).then_some(pose)
     }
 
-    /// Where a body first touched the climber, if it came by itself.
+    /// The first contact of a body with the climber, if the body came by itself.
     fn entered<'a>(
         &self,
         capsule: &WorldCapsule,
@@ -84,8 +87,7 @@ impl ProxyBody {
     }
 }
 
-/// True if a shape of a body does not reach a capsule beside which the body's origin moves along a path, however it
-/// turns.
+/// True if a shape of a body cannot reach a capsule while the body's origin moves along a path, however the body turns.
 fn is_far((shape, on_body): (&dyn Shape, RigidPose), path: [DVec3; 2], to: &WorldCapsule) -> bool {
     let sphere = shape.compute_local_bounding_sphere();
     let around = sphere.center.as_dvec3().length() + f64::from(sphere.radius);
@@ -99,7 +101,8 @@ fn is_far((shape, on_body): (&dyn Shape, RigidPose), path: [DVec3; 2], to: &Worl
     nearest_on(path, middle).distance_squared(middle) > near * near
 }
 
-/// How deep a body in a pose is in a capsule, and the unit vector along which it gets out; `None` if it is outside.
+/// The largest depth of a body in a capsule, and the unit vector along which the body gets out; `None` if it is
+/// outside.
 fn deepest<'a>(
     body: &RigidPose,
     solids: impl Iterator<Item = (&'a dyn Shape, RigidPose)>,

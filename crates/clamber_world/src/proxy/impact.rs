@@ -1,17 +1,18 @@
 use glam::DVec3;
 
-/// The contacts of one body with a climber in a step of a physics engine, summed up: what a
-/// [`ProxyMeeting`](crate::ProxyMeeting) is made of. `B` and `C` are the engine's handles of bodies and colliders.
+/// The contacts of one body with a climber in a step of a physics engine, summed up to make a
+/// [`ProxyMeeting`](crate::ProxyMeeting). `B` and `C` are the engine's handles of bodies and colliders.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProxyImpact<B, C> {
     /// The body that touches the climber.
     pub body: B,
-    /// Its collider with the strongest contacts.
+    /// The body's collider with the strongest contacts.
     pub collider: C,
-    /// The sum of what the contacts of that collider weigh.
+    /// Sum of the weights of that collider's contacts.
     strongest: f64,
-    /// Sums over all contacts: of what they weigh, and of what they have times that.
+    /// Sum of the weights of all contacts.
     weight: f64,
+    /// Sums over all contacts of their point, normal and friction, each times the contact's weight.
     point: DVec3,
     normal: DVec3,
     friction: f64,
@@ -31,8 +32,8 @@ impl<B: Ord + Copy, C: Ord + Copy> ProxyImpact<B, C> {
         }
     }
 
-    /// Adds a contact of the collider. It counts by its `weight`, the engine's impulse. `normal` is the unit vector
-    /// from the climber to the body, `friction` the coefficient there or an upper bound of it.
+    /// Adds a contact of the collider. The contact counts by its `weight`, the engine's impulse. `normal` is the unit
+    /// vector from the climber to the body, `friction` the coefficient of friction there or an upper bound of it.
     pub fn add(&mut self, weight: f64, point: DVec3, normal: DVec3, friction: f64) {
         self.strongest += weight;
         self.weight += weight;
@@ -46,8 +47,8 @@ impl<B: Ord + Copy, C: Ord + Copy> ProxyImpact<B, C> {
         self.weight > 0.0
     }
 
-    /// Makes one impact of the impacts of all colliders of a body, in ascending order of the bodies: the same ones, in
-    /// whichever order the engine found them.
+    /// Merges the impacts of all colliders of a body into one, in ascending order of the bodies. The order in which the
+    /// engine found the impacts does not matter.
     pub fn merge(impacts: &mut Vec<Self>) {
         impacts.sort_unstable_by_key(|impact| (impact.body, impact.collider));
         impacts.dedup_by(|next, first| {
@@ -65,18 +66,18 @@ impl<B: Ord + Copy, C: Ord + Copy> ProxyImpact<B, C> {
         });
     }
 
-    /// The middle of the contacts, in the space of the points that were added. Not finite unless it
-    /// [touches](Self::touches).
+    /// The weighted mean of the contacts' points, in the space of the points that were added. Not finite unless the
+    /// impact [touches](Self::touches).
     pub fn point(&self) -> DVec3 {
         self.point / self.weight
     }
 
-    /// The unit vector from the climber to the body; `None` if the contacts face each other.
+    /// The unit vector from the climber to the body; `None` if the contacts' normals cancel out.
     pub fn normal(&self) -> Option<DVec3> {
         self.normal.try_normalize()
     }
 
-    /// The mean coefficient of friction. Not finite unless it [touches](Self::touches).
+    /// The mean coefficient of friction. Not finite unless the impact [touches](Self::touches).
     pub fn friction(&self) -> f64 {
         self.friction / self.weight
     }

@@ -1,7 +1,7 @@
 use rapier3d::dynamics::{RigidBody, RigidBodyHandle, RigidBodySet};
 use rapier3d::math::{Pose, Vector};
 
-/// What is recorded of a body.
+/// The recorded pose and velocities of a body.
 #[derive(Clone, Copy, Debug)]
 struct Recorded {
     body: RigidBodyHandle,
@@ -54,8 +54,8 @@ impl BodyPoses {
             .sort_unstable_by_key(|recorded| recorded.body.into_raw_parts());
     }
 
-    /// Moves the recorded poses, metres: for a game that has moved all bodies by as much, because the origin of its
-    /// world is elsewhere now. The bodies have then not moved.
+    /// Moves the recorded poses by a vector, metres, for a game that has moved all bodies by it, because the origin of
+    /// its world is elsewhere now. The bodies then count as not moved.
     pub fn translate(&mut self, by: Vector) {
         for recorded in &mut self.poses {
             recorded.pose.translation += by;

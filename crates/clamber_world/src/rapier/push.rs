@@ -8,8 +8,8 @@ use crate::MaterialPoint;
 /// Applies an impulse, in N s, at a point of a [`RapierTerrain`](crate::RapierTerrain) to the body there, and wakes it
 /// up.
 ///
-/// A climber's step returns its pushes; apply them before rapier's next step. Nothing happens if the body is not
-/// dynamic or has been removed, or if the impulse is not finite.
+/// A climber's step returns its pushes; apply them before rapier's next step. Does nothing if the body is not dynamic
+/// or has been removed, or if the impulse is not finite.
 ///
 /// ```
 /// use clamber_world::{BodyPoses, Obstacle, RapierTerrain, apply_push};
@@ -96,7 +96,7 @@ pub(super) fn point_response(body: &RigidBody, place: DVec3, impulse: DVec3) -> 
     slide + spin.cross(place - body.mass_properties().world_com.as_dvec3())
 }
 
-/// What an impulse at a point changes of a body's linear velocity, the torque impulse, and what this changes of the
+/// The effects of an impulse at a point of a body: the change of linear velocity, the torque impulse, and the change of
 /// angular velocity.
 fn answer(body: &RigidBody, place: DVec3, impulse: DVec3) -> (DVec3, DVec3, DVec3) {
     let mass = body.mass_properties();

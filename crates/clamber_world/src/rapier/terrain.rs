@@ -69,14 +69,14 @@ pub struct RapierTerrain<'a> {
     moved: OnceLock<MovedColliders>,
 }
 
-/// Up to this number, colliders are looked at one by one, which is sooner done than a tree is built.
+/// Largest number of moved colliders that are tested one by one: that is faster than building a tree.
 const FEW: usize = 8;
 
 /// Colliders of bodies whose pose has changed, and a tree over the boxes of their paths. Rapier's own tree has only
 /// their current boxes.
 struct MovedColliders {
     moved: Vec<(ColliderHandle, Moved)>,
-    /// Leaves are indices into `moved`. `None` if those are [`FEW`].
+    /// Leaves are indices into `moved`. `None` for at most [`FEW`] colliders.
     tree: Option<Bvh>,
 }
 
@@ -123,8 +123,8 @@ impl<'a> RapierTerrain<'a> {
         self
     }
 
-    /// Restricts queries to the colliders that a function accepts: those of some groups, or all but a body's own, as
-    /// `|_, collider| collider.parent() != Some(body)`.
+    /// Restricts queries to the colliders that a function accepts: the colliders of some groups, or all but a body's
+    /// own, as `|_, collider| collider.parent() != Some(body)`.
     #[must_use]
     pub fn with_filter(
         mut self,
@@ -241,8 +241,8 @@ impl<'a> RapierTerrain<'a> {
     fn previous_body_pose(&self, collider: &Collider) -> Option<&Pose> {
         let body = collider.parent()?;
         let before = self.before.get(body)?;
-        // A collider's pose is a product, which rounding may change although nothing moves. So compare the bodies'
-        // poses.
+        // A collider's pose is a product of poses, which rounding may change although the body is at rest. So compare
+        // the bodies' poses.
         (self.bodies.get(body)?.position() != before).then_some(before)
     }
 

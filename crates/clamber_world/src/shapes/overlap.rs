@@ -43,7 +43,7 @@ impl ShapeContact {
 
 /// Calls `found` with the nearest point of each part of a shape within `radius` of the segment between `ends`. Parts
 /// are the triangles of a mesh or height field, and convex solids. Everything is in the shape's local space. The radius
-/// may be infinite. Nothing is found if an end is not finite or beyond 2^100, or if the radius is NaN or negative.
+/// may be infinite. Finds nothing if an end is not finite or beyond 2^100, or if the radius is NaN or negative.
 pub fn overlap_shape(
     shape: &dyn Shape,
     ends: [DVec3; 2],
@@ -95,8 +95,8 @@ fn triangle(corners: [Vec3; 3], still: &MovingCapsule) -> Option<ShapeContact> {
     })
 }
 
-/// The contact of a segment with a convex solid. Where the segment meets the core: the minimum translation that leads
-/// out.
+/// The contact of a segment with a convex solid. If the segment meets the core, the contact is at the minimum
+/// translation that leads out.
 pub(super) fn solid(convex: &Convex<'_>, ends: [DVec3; 2]) -> ShapeContact {
     match MovingConvex::still(convex).nearest(0.0, ends, DVec3::ZERO) {
         Some(nearest) => ShapeContact {

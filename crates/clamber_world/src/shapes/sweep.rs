@@ -63,7 +63,7 @@ impl ShapeTouch {
 ///
 /// The reported time is never later than the true one. The distance at that time is at most the radius plus
 /// [`WorldCapsule::sweep_tolerance`], unless the contact is [undecided](ShapeTouch::undecided). Triangles are
-/// two-sided. Nothing is found if a coordinate is not finite or beyond 2^100, or if the radius is negative.
+/// two-sided. Finds nothing if a coordinate is not finite or beyond 2^100, or if the radius is negative.
 pub fn sweep_shape(shape: &dyn Shape, sweep: &ShapeSweep, limit: f64) -> Option<ShapeTouch> {
     search(shape, sweep, limit, None)
 }

@@ -166,7 +166,7 @@ fn bounds_enclose_the_creature_over_the_tick_tightly() {
             assert!(apart <= radius, "{corner}: {apart} of {radius}");
         }
     }
-    // The bounds are those of the box around two balls of 14.2 m, one about the square at each place.
+    // The bounds enclose the box around two balls of 14.2 m, one about the square at each place.
     assert!(radius < 40.0, "{radius}");
     surface.sleep();
     let (center, radius) = Obstacle::bounds(&surface).unwrap();

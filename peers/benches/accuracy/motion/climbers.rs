@@ -1,4 +1,4 @@
-//! Climbers in the way of a limb, or on one.
+//! Climbers in the way of a limb, or on a limb.
 
 use std::error::Error;
 
@@ -19,17 +19,17 @@ const SETTLE: usize = 60;
 /// Place and support of a climber.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Stance {
-    /// It floats without gravity, and flies off when it is struck.
+    /// The climber floats without gravity, and flies off when the limb strikes it.
     InAir,
-    /// It stands on the ground below the limb, without input.
+    /// The climber stands on the ground below the limb, without input.
     OnGround,
-    /// It stands on the limb. No acceleration throws it off.
+    /// The climber stands on the limb. No acceleration throws it off.
     OnLimb,
-    /// It grips the limb. No acceleration shakes it off.
+    /// The climber grips the limb. No acceleration shakes it off.
     Holding,
 }
 
-/// A climber, and the ground below it if there is one.
+/// A climber, and the ground below it, if its stance has any.
 pub(crate) struct Walker {
     pub(crate) climber: Climber,
     ground: Option<SkinnedSurface>,
@@ -80,7 +80,7 @@ impl Walker {
         Ok(())
     }
 
-    /// Lets the climber come to stand or hold while the limb does not move. Fails if it does not.
+    /// Steps the climber while the limb does not move. Fails if the climber does not stand or hold on then.
     pub(crate) fn settle(&mut self, limb: &SkinnedSurface, dt: f64) -> Result<(), Box<dyn Error>> {
         let wanted = if self.input.grip {
             ClimberMode::Holding

@@ -9,15 +9,17 @@ use clamber_surface::rig::{JointId, Palette};
 use clamber_surface::skin::skin_into;
 use glam::{DAffine3, DQuat, DVec3, Vec3};
 
-/// Length and radius of the limb, metres. It lies along X, from the joint on.
+/// Length of the limb, metres. It lies along X, from the joint on.
 pub(crate) const LENGTH: f64 = 10.0;
+/// Radius of the limb, metres.
 pub(crate) const RADIUS: f64 = 0.5;
 
 /// Distance from the joint at which the limb has its stated speed, metres.
 pub(crate) const AT: f64 = 8.0;
 
-/// Number of vertices around the limb, and of segments along it.
+/// Number of vertices around the limb.
 const SIDES: u32 = 32;
+/// Number of segments along the limb.
 const RINGS: u32 = 80;
 
 /// The motion of a limb.
@@ -99,7 +101,7 @@ pub(crate) fn limb() -> Result<Arc<ColliderMesh>, MeshError> {
 /// Distance of a point from the skin, in f64 over all triangles; negative inside.
 pub(crate) fn signed_distance(mesh: &ColliderMesh, palette: &Palette, point: DVec3) -> f64 {
     let mut positions = Vec::new();
-    // The palette has one joint, as the mesh has, so this cannot fail.
+    // Palette and mesh both have one joint, so this cannot fail.
     let _ = skin_into(mesh, palette.matrices(), &mut positions);
     let triangles = mesh.triangles().iter();
     let triangles = triangles.map(|t| t.map(|v| positions[v.index()].as_dvec3()));

@@ -17,9 +17,10 @@ use super::limb::Course;
 /// Number of sweeps, or of rounds over speculative planes, in a tick.
 const ROUNDS: usize = 8;
 
-/// Tolerance of a sweep, metres. After a contact the sphere is moved away by as much.
+/// Tolerance of a sweep, metres. After a contact, the sphere is moved away by this distance.
 const TOLERANCE: f64 = 1e-4;
 
+/// Options of a sweep.
 const SWEEP: CastOptions = CastOptions::MOVING.with_tolerance(TOLERANCE);
 
 /// A method of resolving the collisions of a tick.
@@ -27,15 +28,16 @@ const SWEEP: CastOptions = CastOptions::MOVING.with_tolerance(TOLERANCE);
 pub(crate) enum Method {
     /// The mean of all push-outs, at `steps` poses within the tick. The thesis's method has one step.
     PushOut { steps: u32 },
-    /// A plane for each triangle that is near at the start of the tick, which moves with its contact point; then a
+    /// A plane for each triangle that is near at the start of the tick; the plane moves with its contact point. Then a
     /// push-out.
     Speculative,
-    /// Sweeps against the moving skin, with a plane for each contact that moves with the skin; then a push-out.
+    /// Sweeps against the moving skin, with a plane for each contact; the plane moves with the skin. Then a push-out.
     Sweep,
     /// A whole climber instead of the test sphere. Its ball has the same radius.
     Climber(Stance),
 }
 
+/// Methods for spheres.
 pub(crate) const SPHERES: [(Method, &str); 6] = [
     (Method::PushOut { steps: 1 }, "averaged push-out"),
     (Method::PushOut { steps: 2 }, "2 sub-steps"),
@@ -101,7 +103,7 @@ impl Body {
         Ok(body)
     }
 
-    /// Radius that nothing may enter: a sphere's own radius, or a climber's without its contact margin.
+    /// Radius of the ball that no skin may enter: a sphere's own radius, or a climber's radius less its contact margin.
     pub(crate) fn core(&self) -> f64 {
         self.walker.as_ref().map_or(self.radius, |walker| {
             let body = &walker.climber.config().body;
@@ -109,7 +111,7 @@ impl Body {
         })
     }
 
-    /// Lets the body rest from now on: a sphere on the nearest skin, a climber as its stance says.
+    /// Lets the body rest from now on: a sphere on the nearest skin, a climber in its stance.
     pub(crate) fn rest(&mut self, dt: f64) -> Result<(), Box<dyn Error>> {
         if let Some(walker) = &mut self.walker {
             walker.settle(&self.surface, dt)?;
@@ -202,7 +204,7 @@ impl Body {
 
     /// The wanted motion, corrected to stay in front of the planes of all triangles that the sphere may reach.
     fn look_ahead(&mut self, wanted: DVec3) -> Result<DVec3, Box<dyn Error>> {
-        // No skin comes from farther than the fastest skin near here moves.
+        // No skin reaches the sphere from farther away than the limb's fastest point moves.
         let reach = self.ball(self.radius + self.fastest() + wanted.length())?;
         self.before
             .in_model()
@@ -212,7 +214,7 @@ impl Body {
             let anchor = self.surface.anchor_at(hit)?;
             let motion = self.surface.in_model().motion(&anchor, 1.0)?;
             let away = (self.center - hit.point.as_dvec3()).normalize_or(hit.normal.as_dvec3());
-            // A sphere behind the skin gets no plane: it would keep the sphere inside.
+            // A sphere behind the skin gets no plane: the plane would keep the sphere inside.
             if away.dot(hit.normal.as_dvec3()) > 0.0 {
                 let gap = hit.distance - self.radius;
                 planes.push((away, motion.velocity.as_dvec3().dot(away) - gap));
@@ -236,7 +238,7 @@ impl Body {
     fn fastest(&self) -> f64 {
         let space = self.surface.in_model();
         let mut fastest = 0.0_f64;
-        // The limb is straight and rigid: its ends are fastest.
+        // The limb is straight and rigid, so one of its ends moves fastest.
         for vertex in [0, self.surface.mesh().positions().len() - 1] {
             let vertex = clamber_surface::mesh::VertexId(vertex as u32);
             let ends = (space.position(vertex), space.previous_position(vertex));
@@ -266,7 +268,7 @@ impl Body {
             if closing <= 0.0 {
                 break;
             }
-            // From the contact on the sphere moves with the skin. The correction is spread over the tick, so that the
+            // From the contact on, the sphere moves with the skin. The correction is spread over the tick, so that the
             // motion stays linear.
             motion += normal * (closing * (1.0 - hit.time) + TOLERANCE);
         }

@@ -1,5 +1,4 @@
-//! A sphere or a climber and a moving limb: the time of each method of keeping them apart, and the penetration that it
-//! leaves.
+//! Methods of keeping a sphere or a climber out of a moving limb: the time of each, and the penetration that it leaves.
 
 mod climbers;
 mod limb;
@@ -19,13 +18,14 @@ use methods::{Body, Method, RIDING, SPHERES, STRUCK};
 /// Radius of the sphere, metres.
 const SPHERE: f64 = 0.4;
 
-/// The limb swings so far beyond the sphere's place, radians. By then it has passed.
+/// Angle by which the limb swings beyond the sphere's place, radians: enough to have passed the sphere.
 const BEYOND: f64 = 0.35;
 
-/// A sphere that gets behind the limb has passed through it, not around it, if it is nearer to the limb's axis than
-/// this share of the sum of both radii.
+/// Share of the sum of both radii. A sphere that gets behind the limb has passed through it, not around it, if its
+/// distance from the limb's axis is less than this share.
 const THROUGH: f64 = 0.9;
 
+/// Columns of the table.
 const COLUMNS: [&str; 10] = [
     "scene",
     "m/s",
@@ -141,7 +141,7 @@ fn swing(
                 .model_from_joint(time + dt)
                 .inverse()
                 .transform_point3(body.center);
-            // Beyond the tip there is no limb to be in.
+            // Beyond the tip, there is no limb, and so no depth.
             if at.x < LENGTH {
                 let depth = body.core() - signed_distance(mesh, &palette, body.center);
                 outcome.depths.push(depth.max(0.0));
@@ -213,7 +213,7 @@ fn report(
     [speed, rate]: [f64; 2],
     mut outcome: Outcome,
 ) {
-    // The mean, not the median: most ticks have nothing near, and the others make up the cost.
+    // The mean, not the median: most ticks have no limb near, and the others make up the cost.
     let cost = outcome.microseconds.iter().sum::<f64>() / outcome.microseconds.len() as f64;
     let depths = [0.5, 0.99, 1.0].map(|part| quantile(&mut outcome.depths, part));
     let mut row = [scene, &format!("{speed}"), &format!("{rate}"), method]

@@ -1,4 +1,4 @@
-//! Rays, overlaps, closest points and sphere casts of all peers, on one pose.
+//! Rays, overlaps, closest points and sphere casts of all peers, on one pose of each mesh.
 
 mod score;
 mod sets;
@@ -24,6 +24,7 @@ pub(crate) enum Kind {
     Cast,
 }
 
+/// All kinds of queries, with their names in the table.
 pub(crate) const KINDS: [(Kind, &str); 4] = [
     (Kind::Ray, "ray"),
     (Kind::Overlap, "overlap"),
@@ -52,13 +53,13 @@ pub(crate) fn run(brief: bool) -> Result<(), Box<dyn Error>> {
     report.finish(brief)
 }
 
-/// The true answer to a query: a distance along a ray, to the closest point, or along a motion, metres; for overlaps
+/// The true answer to a query: the distance along a ray, to the closest point, or along a motion, metres. For overlaps,
 /// the number of triangles.
 struct Expected {
     value: Option<f64>,
-    /// How many more triangles an overlap may find: those at the sphere's border.
+    /// Number of triangles at the sphere's border: an overlap may find up to this number of triangles more.
     more: usize,
-    /// The query's reach, metres. An error larger than a share of it counts as a leak or a false hit.
+    /// The query's reach, metres. An error larger than a share of the reach counts as a leak or a false hit.
     scale: f64,
 }
 

@@ -6,13 +6,13 @@ use clamber_scenes::measure::{Bound, Cells, Plot, Series, Table, measure_folder,
 
 use super::{KINDS, Kind};
 
-/// A distance that is wrong by more than this share of the query's reach counts as a leak or a false hit, not as an
-/// error.
+/// Share of the query's reach. A distance that is wrong by more counts as a leak or a false hit, not as an error.
 const LEAK: f64 = 0.01;
 
-/// Errors below this are drawn as this, metres. f32 does not resolve less of a metre.
+/// Least error in the plots, metres; smaller errors are drawn as this one. f32 does not resolve less of a metre.
 const FLOOR: f64 = 1e-9;
 
+/// Columns of the table.
 const COLUMNS: [&str; 11] = [
     "queries",
     "query",
@@ -34,9 +34,9 @@ pub(crate) struct Score {
     errors: Vec<f64>,
     /// Largest distance of an answer beyond the true one, metres.
     latest: f64,
-    /// Answers that miss skin, or find skin only far behind the first.
+    /// Answers that miss the skin, or find skin only far behind the first hit.
     leaks: usize,
-    /// Answers that find skin where there is none.
+    /// Answers that find skin at a place without skin.
     false_hits: usize,
     count: usize,
 }
@@ -145,7 +145,7 @@ impl Report {
         Ok(())
     }
 
-    /// Times over those of the peers that they are measured by, on ordinary queries.
+    /// Compares clamber's times on ordinary queries with the peers that have bounds.
     fn compare(&self, brief: bool) -> Result<(), Box<dyn Error>> {
         let time = |kind: Kind, method: &str| {
             let times = self.times.iter();

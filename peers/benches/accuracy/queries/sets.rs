@@ -1,4 +1,4 @@
-//! Seeded sets of queries, ordinary and difficult ones.
+//! Seeded sets of ordinary and difficult queries.
 
 use std::error::Error;
 use std::sync::Arc;
@@ -25,7 +25,7 @@ pub(crate) struct Set {
     pub(crate) queries: Vec<Query>,
 }
 
-/// A ray that hits the skin, and the sphere, point and motion that the other queries take.
+/// A ray that hits the skin, and the sphere, point and motion for the other queries.
 pub(crate) struct Query {
     pub(crate) ray: Ray,
     pub(crate) reach: f32,
@@ -89,8 +89,8 @@ impl Set {
             let Some(query) = query(&truth.0[triangle], aim, &mut rng) else {
                 continue;
             };
-            // At the edge of a triangle that faces away a ray may pass by the skin, and both answers are right. Such
-            // queries are left out.
+            // At the edge of a triangle that faces away, a ray may pass by the skin, so a hit and a miss are both
+            // right. Such queries are left out.
             let corners = mesh.triangles()[triangle];
             let at = |v: usize| around[corners[v].index()].iter().copied();
             let along = query.ray.direction().as_dvec3();
@@ -131,7 +131,7 @@ fn faces(&[a, b, c]: &Corners, along: DVec3) -> bool {
     (b - a).cross(c - a).normalize_or_zero().dot(along) < -0.05
 }
 
-/// A query at a triangle, from a few metres away at most; `None` if the triangle has no area.
+/// A query that is aimed at a triangle from at most a few metres away; `None` if the triangle has no area.
 fn query(&[a, b, c]: &Corners, aim: Aim, rng: &mut fastrand::Rng) -> Option<Query> {
     let normal = (b - a).cross(c - a).try_normalize()?;
     let target = match aim {

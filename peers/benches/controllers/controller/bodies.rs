@@ -47,7 +47,7 @@ pub(super) fn pose(motion: &Similarity) -> Pose {
     Pose::from_parts(motion.translation.as_vec3(), rotation)
 }
 
-/// The collider of a solid. Meshes get pseudo-normals, by which rapier avoids contacts with inner edges.
+/// The collider of a solid. Meshes get pseudo-normals, with which rapier avoids contacts with inner edges.
 fn collider(solid: &Solid) -> Result<ColliderBuilder, Box<dyn Error>> {
     Ok(match solid {
         Solid::Block { low, high } => {

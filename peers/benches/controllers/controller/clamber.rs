@@ -19,6 +19,7 @@ use glam::{DAffine3, DVec3};
 use super::Entry;
 use super::bodies::{Bodies, pose};
 
+/// The climber on bodies and on skin.
 pub(super) const ENTRIES: [Entry; 2] = [
     Entry {
         name: "clamber on bodies",
@@ -44,7 +45,7 @@ fn climber(set: &Set) -> Result<Climber, Box<dyn Error>> {
         jump_speed: set.jump,
         snap_distance: SNAP,
         step_height: STEP,
-        // Feet stick to any ground, as for the other controllers.
+        // Feet stick to any ground, as with the other controllers.
         throw_acceleration: f64::INFINITY,
         ..config.ground
     };

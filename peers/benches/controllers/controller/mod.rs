@@ -16,7 +16,7 @@ type Make = fn(&Set) -> Result<Box<dyn Controller>, Box<dyn Error>>;
 /// A controller's name, and the function that makes it.
 pub(crate) struct Entry {
     pub(crate) name: &'static str,
-    /// True for clamber's: it must pass every scene, or the bench fails.
+    /// True for clamber's controllers: the bench fails if one of them fails in a scene.
     pub(crate) is_ours: bool,
     pub(crate) make: Make,
 }

@@ -1,12 +1,12 @@
 //! rapier's `KinematicCharacterController`, used in two ways.
 //!
-//! In both the world steps first, as in rapier's own test of a moving wall (`issue_485_kcc_depenetration.rs`), and then
-//! the controller moves the character. A character that walks, or that its caller carries, falls by what gravity adds
-//! in a tick. A character that the controller should take along is pressed down by 0.1 m while it does not walk, as in
-//! rapier's own test of ground (`character_ground_detection`). Without any motion the controller casts nothing and
-//! follows no platform, and with the fall of one tick it loses lifts of 5 m/s. A character that is pressed down climbs
-//! no steps, so it is not pressed while it walks. The character is only a shape: no other body would react to a body of
-//! its own.
+//! In both ways, the world steps first, as in rapier's own test of a moving wall (`issue_485_kcc_depenetration.rs`),
+//! and then the controller moves the character. A character that walks, or that its caller carries, falls by the
+//! distance that gravity adds in a tick. A character that the controller should carry along is pressed down by 0.1 m a
+//! tick while it does not walk, as in rapier's own test of ground (`character_ground_detection`). Without any motion,
+//! the controller makes no casts and follows no platform, and with the fall of one tick it loses lifts of 5 m/s. A
+//! character that is pressed down climbs no steps, so it is not pressed while it walks. The character is only a shape:
+//! no other body in these scenes would react to a rigid body of its own.
 
 use std::error::Error;
 use std::time::Instant;
@@ -25,6 +25,7 @@ use glam::{DQuat, DVec3};
 use super::Entry;
 use super::bodies::{Bodies, pose};
 
+/// The two ways of using the controller.
 pub(super) const ENTRIES: [Entry; 2] = [
     Entry {
         name: "rapier",
@@ -43,12 +44,13 @@ pub(super) const ENTRIES: [Entry; 2] = [
 enum Carried {
     /// The controller carries it, by the velocities of bodies, as its documentation promises.
     ByController,
-    /// The controller's caller carries it: takes the character to where its point of the body has moved, hides the
-    /// bodies' velocities from the controller, lets the character out of what moved into it, and only then moves it.
+    /// The controller's caller carries it. It moves the character with its point of the body, hides the bodies'
+    /// velocities from the controller, and moves the character out of bodies that moved into it. Then the controller
+    /// moves the character.
     ByCaller,
 }
 
-/// How far a character that does not walk is pressed down in a tick, metres.
+/// Distance by which a character that does not walk is pressed down in a tick, metres.
 const PRESS: f32 = 0.1;
 
 /// The body that the character stands on.
@@ -67,9 +69,9 @@ struct Rapier {
     carried: Carried,
     stands: bool,
     ground: Option<Ground>,
-    /// The character's own velocity, metres a second: vertical, and after a jump off a moving body in all directions.
+    /// The character's own velocity, metres a second. It is vertical, except after a jump off a moving body.
     velocity: Vector,
-    /// Velocity of the ground that it stood on last.
+    /// Velocity of the ground that the character stood on last.
     ground_velocity: Vector,
     gravity: f32,
     jump: f32,
@@ -88,8 +90,8 @@ impl Rapier {
         Ok(Self {
             bodies: Bodies::new(set, kinematic)?,
             controller: KinematicCharacterController {
-                // Ten times the default, as rapier's documentation advises for a character that gets stuck: it passes
-                // one more scene.
+                // Ten times the default, as rapier's documentation advises for a character that gets stuck. With it,
+                // the character passes one more scene.
                 normal_nudge_factor: 1e-3,
                 offset: CharacterLength::Absolute(PADDING as f32),
                 snap_to_ground: Some(CharacterLength::Absolute(SNAP as f32)),
@@ -131,7 +133,7 @@ impl Rapier {
         world.step();
     }
 
-    /// Sets the bodies' velocities to 0, so that the controller takes them for still.
+    /// Sets the bodies' velocities to 0, so that the controller treats the bodies as still.
     fn hide_velocities(&mut self) {
         let Bodies { world, moving } = &mut self.bodies;
         for (handle, _) in moving {
@@ -152,8 +154,8 @@ impl Rapier {
         self.stands = moved.grounded;
     }
 
-    /// A tick of walking, jumping and falling. On the way up nothing counts as ground. `carried` is the velocity with
-    /// which the character was carried in this tick; a jump keeps it from the next tick on.
+    /// A tick of walking, jumping and falling. On the way up, the character has no ground. `carried` is the velocity
+    /// with which the character was carried in this tick; a jump keeps it from the next tick on.
     fn walk(&mut self, input: &Input, carried: Vector) {
         let mut walk = Vector::ZERO;
         let mut made = Vector::ZERO;
@@ -182,8 +184,8 @@ impl Rapier {
     /// As [`Rapier::walk`], after the caller has carried the character along with its ground.
     fn walk_carried(&mut self, input: &Input) {
         let carried = self.carry();
-        // Only without any motion does the controller resolve overlaps. The ground is left out, since overlaps with it
-        // would throw the character off steps.
+        // The controller resolves overlaps only in a call without motion. The ground is left out, since overlaps with
+        // it would throw the character off steps.
         let mut moving = QueryFilter::only_kinematic();
         if let Some(ground) = self.ground {
             moving = moving.exclude_rigid_body(ground.body);
@@ -195,7 +197,7 @@ impl Rapier {
         self.ground = if self.stands { self.below() } else { None };
     }
 
-    /// Moves the character to where its point of the ground has moved; returns the velocity of that.
+    /// Moves the character with its point of the ground, and returns the velocity of this motion.
     fn carry(&mut self) -> Vector {
         let Some(ground) = self.ground else {
             return Vector::ZERO;

@@ -7,19 +7,22 @@ use super::super::{NextMode, Tick};
 use crate::config::LedgeConfig;
 use crate::{ClimberEvent, ClimberMode};
 
-/// Share of a normal that is level, above which it tells where an edge leads out. Less is a slope, or rounding.
+/// Level part of a unit normal, above which the normal tells in which direction an edge leads out. Less is a slope, or
+/// rounding.
 const OUTWARD: f64 = 0.3;
 
-/// The top of an edge that it steps off is below the ball's centre by at least this share of the radius.
+/// Smallest height of the ball's centre above the top of an edge that the climber steps off, as a fraction of the
+/// radius.
 const BELOW: f64 = 0.3;
 
-/// How far the wall below an edge may bulge out, as a share of the radius: it is then hung from a little farther out.
+/// Distance by which the wall below an edge may bulge out, as a fraction of the radius: the climber then hangs that
+/// much farther out.
 const BULGES: f64 = 0.25;
 
 impl Tick<'_> {
-    /// Takes hold of the edge that it steps off, and turns to the wall below it, if it holds on and has room there. The
-    /// position is where its ground ends, `normal` that of the last contact with the ground, and `own` its velocity
-    /// relative to the ground.
+    /// Takes hold of the edge that the climber steps off, and turns to the wall below it, if `grip` is held and there
+    /// is room. `position` is the position at which the ground ends, `normal` is the normal of the last contact with
+    /// the ground, and `own` is the climber's velocity relative to the ground.
     pub(in super::super) fn drop_to_hang(
         &mut self,
         position: DVec3,
@@ -60,8 +63,8 @@ impl Tick<'_> {
         Some(NextMode::Change(ClimberMode::LedgeHanging))
     }
 
-    /// The edge behind a position above it, which has passed it along `out` by a radius at most, and by as much as the
-    /// climber moves in a tick.
+    /// The edge behind and below a position. Along `out`, the position is past the edge by at most a radius and the
+    /// distance that the climber moves in a tick.
     fn edge_behind(
         &mut self,
         position: DVec3,
@@ -72,7 +75,8 @@ impl Tick<'_> {
         let up = self.config.up();
         let body = self.body().crouched();
         let deep = config.drop + body.radius;
-        // From where it would hang at most: a radius before the edge, with its centre as far below.
+        // The search starts from the outermost place where the climber would hang: a radius before the edge, and as far
+        // below.
         let probe = LedgeProbe {
             body,
             up,
@@ -88,8 +92,8 @@ impl Tick<'_> {
         is_edge.then_some(ledge)
     }
 
-    /// True if the ball has room to go out over the edge, down to where it hangs, and there; and if there is no ground
-    /// on the way that it could step down to.
+    /// True if the ball has room to go out over the edge, down to where it hangs, and there. False if that is no deeper
+    /// than a step, which the climber can step down.
     fn has_room_below(&mut self, position: DVec3, ledge: &Ledge, config: &LedgeConfig) -> bool {
         let up = self.config.up();
         let body = self.body().crouched();

@@ -9,37 +9,37 @@ use super::{DRAW, UPWARD};
 use crate::config::LedgeConfig;
 use crate::{ClimberEvent, ClimberMode};
 
-/// Share of the pull-up in which it goes up. In the rest it goes in over the ledge.
+/// Share of the pull-up in which the climber goes up. In the rest it goes in over the ledge.
 const OVER: f64 = 0.6;
 
-/// A tick that makes more than this share of the pull-up does not go round the corner between up and in.
+/// Share of the pull-up in a tick, above which the tick stops at the corner between up and in, and does not cut it.
 const LONG: f64 = 0.1;
 
-/// How far it may lag behind a pull-up's path before it counts as blocked, as a share of its radius. It lags below an
-/// overhang, where it goes outwards as it goes up.
+/// Distance by which the climber may lag behind a pull-up's path before it counts as blocked, as a fraction of its
+/// radius. It lags below an overhang, where it goes outwards as it goes up.
 const KEPT: f64 = 0.5;
 
-/// A blocked climber goes on for good once it lags by less than this share of its radius. Otherwise one that creeps
-/// along an obstacle would hardly ever give up.
+/// Lag, as a fraction of its radius, below which a blocked climber counts as free again. It is less than [`KEPT`]:
+/// otherwise a climber that creeps along an obstacle would hardly ever give up.
 const FREED: f64 = 0.25;
 
-/// A pull-up that makes no progress for this long is given up, seconds: longer than a friend takes to step aside from
-/// the edge, shorter than a player takes to call it stuck.
+/// Time without progress after which a pull-up is given up, seconds: longer than a friend takes to step aside from the
+/// edge, shorter than a player takes to call it stuck.
 const GIVES_UP: f64 = 0.3;
 
-/// A climber that makes less than this share of a tick's draw into place is as near to its place as it can get.
+/// Share of a tick's draw into place below which a climber is as near to its place as it can get.
 const DRAWN: f64 = 0.5;
 
-/// A velocity below this share of the planned one is rest, and rounding.
+/// Share of the planned velocity below which a velocity is rest and rounding.
 const STILL: f64 = 1e-3;
 
-/// A velocity that differs from the planned one by less than this share of it is the planned one: more than rounding,
-/// less than is seen.
+/// Difference from the planned velocity, as a share of it, below which the planned velocity is used: more than
+/// rounding, less than is visible.
 const ABOUT: f64 = 0.05;
 
 impl Tick<'_> {
-    /// Whether it pulls itself up in this tick. A pull-up that is blocked ends at once if the input no longer asks for
-    /// it; one that was given up is not tried again before.
+    /// True if the climber pulls itself up in this tick. A pull-up that is blocked ends at once if the input no longer
+    /// asks for it. A pull-up that was given up is not tried again until then.
     pub(super) fn is_pulling_up(&mut self, up: f64) -> bool {
         let asks = up > UPWARD;
         let memory = &mut self.state.ledge_hanging;
@@ -50,7 +50,7 @@ impl Tick<'_> {
         self.state.ledge_hanging.pull_up > 0.0 || asks && !self.state.ledge_hanging.gave_up
     }
 
-    /// Ends a pull-up: it hangs again, and goes back to its place.
+    /// Ends a pull-up: the climber hangs again, and goes back to its place.
     fn go_back(&mut self) {
         let memory = &mut self.state.ledge_hanging;
         memory.pull_up = 0.0;
@@ -68,7 +68,7 @@ impl Tick<'_> {
         NextMode::Stay
     }
 
-    /// Pulls itself up, and in over the ledge.
+    /// Pulls the climber up, and in over the ledge.
     pub(super) fn pull_up(&mut self, carried: &Carried, config: &LedgeConfig) -> NextMode {
         let before = self.state.ledge_hanging.pull_up;
         let place = self.hanging_place(carried, config);
@@ -83,7 +83,7 @@ impl Tick<'_> {
                 level.lerp(over, (share - OVER) / (1.0 - OVER))
             }
         };
-        // It caught the ledge from farther away: first draw it to where the pull-up begins.
+        // The climber caught the ledge from farther away: arms first draw it to where the pull-up begins.
         let is_out_of_place =
             before == 0.0 && self.is_out_of_place(self.way_to(place, carried.position));
         self.state.ledge_hanging.returns &= is_out_of_place;
@@ -105,7 +105,7 @@ impl Tick<'_> {
         let fastest = speed.max(DRAW * body.radius) * self.dt();
         let target = carried.position + way.clamp_length_max(fastest);
         let moved = self.slide(&self.path(target), Intent::Go);
-        // Being drawn into place is no motion of its own.
+        // The draw into place is no motion of the climber's own.
         let most = if is_out_of_place { 0.0 } else { fastest };
         let planned = (at(after) - at(before)) / self.dt();
         self.settle_by_arms(carried, moved.position, most, planned);
@@ -121,7 +121,7 @@ impl Tick<'_> {
             }
             return NextMode::Stay;
         }
-        // Bulging walls and ground push it ahead or aside. Only obstacles that keep it back are in its way.
+        // Bulging walls and ground push the climber ahead or aside. Only obstacles that keep it back are in its way.
         let onwards = (at(after) - at(before)).normalize_or_zero();
         let lag = (at(after) - moved.position).dot(onwards);
         if lag > KEPT * body.radius {
@@ -134,7 +134,7 @@ impl Tick<'_> {
         if after < 1.0 {
             return NextMode::Stay;
         }
-        // It ends a margin above the top.
+        // The climber ends a margin above the top.
         let reach = self.config.ground.snap_distance.max(2.0 * body.margin);
         let Some(ground) = self.ground_below(moved.position, reach) else {
             // If the top is too steep to stand on, grip it, or lose the ledge.
@@ -152,8 +152,9 @@ impl Tick<'_> {
         NextMode::Change(ClimberMode::Standing)
     }
 
-    /// Keeps its ledge at a position to which its arms moved it, by at most `most` metres. Its velocity, relative to
-    /// the ledge, is the one that it got: `planned` if that is about the same, which has no rounding.
+    /// Keeps the ledge, with the position to which the arms moved the climber, by at most `most` metres. The climber's
+    /// velocity relative to the ledge is the one that it moved at. If that is about `planned`, it is `planned`, which
+    /// has no rounding.
     pub(super) fn settle_by_arms(
         &mut self,
         carried: &Carried,

@@ -8,50 +8,52 @@ use super::super::moving::Intent;
 use super::super::{NextMode, Tick};
 use crate::config::LedgeConfig;
 
-/// A climber that makes less than this share of its way along the ledge looks for a wall that stands forward. It is
-/// made less at once by one that stands forward by a twentieth of the radius; otherwise the ball would creep ever more
-/// slowly, and rounding would decide when it is blocked.
+/// Share of its way along the ledge below which a climber looks for a wall that stands forward. A wall that stands
+/// forward by a twentieth of the radius hinders it that much at once. With a smaller share, the ball would creep ever
+/// more slowly, and rounding would decide when it is blocked.
 const HINDERED: f64 = 0.9;
 
-/// A climber that makes less than this share of its way along the ledge is blocked, and looks for an inner corner.
+/// Share of its way along the ledge below which a climber is blocked, and looks for an inner corner.
 const STUCK: f64 = 0.4;
 
-/// How far along the ledge a wall that stands forward is looked for by a climber that it blocks, as a share of the
-/// radius: the ball is a radius away from the corner at most, and the hands go a hand's width beyond it.
+/// Distance along the ledge in which a blocked climber looks for a wall that stands forward, as a fraction of the
+/// radius: the ball is at most a radius away from the corner, and the hands go a hand's width beyond it.
 const PAST: f64 = 1.3;
 
-/// How far hands reach at least for the next hold, as a share of the radius: past the edge of a step, where a hand does
-/// not lie flat.
+/// Smallest reach of the hands for the next hold, as a fraction of the radius: past the edge of a step, where a hand
+/// does not lie flat.
 const HAND_OVER: f64 = 0.5;
 
-/// A climber that goes around a corner is within this multiple of its radius of the corner. Otherwise something keeps
-/// it off, such as a lower wall beside the corner, and it would hang far beside its hands.
+/// Largest distance from the corner of a climber that goes around it, in radii. A climber that is farther away is kept
+/// off by an obstacle, such as a lower wall beside the corner, and would hang far beside its hands.
 const NEARLY: f64 = 1.05;
 
-/// A wall that is ahead by this share of the radius less than the one that the climber hangs at stands forward.
+/// Distance, as a fraction of the radius, by which a wall has to be nearer than the climber's wall to stand forward.
 const FORWARD: f64 = 0.02;
 
-/// Cosine of the angle by which the facing turns at least where a ledge turns, a hundredth of a degree: less is
+/// Cosine of the smallest angle by which the facing turns where a ledge turns, a hundredth of a degree: less is
 /// rounding.
 const TURNS: f64 = 1.0 - 1e-8;
 
-/// Hands that are farther ahead than this share of the radius have gone ahead of the body, across a gap or past a step.
+/// Distance, as a fraction of the radius, above which hands that are ahead have gone ahead of the body, across a gap or
+/// past a step.
 const AHEAD: f64 = 0.15;
 
-/// Hands that are ahead of the body stay there rather than go back by more than this share of the radius.
+/// Largest distance, as a fraction of the radius, by which hands ahead of the body go back. Hands that would have to go
+/// back farther stay.
 const BACK: f64 = 0.1;
 
-/// While it follows its hands, it keeps its distance from the wall where that is right within this share of the radius:
-/// hands on an edge are not always as far beyond it.
+/// Error of its distance from the wall, as a fraction of the radius, that a climber keeps while it follows its hands:
+/// hands on an edge are not always equally far beyond it.
 const NEAR: f64 = 0.12;
 
-/// At a ledge's end it rests at most this share of the radius nearer to the wall or farther from it than it would hang.
+/// Error of its distance from the wall, as a fraction of the radius, with which a climber may rest at a ledge's end.
 const RESTS: f64 = 0.3;
 
-/// A climber that is far from its place is drawn there up to this many times as fast as it goes along the ledge.
+/// Largest factor on the speed along the ledge at which a climber that is far from its place is drawn there.
 const FASTER: f64 = 3.0;
 
-/// Where hands go on to, and the displacement of the body in this tick.
+/// The ledge that the hands go on to, and the displacement of the body in this tick.
 struct Next {
     ledge: Option<Ledge>,
     way: DVec3,
@@ -71,7 +73,8 @@ impl Tick<'_> {
         let goes_on = next.is_some();
         let next = next.unwrap_or_else(|| {
             let way = self.way_to(place, carried.position);
-            // At a ledge's end it rests where it is. Drawn into place, it would find that the ledge goes on.
+            // At a ledge's end the climber rests where it is. If it were drawn into place, it would find that the ledge
+            // goes on.
             let way = if step == DVec3::ZERO {
                 way
             } else {
@@ -114,7 +117,7 @@ impl Tick<'_> {
         NextMode::Stay
     }
 
-    /// Where it goes along its ledge; `None` if it hangs still, or the ledge ends.
+    /// The climber's next movement along its ledge; `None` if it hangs still, or the ledge ends.
     fn along_ledge(
         &mut self,
         carried: &Carried,
@@ -133,12 +136,12 @@ impl Tick<'_> {
             way: step + self.beside(ahead, way, most),
         };
         if left > step.length().max(AHEAD * radius) {
-            // Its hands are there already.
+            // The hands are there already.
             return Some(follows);
         }
         let returns = self.state.ledge_hanging.returns;
         let hung = if returns {
-            // It is still above the edge.
+            // The climber is still above the edge.
             let way = place - from;
             from + way - ahead * way.dot(ahead)
         } else {
@@ -164,15 +167,15 @@ impl Tick<'_> {
         })
     }
 
-    /// A displacement without up to a share of the radius towards the wall or away from it.
+    /// A displacement without its component towards the wall or away from it, up to `share` of the radius.
     fn without_ahead(&self, way: DVec3, share: f64) -> DVec3 {
         let heading = self.state.heading;
         let most = share * self.config.body.radius;
         way - heading * way.dot(heading).clamp(-most, most)
     }
 
-    /// The part of a displacement that is not along the ledge, limited to what arms make in a tick. A climber that is
-    /// far from its place, since it has just caught the ledge, is drawn there faster.
+    /// The part of a displacement that is not along the ledge, limited to the distance that arms make in a tick. A
+    /// climber that is far from its place, since it has just caught the ledge, is drawn there faster.
     fn beside(&self, ahead: DVec3, way: DVec3, most: f64) -> DVec3 {
         let beside = way - ahead * way.dot(ahead);
         let far = beside.length() / (HAND_OVER * self.config.body.radius);
@@ -215,8 +218,8 @@ impl Tick<'_> {
         self.can_hang_from(&ledge.touch).then_some(ledge)
     }
 
-    /// The ledge of the wall that blocks its way along the ledge: one that stands forward, or that of the other wall in
-    /// an inner corner.
+    /// The ledge of the wall that blocks the climber's way along its ledge: of a wall that stands forward, or of the
+    /// other wall in an inner corner.
     fn way_around(
         &mut self,
         held: DVec3,
@@ -243,8 +246,8 @@ impl Tick<'_> {
         self.can_hang_from(&ledge.touch).then_some(ledge)
     }
 
-    /// The place where it hangs from a ledge. Its distance is that from the wall: hands on a corner are not always as
-    /// far beyond the edge.
+    /// The place where the climber hangs from a ledge. Its distance is measured from the wall: hands on a corner are
+    /// not always equally far beyond the edge.
     pub(super) fn place_below(&self, ledge: &Ledge, config: &LedgeConfig) -> DVec3 {
         let up = self.config.up();
         let place = ledge.wall - ledge.facing * self.config.body.radius;
@@ -252,7 +255,8 @@ impl Tick<'_> {
         place + up * rises
     }
 
-    /// Puts its hands on the next ledge, and turns to its wall. The input then leads on as it did before.
+    /// Puts the climber's hands on the next ledge, and turns it to the ledge's wall. The input then leads on as it did
+    /// before.
     fn hold_ledge(&mut self, ledge: &Ledge, position: DVec3, step: DVec3) {
         let velocity = self.state.velocity;
         self.attach(&ledge.touch, position);

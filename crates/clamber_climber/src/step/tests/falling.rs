@@ -25,7 +25,7 @@ fn falls_along_the_parabola_and_lands_where_it_touches() {
     for _ in 0..60 {
         events.extend(step_on(&mut climber, &ground, &IDLE).events);
     }
-    // From 3 m: the square root of 2 g h.
+    // After a fall of 3 m, the speed is the square root of 2 g h.
     let [ClimberEvent::Landed { speed, .. }, change] = events[..] else {
         panic!("{events:?}");
     };
@@ -143,7 +143,7 @@ fn too_steep_slopes_are_slid_down() {
         let state = climber.state();
         if before.mode == ClimberMode::Sliding {
             assert_eq!(state.mode, ClimberMode::Sliding, "tick {tick}: {state:?}");
-            // Down the slope, without friction.
+            // The climber accelerates down the slope, without friction.
             let gained = (state.velocity - before.velocity).length() / DT;
             let expected = 9.81 * libm::sin(60f64.to_radians());
             assert!((gained - expected).abs() < 0.01, "tick {tick}: {gained}");
@@ -188,7 +188,7 @@ fn a_v_of_steep_slopes_supports_in_its_middle() {
     }
     let state = climber.state();
     assert_eq!(state.mode, ClimberMode::Standing, "{events:?} {state:?}");
-    // It touches both sides.
+    // The climber touches both sides.
     let middle = DVec3::Y * (0.4 / libm::cos(60f64.to_radians()));
     assert!((state.position - middle).length() < 2e-3, "{state:?}");
     assert_eq!(state.velocity, DVec3::ZERO);
@@ -219,7 +219,7 @@ fn a_fast_fall_does_not_pass_through() {
 
 #[test]
 fn nearly_opposite_walls_crush_but_do_not_fling_the_climber() {
-    // They overlap the ball by a quarter of a metre. The nearest place with enough room is 27 m farther up.
+    // The walls overlap the ball by a quarter of a metre. The nearest place with enough room is 27 m farther up.
     let wall = |x: f32, lean: f32| {
         let corners = [
             (x, -40., -40.),

@@ -17,8 +17,10 @@ use glam::{DAffine3, DVec3, Vec3};
 
 use crate::{Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, StepReport};
 
+/// Length of a tick, seconds.
 const DT: f64 = 1.0 / 60.0;
 
+/// No input.
 const IDLE: ClimberInput = ClimberInput::IDLE;
 
 const fn walking(walk: DVec3) -> ClimberInput {

@@ -93,7 +93,8 @@ fn obstacles_out_of_reach_are_not_queried_and_change_no_bit() {
         let id = if k < 20 { 39 - k } else { k + 1 };
         crowd.push((ObstacleId(id as u64), one as &dyn Obstacle));
     }
-    // If two obstacles have the same id, the first counts: once it is the ground, once the one far away.
+    // If two obstacles have the same id, the first counts: for one id it is the ground, for the other an obstacle far
+    // away.
     crowd.push((ObstacleId(20), &far[0]));
     crowd.push((ObstacleId(30), &ground));
     let (mut alone, mut among) = (climber_at(0.0, 1.0, 0.0), climber_at(0.0, 1.0, 0.0));

@@ -52,7 +52,7 @@ fn pushes_move_the_ball_but_keep_its_material_point() {
             state.support.unwrap().attachment.material,
             support.attachment.material
         );
-        // It slides along one side, and neither leaves it nor enters the other.
+        // The climber slides along one side, and neither leaves it nor enters the other.
         contacts.clear();
         folded.overlap_sphere(state.position, 0.5, &mut contacts);
         let distances = contacts.iter().map(|contact| contact.distance);
@@ -74,7 +74,7 @@ fn an_idle_climber_pushed_by_a_wall_stays_on_its_ground_and_falls_off_the_edge()
     let corners = [(0., -5., -5.), (0., 5., -5.), (0., 5., 5.), (0., -5., 5.)];
     let mut wall = patch(&corners, &[[0, 1, 2], [0, 2, 3]]);
     let mut climber = landed(15.0, 0.5, 0.0, &ground);
-    // A walk's pace: two centimetres a tick.
+    // A walking pace: two centimetres a tick.
     let front = |tick: u32| 14.4 + 1.2 * DT * f64::from(tick);
     pose(&mut wall, &DAffine3::from_translation(DVec3::X * front(0)));
     let mut events = Vec::new();
@@ -93,7 +93,8 @@ fn an_idle_climber_pushed_by_a_wall_stays_on_its_ground_and_falls_off_the_edge()
         );
         if let Some(support) = state.support {
             let off = (state.position - support.attachment.point) * DVec3::new(1.0, 0.0, 1.0);
-            // Around the edge it leans by up to the steepest slope, plus the push before it looks for new ground.
+            // Around the edge, the climber leans by up to the steepest slope, plus the push before it looks for new
+            // ground.
             let most = if state.position.x < 20.0 { 0.06 } else { 0.36 };
             assert!(off.length() < most, "tick {tick}: {state:?}");
         }

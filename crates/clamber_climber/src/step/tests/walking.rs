@@ -17,7 +17,7 @@ fn walks_at_its_speed_along_the_surface() {
         for _ in 0..60 {
             let report = step_on(&mut climber, &slope, &walk);
             assert!(report.events.is_empty(), "{degrees}: {report:?}");
-            // Nothing is in the way.
+            // No obstacle is in the way.
             assert!(report.pushed_out.length() < 2e-5, "{degrees}: {report:?}");
         }
         let way = climber.state().position - from;
@@ -31,7 +31,8 @@ fn walks_at_its_speed_along_the_surface() {
 
 #[test]
 fn walking_has_the_slope_hysteresis_of_standing() {
-    // One degree beyond the limit, within the hysteresis: it can stand and walk there, but not land there.
+    // The slope is one degree beyond the limit, within the hysteresis: the climber can stand and walk there, but not
+    // land.
     let mut ground = trough(45.0);
     let mut climber = landed(8.0, 8.6, 0.0, &ground);
     let tilt = |degrees: f64| {
@@ -70,7 +71,7 @@ fn ground_that_ends_or_is_removed_is_left() {
         matches!(events[..], [ClimberEvent::LostFooting { .. }, last] if last == left),
         "{events:?}"
     );
-    // It rolled around the edge, down to the steepest slope that it stands on, before it left the ground.
+    // The climber rolled around the edge, down to the steepest slope that it stands on, before it left the ground.
     let speed = climber.state().velocity.x;
     let least = 3.0 * libm::cos(ClimberConfig::walker().ground.stays_on_slope());
     assert!((least..=3.0).contains(&speed), "keeps its speed: {speed}");
@@ -84,7 +85,7 @@ fn ground_that_ends_or_is_removed_is_left() {
         matches!(events[..], [ClimberEvent::LostFooting { .. }, last] if last == left),
         "{events:?}"
     );
-    // Without any obstacle, too.
+    // A step without any obstacle reports no event.
     assert!(climber.step(&IDLE, &[], DT).unwrap().events.is_empty());
 }
 
@@ -108,7 +109,7 @@ fn step_below_ceiling(step: f32, height: f32, fall: f32) -> SkinnedSurface {
 
 #[test]
 fn a_step_is_climbed_where_there_is_room_above_it() {
-    // 3 cm of room above its head once it is up; it may step up by 30 cm.
+    // The step leaves 3 cm of room above the climber's head; the climber may step up by 30 cm.
     let cave = step_below_ceiling(0.2, 1.03, 0.0);
     let mut climber = landed(0.0, 0.45, 0.0, &cave);
     for _ in 0..60 {

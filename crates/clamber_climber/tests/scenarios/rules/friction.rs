@@ -40,9 +40,9 @@ pub(crate) fn ice_accelerates_and_brakes_slowly() {
     });
 }
 
-/// Ice that is pulled away below a climber, or turns, takes it along by its friction alone.
+/// Ice that is pulled away below a climber, or turns, moves the climber by its friction alone.
 pub(crate) fn ice_that_moves_takes_along_by_friction_alone() {
-    // Half of the square of the time since the first second, in which the climber comes to rest.
+    // Half of the square of the time after the first second, in which the climber comes to rest.
     let half_square = |time: f64| 0.5 * (time - 1.0).max(0.0) * (time - 1.0).max(0.0);
     for (friction, turns) in [(0.0, false), (0.1, false), (0.0, true)] {
         at_every_rate(|at| {
@@ -188,7 +188,7 @@ pub(crate) fn a_friction_out_of_range_counts_as_0_or_as_usual() {
     }
 }
 
-/// However large the friction is, nothing overflows: the climber stays where it is, and slides and tumbles to rest.
+/// Even the largest friction does not overflow: the climber stays where it is, and slides and tumbles to rest.
 pub(crate) fn the_stickiest_mud_holds_fast() {
     let steep = Shape::floor(30.0).turned(DVec3::Z, radians(60.0));
     for friction in [1e9, 1e300, f64::MAX] {
@@ -214,7 +214,7 @@ pub(crate) fn the_stickiest_mud_holds_fast() {
             climbs.steps(at.ticks(0.5), &up);
             stays(&climbs, start, "climbs");
             climbs.sound();
-            // Down a slope it slides at most by the tenth of gravity that friction leaves.
+            // Down a slope, the climber slides by at most a tenth of gravity's effect, which friction leaves.
             let mut config = person();
             config.ground.slide_friction = 0.5;
             let stage = at.stage().numbered(ODD).with_still(&steep);

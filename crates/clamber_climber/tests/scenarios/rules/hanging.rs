@@ -10,7 +10,8 @@ use glam::DVec3;
 use super::scene::{GRIP, ODD, RADIUS, at_every_rate, but, person, wall};
 use crate::stage::{Run, Shape};
 
-/// Falls off a ledge that the rule refuses, and does not pull itself up onto a top that may not be stood on.
+/// The climber falls off a ledge that the rule refuses, and does not pull itself up onto a top that the rule does not
+/// let it stand on.
 pub(crate) fn a_ledge_that_is_refused_is_let_go_and_one_without_footing_is_only_hung_from() {
     let up = ClimberInput {
         walk: DVec3::NEG_Z,
@@ -35,7 +36,7 @@ pub(crate) fn a_ledge_that_is_refused_is_let_go_and_one_without_footing_is_only_
     });
 }
 
-/// Hands go along a ledge, up to where it goes on along a wall that they may not hold.
+/// Hands go along a ledge, up to the part that they may not hold.
 pub(crate) fn hands_stop_where_a_ledge_may_not_be_held() {
     let aside = ClimberInput {
         walk: DVec3::X,

@@ -1,4 +1,4 @@
-//! The rule for contacts: what may be stood on, stepped onto, hung from, gripped and passed through.
+//! The rule for contacts: which contacts may be stood on, stepped onto, hung from, gripped and passed through.
 
 mod friction;
 mod gripping;

@@ -110,7 +110,7 @@ fn door() -> Shape {
     Shape::boxed(DVec3::new(1.0, 0.0, -2.0), DVec3::new(1.2, 3.0, 2.0))
 }
 
-/// Walks at a door, as the climber with an id.
+/// Walks at a door, as a climber with an id.
 fn at_door(case: Case, id: u64) -> Run {
     let stage = case
         .stage()
@@ -145,7 +145,7 @@ pub(crate) fn a_door_lets_one_pass_and_not_another() {
     }
 }
 
-/// A door that closes on the climber pushes it out to the nearer side, and holds it no longer than that.
+/// A door that closes on the climber pushes it out to the nearer side, and then leaves it free.
 pub(crate) fn a_door_that_closes_on_a_climber_pushes_it_out() {
     for (x, ends) in [(0.9, 1.0 - RADIUS), (1.3, 1.2 + RADIUS)] {
         at_every_rate(|at| {

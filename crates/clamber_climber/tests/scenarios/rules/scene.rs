@@ -1,4 +1,4 @@
-//! What the scenes of rules share.
+//! Helpers that the scenes of rules share.
 
 use core::fmt;
 
@@ -7,13 +7,16 @@ use glam::DVec3;
 
 use crate::stage::{IDLE, Played, Run, Shape, Stage, Trace, every};
 
+/// Radius of the body, metres.
 pub(crate) const RADIUS: f64 = 0.4;
 
+/// Gravity, metres a second squared.
 pub(crate) const G: f64 = 9.81;
 
-/// The shape that rules are about; all others have the number 0.
+/// Number of the shape that a rule treats differently; all other shapes have the number 0.
 pub(crate) const ODD: u32 = 1;
 
+/// Input that only holds the grip.
 pub(crate) const GRIP: ClimberInput = ClimberInput { grip: true, ..IDLE };
 
 /// Kind of the obstacles, and ticks a second.
@@ -28,7 +31,7 @@ impl Case {
         Stage::at(self.played, 1.0 / self.rate, DVec3::ZERO)
     }
 
-    /// The number of ticks in so many seconds.
+    /// The number of ticks in a time in seconds.
     pub(crate) fn ticks(self, seconds: f64) -> u32 {
         (self.rate * seconds).round() as u32
     }
@@ -47,7 +50,7 @@ pub(crate) fn at_every_rate(play: impl Fn(Case) -> Trace) {
     }
 }
 
-/// The usual rule, but for the odd shape.
+/// The usual rule, with the rule `odd` for the shape with the number [`ODD`].
 pub(crate) fn but(
     odd: impl Fn(&ContactQuery<'_>) -> ContactRule,
 ) -> impl Fn(&ContactQuery<'_>) -> ContactRule {

@@ -52,7 +52,7 @@ pub(crate) fn a_curb_that_may_not_be_stepped_onto_blocks() {
                 run.position()
             );
             within!(run.feet().y.abs(), 1e-3, "{case}: stands at {}", run.feet());
-            // Once it has jumped onto it, it walks there.
+            // Once the climber has jumped onto the step, it walks there.
             run.step(&ClimberInput {
                 jump: true,
                 jump_held: true,

@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::setting::setting;
 use super::{Played, Trace};
 
-/// How much two runs may differ.
+/// Largest allowed difference between two runs.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Allowed {
     /// Largest distance of positions, metres.
@@ -52,7 +52,7 @@ impl Allowed {
     }
 }
 
-/// By how much this thread's setting widens a scenario's limits, metres. On bodies in a moving frame, f32 rounds
+/// Length by which this thread's setting widens a scenario's limits, metres. On bodies in a moving frame, f32 rounds
 /// positions by 0.1 mm after half a minute at 30 m/s. On skin in a moving frame, f32 rounds the corners of a tick ago
 /// by some tenths of a micrometre at half a metre a tick. Zero in every other setting.
 pub(super) fn slack() -> f64 {

@@ -12,8 +12,8 @@ use super::{Motion, Setting, Shape};
 
 /// A rapier world of bodies that play motions.
 ///
-/// In a moving frame, positions and with them f32 rounding grow, since the origin of the rapier world, in f64, is
-/// fixed. The scale is that of the setting: nothing is simulated, so rapier's default lengths do not matter.
+/// In a moving frame, positions grow, and with them f32 rounding, since the origin of the rapier world, in f64, is
+/// fixed. The bodies have the scale of the setting: nothing is simulated, so rapier's default lengths do not matter.
 pub(crate) struct Bodies {
     pub(crate) world: PhysicsWorld,
     before: BodyPoses,

@@ -2,8 +2,8 @@
 
 use clamber_climber::{ClimberConfig, GroundConfig};
 
-/// Jolt's capsule: its radius of .3 and padding of .02 become a radius of .32, at which ours rests, with a margin of
-/// .02.
+/// Jolt's capsule: its radius of .3 and padding of .02 become a radius of .32, the distance at which our climber rests,
+/// with a margin of .02.
 pub(crate) fn jolt() -> ClimberConfig {
     let mut config = ClimberConfig::walker();
     config.body.radius = 0.32;

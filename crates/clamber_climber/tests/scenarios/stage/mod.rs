@@ -236,13 +236,13 @@ impl Stage {
         }
     }
 
-    /// Poses everything for the next tick.
+    /// Poses all obstacles for the next tick.
     pub(crate) fn advance(&mut self) {
         self.ticks += 1;
         self.hold();
     }
 
-    /// Poses everything for a tick without advancing the scenario's time.
+    /// Poses all obstacles for a tick without advancing the scenario's time.
     pub(crate) fn hold(&mut self) {
         self.clock += 1;
         let (time, place) = (self.time(), self.place());

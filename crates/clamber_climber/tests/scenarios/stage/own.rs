@@ -1,7 +1,7 @@
 //! An obstacle of the game's own: triangles in f64, tested one by one.
 //!
-//! It has no f32, so differences between moving frames are the climber's own rounding: at most a micrometre. Corners
-//! move on straight lines over a tick, as those of a skin do.
+//! The obstacle has no f32, so differences between moving frames are the climber's own rounding: at most a micrometre.
+//! Corners move on straight lines over a tick, as the corners of a skin do.
 
 use clamber_surface::geometry::{MovingCapsule, TriangleTouch};
 use clamber_world::{
@@ -19,7 +19,8 @@ pub(crate) struct Own {
     triangles: Vec<[u32; 3]>,
     /// The tag of all triangles.
     pub(crate) tag: SurfaceTag,
-    /// How far before contact a sweep may stop, metres: a hundredth of the allowed difference between frames.
+    /// Largest distance before contact at which a sweep may stop, metres: a hundredth of the allowed difference between
+    /// frames.
     tolerance: f64,
     before: Vec<DVec3>,
     now: Vec<DVec3>,
@@ -99,7 +100,7 @@ impl Own {
         }
     }
 
-    /// The first contact with triangles that move from `before` to their current positions. Of contacts at the same
+    /// The first contact with triangles that move from `before` to their current positions. Among contacts at the same
     /// time, the nearest, then the one with the smallest index. Only contacts that `counts` accepts are considered.
     fn first(
         &self,
@@ -150,7 +151,7 @@ impl Own {
     }
 }
 
-/// Squares of the principal stretches between two pairs of edges: eigenvalues of one pair's metric relative to the
+/// Principal stretches between two pairs of edges: square roots of the eigenvalues of one pair's metric relative to the
 /// other's.
 fn stretches([a, b]: [DVec3; 2], [c, d]: [DVec3; 2]) -> [f64; 2] {
     let (p, q, r) = (a.length_squared(), a.dot(b), b.length_squared());

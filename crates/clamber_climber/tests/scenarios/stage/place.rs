@@ -142,7 +142,7 @@ impl Place {
 /// An obstacle that is queried from another space: maps the queries, and maps the answers back.
 pub(crate) struct Elsewhere<'a> {
     pub(crate) inner: &'a dyn Obstacle,
-    /// The map from the space of the queries to that of the obstacle.
+    /// The map from the space of the queries to the space of the obstacle.
     pub(crate) there: Place,
 }
 

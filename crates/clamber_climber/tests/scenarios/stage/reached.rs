@@ -29,7 +29,7 @@ impl Drop for Reached {
     }
 }
 
-/// Fails if a number is above its limit or NaN. Records the largest.
+/// Fails if a number is above its limit or NaN. Records the largest number.
 #[track_caller]
 pub(crate) fn demand(found: f64, allowed: f64, case: Arguments<'_>) {
     let allowed = allowed + slack();

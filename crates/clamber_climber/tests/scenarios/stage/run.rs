@@ -38,17 +38,17 @@ pub(crate) struct Run {
     pub(crate) climber: Climber,
     pub(crate) trace: Trace,
     config: ClimberConfig,
-    /// The rule for contacts; none for the usual one.
+    /// The rule for contacts; `None` for the usual rule.
     rule: Option<Rule>,
     /// The climber's own id.
     pub(crate) id: Option<ObstacleId>,
-    /// Another climber, which does nothing, in the world's units and frame.
+    /// Another climber without input, in the world's units and frame.
     friend: Option<Climber>,
     /// The climber's state in the scenario's units and frame.
     state: ClimberState,
 }
 
-/// A rule for contacts, which outlives a tick.
+/// A rule for contacts that lives longer than a tick.
 pub(crate) type Rule = Box<dyn Fn(&ContactQuery<'_>) -> ContactRule>;
 
 /// Id of the other climber on the stage.
@@ -64,6 +64,7 @@ pub(crate) fn walk(direction: DVec3) -> ClimberInput {
     }
 }
 
+/// Input that only jumps.
 pub(crate) const JUMP: ClimberInput = ClimberInput { jump: true, ..IDLE };
 
 impl Run {
@@ -114,14 +115,14 @@ impl Run {
         self.step_only(input)
     }
 
-    /// Steps the climber by one tick in which nothing on the stage moves.
+    /// Steps the climber by one tick in which no obstacle of the stage moves.
     pub(crate) fn step_held(&mut self, input: &ClimberInput) -> StepReport {
         self.stage.hold();
         self.step_only(input)
     }
 
-    /// Steps the climber by one tick among obstacles that wrap those of the stage. Both are queried in the scenario's
-    /// units and frame.
+    /// Steps the climber by one tick among obstacles that wrap the stage's obstacles. Both are queried in the
+    /// scenario's units and frame.
     pub(crate) fn step_around(
         &mut self,
         input: &ClimberInput,
@@ -205,7 +206,7 @@ impl Run {
         }
     }
 
-    /// Lets the climber land before anything moves, and clears the trace.
+    /// Lets the climber land before any obstacle moves, and clears the trace.
     pub(crate) fn settle(mut self) -> Self {
         for _ in 0..60 {
             self.step_held(&IDLE);
@@ -224,8 +225,7 @@ impl Run {
         self
     }
 
-    /// Throws the climber into the air at a velocity.
-    /// Resizes the climber among what is on the stage. The configuration is in the scenario's units.
+    /// Resizes the climber among the obstacles of the stage. The configuration is in the scenario's units.
     pub(crate) fn resize(&mut self, config: ClimberConfig) -> Result<(), ClimberError> {
         let (climber, place) = (&mut self.climber, self.stage.place());
         let scaled = place.config(&config);
@@ -236,6 +236,7 @@ impl Run {
         Ok(())
     }
 
+    /// Throws the climber into the air at a velocity.
     pub(crate) fn thrown(mut self, velocity: DVec3) -> Self {
         self.put(ClimberState {
             velocity,
@@ -261,12 +262,12 @@ impl Run {
         self.state().mode
     }
 
-    /// Position of its centre, relative to the stage's origin.
+    /// Position of the climber's centre, relative to the stage's origin.
     pub(crate) fn position(&self) -> DVec3 {
         self.state.position
     }
 
-    /// Position of its feet.
+    /// Position of the climber's feet.
     pub(crate) fn feet(&self) -> DVec3 {
         self.position() - self.config.up() * self.config.body.radius
     }
@@ -320,7 +321,7 @@ impl Trace {
         self.modes.iter().all(|m| *m == mode)
     }
 
-    /// The largest distance from another trace, and its tick.
+    /// The largest distance from another trace, and the tick of that distance.
     pub(crate) fn apart(&self, other: &Self) -> (f64, usize) {
         assert_eq!(self.positions.len(), other.positions.len());
         let pairs = self.positions.iter().zip(&other.positions);
@@ -333,7 +334,7 @@ impl Trace {
         )
     }
 
-    /// Asserts that the other trace has each mode in the same tick, or in the one before or after.
+    /// Asserts that the other trace has each mode in the same tick, or in the tick before or after.
     fn assert_same_modes(&self, other: &Self, name: &str) {
         for (tick, mode) in self.modes.iter().enumerate() {
             let near = tick.saturating_sub(1)..(tick + 2).min(other.modes.len());

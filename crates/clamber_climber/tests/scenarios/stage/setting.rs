@@ -1,8 +1,8 @@
-//! Settings of scenarios: on which obstacles, in which moving frame and at which scale they are played.
+//! Settings of scenarios: kinds of obstacles, a moving frame and a scale.
 //!
-//! A scenario's code knows neither frame nor scale: it is written in its own units, at rest. The stage maps it to the
-//! world by the setting of the test's thread, and [`Run`](super::Run) maps the results back to the scenario's units and
-//! frame.
+//! A scenario's code depends neither on frame nor on scale: it is written in its own units, at rest. The stage maps it
+//! to the world by the setting of the test's thread, and [`Run`](super::Run) maps the results back to the scenario's
+//! units and frame.
 
 use core::fmt;
 use std::cell::{Cell, RefCell};

@@ -11,7 +11,7 @@ pub(crate) struct Shape {
 }
 
 impl Shape {
-    /// A quadrilateral that faces the side from which its corners are counter-clockwise.
+    /// A quadrilateral whose front is the side from which its corners are counter-clockwise.
     pub(crate) fn quad(corners: [DVec3; 4]) -> Self {
         Self {
             positions: corners.to_vec(),

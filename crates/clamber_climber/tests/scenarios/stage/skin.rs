@@ -19,7 +19,7 @@ pub(crate) type Pose = Box<dyn Fn(f64) -> (Vec<DAffine3>, Similarity)>;
 /// A posed surface and the function that poses it.
 pub(crate) struct Skin {
     pub(crate) surface: SkinnedSurface,
-    /// Scale of its root on a stage.
+    /// Scale of the skin's root on a stage.
     pub(super) scale: f64,
     pose: Pose,
     shape: Shape,

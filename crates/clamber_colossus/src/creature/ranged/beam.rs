@@ -6,12 +6,13 @@ use crate::brain::{Beam, StateId};
 use crate::creature::report::{ActiveBeam, Blow};
 use crate::creature::{Creature, Surroundings};
 
-/// A beam that turns is looked at where its end has moved by this, metres, beside its own radius, and so often in a tick
-/// at most.
+/// Distance that the end of a beam moves between two checks, metres, in addition to the beam's radius.
 const STEP: f64 = 0.3;
+
+/// Most checks in a tick.
 const MOST_STEPS: f64 = 32.0;
 
-/// Where a beam goes out from, and its direction.
+/// Start and direction of a beam.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Ray {
     pub(super) from: DVec3,
@@ -19,7 +20,8 @@ pub(super) struct Ray {
 }
 
 impl Creature {
-    /// Strikes whom a beam from a place to where the attack aims touches, on its way there from where it was.
+    /// Moves the beam from its place in the last tick to a new start and towards the target, and strikes the people
+    /// that it touches on the way.
     pub(super) fn shine(
         &mut self,
         state: StateId,

@@ -1,4 +1,4 @@
-//! A ball on a straight way, and what it meets there.
+//! A ball on a straight path, and its first contact there.
 
 use clamber_surface::geometry::WorldCapsule;
 use clamber_surface::surface::TargetMotion;
@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use crate::creature::{Person, Surroundings};
 
-/// The way of a ball.
+/// The straight path of a ball.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Line {
     pub(super) from: DVec3,
@@ -15,14 +15,15 @@ pub(super) struct Line {
 }
 
 impl Line {
-    /// Where it is after a share of its way.
+    /// Position of the ball's centre after a share of the path.
     pub(super) fn at(&self, share: f64) -> DVec3 {
         self.from + self.way * share
     }
 
-    /// The share of its way after which its middle meets terrain or another creature, and the direction out of that.
+    /// The share of the path after which the ball's centre meets terrain or another creature, and the direction away
+    /// from that obstacle.
     ///
-    /// The search begins `behind` metres before the start of the way, so that ways which follow each other leave no gap.
+    /// The search begins `behind` metres before the start of the path, so that consecutive paths leave no gap.
     pub(super) fn stop(&self, behind: f64, around: &Surroundings<'_>) -> Option<(f64, DVec3)> {
         let length = self.way.length();
         let along = self.way.try_normalize()?;
@@ -35,7 +36,7 @@ impl Line {
         Some((((first.distance - behind) / length).clamp(0.0, 1.0), out))
     }
 
-    /// The same while everything moves through a tick, which its way takes.
+    /// The same for obstacles that move through a tick while the ball moves along the path.
     pub(super) fn meet(&self, behind: f64, around: &Surroundings<'_>) -> Option<(f64, DVec3)> {
         let length = self.way.length();
         let along = self.way.try_normalize()?;
@@ -51,8 +52,9 @@ impl Line {
         Some((share.clamp(0.0, 1.0), out))
     }
 
-    /// The share of its way after which it touches somebody who does not ride, and whom no terrain and no other creature
-    /// hides from it then: at its first touch, or where it is nearest to the middle of the body.
+    /// The share of the path after which the ball touches a person that does not ride and is not hidden from the ball
+    /// by terrain or another creature. It is the first touch, or if the person is hidden there, the point nearest to
+    /// the middle of the body.
     pub(super) fn touch(&self, person: &Person, around: &Surroundings<'_>) -> Option<f64> {
         if person.riding.is_some() || !person.body.is_valid() {
             return None;
@@ -65,7 +67,7 @@ impl Line {
             .find(|share| self.is_open(self.at(*share), person, around))
     }
 
-    /// True if nothing is between a place and the skin of somebody, towards the middle of the body.
+    /// True if nothing is between a place and a person's skin, towards the middle of the body.
     fn is_open(&self, from: DVec3, person: &Person, around: &Surroundings<'_>) -> bool {
         let way = person.middle() - from;
         let gap = way.length() - person.body.radius;
@@ -78,8 +80,8 @@ impl Line {
     }
 }
 
-/// The share of a ball's way after which it touches a capsule first: where its middle enters a capsule that is thicker by
-/// the ball's radius, which is an infinite cylinder cut off at both ends, and a ball at each end.
+/// The share of a ball's path after which it first touches a capsule. There, its centre enters a capsule that is
+/// thicker by the ball's radius: an infinite cylinder cut off at both ends, and a ball at each end.
 fn first_touch(from: DVec3, way: DVec3, radius: f64, body: &WorldCapsule) -> Option<f64> {
     let radius = radius + body.radius;
     let axis = body.ends[1] - body.ends[0];
@@ -108,13 +110,13 @@ fn first_touch(from: DVec3, way: DVec3, radius: f64, body: &WorldCapsule) -> Opt
     (first <= 1.0).then_some(first)
 }
 
-/// When something at `from` comes as near to the origin as `radius`, in units of its way; `None` if it never does, or is
-/// there already.
+/// The share of a path from `from` after which it comes as near to the origin as `radius`; `None` if it never does, or
+/// is that near from the start.
 fn enters(from: DVec3, way: DVec3, radius: f64) -> Option<f64> {
     let (a, b) = (way.length_squared(), from.dot(way));
     let c = from.length_squared() - radius * radius;
     let root = b * b - a * c;
-    // It goes there, and was not there before.
+    // The path goes towards the ball and begins outside it.
     (a > 0.0 && b < 0.0 && c > 0.0 && root >= 0.0).then(|| c / (root.sqrt() - b))
 }
 
@@ -153,8 +155,8 @@ mod tests {
             };
             let radius = 0.1 + 0.01 * f64::from(case % 90);
             let gap = |share: f64| distance(from + way * share, &body) - 0.3 - radius;
-            // The distance from a convex body is convex along a line: its least is found by thirds, the first touch by
-            // halves.
+            // The distance from a convex body is convex along a line. Ternary search finds its minimum, and bisection
+            // the first touch.
             let (mut low, mut high) = (0.0, 1.0);
             for _ in 0..100 {
                 let [a, b] = [(2.0 * low + high) / 3.0, (low + 2.0 * high) / 3.0];

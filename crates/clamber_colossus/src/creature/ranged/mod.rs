@@ -1,6 +1,6 @@
-//! Attacks that strike from afar: waves, shots and beams.
+//! Ranged attacks: waves, shots and beams.
 //!
-//! They strike people who do not ride the creature, and whom no terrain hides from them.
+//! Ranged attacks strike people that do not ride the creature and are not hidden from the attack by terrain.
 
 mod beam;
 mod line;
@@ -23,22 +23,22 @@ use wave::WaveState;
 pub use shot::ActiveShot;
 pub use wave::ActiveWave;
 
-/// At most so many waves, and as many shots, are there at a time: the oldest one is gone when there would be more.
+/// Largest number of waves, and of shots, at a time. One more removes the oldest one.
 const MOST: usize = 64;
 
-/// A place on terrain is in front of that when it is moved by this, metres.
+/// Distance from terrain at which a ray begins, metres, so that it does not hit this terrain.
 const TOUCHING: f64 = 1e-3;
 
-/// What strikes from afar, and where it goes to.
+/// The waves, shots and beam of a creature, and their target.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Ranged {
-    /// Where a shot or a beam goes to, in world space.
+    /// Target of a shot or a beam, in world space.
     mark: DVec3,
     /// The beam of the last tick.
     beam: Option<Ray>,
-    /// What has left the creature in the attack that it is at.
+    /// Parts of the current attack that have left the creature.
     is_out: Out,
-    /// Number of that attack.
+    /// Number of the current attack.
     attack: u32,
     waves: Vec<WaveState>,
     shots: Vec<ShotState>,
@@ -54,13 +54,13 @@ struct Out {
 }
 
 impl Ranged {
-    /// Nothing of the next attack has been let out.
+    /// Begins the next attack: none of its parts has left the creature.
     pub(super) fn begin(&mut self) {
         (self.is_out, self.beam) = (Out::default(), None);
         self.attack = self.attack.wrapping_add(1);
     }
 
-    /// The attack has struck somebody: the wave of its limb does not strike them again.
+    /// Records that the attack has struck a person, so that the wave of its limb does not strike this person again.
     pub(super) fn mark_struck(&mut self, person: u64) {
         let attack = self.attack;
         let own = |wave: &&mut WaveState| wave.of == WaveOf::Limb && wave.attack == attack;
@@ -70,12 +70,13 @@ impl Ranged {
             .for_each(|wave| wave.struck.push(person));
     }
 
-    /// The creature is elsewhere, and aims at a place there. What its attacks have let out stays.
+    /// Sets a new target after the creature was put elsewhere, and ends its beam. Waves and shots stay where they are.
     pub(super) fn be_put(&mut self, mark: DVec3) {
         (self.mark, self.beam) = (reachable(mark), None);
     }
 
-    /// Goes with the ground that the creature stands on, but for what has flown.
+    /// Moves the target, the beam and the waves of limbs with the ground that carries the creature. Shots, and the
+    /// waves into which they burst, stay.
     pub(super) fn be_carried(&mut self, carried: &Carried) {
         self.mark = carried.level_place(self.mark);
         if let Some(beam) = &mut self.beam {
@@ -87,7 +88,7 @@ impl Ranged {
         }
     }
 
-    /// True if a creature of this kind can have let it out.
+    /// True if a creature of this kind can have these waves, shots and beam.
     pub(super) fn fits(&self, kind: &CreatureKind) -> bool {
         let is_near = |place: DVec3| place.is_finite() && place.abs().max_element() <= FARTHEST;
         let beam = self
@@ -114,7 +115,8 @@ impl Ranged {
             })
     }
 
-    /// What goes on with another brain, whose states `same` finds.
+    /// Converts the waves and shots for a creature with another brain, whose states `same` finds. Drops each wave and
+    /// shot whose attack is not in that brain.
     pub(super) fn carry_over(
         &self,
         to: &CreatureKind,
@@ -138,7 +140,7 @@ impl Ranged {
 }
 
 impl Creature {
-    /// Decides where a shot or a beam of the attack that begins goes to.
+    /// Sets the target of the shot or beam of an attack that begins: the visible prey, or else a place ahead.
     pub(super) fn mark_prey(&mut self) {
         let seen = self.state.prey.filter(|_| self.state.unseen == 0);
         let mark = seen.map_or_else(|| self.ground_ahead(), |(_, place)| place);
@@ -149,7 +151,7 @@ impl Creature {
         self.state.position + self.state.heading() * self.size.height
     }
 
-    /// Waves and shots go on, whatever the creature does.
+    /// Advances all waves and shots by a tick, whether their attacks still last or not.
     pub(super) fn go_on_from_afar(&mut self, around: &Surroundings<'_>, dt: f64) {
         if self.state.ranged.waves.is_empty() && self.state.ranged.shots.is_empty() {
             return;
@@ -161,7 +163,7 @@ impl Creature {
             let file = attack.and_then(|attack| attack.wave_of(wave.of));
             file.is_some_and(|file| self.spread(wave, file, around, dt))
         });
-        // Those that shots let out come after them.
+        // Set before the shots fly, since a shot that bursts appends a wave.
         self.state.ranged.waves = waves;
         let mut shots = std::mem::take(&mut self.state.ranged.shots);
         shots.retain_mut(|shot| {
@@ -171,7 +173,7 @@ impl Creature {
         self.state.ranged.shots = shots;
     }
 
-    /// What the attack that it is at lets out in this tick.
+    /// Releases the shot and the wave of the current attack when they are due, and moves its beam.
     pub(super) fn strike_from_afar(&mut self, around: &Surroundings<'_>, dt: f64) {
         let Some((state, phase)) = self.attack() else {
             return;
@@ -216,7 +218,7 @@ impl Creature {
         }
     }
 
-    /// Where the limb's end is, in world space.
+    /// Position of the limb's end, in world space.
     fn limb_end(&self, strike: &Strike) -> Option<DVec3> {
         let frame = self.palette.model_from_joint(strike.end()?)?;
         let world = self.surface.world_from_model();
@@ -238,12 +240,12 @@ impl Creature {
     }
 }
 
-/// The nearest place that a creature's attacks reach.
+/// The nearest place that a creature's attacks can reach.
 fn reachable(place: DVec3) -> DVec3 {
     place.clamp(DVec3::splat(-FARTHEST), DVec3::splat(FARTHEST))
 }
 
-/// The attack that a state makes.
+/// The attack of a state; `None` if its act is no attack.
 fn attack_of(kind: &CreatureKind, state: StateId) -> Option<&Attack> {
     match kind.brain().act(state) {
         Some(Act::Attack(attack)) => Some(attack),
@@ -251,7 +253,7 @@ fn attack_of(kind: &CreatureKind, state: StateId) -> Option<&Attack> {
     }
 }
 
-/// A place that is moved in a direction by a length, or half way to what terrain is there.
+/// Moves a place by a length in a direction, or half way to the terrain in that direction.
 fn moved_off(place: DVec3, out: DVec3, by: f64, around: &Surroundings<'_>) -> DVec3 {
     let hits = around.terrain.iter();
     let hits = hits.filter_map(|one| one.cast_ray(place + out * TOUCHING, out, by));

@@ -10,29 +10,30 @@ use crate::brain::{Shot, StateId, WaveOf};
 use crate::creature::report::{Blow, CreatureEvent};
 use crate::creature::{Creature, Surroundings};
 
-/// A shot is no faster than this, metres a second: a little more than the fastest one reaches, which has 1,000 m/s at the
-/// start and 60,000 by gravity.
+/// Upper bound for the speed of a shot, metres a second: a little above the fastest possible shot, which has 1,000 m/s
+/// at the start and 60,000 m/s from gravity.
 const FASTEST: f64 = 62_000.0;
 
-/// Obstacles are looked for from so far behind it on, metres.
+/// Distance behind a shot from which obstacles are looked for, metres, so that its paths in consecutive ticks leave no
+/// gap.
 const BEHIND: f64 = 0.01;
 
-/// Something that a creature has thrown, spat or shot.
+/// A shot in flight, which a creature has thrown, spat or fired.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ActiveShot {
-    /// The state whose attack it is of.
+    /// State whose attack released the shot.
     pub state: StateId,
-    /// Its number: the creature's first shot has 0, and each the next one.
+    /// Number of the shot: 0 for the creature's first shot, 1 for the next, and so on.
     pub number: u64,
-    /// Its middle, in world space.
+    /// Position of the centre, in world space.
     pub place: DVec3,
-    /// Metres a second.
+    /// Velocity, metres a second.
     pub velocity: DVec3,
-    /// Metres.
+    /// Radius, metres.
     pub radius: f64,
 }
 
-/// A shot, as it is saved.
+/// A shot as it is saved.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct ShotState {
     pub(super) state: StateId,
@@ -42,13 +43,13 @@ pub(super) struct ShotState {
     pub(super) ticks: u32,
 }
 
-/// True for a velocity that shots have.
+/// True if a shot can have this velocity.
 pub(super) fn is_reached(velocity: DVec3) -> bool {
     velocity.is_finite() && velocity.length() <= FASTEST
 }
 
 impl Creature {
-    /// What its attacks have thrown and has not met anything yet, the oldest first.
+    /// Shots of the creature's attacks that are in flight, the oldest first.
     pub fn shots(&self) -> impl Iterator<Item = ActiveShot> + '_ {
         self.state.ranged.shots.iter().filter_map(|shot| {
             let file = attack_of(&self.kind, shot.state)?.shot.as_ref()?;
@@ -62,7 +63,7 @@ impl Creature {
         })
     }
 
-    /// Lets a shot go to where the attack aims.
+    /// Releases a shot towards the target.
     pub(super) fn shoot(&mut self, state: StateId, end: DVec3, file: &Shot) {
         let way = self.state.ranged.mark - end;
         let velocity = direction(way, file).unwrap_or(self.state.heading()) * file.speed;
@@ -87,7 +88,7 @@ impl Creature {
         });
     }
 
-    /// Lets a tick pass for a shot. Returns false if it has ended.
+    /// Advances a shot by a tick. Returns false if the shot has ended.
     pub(super) fn fly(
         &mut self,
         shot: &mut ShotState,
@@ -101,7 +102,7 @@ impl Creature {
             way: shot.velocity * dt + pull * (0.5 * dt * dt),
             radius: file.radius,
         };
-        // It has come from there, but for its first tick.
+        // In its first tick, a shot has no path behind it.
         let behind = if shot.ticks > 0 { BEHIND } else { 0.0 };
         let stop = line.meet(behind, around);
         let end = stop.map_or(1.0, |(share, _)| share);
@@ -110,7 +111,7 @@ impl Creature {
             let gap = line.at(share).distance(person.middle());
             (share <= end).then_some((share, gap, person))
         });
-        // Of several whom it touches at once, as where it begins, the nearest.
+        // If the shot touches several people at once, for example where it begins, it strikes the nearest one.
         let first = touches.min_by(|a, b| {
             let by_share = a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1));
             by_share.then(a.2.id.cmp(&b.2.id))
@@ -161,21 +162,22 @@ impl Creature {
     }
 }
 
-/// In which direction a shot gets along a way, by the flat one of two arcs: as far in its direction as it gets if none
-/// gets there. `None` if the way leads nowhere.
+/// Initial direction of a shot along the vector `way` to its target, by the lower of two arcs. If no arc reaches the
+/// target, the shot goes as far as it can in that direction. `None` for a vector that is zero or not finite.
 fn direction(way: DVec3, file: &Shot) -> Option<DVec3> {
     let level = DVec3::new(way.x, 0.0, way.z);
     let (length, up) = (level.length(), way.y);
     let ahead = level.try_normalize().unwrap_or(DVec3::ZERO);
     let (square, pull) = (file.speed * file.speed, file.gravity);
-    // At a rise k it is at k * length - pull * length^2 * (1 + k^2) / (2 * square) when it has gone that far. The lesser
-    // one of two such k, without a difference of what is almost the same:
+    // A shot that starts with the slope k is at the height k * length - pull * length^2 * (1 + k^2) / (2 * square) when
+    // it has gone `length` ahead. This is the smaller of the two solutions k, in a form without a difference of nearly
+    // equal numbers:
     let rise = pull * length * length + 2.0 * up * square;
     let root = square * square - pull * rise;
     let angle = if root >= 0.0 {
         libm::atan2(rise, (square + root.sqrt()) * length)
     } else {
-        // Farthest along a slope is half way between that and straight up.
+        // The shot that goes farthest along a slope starts half way between the slope and straight up.
         0.5 * (FRAC_PI_2 + libm::atan2(up, length))
     };
     let (sin, cos) = libm::sincos(angle);
@@ -223,7 +225,7 @@ mod tests {
             };
             let what = format!("case {case}: {way} at {speed} m/s, {gravity} m/s^2");
             if way.y <= highest {
-                // It is there at the time that its level speed tells, or straight up at one of two.
+                // The horizontal speed gives the time at which the shot is there; straight up, there are two times.
                 let [from, to] = [velocity.dot(level), level.length_squared()];
                 let times = if to > 0.0 {
                     vec![to / from]
@@ -246,7 +248,7 @@ mod tests {
                 assert!(times.iter().any(|time| *time >= 0.0), "{what}");
                 reached += 1;
             } else if level.length() > 1.0 {
-                // Where arcs of other angles cross the straight way, none is farther.
+                // No arc of another angle crosses the straight line to the target farther away.
                 let slope = way.y / level.length();
                 let range = |angle: f64| {
                     let (sin, cos) = libm::sincos(angle);

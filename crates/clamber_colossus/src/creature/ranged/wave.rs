@@ -11,54 +11,56 @@ use crate::creature::report::{Blow, CreatureEvent};
 use crate::creature::state::FARTHEST;
 use crate::creature::{Creature, Person, Surroundings};
 
-/// A wave begins so far above the ground, metres, or this share of its radius if that is more: lower rocks and swells do
-/// not stop it.
+/// Height above the ground at which a wave begins, metres, so that lower rocks and bumps do not stop it.
 const LIFT: f64 = 0.5;
+
+/// The same height as a share of the wave's radius; the larger of both counts.
 const LIFT_SHARE: f64 = 1.0 / 30.0;
 
-/// The ground is looked for so far below a limb's end, and above one that is in it, as a share of the creature's height.
+/// Distance from a limb's end within which the ground is looked for, as a share of the creature's height: below the
+/// end, or above it if the end is in the ground.
 const NEAR: f64 = 0.2;
 
-/// Ground is no steeper than this: the height of its normal.
+/// Smallest vertical component of a normal that counts as ground, in magnitude.
 const LEVEL: f64 = 0.5;
 
-/// Two rays meet the same ground if they do so within this, metres.
+/// Largest distance between the hits of two rays on the same ground, metres.
 const SAME: f64 = 1e-3;
 
-/// A wave that spreads.
+/// A wave that still spreads.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ActiveWave {
-    /// The state whose attack it is of.
+    /// State whose attack sent out the wave.
     pub state: StateId,
-    /// Where it began, in world space.
+    /// Origin of the wave, in world space.
     pub place: DVec3,
-    /// How far it has come, metres.
+    /// Current radius, metres.
     pub reach: f64,
-    /// How far it goes, metres.
+    /// Final radius, metres.
     pub radius: f64,
 }
 
-/// A wave, as it is saved.
+/// A wave as it is saved.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct WaveState {
     pub(super) state: StateId,
     pub(super) of: WaveOf,
     pub(super) place: DVec3,
-    /// Number of the attack.
+    /// Number of the attack that sent it out.
     pub(super) attack: u32,
-    /// How far it has come, metres.
+    /// Current radius, metres.
     pub(super) reach: f64,
-    /// Whom it has struck.
+    /// Ids of the people that the wave has struck.
     pub(super) struck: Vec<u64>,
 }
 
-/// How far above what it begins at a wave does.
+/// How far from the ground, or from the obstacle that a shot met, a wave begins, metres.
 pub(super) fn lift(wave: &Wave) -> f64 {
     LIFT.max(LIFT_SHARE * wave.radius)
 }
 
 impl Creature {
-    /// The waves of its attacks that spread, the oldest first.
+    /// Waves of the creature's attacks that still spread, the oldest first.
     pub fn waves(&self) -> impl Iterator<Item = ActiveWave> + '_ {
         self.state.ranged.waves.iter().filter_map(move |wave| {
             let file = attack_of(&self.kind, wave.state)?.wave_of(wave.of)?;
@@ -71,7 +73,7 @@ impl Creature {
         })
     }
 
-    /// Sends out a wave where a limb came down: from just above the ground there.
+    /// Sends out a wave from just above the ground where a limb came down.
     pub(super) fn send_wave(
         &mut self,
         state: StateId,
@@ -92,7 +94,7 @@ impl Creature {
         self.begin_wave(wave, file, around, dt);
     }
 
-    /// The ground that is nearest to a limb's end: below it, or above it if the limb is in the ground.
+    /// The ground nearest to a limb's end: below it, or above it if the limb is in the ground.
     fn ground_at(&self, end: DVec3, around: &Surroundings<'_>) -> Option<DVec3> {
         let near = NEAR * self.size.height;
         let first = |from: DVec3, direction: DVec3, most: f64| {
@@ -104,7 +106,8 @@ impl Creature {
         };
         let below = first(end, DVec3::NEG_Y, near);
         let above = first(end + DVec3::Y * near, DVec3::NEG_Y, near).map(|down| near - down);
-        // Nothing is between a limb and the ground that it is in: that is no bridge above it.
+        // If the limb is in the ground, there is no surface between its end and the ground above. A nearer surface is
+        // the underside of a bridge.
         let above = above.filter(|above| {
             let up = first(end, DVec3::Y, *above);
             up.is_none_or(|up| up > above - SAME)
@@ -134,7 +137,7 @@ impl Creature {
             radius: file.radius,
         });
         let goes_on = match file.speed {
-            // Who is there is struck in this tick.
+            // People at the origin are struck in this tick.
             Some(_) => self.spread(&mut wave, file, around, 0.0),
             None => self.spread(&mut wave, file, around, dt),
         };
@@ -148,7 +151,8 @@ impl Creature {
         waves.push(wave);
     }
 
-    /// Lets a wave grow, and strikes whom it reaches. Returns false if it is at its end.
+    /// Grows a wave over `dt` seconds, and strikes the people that it reaches. Returns false once the wave has its
+    /// final radius.
     pub(super) fn spread(
         &mut self,
         wave: &mut WaveState,
@@ -171,7 +175,8 @@ impl Creature {
             let nearest = nearest_on(person, wave.place);
             let distance = (nearest.distance(wave.place) - person.body.radius).max(0.0);
             let share = 1.0 - distance / file.radius;
-            // It strikes while its front is within the body: who comes down behind it is spared.
+            // The wave strikes a body only while its front is within the body, which spares a person that comes down
+            // behind the front.
             let is_over = distance + 2.0 * person.body.radius < from;
             if distance > to || is_over || share <= 0.0 {
                 continue;
@@ -202,7 +207,7 @@ impl Creature {
     }
 }
 
-/// The point of a body's axis that is nearest to a place.
+/// The point of a body's axis nearest to a place.
 fn nearest_on(person: &Person, place: DVec3) -> DVec3 {
     let [start, end] = person.body.ends;
     let axis = end - start;
@@ -215,7 +220,7 @@ fn nearest_on(person: &Person, place: DVec3) -> DVec3 {
     start + axis * share
 }
 
-/// True if a body would touch no terrain if it were lower by a height.
+/// True if a body would touch no terrain if it moved down by `height` metres.
 fn is_above(person: &Person, height: f64, around: &Surroundings<'_>) -> bool {
     let down = [DVec3::NEG_Y * height; 2];
     let touches = |obstacle: &&dyn Obstacle| {

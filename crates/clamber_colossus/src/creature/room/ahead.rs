@@ -7,23 +7,26 @@ use super::{Among, MARGIN, Room, STEPS_OVER, STRAIGHT_FROM};
 use crate::creature::state::NO_GROUND;
 use crate::kind::{BANDS, Band, EDGES};
 
-/// How much further it keeps from other creatures, since their skin moves while they stand.
+/// Additional distance from other creatures, as a share of the creature's height, because their skin moves while they
+/// stand.
 const SWAYS: f64 = 0.05;
 
-/// The ground ahead is looked at in steps of this share of its height, and in at most so many: it does not see what is
-/// farther away than 20 heights.
+/// Spacing of the stations where the ground ahead is measured, as a share of the creature's height.
 const SPACING: f64 = 0.08;
+
+/// Most stations ahead. With `SPACING`, the creature sees 20 heights ahead at most.
 const STATIONS: usize = 256;
 
-/// Lower bands follow the ground in pieces of so many steps, those from [`STRAIGHT_FROM`] on go straight.
+/// Sweeps of the lower bands follow the ground in pieces of this many stations. Sweeps of the bands from
+/// [`STRAIGHT_FROM`] on go straight.
 const PIECE: usize = 3;
 
-/// Ground that is no higher or lower than this share of its height is about level.
+/// Largest height difference of ground that is about level, as a share of the creature's height.
 const ABOUT: f64 = 0.04;
 
 impl Room<'_> {
-    /// How far it may walk straight ahead, metres, up to `far` and as far as it sees. Negative where it stands in
-    /// something, or too near.
+    /// How far the creature may walk straight ahead, metres: at most `far`, and at most as far as it sees. Negative if
+    /// the creature is in an obstacle or too near to it.
     pub(in crate::creature) fn ahead(&self, far: f64) -> f64 {
         let margin = MARGIN * self.height;
         let feet = self.band(0);
@@ -57,7 +60,8 @@ impl Room<'_> {
             if self.around.creatures.is_empty() {
                 continue;
             }
-            // Another creature may come towards it as fast, so each has half of the way; and it sways.
+            // Another creature may approach at the same speed, so each of them has half of the distance. Its skin also
+            // sways.
             let front = front + SWAYS * self.height;
             let reach = front + 2.0 * free.max(0.0);
             let hit = self.sweep_ahead(index, &band, reach, spacing, &levels, Among::Creatures);
@@ -68,7 +72,7 @@ impl Room<'_> {
         free
     }
 
-    /// Where it is after so many metres straight ahead; `None` if it does not get there.
+    /// Position of the creature after `far` metres straight ahead; `None` if the way is not free.
     pub(in crate::creature) fn walked(&self, far: f64) -> Option<DVec3> {
         let is_free = self.ahead(far) >= far;
         let there = self.origin + self.forward * far;
@@ -76,8 +80,8 @@ impl Room<'_> {
         Some(there.with_y(level))
     }
 
-    /// True if certainly nothing is in the way of the higher bands: one fat capsule around them, in place of one sweep
-    /// for each.
+    /// True if certainly nothing is in the way of the higher bands. One fat capsule around them replaces a sweep for
+    /// each.
     fn is_high_way_free(&self, free: f64) -> bool {
         let high = self.box_of(STRAIGHT_FROM..BANDS);
         let (middle, radius) = self.high_middle();
@@ -89,22 +93,21 @@ impl Room<'_> {
         self.is_clear(&capsule, self.forward * way)
     }
 
-    /// True if the ground ahead is about as high as that on which it stands.
+    /// True if the ground ahead is about as high as the ground where the creature stands.
     fn is_about_level(&self, levels: &[[f64; STATIONS + 1]; 3]) -> bool {
         let known = levels.iter().flatten().filter(|level| **level < NO_GROUND);
         let mut rises = known.map(|level| (level - self.origin.y).abs());
         rises.all(|rise| rise <= ABOUT * self.height)
     }
 
-    /// The middle of the higher bands, and half their height.
+    /// Middle of the higher bands, and half their height; the latter includes the tolerance `ABOUT`.
     fn high_middle(&self) -> (DVec3, f64) {
         let [low, high] = [EDGES[STRAIGHT_FROM], EDGES[BANDS]].map(|edge| edge * self.height);
         let up = DVec3::Y * (0.5 * (low + high));
         (self.origin + up, 0.5 * (high - low) + ABOUT * self.height)
     }
 
-    /// Heights of the ground along a lane, at the stations of so many steps ahead that count: those that are not under the
-    /// body, and ends of pieces.
+    /// Heights of the ground along a lane, per station. Under the body, only the ends of pieces are measured.
     fn lane(&self, aside: f64, spacing: f64, [from, count]: [usize; 2]) -> [f64; STATIONS + 1] {
         let mut levels = [NO_GROUND; STATIONS + 1];
         let mut level = self.origin.y;
@@ -118,8 +121,8 @@ impl Room<'_> {
         levels
     }
 
-    /// The last station on whose ground it can walk, if it cannot walk on that of a station: since it is too steep, a
-    /// drop, or a wall, counted from where that begins.
+    /// If the creature cannot walk onto the ground of a station, returns the last station before the obstacle. The
+    /// obstacle is a slope that is too steep, a drop, or a wall; a slope counts from its beginning.
     fn last_ground(
         &self,
         levels: &[[f64; STATIONS + 1]; 3],
@@ -131,7 +134,7 @@ impl Room<'_> {
         let over = STEPS_OVER * self.height;
         let is_level = |rise: f64, way: f64| rise.abs() <= self.steepest * way.abs() + over;
         if spacing * station as f64 <= front {
-            // There its feet stand already.
+            // The feet already stand there.
             return None;
         }
         let middle = levels[1][station];
@@ -155,8 +158,8 @@ impl Room<'_> {
         None
     }
 
-    /// Where a band that lies across the body first touches something ahead: metres from the origin to where its front
-    /// would be.
+    /// Distance from the origin at which the front of a band first touches an obstacle ahead, metres. The band's
+    /// capsule lies across the body.
     fn sweep_ahead(
         &self,
         index: usize,
@@ -167,7 +170,7 @@ impl Room<'_> {
         among: Among,
     ) -> Option<f64> {
         let thick = self.thick(index);
-        // As wide as the body, but for the round ends.
+        // The capsule with its round ends is as wide as the body.
         let [right, left] = [(band.right + thick).min(0.0), (band.left - thick).max(0.0)];
         let way = (reach - thick).max(0.0);
         let last = ((way / spacing).ceil() as usize).clamp(1, STATIONS);

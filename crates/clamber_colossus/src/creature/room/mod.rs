@@ -1,7 +1,8 @@
-//! Whether there is room: how far the way ahead is free, how far it may turn, and whether a blow would go through rock.
+//! Free room: how far the way ahead is free, how far the creature may turn, and whether a blow would go through rock.
 //!
-//! Ground is looked for by rays down along three lanes. What stands on it is looked for by sweeps of thin capsules that
-//! lie across the body, or along it where it turns, one for each band of its height.
+//! Rays down find the ground along three lanes. Sweeps of thin capsules, one for each band of the body's height, find
+//! obstacles on the ground. The capsules lie across the body when it walks, and along, across and diagonally when it
+//! turns.
 
 mod ahead;
 mod strike;
@@ -20,29 +21,31 @@ use super::{Creature, Surroundings};
 use crate::feet::Ground;
 use crate::kind::{Band, EDGES, Extent};
 
-/// What is no higher above the ground than this share of its height it steps over.
+/// Height above the ground up to which the creature steps over obstacles, as a share of its height.
 pub(super) const STEPS_OVER: f64 = 0.06;
 
-/// Blows may go into ground: what has a normal that is as upright as this cosine.
+/// Smallest vertical component of a unit normal that counts as ground for blows, which may go into ground.
 pub(super) const STEEP: f64 = 0.7;
 
-/// It keeps this far from what stands in its way, as a share of its height.
+/// Distance that the creature keeps from obstacles, as a share of its height.
 const MARGIN: f64 = 0.015;
 
-/// From this band on one straight sweep of all that are higher is enough, if nothing is in its way.
+/// Index of the first of the higher bands. One straight sweep of all higher bands together replaces their own sweeps if
+/// it finds no obstacle.
 const STRAIGHT_FROM: usize = 2;
 
-/// What a sweep touches does not stop it if it moves along that: the sine of the angle between both.
+/// Sine of the largest angle between a motion and a surface at which the motion goes along the surface. A sweep does
+/// not stop at such a surface.
 const ALONG: f64 = 0.01;
 
-/// What is looked for.
+/// The obstacles that a sweep checks.
 #[derive(Clone, Copy)]
 enum Among {
     Terrain,
     Creatures,
 }
 
-/// The surroundings of a creature, seen from where it stands, in the direction in which it may go.
+/// The surroundings of a creature, seen from its position in a direction in which it may go.
 pub(super) struct Room<'a> {
     around: &'a Surroundings<'a>,
     extent: &'a Extent,
@@ -51,17 +54,17 @@ pub(super) struct Room<'a> {
     left: DVec3,
     scale: f64,
     height: f64,
-    /// Tangent of the steepest ground that it walks onto.
+    /// Tangent of the steepest slope that the creature walks onto.
     steepest: f64,
 }
 
 impl Creature {
-    /// Its surroundings in the direction of its heading.
+    /// The surroundings in the direction of the creature's heading.
     pub(super) fn room<'a>(&self, around: &'a Surroundings<'a>, extent: &'a Extent) -> Room<'a> {
         self.room_towards(around, extent, self.state.heading())
     }
 
-    /// Its surroundings in the direction of a level vector.
+    /// The surroundings in the direction of a horizontal vector.
     pub(super) fn room_towards<'a>(
         &self,
         around: &'a Surroundings<'a>,
@@ -81,7 +84,7 @@ impl Creature {
         }
     }
 
-    /// The gradient of the ground on which it stands, as it knows it.
+    /// Gradient of the ground below the creature, from the stored ground heights.
     pub(super) fn slope(&self) -> DVec3 {
         let heading = self.state.heading();
         let left = DVec3::new(heading.z, 0.0, -heading.x);
@@ -97,12 +100,13 @@ impl Creature {
 }
 
 impl Room<'_> {
-    /// The box around some bands, metres.
+    /// The box around several bands, metres.
     fn box_of(&self, bands: Range<usize>) -> Band {
         let bands = bands.map(|index| self.band(index));
         bands.reduce(Band::and).unwrap_or(self.band(0))
     }
 
+    /// True if a capsule that moves by `way` meets no obstacle.
     fn is_clear(&self, capsule: &WorldCapsule, way: DVec3) -> bool {
         let all = [self.around.terrain, self.around.creatures];
         let mut any = |_: &SweepContact| true;
@@ -110,7 +114,7 @@ impl Room<'_> {
             .all(|obstacles| first(obstacles, capsule, [way; 2], &mut any).is_none())
     }
 
-    /// A band's box, metres.
+    /// The box of a band, metres.
     fn band(&self, index: usize) -> Band {
         let Band {
             right,
@@ -126,15 +130,17 @@ impl Room<'_> {
         }
     }
 
-    /// Half the thickness of a band, and the height of its middle above the ground, metres.
+    /// Half the thickness of a band, metres.
     fn thick(&self, index: usize) -> f64 {
         0.5 * (EDGES[index + 1] - EDGES[index]) * self.height
     }
 
+    /// Height of a band's middle above the ground, metres.
     fn middle(&self, index: usize) -> f64 {
         0.5 * (EDGES[index + 1] + EDGES[index]) * self.height
     }
 
+    /// Height of the ground below a place.
     fn below(&self, place: DVec3) -> Option<f64> {
         let ground = Ground {
             terrain: self.around.terrain,
@@ -143,7 +149,7 @@ impl Room<'_> {
         ground.below(place).map(|(level, _)| level)
     }
 
-    /// The time of the first touch of a capsule that is in its way, from 0 to 1.
+    /// Time of a capsule's first contact with an obstacle in its way, from 0 to 1.
     fn sweep(
         &self,
         capsule: &WorldCapsule,
@@ -164,7 +170,7 @@ impl Room<'_> {
     }
 }
 
-/// The time at which a capsule first touches something that counts, from 0 to 1.
+/// Time of a capsule's first contact that `counts` accepts, from 0 to 1.
 fn first(
     obstacles: &[&dyn Obstacle],
     capsule: &WorldCapsule,

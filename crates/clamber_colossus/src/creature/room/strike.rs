@@ -1,4 +1,4 @@
-//! Whether a blow would go through rock.
+//! Whether an attack would go through rock.
 
 use clamber_surface::geometry::WorldCapsule;
 use clamber_world::SweepContact;
@@ -9,8 +9,8 @@ use crate::creature::{Creature, Surroundings};
 use crate::kind::{Strike, Swept};
 
 impl Creature {
-    /// False if anything of it would go through rock or another creature in an attack. What it steps over does not count,
-    /// nor ground: feet come down on that, and hands may strike it.
+    /// False if a part of the creature would go through rock or another creature in an attack. Obstacles low enough to
+    /// step over do not count. Neither does ground: feet come down on it, and hands may strike it.
     pub(in crate::creature) fn may_strike(
         &self,
         strike: &Strike,
@@ -21,7 +21,7 @@ impl Creature {
         for Swept { radius, aims, way } in &strike.swept {
             let count = way.len().max(2) as f64 - 1.0;
             let places = way.iter().enumerate().map(|(index, place)| {
-                // A leg goes to where it aims little by little.
+                // A limb that aims goes gradually to its target.
                 let share = if *aims { index as f64 / count } else { 0.0 };
                 let place = world.transform_point(*place) + self.state.aim * share;
                 place.with_y(place.y.max(low + radius * self.size.scale))
@@ -30,7 +30,7 @@ impl Creature {
             for pair in places.windows(2) {
                 let ball = WorldCapsule::ball(pair[0], radius * self.size.scale);
                 let way = pair[1] - pair[0];
-                // What it stands in or leaves is not in its way.
+                // An obstacle that the ball starts in, or moves away from, is not in its way.
                 let mut is_rock = |hit: &SweepContact| {
                     let normal = hit.separation_normal;
                     !hit.started_inside && normal.y < STEEP && normal.dot(way) < 0.0

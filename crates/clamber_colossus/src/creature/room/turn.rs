@@ -1,4 +1,4 @@
-//! How far it may turn.
+//! How far the creature may turn.
 
 use core::ops::Range;
 
@@ -8,11 +8,12 @@ use glam::DVec3;
 use super::{Among, MARGIN, Room, STEPS_OVER, STRAIGHT_FROM};
 use crate::kind::{BANDS, EDGES};
 
-/// Arcs of turns are looked along in chords of this angle, radians: they leave the arc by 1.1 % of its radius.
+/// Largest angle of the chords in which the arcs of a turn are checked, radians. Such a chord leaves its arc by 1.1 %
+/// of the radius.
 const MOST_TURN: f64 = 0.3;
 
 impl Room<'_> {
-    /// How far it may turn on the spot, radians, up to `far` and with its sign: positive to the left.
+    /// How far the creature may turn on the spot, radians: at most `far` and with its sign, positive to the left.
     pub(in crate::creature) fn turn(&self, far: f64, slope: DVec3) -> f64 {
         let pieces = (far.abs() / MOST_TURN).ceil().max(1.0);
         let piece = far / pieces;
@@ -27,7 +28,8 @@ impl Room<'_> {
         free
     }
 
-    /// How far it may turn on from where it has turned by an angle.
+    /// How far the creature may turn on after it has turned by the angle `from`, radians: at most `far` and with its
+    /// sign.
     fn turn_piece(&self, from: f64, far: f64, slope: DVec3) -> f64 {
         let mut free = far.abs();
         let feet = self.band(0);
@@ -38,7 +40,7 @@ impl Room<'_> {
             (feet.right, feet.front),
             (feet.left, feet.front),
         ] {
-            // Where its feet may come to stand then.
+            // A place where the feet may stand after this turn.
             let corner = turned(self.left * aside + self.forward * along, from + far);
             let below = self.below(self.origin + corner + DVec3::Y * corner.dot(slope));
             let most = self.steepest * corner.length() + over;
@@ -60,7 +62,7 @@ impl Room<'_> {
         far.signum() * free
     }
 
-    /// How far one band may turn, from one angle on by up to another one.
+    /// How far one band may turn on from the angle `from`, radians: at most `by` and with its sign.
     fn turn_band(&self, index: usize, [from, by]: [f64; 2], slope: DVec3) -> f64 {
         let mut free = by;
         let band = self.band(index);
@@ -68,7 +70,7 @@ impl Room<'_> {
         let inner = thick - MARGIN * self.height;
         let [back, right] = [band.back, band.right].map(|at| (at + inner).min(0.0));
         let [front, left] = [band.front, band.left].map(|at| (at - inner).max(0.0));
-        // Along the body, across it, and from corner to corner of its box.
+        // Along the body, across it, and along both diagonals of its box.
         let spans = [
             [(0.0, back), (0.0, front)],
             [(right, 0.0), (left, 0.0)],
@@ -102,13 +104,13 @@ impl Room<'_> {
         free
     }
 
-    /// True if certainly nothing is in the way of some bands that turn, from one angle on by another one.
+    /// True if certainly nothing is in the way of several bands that turn by the angle `by` from the angle `from`.
     ///
-    /// One capsule, as thick as they are high together, lies along the body where half of the turn is done, and goes aside
-    /// over all that they pass: it covers a box without bulging out above and below.
+    /// A single capsule, as thick as the bands are high together, lies along the body at the middle of the turn. It
+    /// sweeps sideways over the whole area that the bands pass. It covers a box without bulging out above and below.
     fn is_turn_clear(&self, bands: Range<usize>, [from, by]: [f64; 2], slope: DVec3) -> bool {
         let around = self.box_of(bands.clone());
-        // Capsules are round: those of the bands begin so far inside their boxes.
+        // The bands' capsules are round, so their axes end this far inside the bands' boxes.
         let thicks = bands.clone().map(|index| self.thick(index));
         let inner = thicks.fold(f64::INFINITY, f64::min) - MARGIN * self.height;
         let back = (around.back + inner).min(0.0);
@@ -130,7 +132,7 @@ impl Room<'_> {
     }
 }
 
-/// A level vector, turned about up.
+/// Turns a horizontal vector about Y.
 fn turned(level: DVec3, angle: f64) -> DVec3 {
     let (sin, cos) = libm::sincos(angle);
     DVec3::new(
@@ -148,8 +150,8 @@ mod tests {
     use clamber_world::{Obstacle, TriangleTerrain};
     use glam::Vec3;
 
-    /// A room for a body of random boxes on a random slope, with small triangles about it. Where a turn is called clear,
-    /// no sweep of a band finds anything; and turns are called clear often, also with something near.
+    /// Bodies of random boxes on random slopes, with a small triangle near them. If a turn is reported as clear, no
+    /// sweep of a band may meet anything. Many turns must be clear, and many must meet the triangle.
     #[test]
     fn turns_that_are_clear_meet_nothing() {
         let mut rng = fastrand::Rng::with_seed(7);

@@ -1,6 +1,6 @@
 use super::*;
 
-/// No number of a foot may be none: a restored state with one would spread it over the whole pose.
+/// No number of a foot may be NaN or infinite: a restored state with such a number would spread it over the whole pose.
 #[test]
 fn a_foot_with_what_is_no_number_is_refused() {
     let at = |number: f64| Footing {

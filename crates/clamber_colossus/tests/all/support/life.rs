@@ -1,4 +1,4 @@
-//! The giant at any size and rate, on ground that rests and aboard a ship.
+//! The giant at any size and rate, on ground at rest and aboard a ship.
 
 use clamber_colossus::{Creature, CreatureConfig, CreatureEvent, Person, Riding, Surroundings};
 use clamber_surface::geometry::{Similarity, WorldCapsule, rotation_from_axis_angle};
@@ -9,7 +9,7 @@ use serde_json::Value;
 
 use super::{TICK, creature, kind_at, person};
 
-/// How tall the giant is, metres, how long a tick is, seconds, and whether it stands on a ship that sails and turns.
+/// Height of the giant, metres, length of a tick, seconds, and true if it stands on a ship that sails and turns.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Setting {
     pub(crate) height: f64,
@@ -17,6 +17,7 @@ pub(crate) struct Setting {
     pub(crate) sails: bool,
 }
 
+/// The settings of the tests: 41, 4 and 150 m on ground at rest, and 41 m on a ship.
 pub(crate) const SETTINGS: [Setting; 4] = [
     Setting {
         height: 41.0,
@@ -41,12 +42,12 @@ pub(crate) const SETTINGS: [Setting; 4] = [
 ];
 
 impl Setting {
-    /// How much larger the giant is than at 41 m.
+    /// Size of the giant relative to 41 m.
     pub(crate) fn scale(&self) -> f64 {
         self.height / 41.0
     }
 
-    /// How much longer everything takes than at 41 m.
+    /// Factor by which times are longer than at 41 m.
     pub(crate) fn pace(&self) -> f64 {
         self.scale().sqrt()
     }
@@ -56,7 +57,7 @@ impl Setting {
     }
 }
 
-/// Ground that rests, as it is aboard a ship which turns about up alone.
+/// Ground that is carried by a ship. The ship turns about the vertical axis only.
 #[derive(Clone, Copy)]
 pub(crate) struct Aboard<'a> {
     ground: &'a dyn Obstacle,
@@ -132,7 +133,7 @@ impl Obstacle for Aboard<'_> {
     }
 }
 
-/// Somebody near it, by the place on the ground.
+/// A person near the giant, with its place relative to the ground.
 #[derive(Clone, Copy)]
 pub(crate) struct Guest {
     pub(crate) id: u64,
@@ -140,7 +141,7 @@ pub(crate) struct Guest {
     pub(crate) riding: Option<Riding>,
 }
 
-/// Somebody in a direction, radians from +Z to +X.
+/// A person in a direction, radians from +Z to +X, at a distance.
 pub(crate) fn at(angle: f64, far: f64) -> Guest {
     Guest {
         id: 1,
@@ -149,8 +150,8 @@ pub(crate) fn at(angle: f64, far: f64) -> Guest {
     }
 }
 
-/// A giant and the ground under it. Lengths and times are given as for one of 41 m, and places as on the ground; the ground
-/// is as large as the giant.
+/// A giant and the ground under it. Lengths and times are given as for a giant of 41 m, and places relative to the
+/// ground. The ground scales with the giant.
 pub(crate) struct Life<'a> {
     pub(crate) setting: Setting,
     pub(crate) one: Creature,
@@ -159,7 +160,7 @@ pub(crate) struct Life<'a> {
 }
 
 impl<'a> Life<'a> {
-    /// It stands at the ground's origin. The brain's file tells all but its size.
+    /// A giant at the origin of the ground. `brain` gives everything except its size.
     pub(crate) fn new(setting: Setting, brain: &str, ground: &'a dyn Obstacle) -> Self {
         let mut file: Value = serde_json::from_str(brain).unwrap();
         file["body"]["height"] = setting.height.into();
@@ -187,40 +188,40 @@ impl<'a> Life<'a> {
         }
     }
 
-    /// How it is turned on the ground.
+    /// Yaw relative to the ground, radians.
     pub(crate) fn yaw(&self) -> f64 {
         self.one.state().yaw() - self.angle()
     }
 
-    /// Radians a second.
+    /// Yaw rate, radians a second.
     pub(crate) fn yaw_rate(&self) -> f64 {
         self.number("/yaw_rate") * self.setting.pace()
     }
 
-    /// Metres a second, relative to the ground.
+    /// Speed relative to the ground, metres a second.
     pub(crate) fn speed(&self) -> f64 {
         self.one.state().speed() / self.setting.pace()
     }
 
-    /// Where it is on the ground.
+    /// Position relative to the ground.
     pub(crate) fn position(&self) -> DVec3 {
         let place = self.one.state().position();
         self.ground.now.inverse_transform_point(place) / self.setting.scale()
     }
 
-    /// A number of its state, as it is.
+    /// A number of the saved state by its JSON pointer, without any scaling.
     pub(crate) fn number(&self, place: &str) -> f64 {
         let state = serde_json::to_value(self.one.state()).unwrap();
         state.pointer(place).and_then(Value::as_f64).unwrap()
     }
 
-    /// A place on the ground, where it is now.
+    /// The current place in the world of a place on the ground.
     pub(crate) fn place(&self, place: DVec3) -> DVec3 {
         let place = place * self.setting.scale();
         self.ground.now.transform_point(place)
     }
 
-    /// Lets some seconds pass, and calls a function after each tick.
+    /// Steps the giant for some seconds, and calls `look` after each tick.
     pub(crate) fn live(&mut self, people: &[Guest], seconds: f64, mut look: impl FnMut(&Self)) {
         for _ in 0..self.setting.ticks(seconds) {
             self.tick(people);
@@ -228,7 +229,7 @@ impl<'a> Life<'a> {
         }
     }
 
-    /// Lets one tick pass, and returns what happened.
+    /// Steps the giant by one tick. Returns the events.
     pub(crate) fn tick(&mut self, people: &[Guest]) -> &[CreatureEvent] {
         self.time += self.setting.tick;
         let sailed = if self.setting.sails { self.time } else { 0.0 };
@@ -256,7 +257,7 @@ impl<'a> Life<'a> {
         &self.one.step(&around).unwrap().events
     }
 
-    /// Lets it turn on and on, after somebody who goes round it.
+    /// Keeps the giant turning to one side, after a person that goes round it.
     pub(crate) fn turn(&mut self, side: f64, seconds: f64) {
         for _ in 0..self.setting.ticks(seconds) {
             let prey = at(self.yaw() + side * 1.4, 40.0);

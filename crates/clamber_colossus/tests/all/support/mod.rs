@@ -1,4 +1,4 @@
-//! The giant of `assets/` with a brain, ground to walk on, and what its skin does.
+//! The giant of `assets/` with a brain, ground to walk on, and measurements of its skin.
 
 #![allow(
     dead_code,
@@ -22,6 +22,7 @@ use clamber_world::rapier3d::prelude::{
 };
 use glam::DVec3;
 
+/// Tick length, seconds.
 pub(crate) const TICK: f64 = 1.0 / 60.0;
 
 /// True if tests that have short forms run all of their cases, as `cargo xtask nightly` does.
@@ -38,7 +39,7 @@ pub(crate) fn brain_file() -> String {
     std::fs::read_to_string(path).unwrap()
 }
 
-/// The giant's own body and regions, with other states.
+/// The giant's own brain with another start and other states.
 pub(crate) fn brain_with(start: &str, states: &str) -> String {
     let mut file: serde_json::Value = serde_json::from_str(&brain_file()).unwrap();
     file["start"] = start.into();
@@ -51,7 +52,7 @@ pub(crate) fn kind(brain: &str) -> Arc<CreatureKind> {
     Arc::new(try_kind(brain).unwrap())
 }
 
-/// The giant with this brain, for ticks of another length.
+/// The giant with this brain, and with this tick length.
 pub(crate) fn kind_at(brain: &str, tick: f64) -> Arc<CreatureKind> {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/colossus.glb");
     let parts = parts_of(clamber_gltf::load(path).unwrap());
@@ -59,7 +60,7 @@ pub(crate) fn kind_at(brain: &str, tick: f64) -> Arc<CreatureKind> {
     Arc::new(CreatureKind::new(parts, brain).unwrap())
 }
 
-/// The giant with this brain, which may not fit it.
+/// The giant with this brain; an error if the brain does not fit it.
 pub(crate) fn try_kind(brain: &str) -> Result<CreatureKind, ColossusError> {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/colossus.glb");
     kind_of(clamber_gltf::load(path).unwrap(), brain)
@@ -75,7 +76,7 @@ fn parts_of(rig: Rig) -> CreatureParts {
     }
 }
 
-/// A creature of an imported file with this brain, which may not fit it.
+/// A creature of an imported file with this brain; an error if the brain does not fit it.
 pub(crate) fn kind_of(rig: Rig, brain: &str) -> Result<CreatureKind, ColossusError> {
     let parts = parts_of(rig);
     let brain = Brain::from_json(brain, TICK).unwrap();
@@ -86,8 +87,9 @@ pub(crate) fn creature(kind: &Arc<CreatureKind>, config: CreatureConfig) -> Crea
     Creature::new(Arc::clone(kind), config).unwrap()
 }
 
-/// Ground of a height that is given by a function of x and z, 400 m wide, with cells of 1 m.
+/// Ground whose height is a function of x and z, 400 m wide, with cells of 1 m.
 pub(crate) fn ground(height: impl Fn(f64, f64) -> f64) -> PhysicsWorld {
+    /// Number of cells along each side.
     const CELLS: usize = 400;
     let samples = CELLS + 1;
     let place = |index: usize| index as f64 - 0.5 * CELLS as f64;
@@ -102,7 +104,8 @@ pub(crate) fn ground(height: impl Fn(f64, f64) -> f64) -> PhysicsWorld {
     world
 }
 
-/// Puts balls of a radius on the ground, in a pattern, each so that it stands out by as much as it is told.
+/// Adds balls of rock. Each has a place on the ground, a radius, and a height by which it stands out of the ground,
+/// metres.
 pub(crate) fn add_boulders(world: &mut PhysicsWorld, places: &[(DVec3, f64, f64)]) {
     for (place, radius, out) in places {
         let center = *place + DVec3::Y * (out - radius);
@@ -113,7 +116,7 @@ pub(crate) fn add_boulders(world: &mut PhysicsWorld, places: &[(DVec3, f64, f64)
     world.detect_collisions(&(), &());
 }
 
-/// Strews 600 boulders over 250 m, which stand out by 0.5 to 2 m.
+/// Strews 600 boulders over a square of 250 m. They stand out by 0.5 to 2 m.
 pub(crate) fn strew_boulders(world: &mut PhysicsWorld, seed: u64) {
     let mut random = fastrand::Rng::with_seed(seed);
     let mut lot = |from: f64, to: f64| from + (to - from) * random.f64();
@@ -126,7 +129,8 @@ pub(crate) fn strew_boulders(world: &mut PhysicsWorld, seed: u64) {
     add_boulders(world, &places);
 }
 
-/// The triangles of a foot's sole: those of its rigid skin that are near the ground at rest.
+/// The sole of a foot: the triangles of its rigid skin that are near the ground at rest, and their length along Z,
+/// metres.
 pub(crate) struct Sole {
     pub(crate) triangles: Vec<[VertexId; 3]>,
     pub(crate) length: f64,
@@ -158,7 +162,7 @@ pub(crate) fn sole(kind: &CreatureKind, ankle: &str) -> Sole {
     Sole { triangles, length }
 }
 
-/// Velocity as riders feel it: the filter of a climber's shake, of 0.1 s.
+/// Acceleration as riders feel it: filtered over 0.1 s, like the shake of a climber.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Feel {
     before: Option<[DVec3; 2]>,
@@ -166,13 +170,13 @@ pub(crate) struct Feel {
 }
 
 impl Feel {
-    /// Takes a place; returns the acceleration that is felt there.
+    /// Takes the next place. Returns the acceleration that is felt there, m/s^2.
     pub(crate) fn step(&mut self, place: DVec3) -> f64 {
         let acceleration = self.raw(place);
         self.filter(acceleration)
     }
 
-    /// Takes a place; returns its acceleration, not filtered.
+    /// Takes the next place. Returns its acceleration without a filter, m/s^2.
     pub(crate) fn raw(&mut self, place: DVec3) -> DVec3 {
         let Some([from, velocity]) = self.before else {
             self.before = Some([place, DVec3::NAN]);
@@ -187,7 +191,7 @@ impl Feel {
         }
     }
 
-    /// Takes an acceleration; returns how much of it is felt.
+    /// Takes the next acceleration. Returns the felt one, m/s^2.
     pub(crate) fn filter(&mut self, acceleration: DVec3) -> f64 {
         let keep = libm::exp(-TICK / 0.1);
         self.felt = self.felt * keep + acceleration * (1.0 - keep);
@@ -195,7 +199,7 @@ impl Feel {
     }
 }
 
-/// Somebody of 1.75 m who stands at a place.
+/// A person of 1.75 m that stands at a place.
 pub(crate) fn person(at: DVec3) -> Person {
     Person {
         id: 1,

@@ -1,4 +1,4 @@
-//! Scene B29: blades of 20 rad/s against limbs of 30 m/s, held against a search in small steps of time.
+//! Scene B29: blades of 20 rad/s against limbs of up to 30 m/s, compared with a search in small steps of time.
 
 use clamber_surface::geometry::{Affine, Similarity, WorldCapsule, rotation_from_axis_angle};
 use clamber_surface::rig::Palette;
@@ -9,13 +9,13 @@ use glam::DVec3;
 use super::*;
 use crate::testing::limb;
 
-/// A swing at a limb that passes by.
+/// A cut at a limb that passes by.
 struct Phase {
     sword: SwordConfig,
-    /// Where the body goes, and how fast it turns.
+    /// Velocity of the body, metres a second; `turns` is its angular velocity about Y, radians a second.
     body: DVec3,
     turns: f64,
-    /// Where the limb is when the cut begins, how fast it is, and how it is turned.
+    /// Position of the limb when the cut begins, metres; then its velocity, metres a second, and its constant rotation.
     place: DVec3,
     velocity: DVec3,
     axis: DVec3,
@@ -34,7 +34,7 @@ impl Phase {
             ..SwordConfig::default()
         };
         let velocity = vector(1.0).normalize_or(DVec3::X);
-        // It passes near the blade in the middle of the cut, or beside it.
+        // Either it passes near the blade in the middle of the cut, or it misses the blade.
         let near = DVec3::new(0.0, 0.9, -1.3) + vector(1.2);
         let speed = 30.0 * lot(1.0).abs();
         Self {
@@ -72,8 +72,8 @@ impl Phase {
         }
     }
 
-    /// The first contact of each part by a search that never steps farther than gap over speed, in the pose of each
-    /// time; and the least gaps.
+    /// The first contact of each part, and its smallest gap. The search poses the skin at each time, and never steps
+    /// farther than the gap divided by the greatest speed.
     fn search(&self, surface: &mut SkinnedSurface, palette: &Palette) -> [(Option<f64>, f64); 2] {
         let reach = self.sword.arm + self.sword.blade;
         let spin = self.sword.angle / self.sword.cut + self.turns.abs();
@@ -116,7 +116,7 @@ impl Phase {
         })
     }
 
-    /// What the cut strikes, tick by tick: parts and times.
+    /// The parts that the cut strikes, tick by tick, with the times in seconds.
     fn cut(
         &self,
         surface: &mut SkinnedSurface,
@@ -177,8 +177,8 @@ fn ten_thousand_cuts_miss_nothing_and_strike_each_part_once_at_its_time() {
             match (time, ours.first()) {
                 (Some(time), Some(ours)) => {
                     struck += 1;
-                    // Early by the time in which the last 0.06 mm and the tolerance are passed, never late but by
-                    // rounding.
+                    // A contact is early by the time in which the blade comes nearer by 0.06 mm and the tolerance. It
+                    // is late only by rounding.
                     assert!(ours - time < 1e-6, "phase {phase}: late by {}", ours - time);
                     worst = worst.max(time - ours);
                     grazed += u32::from(time - ours > 1e-3);
@@ -194,6 +194,6 @@ fn ten_thousand_cuts_miss_nothing_and_strike_each_part_once_at_its_time() {
     }
     println!("{struck} struck, {passed} passed, {grazed} early by over 1 ms, at most {worst} s");
     assert!(struck > 4_000 && passed > 4_000, "{struck} {passed}");
-    // Only where the blade hardly comes nearer.
+    // Such a contact occurs only where the blade hardly comes nearer.
     assert!(grazed * 500 < struck, "{grazed} of {struck}");
 }

@@ -1,4 +1,5 @@
-//! Scene B31: arrows at limbs that pass by, held against a search in small steps of time, and where they stick.
+//! Scene B31: arrows at limbs that pass by, compared with a search in small steps of time, and the places where they
+//! stick.
 
 use clamber_surface::geometry::{Affine, Similarity, rotation_from_axis_angle};
 use clamber_surface::rig::Palette;
@@ -11,16 +12,18 @@ use crate::fighter::{BowConfig, FighterId};
 use crate::projectile::{ProjectileId, ProjectilePlace, place_on};
 use crate::testing::limb;
 
+/// Gravity of the tests, metres a second squared.
 const GRAVITY: DVec3 = DVec3::new(0.0, -9.81, 0.0);
 
-/// Seconds for which an arrow flies.
+/// Duration of an arrow's flight, seconds.
 const FLIES: f64 = 0.8;
 
 struct Shot {
     bow: BowConfig,
     from: DVec3,
     velocity: DVec3,
-    /// Of the limb: where it is in the middle of the flight, how fast, and how it turns.
+    /// Position of the limb in the middle of the flight. The next fields are its velocity, and the axis, initial angle
+    /// and rate of its rotation.
     place: DVec3,
     moves: DVec3,
     axis: DVec3,
@@ -34,7 +37,7 @@ impl Shot {
         let lot = |size: f64| (2.0 * random.borrow_mut().f64() - 1.0) * size;
         let vector = |size: f64| DVec3::new(lot(size), lot(size), lot(size));
         let velocity = vector(1.0).normalize_or(DVec3::X) * (30.0 + lot(25.0));
-        // It comes within half a metre of the limb's middle, at any angle to its skin.
+        // The arrow comes within half a metre of the limb's middle on each axis, at any angle to its skin.
         let middle = vector(50.0);
         let seconds = 0.5 * FLIES;
         Self {
@@ -75,8 +78,8 @@ impl Shot {
         }
     }
 
-    /// When its tip first touches the limb, by a search that never steps farther than gap over speed; and the least
-    /// gap.
+    /// Time at which the arrow's tip first touches the limb, and its smallest gap. The search never steps farther than
+    /// the gap divided by the greatest speed.
     fn search(&self, skin: &mut SkinnedSurface, palette: &Palette) -> (Option<f64>, f64) {
         let radius = self.bow.radius;
         let fastest = self.velocity.length() + 10.0 + self.moves.length() + self.spin.abs() * 2.0;
@@ -96,7 +99,7 @@ impl Shot {
     }
 }
 
-/// Flies an arrow for a while; gives when it stuck, and the arrow.
+/// Flies an arrow for [`FLIES`] seconds. Returns the time at which it got stuck, and the arrow.
 fn fly(
     shot: &Shot,
     skin: &mut SkinnedSurface,
@@ -129,7 +132,7 @@ fn fly(
     (stuck, arrow)
 }
 
-/// Where a stuck arrow is now.
+/// Position and direction of a stuck arrow.
 fn place(arrow: &Projectile, skin: &SkinnedSurface) -> ProjectilePlace {
     let ProjectileMotion::Stuck { at, direction } = &arrow.motion else {
         panic!("{arrow:?}");
@@ -152,8 +155,8 @@ fn of_ten_thousand_arrows_none_passes_through_a_limb() {
         let (time, least) = shot.search(&mut searched, &palette);
         let rate = [30.0, 60.0, 120.0, 240.0][case % 4];
         let (ours, arrow) = fly(&shot, &mut hit, &palette, rate);
-        // Between two ticks the arrow flies straight, and skin as well: at 30 Hz by 1.4 mm beside the parabola, and by
-        // up to 0.1 mm for each of them beside the turning skin.
+        // Within a tick, arrow and skin move on straight lines. At 30 Hz the arrow's line is up to 1.4 mm beside its
+        // parabola, and each line is up to 0.1 mm beside the turning skin.
         let beside = 0.002;
         match (time, ours) {
             (Some(time), Some(ours)) => {
@@ -162,7 +165,7 @@ fn of_ten_thousand_arrows_none_passes_through_a_limb() {
                 early = early.max(time - ours);
             }
             (Some(_), None) => {
-                // It has touched no more than the outermost of the skin.
+                // The arrow has only grazed the skin.
                 let (time, depth) = deepest(&shot, &mut searched, &palette, time.unwrap());
                 assert!(
                     depth < beside,
@@ -190,7 +193,8 @@ fn of_ten_thousand_arrows_none_passes_through_a_limb() {
     assert!(late < 5e-3 && early < 5e-3, "{late} {early}");
 }
 
-/// How deep the tip gets after it first touches: less than the radius and what the closest point says.
+/// Greatest depth of the tip after its first contact, and its time. Depth counts from the contact of the arrow's
+/// radius.
 fn deepest(shot: &Shot, skin: &mut SkinnedSurface, palette: &Palette, from: f64) -> (f64, f64) {
     let radius = shot.bow.radius;
     let mut most = (from, 0.0);
@@ -212,7 +216,7 @@ fn deepest(shot: &Shot, skin: &mut SkinnedSurface, palette: &Palette, from: f64)
     most
 }
 
-/// The arrow sticks as deep as set, along its flight, and stays at its point of the skin.
+/// The arrow sticks as deep as configured, along its flight, and stays at its point of the skin.
 fn stays(arrow: &Projectile, shot: &Shot, skin: &mut SkinnedSurface, palette: &Palette, rate: f64) {
     let ProjectileMotion::Stuck { at, direction } = &arrow.motion else {
         panic!("{arrow:?}");
@@ -223,7 +227,7 @@ fn stays(arrow: &Projectile, shot: &Shot, skin: &mut SkinnedSurface, palette: &P
     let point = |skin: &SkinnedSurface| skin.in_world().motion(&anchor, 1.0 / rate).unwrap();
     let depth = (now.tip - point(skin).position).dot(now.direction);
     assert!((depth - 0.1).abs() < 0.001, "{depth} m deep");
-    // In the frame of the skin both stay where they are.
+    // In the frame of the skin, point and tip do not move.
     let seen = |skin: &SkinnedSurface, arrow: &Projectile| {
         let (motion, place) = (point(skin), place(arrow, skin));
         motion.frame.conjugate() * (place.tip - motion.position)

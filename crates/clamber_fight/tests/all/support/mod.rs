@@ -1,4 +1,4 @@
-//! Creatures, arenas and inputs that tests share.
+//! Creatures, arenas and inputs that the tests share.
 
 #![allow(
     dead_code,
@@ -24,26 +24,27 @@ use clamber_surface::rig::{
 use clamber_world::{HalfSpace, Obstacle, ObstacleId};
 use glam::{DVec3, Vec3};
 
-/// Cells of the slab along each side.
+/// Number of the slab's cells along each side.
 const CELLS: u32 = 16;
 
-/// Half the length of its sides, metres.
+/// Half the length of the slab's sides, metres.
 pub(crate) const HALF: f32 = 6.0;
 
-/// Height of the plate of stone above the fur.
+/// Height of the stone plate above the fur, metres.
 pub(crate) const PLATE: f64 = 0.5;
 
+/// Id of the ground.
 pub(crate) const GROUND: ObstacleId = ObstacleId(0);
 
-/// A slab: a level square of fur on one joint, with a clip, a plate over a quarter of it, and weak points.
+/// A slab: a horizontal square of fur on one joint, with a clip, weak points, and a stone plate over a quarter of it.
 #[derive(Clone, Debug)]
 pub(crate) struct Slab {
     /// Ticks a second.
     pub(crate) rate: f64,
-    /// Times, translations and scales of the joint.
+    /// Keyframes of the joint: time in seconds, translation, scale.
     pub(crate) keys: Vec<(f32, Vec3, Vec3)>,
     pub(crate) weak_points: Vec<WeakPoint>,
-    /// Whether there is a plate of stone over a quarter of it.
+    /// Whether there is a stone plate over a quarter of the fur.
     pub(crate) plate: bool,
 }
 
@@ -58,7 +59,7 @@ impl Default for Slab {
     }
 }
 
-/// A weak point in the middle of the fur.
+/// A weak point of radius 2 at a position of the first joint.
 pub(crate) fn weak_point(name: &str, at: Vec3, hit_points: f64, order: u32) -> WeakPoint {
     let mut point = WeakPoint::new(name, JointId(0), at);
     (point.radius, point.hit_points, point.order) = (2.0, hit_points, order);
@@ -138,7 +139,7 @@ impl Slab {
         Arc::new(CreatureKind::new(parts, brain).unwrap())
     }
 
-    /// An arena with the slab, and fighters at these places.
+    /// An arena with the slab, and fighters at the given places.
     pub(crate) fn arena(&self, config: FighterConfig, places: &[DVec3]) -> Arena {
         let arena = ArenaConfig {
             tick: 1.0 / self.rate,
@@ -155,18 +156,19 @@ impl Slab {
     }
 }
 
-/// A wall at z = 0 that faces +Z, 3.2 m wide and high, with a weak point over all of it.
+/// A wall at z = 0 that faces +Z, 3.2 m wide and high. One weak point covers all of it.
 #[derive(Clone, Debug)]
 pub(crate) struct Wall {
-    /// Joints, side by side.
+    /// Number of joints, side by side.
     pub(crate) joints: u32,
     /// Ticks a second.
     pub(crate) rate: f64,
-    /// After how much damage the plate breaks that is 5 cm before all of it, if there is one.
+    /// Damage that breaks the plate; `None` for a wall without a plate. The plate covers the whole wall, 5 cm in front
+    /// of it.
     pub(crate) plate: Option<f64>,
 }
 
-/// A wall of this many joints, at rest.
+/// The kind of a wall with this many joints, at rest.
 pub(crate) fn wall(joints: u32) -> Arc<CreatureKind> {
     Wall::of(joints).kind()
 }
@@ -181,6 +183,7 @@ impl Wall {
     }
 
     pub(crate) fn kind(&self) -> Arc<CreatureKind> {
+        /// Number of the wall's cells along each side.
         const CELLS: u32 = 32;
         let joints = self.joints;
         let place = |index: u32| 3.2 * (index as f32 / CELLS as f32 - 0.5);
@@ -252,10 +255,12 @@ pub(crate) fn sword() -> SwordConfig {
     SwordConfig::default()
 }
 
+/// The first fighter of each arena.
 pub(crate) const HERO: FighterId = FighterId(0);
+/// The first creature of each arena.
 pub(crate) const GIANT: CreatureId = CreatureId(0);
 
-/// An input with buttons and without a direction.
+/// An input with buttons, but without a direction.
 pub(crate) fn pressing(actions: u32) -> ClimberInput {
     ClimberInput {
         actions,
@@ -263,7 +268,7 @@ pub(crate) fn pressing(actions: u32) -> ClimberInput {
     }
 }
 
-/// Steps an arena over level ground far below, with one input for all.
+/// Steps an arena over horizontal ground at y = -100 m, with the same input for all fighters.
 pub(crate) fn step(arena: &mut Arena, input: &ClimberInput) -> Vec<ArenaEvent> {
     let ground = HalfSpace::below(-100.0);
     let inputs = vec![*input; arena.fighters().len()];
@@ -271,7 +276,7 @@ pub(crate) fn step(arena: &mut Arena, input: &ClimberInput) -> Vec<ArenaEvent> {
     arena.step(&inputs, &terrain).unwrap().to_vec()
 }
 
-/// A step with orders, above the same ground.
+/// Steps an arena with orders over the same ground.
 pub(crate) fn step_with(
     arena: &mut Arena,
     inputs: &[ClimberInput],
@@ -288,7 +293,7 @@ pub(crate) fn mode(arena: &Arena) -> ClimberMode {
     arena.fighter(HERO).unwrap().climber().state().mode
 }
 
-/// Steps until the hero stands.
+/// Steps until the first fighter stands; panics after 600 ticks.
 pub(crate) fn land(arena: &mut Arena) {
     for _ in 0..600 {
         step(arena, &ClimberInput::IDLE);
@@ -302,7 +307,7 @@ pub(crate) fn land(arena: &mut Arena) {
     );
 }
 
-/// The damages of hits among events.
+/// The damages of all hits among the events.
 pub(crate) fn hits(events: &[ArenaEvent]) -> Vec<f64> {
     let hits = events.iter().filter_map(|event| match event {
         ArenaEvent::Hit { damage, .. } => Some(*damage),
@@ -316,7 +321,7 @@ pub(crate) fn giant() -> Arc<CreatureKind> {
     giant_with(|_| ())
 }
 
-/// The giant with its brain's file changed.
+/// The giant with a changed brain file.
 pub(crate) fn giant_with(change: impl Fn(&mut serde_json::Value)) -> Arc<CreatureKind> {
     let assets = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/");
     let rig = clamber_gltf::load(format!("{assets}colossus.glb")).unwrap();
@@ -334,16 +339,16 @@ pub(crate) fn giant_with(change: impl Fn(&mut serde_json::Value)) -> Arc<Creatur
     Arc::new(CreatureKind::new(parts, brain).unwrap())
 }
 
-/// A fight in which everything happens: one rides the giant, stabs it and hangs on, another one runs about before it,
-/// shoots and throws, and one stands on a slab whose plate it breaks.
+/// A fight with many events. One fighter rides the giant, stabs it and hangs on. Another one runs about in front of the
+/// giant, shoots and throws. The third one stands on a slab and breaks its plate.
 pub(crate) struct Melee {
     pub(crate) arena: Arena,
     ground: HalfSpace,
-    /// Ticks by which inputs are others than those of the first fight.
+    /// Number of ticks by which the inputs are shifted against the first fight.
     shift: u64,
 }
 
-/// Where the slab is.
+/// Position of the slab, metres.
 const SLAB: DVec3 = DVec3::new(60.0, 1.0, 60.0);
 
 impl Melee {
@@ -351,7 +356,7 @@ impl Melee {
         Self::another(giant, 0)
     }
 
-    /// The same with other lots, and other inputs.
+    /// The same fight with other seeds and other inputs.
     pub(crate) fn another(giant: &Arc<CreatureKind>, number: u64) -> Self {
         let mut arena = Arena::new(ArenaConfig {
             seed: 5 + number,
@@ -386,7 +391,7 @@ impl Melee {
         if let Some(stamina) = &mut config.climber.stamina {
             stamina.shake_drain = 1.0 / 200.0;
         }
-        // Strong stabs and cuts, so that much happens in little time.
+        // Stabs charge fast and cuts are strong, so that much happens in little time.
         if let Some(sword) = &mut config.sword {
             (sword.charge, sword.cut_damage) = (0.7, 1.0);
         }
@@ -405,13 +410,13 @@ impl Melee {
         }
     }
 
-    /// What each does in the tick that follows so many.
+    /// Inputs of the three fighters after `tick` ticks.
     pub(crate) fn inputs(tick: u64) -> [ClimberInput; 3] {
         use clamber_fight::actions::{BOW, CUT, STAB, THROW};
         let second = tick / 60;
         let wave = |period: f64| libm::sin(tick as f64 / 60.0 / period * core::f64::consts::TAU);
         let rides = ClimberInput {
-            // It lets go after a while, so that the giant turns to the others.
+            // The rider lets go after a while, so that the giant turns to the others.
             grip: tick > 20 && tick < 1500,
             climb: if second % 7 < 2 {
                 DVec3::new(wave(3.0), wave(5.0), wave(4.0))
@@ -422,7 +427,7 @@ impl Melee {
             actions: if tick % 97 < 20 { STAB } else { 0 },
             ..ClimberInput::IDLE
         };
-        // Later it stays and waits for what comes.
+        // Later the runner stands still and waits for the giant.
         let runs = ClimberInput {
             walk: DVec3::new(wave(6.0), 0.0, wave(7.0))
                 * f64::from(u8::from(second % 5 < 3 && tick < 2000)),

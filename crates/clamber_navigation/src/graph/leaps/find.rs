@@ -1,4 +1,4 @@
-//! Which jumps are worth a try: those to where no short way leads.
+//! Finds the jumps that are worth a try: to patches to which no short way leads.
 
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BinaryHeap};
@@ -10,32 +10,33 @@ use super::{Aim, ClimbGraph, LONGEST};
 use crate::NavigationError;
 use crate::graph::Footing;
 
-/// A jump to be tried.
+/// A jump that is worth a try.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Tried {
+    /// The patches from which and at which it is aimed.
     pub(super) ends: [u32; 2],
-    /// Seconds that it saves.
+    /// Seconds that it saves against the fastest way.
     saves: f64,
-    /// How far it goes, metres.
+    /// Distance between the seats of both patches, metres.
     apart: f64,
 }
 
-/// Of the patches in a cube with a side of so many radii, and those in another one, one jump is tried.
+/// Side of a cube of space, radii of the climber. For each ordered pair of cubes one jump is tried, the shortest one.
 const CELL: f64 = 3.0;
 
-/// A way that takes no longer than so many times the jump is short.
+/// A way is short if it takes no longer than this many times the jump. No jump is tried where a short way leads.
 const SHORT: f64 = 3.0;
 
-/// Jumps lead at most so many times as far down as they rise.
+/// Jumps lead down by at most this many times the height to which they rise.
 const DOWN: f64 = 2.0;
 
-/// Whoever watches is told every so many cubes.
+/// Progress is reported once in this many cubes.
 const TELLS: usize = 32;
 
-/// A way through the air is looked along in so many straight pieces.
+/// Number of straight segments that stand in for the parabola when the path of a jump is tested for skin.
 const PIECES: u32 = 6;
 
-/// Jumps that may be worth it, those first that save most.
+/// The jumps that may be worth it, sorted by the time that they save, most first.
 pub(super) fn tries(
     graph: &ClimbGraph,
     surface: &SkinnedSurface,
@@ -55,7 +56,7 @@ pub(super) fn tries(
     let cell = |seat: DVec3| (seat / side).floor().as_ivec3().to_array();
     let mut cells: BTreeMap<[i32; 3], Vec<u32>> = BTreeMap::new();
     for (index, patch) in (0..).zip(&graph.patches) {
-        // What lies below a plate is no way while it is there.
+        // Patches below a plate are left out, because no way leads there while the plate is in place.
         if patch.below.is_none() {
             cells.entry(cell(patch.seat)).or_default().push(index);
         }
@@ -113,7 +114,7 @@ pub(super) fn tries(
     Ok(tries)
 }
 
-/// Jumps that go farther than so many cubes are not looked at.
+/// Jumps over more than this many cubes along an axis are not tried. It bounds the search for fast climbers.
 const MOST_CELLS: f64 = 6.0;
 
 fn cube(far: i32) -> impl Iterator<Item = IVec3> {
@@ -121,7 +122,7 @@ fn cube(far: i32) -> impl Iterator<Item = IVec3> {
     range().flat_map(move |x| range().flat_map(move |y| range().map(move |z| IVec3::new(x, y, z))))
 }
 
-/// True if no skin lies on the way through the air, and the jump comes to the outside of the skin at its end.
+/// True if no skin lies on the path through the air, and the jump arrives on the outside of the skin.
 fn is_free(graph: &ClimbGraph, surface: &SkinnedSurface, ends: [u32; 2]) -> bool {
     let climber = &graph.config.climber;
     let [from, to] = ends.map(|patch| &graph.patches[patch as usize]);
@@ -149,12 +150,15 @@ fn is_free(graph: &ClimbGraph, surface: &SkinnedSurface, ends: [u32; 2]) -> bool
     })
 }
 
-/// How long it takes to come to patches from some others, without a jump.
+/// The times from some patches to others without a jump.
 pub(super) struct Beside {
-    /// Of each patch that was reached, seconds.
+    /// For each patch, the time to it, seconds; infinite if it was not reached.
     known: Vec<f64>,
+    /// The patches that were reached; used to reset `known`.
     reached: Vec<u32>,
+    /// Patches whose ways are not followed yet, by their time.
     open: BinaryHeap<Reverse<(u64, u32)>>,
+    /// Ways up to this time are followed, seconds.
     most: f64,
 }
 
@@ -168,13 +172,13 @@ impl Beside {
         }
     }
 
-    /// True if there is a short way from one patch to another: shorter than is worth a jump of so many seconds.
+    /// True if a short way leads from one patch to another, so that a jump of `jump` seconds is not worth it.
     pub(super) fn is_short(&mut self, graph: &ClimbGraph, [from, to]: [u32; 2], jump: f64) -> bool {
         self.look(graph, &[from], SHORT * jump);
         self.seconds(to) <= SHORT * jump
     }
 
-    /// Looks how far it is from the nearest of some patches, up to so many seconds: Dijkstra's search (1959).
+    /// Finds the times from the nearest of some patches to all others, up to `most` seconds: Dijkstra's search (1959).
     fn look(&mut self, graph: &ClimbGraph, from: &[u32], most: f64) {
         for patch in self.reached.drain(..) {
             self.known[patch as usize] = f64::INFINITY;
@@ -207,7 +211,7 @@ impl Beside {
 
     fn offer(&mut self, patch: u32, seconds: f64) {
         let known = &mut self.known[patch as usize];
-        // Neither infinite nor not a number.
+        // False for infinity and NaN.
         let is_near = seconds <= self.most;
         if is_near && seconds < *known {
             if known.is_infinite() {
@@ -218,7 +222,8 @@ impl Beside {
         }
     }
 
-    /// From the patches that were looked at to another one; twice as long as was looked if it is farther.
+    /// Seconds from the patches of the last [`Beside::look`] to another one. If it was not reached, twice that search's
+    /// limit.
     fn seconds(&self, to: u32) -> f64 {
         self.known[to as usize].min(2.0 * self.most)
     }

@@ -1,4 +1,4 @@
-//! Jumps from one part of a creature to another: onto what is beside or below, onto holds, and up to ledges.
+//! Jumps from one part of a creature to another: onto parts beside or below, onto holds, and up to ledges.
 
 mod find;
 mod play;
@@ -14,30 +14,32 @@ use crate::progress::{Stage, Tell};
 use crate::{GraphSource, NavigationError};
 use play::{Moment, Theatre};
 
-/// A jump from a patch on which a climber stands to another patch. It was played, at rest and in the clips.
+/// A jump from a patch on which a climber stands to another patch. The graph's build has played it, at rest and in the
+/// clips.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "cache", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Leap {
+    /// The patch where it begins.
     pub(crate) from: u32,
-    /// Where it comes to rest.
+    /// The patch where it comes to rest.
     pub(crate) to: u32,
     /// The patch at which it is aimed.
     pub(crate) aimed: u32,
-    /// How it comes to rest.
+    /// The footing with which it comes to rest.
     pub(crate) lands: Footing,
-    /// From the jump until it is at rest there, at most, seconds.
+    /// Longest time from the take-off until the climber is at rest, seconds.
     seconds: f32,
-    /// Stamina that it costs, at most.
+    /// Largest stamina that it costs.
     costs: f32,
 }
 
 impl Leap {
-    /// From the jump until it is at rest there, at most, seconds.
+    /// Longest time from the take-off until the climber is at rest, seconds.
     pub(crate) fn seconds(&self) -> f64 {
         f64::from(self.seconds)
     }
 
-    /// Stamina that it costs, at most.
+    /// Largest stamina that it costs.
     pub(crate) fn costs(&self) -> f64 {
         f64::from(self.costs)
     }
@@ -47,34 +49,39 @@ impl Leap {
 #[derive(Clone, Debug, Default)]
 #[cfg_attr(feature = "cache", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Leaps {
-    /// By where they begin, then by where they end.
+    /// Sorted by the patch where they begin, then by the patch where they end.
     leaps: Vec<Leap>,
-    /// Their numbers, by where they end.
+    /// The jumps' indices, sorted by the patch where they end.
     by_end: Vec<u32>,
-    /// Of each jump and clip, whether it lands whenever it begins: `leap * clips + clip`.
+    /// For each jump and clip, whether the jump lands whenever it begins: `leap * clips + clip`.
     lands: Vec<bool>,
+    /// Number of clips.
     clips: usize,
 }
 
-/// A jump is played from so many radii aside of where it begins, along two level axes.
+/// Offsets from a jump's beginning at which it is played, in radii, along two horizontal axes. A jump that lands only
+/// from the exact place is dropped.
 const OFF: [[f64; 2]; 4] = [[0.25, 0.0], [0.0, 0.25], [-0.25, 0.0], [0.0, -0.25]];
 
-/// In each slice of a clip it begins once, and at least so often in a clip; in clips with more slices than `MOST_PHASES`
-/// there are no jumps.
+/// In each clip a jump is played at least this many times, evenly spread, and at least once per slice.
 const FEWEST_PHASES: f64 = 8.0;
+/// Clips with more slices than this have no jumps. It limits the time of the build.
 const MOST_PHASES: f64 = 128.0;
 
-/// So many climbers jump at a time.
+/// Number of climbers that jump in one pass over the skin's motion.
 const AT_ONCE: usize = 64;
 
-/// Jumps that begin, and end, within so many radii of each other are one: the best of them.
+/// Two jumps whose beginnings are within this many radii of each other, and whose ends are as well, count as one. The
+/// one that saves most time is kept.
 const SPREAD: f64 = 4.0;
 
-/// In a clip it lands within so many radii of where it does at rest.
+/// In a clip a jump has to land within this many radii of where it lands at rest.
 const SAME: f64 = 2.0;
 
-/// So many jumps are played at rest, those that save most. So many of those that land are kept, and played in clips.
+/// The most jumps that are played at rest: those that save most time. It limits the time of the build.
 const MOST_TRIED: usize = 512;
+/// The most jumps that are kept of those that land at rest, and are then played in the clips. It limits the time of the
+/// build.
 const MOST: usize = 64;
 
 impl Leaps {
@@ -86,7 +93,7 @@ impl Leaps {
     ) -> Result<Self, NavigationError> {
         let clips = graph.clips.clips.len();
         let mut theatre = Theatre::new(graph, source)?;
-        // The clips are played when all cubes have been looked at.
+        // The clips are played after all cubes are searched, so both count as steps.
         let mut cubes = 0;
         let tries = find::tries(graph, theatre.at_rest()?, &mut |done, of| {
             cubes = of;
@@ -131,7 +138,7 @@ impl Leaps {
         })
     }
 
-    /// Those of some tries that land at rest, from a little aside as well.
+    /// The tried jumps that land at rest, also from a little aside.
     fn at_rest(
         graph: &ClimbGraph,
         theatre: &mut Theatre<'_>,
@@ -166,7 +173,7 @@ impl Leaps {
                     costs: landed.costs,
                 };
                 let mut footings = graph.footings(leap.to as usize);
-                // It may have caught hold of something that is on the way.
+                // The climber may have caught hold of a patch on the way.
                 if footings.any(|footing| footing == leap.lands)
                     && !is_known(&leaps, &leap)
                     && !beside.is_short(graph, [from, leap.to], leap.seconds())
@@ -190,7 +197,8 @@ impl Leaps {
         Ok(leaps)
     }
 
-    /// Plays jumps once more, and keeps those that land where they do at rest.
+    /// Plays jumps once more, and keeps those that land where they do at rest. Raises the kept jumps' times and costs
+    /// to the largest ones.
     fn keep(
         graph: &ClimbGraph,
         theatre: &mut Theatre<'_>,
@@ -215,7 +223,7 @@ impl Leaps {
         Ok(())
     }
 
-    /// Those that begin on a patch, and their numbers.
+    /// The jumps that begin on a patch, with their indices.
     pub(crate) fn of(&self, patch: usize) -> impl Iterator<Item = (usize, &Leap)> {
         let first = self
             .leaps
@@ -224,7 +232,7 @@ impl Leaps {
         numbered.take_while(move |(_, leap)| leap.from as usize == patch)
     }
 
-    /// Those that end on a patch.
+    /// The jumps that end on a patch.
     pub(crate) fn to(&self, patch: usize) -> impl Iterator<Item = &Leap> {
         let end = |number: &u32| self.leaps[*number as usize].to as usize;
         let first = self.by_end.partition_point(|number| end(number) < patch);
@@ -234,33 +242,33 @@ impl Leaps {
             .take_while(move |leap| leap.to as usize == patch)
     }
 
-    /// The one from a patch to another, and its number.
+    /// The jump from one patch to another, with its index.
     pub(crate) fn between(&self, from: usize, to: usize) -> Option<(usize, &Leap)> {
         self.of(from).find(|(_, leap)| leap.to as usize == to)
     }
 
-    /// The one with a number.
+    /// The jump with an index.
     pub(crate) fn get(&self, number: usize) -> Option<&Leap> {
         self.leaps.get(number)
     }
 
-    /// True if a jump lands whenever it begins in a clip.
+    /// True if a jump lands in a clip whenever it begins.
     pub(crate) fn lands_in(&self, leap: usize, clip: usize) -> bool {
         let lands = self.lands.get(leap * self.clips + clip);
         clip < self.clips && lands.copied().unwrap_or(false)
     }
 
-    /// All of them.
+    /// All jumps.
     pub(crate) fn iter(&self) -> impl Iterator<Item = &Leap> {
         self.leaps.iter()
     }
 
-    /// Number of them.
+    /// Number of jumps.
     pub(crate) fn len(&self) -> usize {
         self.leaps.len()
     }
 
-    /// True if they are of these patches and of so many clips.
+    /// True if the jumps fit these patches and this number of clips.
     #[cfg(feature = "cache")]
     pub(crate) fn is_sound(&self, patches: &[Patch], clips: usize) -> bool {
         let leap = |leap: &Leap| {
@@ -290,33 +298,34 @@ impl Leaps {
     }
 }
 
-/// True if two patches are within so many radii of each other at rest.
+/// True if two patches are within this many radii of each other at rest.
 fn near(graph: &ClimbGraph, (a, b): (u32, u32), radii: f64) -> bool {
     let [a, b] = [a, b].map(|patch| graph.patches[patch as usize].seat);
     a.distance(b) <= radii * graph.config.radius()
 }
 
-/// How a jump is aimed.
+/// Input for a jump from one place to another.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Aim {
-    /// Where it walks in the tick of the jump; level, its length is the share of the speed of a walk.
+    /// Walk input of the jump: horizontal, with the share of the walking speed as its length.
     pub(crate) walk: DVec3,
-    /// How long it flies, seconds.
+    /// Time of flight, seconds.
     pub(crate) seconds: f64,
 }
 
-/// A jump straight up goes no farther than so many radii aside.
+/// A jump whose ends are nearer than this many radii horizontally goes straight up.
 const STRAIGHT: f64 = 0.1;
 
-/// A jump that flies for longer is none, seconds.
+/// The longest time of flight of a jump, seconds. It excludes jumps under nearly no gravity.
 pub(super) const LONGEST: f64 = 10.0;
 
-/// Hands grip again after so much of the rise of a jump.
+/// Hands grip again after this share of the time for which the jump rises. Earlier they would hold the skin that the
+/// climber leaves.
 const OPEN: f64 = 0.4;
 
 impl Aim {
-    /// From one place of a climber's ball to another one, that comes down there, or catches it at its highest; `None`
-    /// if it is out of reach.
+    /// Aims a jump from one place of a climber's ball to another, so that it comes down there or catches it at the
+    /// highest point. `None` if the place is out of reach.
     pub(crate) fn at(climber: &ClimberConfig, from: DVec3, to: DVec3) -> Option<Self> {
         let (ground, gravity) = (&climber.ground, climber.gravity.length());
         let up = climber.up();
@@ -324,7 +333,7 @@ impl Aim {
         let height = (to - from).dot(up);
         let level = to - from - up * height;
         let under = rise * rise - 2.0 * gravity * height;
-        // What it does not rise to, hands catch when it is highest.
+        // A place higher than the jump's highest point is caught there by the hands.
         let seconds = (rise + libm::sqrt(under.max(0.0))) / gravity;
         let hands = climber.grip.map_or(0.0, |grip| grip.reach);
         let ledge = climber
@@ -345,7 +354,7 @@ impl Aim {
         })
     }
 
-    /// The input of a tick that begins so many seconds after the jump. The tick of the jump itself is at 0.
+    /// The input of a tick that begins `seconds` after the take-off. The take-off's own tick is at 0.
     pub(crate) fn input(&self, climber: &ClimberConfig, seconds: f64) -> ClimberInput {
         let rises = climber.ground.jump_speed / climber.gravity.length();
         ClimberInput {
@@ -353,7 +362,7 @@ impl Aim {
             climb: climber.up(),
             jump: seconds == 0.0,
             jump_held: true,
-            // Before that it would hold on to what it leaves.
+            // An earlier grip would hold the skin that the climber leaves.
             grip: seconds > OPEN * rises,
             ..ClimberInput::IDLE
         }

@@ -1,4 +1,4 @@
-//! Jumps, played by climbers on the skin as it moves.
+//! Plays jumps by climbers on the skin as it moves.
 
 use clamber_climber::{Climber, ClimberInput, ClimberMode, ClimberState, ContactQuery, StepRules};
 use clamber_surface::rig::{Palette, Playback, Pose};
@@ -11,18 +11,19 @@ use crate::clips::TICK;
 use crate::graph::Spot;
 use crate::{GraphSource, NavigationError};
 
-/// A climber stands for so many ticks before it jumps, and has come to rest after as many.
+/// A climber stands for this many ticks before it jumps, and has to be at rest for as many at the end.
 const SETTLES: u32 = 6;
 
-/// It comes to rest at most so many times as long after its jump as it is expected to fly, and so many pull-ups over a
-/// ledge.
+/// The longest time from a take-off until the climber is at rest, as a multiple of the expected flight time. The time
+/// of [`PULLS`] is added.
 const LATE: f64 = 1.5;
+/// Number of pull-ups over a ledge for which a jump has time.
 const PULLS: f64 = 2.0;
 
-/// Whoever watches is told every so many ticks.
+/// Progress is reported once in this many ticks.
 const TELLS: u32 = 32;
 
-/// A play that landed.
+/// The landing of a jump that was played.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Played {
     pub(super) patch: u32,
@@ -31,18 +32,19 @@ pub(super) struct Played {
     pub(super) costs: f32,
 }
 
-/// When jumps begin, and where.
+/// When and where jumps begin.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Moment {
-    /// In a clip, or at rest.
+    /// The clip that plays; `None` for the creature at rest.
     pub(super) clip: Option<usize>,
-    /// At this time of the clip, seconds.
+    /// Time of the take-off in the clip, seconds.
     pub(super) begins: f64,
-    /// So many radii off where they should, along two level axes.
+    /// Offset of the take-off from its patch, radii, along two horizontal axes.
     pub(super) off: [f64; 2],
 }
 
 impl Moment {
+    /// A jump on the creature at rest, from its exact place.
     pub(super) const REST: Self = Self {
         clip: None,
         begins: 0.0,
@@ -50,7 +52,7 @@ impl Moment {
     };
 }
 
-/// The creature, and memory to play jumps on it.
+/// The creature, with the memory that playing jumps needs.
 pub(super) struct Theatre<'a> {
     graph: &'a ClimbGraph,
     source: &'a GraphSource<'a>,
@@ -60,21 +62,23 @@ pub(super) struct Theatre<'a> {
     palette: Palette,
 }
 
-/// A climber that jumps.
+/// A climber that plays a jump.
 struct Jumper {
     climber: Climber,
     ends: [u32; 2],
-    /// Its jump, and how much stamina it has spent since.
+    /// The jump's aim; `None` before the take-off, and if the jump cannot be aimed.
     aim: Option<Aim>,
+    /// Stamina spent since the take-off.
     spent: f64,
-    /// It has left the ground.
+    /// True once the climber has been in the air.
     flies: bool,
-    /// For so many ticks it has been at rest.
+    /// Number of ticks for which it has been at rest.
     rests: u32,
-    /// How it ended.
+    /// The result; `None` while the jump is played, `Some(None)` if it did not land.
     ended: Option<Option<Played>>,
 }
 
+/// The creature's obstacle id while jumps are played.
 const CREATURE: ObstacleId = ObstacleId(0);
 
 impl<'a> Theatre<'a> {
@@ -99,12 +103,13 @@ impl<'a> Theatre<'a> {
         Ok(&self.surface)
     }
 
-    /// How long a clip is, seconds.
+    /// Length of a clip at its rate, seconds.
     pub(super) fn seconds(&self, clip: usize) -> f64 {
         self.source.clips[clip].duration() / self.source.rate
     }
 
-    /// Moves the skin on to a time of a clip, or to its rest; or poses it so, without motion.
+    /// Poses the skin at a time of a clip, or at rest for `None`. With `moves` the skin moves there from its last pose;
+    /// without, it has no motion.
     fn show(
         &mut self,
         clip: Option<usize>,
@@ -119,7 +124,7 @@ impl<'a> Theatre<'a> {
             } else {
                 Playback::Clamp
             };
-            // It says nothing of some joints.
+            // Clips do not move all joints.
             self.pose.clone_from(&self.rest);
             clip.sample_into(seconds * source.rate, playback, &mut self.pose)?;
             source
@@ -135,7 +140,7 @@ impl<'a> Theatre<'a> {
         Ok(())
     }
 
-    /// Plays jumps, and tells of each where it came to rest.
+    /// Plays jumps, and returns where each came to rest; `None` for a jump that did not land.
     pub(super) fn play(
         &mut self,
         ends: &[[u32; 2]],
@@ -201,7 +206,7 @@ impl<'a> Theatre<'a> {
 }
 
 impl Jumper {
-    /// One tick, so many after its jump.
+    /// One tick of the jump. `after` is the number of ticks since the take-off, `None` before it.
     fn step(
         &mut self,
         graph: &ClimbGraph,

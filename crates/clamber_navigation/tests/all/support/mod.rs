@@ -1,4 +1,4 @@
-//! Bodies of known area on one joint that does not move.
+//! Bodies of known area, on one joint that does not move or on two.
 
 #![allow(
     dead_code,
@@ -19,20 +19,20 @@ use clamber_surface::rig::{Clip, Joint, JointId, Skeleton, Transform, WeakPoint}
 use clamber_surface::surface::SkinnedSurface;
 use glam::Vec3;
 
-/// A body: corners, triangles and their materials.
+/// A body: vertices, triangles and their materials.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Body {
     pub(crate) positions: Vec<Vec3>,
     pub(crate) triangles: Vec<[u32; 3]>,
     pub(crate) tags: Vec<SurfaceTag>,
     pub(crate) weak_points: Vec<WeakPoint>,
-    /// Corners from this one on are on the second joint; `None`: there is one joint.
+    /// Vertices from this index on belong to the second joint; `None` if all belong to the first.
     pub(crate) second_joint: Option<usize>,
 }
 
 impl Body {
-    /// A grid over a surface that is given by a function of two shares from 0 to 1, with the material at the middle of
-    /// each cell.
+    /// A grid over a surface, which `place` gives as a function of two shares from 0 to 1. `kind` gives the material at
+    /// the middle of each cell.
     pub(crate) fn grid(
         cells: [u32; 2],
         place: impl Fn(f32, f32) -> Vec3,
@@ -60,7 +60,7 @@ impl Body {
         body
     }
 
-    /// Both bodies.
+    /// The union of both bodies.
     pub(crate) fn and(mut self, other: &Self) -> Self {
         let first = self.positions.len() as u32;
         self.positions.extend(&other.positions);
@@ -70,7 +70,7 @@ impl Body {
         self
     }
 
-    /// Both bodies, the other one on a joint of its own.
+    /// The union of both bodies, with the other one on a second joint.
     pub(crate) fn and_on_its_own(self, other: &Self) -> Self {
         Self {
             second_joint: Some(self.positions.len()),
@@ -111,7 +111,7 @@ impl Body {
         )
     }
 
-    /// Its skin.
+    /// The body's skin at rest.
     pub(crate) fn surface(&self) -> SkinnedSurface {
         let skeleton = skeleton();
         let palette = skeleton.palette(&skeleton.rest_pose()).unwrap();
@@ -120,7 +120,7 @@ impl Body {
         surface
     }
 
-    /// The graph for a climber, above ground at height 0, and its report.
+    /// The graph for a climber and its report, with the ground at height 0.
     pub(crate) fn report(&self, config: &GraphConfig) -> (ClimbGraph, ClimbReport) {
         let go_on = |_| ControlFlow::Continue(());
         let (report, graph) = self
@@ -129,7 +129,7 @@ impl Body {
         (graph, report)
     }
 
-    /// What a function makes of it, above ground at height 0.
+    /// Calls a function with the body as a graph's source, with the ground at height 0.
     pub(crate) fn with_source<T>(&self, make: impl FnOnce(&GraphSource<'_>) -> T) -> T {
         let (mesh, skeleton) = (self.mesh(), skeleton());
         make(&GraphSource {
@@ -145,7 +145,7 @@ impl Body {
     }
 }
 
-/// The graph of a body with clips, above ground at height 0.
+/// The graph of a body with clips, with the ground at height 0.
 pub(crate) fn graph_of(
     body: &Body,
     config: &GraphConfig,
@@ -176,7 +176,7 @@ pub(crate) fn skeleton() -> Skeleton {
     Skeleton::new(vec![joint("root", None)]).unwrap()
 }
 
-/// A root and a joint on it.
+/// A root and a joint below it.
 pub(crate) fn two_joints() -> Skeleton {
     let joints = vec![joint("root", None), joint("second", Some(JointId(0)))];
     Skeleton::new(joints).unwrap()
@@ -195,7 +195,7 @@ pub(crate) fn climber() -> GraphConfig {
     GraphConfig::new(ClimberConfig::colossus_climber())
 }
 
-/// A ball of fur.
+/// A ball with the materials of `kind`.
 pub(crate) fn ball(center: Vec3, radius: f32, kind: impl Fn(f32, f32) -> SurfaceKind) -> Body {
     let place = |u: f32, v: f32| {
         let (around, down) = (u * std::f32::consts::TAU, v * std::f32::consts::PI);

@@ -1,10 +1,11 @@
-//! Tests certificates with motions whose first contact is known, and against distances at many times.
+//! Certificates of motions whose first contact is known, and of random motions, compared with distances at many times.
 
 use glam::Vec3;
 
 use super::*;
 use crate::Core;
 
+/// A level triangle at height 0, which contains the origin.
 const FLOOR: [Vec3; 3] = [
     Vec3::new(-5.0, 0.0, -5.0),
     Vec3::new(-5.0, 0.0, 10.0),

@@ -6,7 +6,7 @@ use std::io::Write;
 
 use clamber_render::{Gpu, RenderError};
 
-/// Opens a device; `None`, with a message, if there is none and none is required.
+/// Opens a device; `None`, with a message, if there is no device and none is required.
 ///
 /// With `CLAMBER_REQUIRE_GPU` set, a missing device is a failure.
 pub(crate) fn gpu(what: &str) -> Option<Gpu> {
@@ -18,7 +18,7 @@ pub(crate) fn gpu(what: &str) -> Option<Gpu> {
         Err(RenderError::NoAdapter { reason })
             if std::env::var_os("CLAMBER_REQUIRE_GPU").is_none() =>
         {
-            // Not by `eprintln`, whose output passing tests swallow.
+            // Not by `eprintln`: the output of passing tests is not shown.
             let line = format!(
                 "SKIPPED {what}: no graphics adapter, install mesa-vulkan-drivers ({reason})\n"
             );

@@ -254,7 +254,7 @@ fn reference(hierarchy: &Hierarchy, lane: usize, palette: &Palette) -> [f64; 2] 
     [radius * stretch + apart, hull]
 }
 
-/// Ratios of the eight-wide radii to those of the f64 reference, and how often the hull was the smaller one.
+/// Ratios of the eight-wide radii to the radii of the f64 reference, and the number of spheres whose hull was smaller.
 #[derive(Default)]
 struct Ratios {
     ratios: Vec<f64>,

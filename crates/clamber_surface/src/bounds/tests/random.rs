@@ -7,7 +7,10 @@ use crate::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource, VertexId};
 use crate::rig::{JointId, Palette};
 use crate::testing::{direction, point};
 
+/// Number of joints of a test creature.
 pub(crate) const JOINTS: u32 = 20;
+
+/// Number of vertices of a test creature's patch.
 const VERTICES: usize = 60;
 
 /// How the weights of a test creature are distributed.
@@ -87,12 +90,13 @@ pub(crate) enum Motion {
     Sheared,
     Tiny,
     Subnormal,
-    /// As far as a surface accepts it.
+    /// As large as a surface accepts.
     Huge,
     /// Some matrices are zero.
     Zeros,
 }
 
+/// All kinds. A test in `bounds/root.rs` uses the first six, so the order matters.
 pub(crate) const MOTIONS: [Motion; 10] = [
     Motion::Rigid,
     Motion::Bent,

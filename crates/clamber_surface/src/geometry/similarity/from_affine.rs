@@ -5,7 +5,7 @@ use thiserror::Error;
 
 use super::{Similarity, UNIT_TOLERANCE};
 
-/// Why an affine map is not a [`Similarity`].
+/// The reason why an affine map is not a [`Similarity`].
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum SimilarityError {

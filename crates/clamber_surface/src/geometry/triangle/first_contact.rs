@@ -55,7 +55,7 @@ use self::path::Path;
 use crate::geometry::vector3::Vector3;
 use crate::geometry::widen;
 
-/// Largest number of steps for a triangle. Most triangles take two to five, fast turns a dozen or two. Of a million
+/// Largest number of steps for a triangle. Most triangles take two to five, fast turns a dozen or two. In a million
 /// motions made to be hard, 15 take all steps, all of them with triangles that are nearly lines.
 pub(crate) const STEPS: u32 = 256;
 
@@ -69,14 +69,16 @@ const FARTHEST_AHEAD: f64 = 0.875;
 /// Allowance for rounding in a gap, as a share of the lengths involved: see the module's docs.
 const LOST: f64 = 1.0 / (1u64 << 48) as f64;
 
-/// Covers three roundings of a quotient, and those of the factor itself.
+/// Factor that rounds a quotient down: covers three roundings of the quotient, and the roundings of the factor itself.
 const ROUNDED_DOWN: f64 = 1.0 - 8.0 * f64::EPSILON;
+
+/// Factor that rounds a quotient up, by as much as [`ROUNDED_DOWN`] rounds down.
 const ROUNDED_UP: f64 = 1.0 + 8.0 * f64::EPSILON;
 
 /// A time after the end of the motion, which is never reached.
 const NEVER: f64 = 2.0;
 
-/// Where a moving triangle and a moving core first touch.
+/// The first contact of a moving triangle with a moving core.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Contact {
     /// Weights of the corners.
@@ -140,7 +142,14 @@ fn of_path<const N: usize, const P: usize>(
     (contact, steps)
 }
 
+/// Verdict of a lane that is not decided yet.
 const GOING: f64 = 0.0;
+
+/// Verdict: there is no contact up to the time limit.
 const MISS: f64 = 1.0;
+
+/// Verdict: there is a contact.
 const CONTACT: f64 = 2.0;
+
+/// Verdict: neither a contact nor its absence could be shown.
 const UNDECIDED: f64 = 3.0;

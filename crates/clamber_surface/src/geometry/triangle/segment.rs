@@ -22,8 +22,8 @@ const TOUCHING: f64 = 1.0 / (1u64 << 48) as f64;
 /// cross, the distance is 0 and the point is the crossing point (in slivers, the distance may be the rounding error
 /// that the [module](super) states).
 ///
-/// The bits are the same with the ends swapped, and those of [`closest_point`](super::closest_point) if the ends are
-/// equal.
+/// The result has the same bits with the ends swapped. If the ends are equal, it has the bits of
+/// [`closest_point`](super::closest_point).
 pub(crate) fn closest_to_segment(corners: [Vec3; 3], a: Vec3, b: Vec3) -> TrianglePoint {
     let [a, b] = ordered(a, b).map(widen);
     let from_a = corners.map(|corner| Vector3::from(widen(corner) - a));

@@ -39,7 +39,7 @@ impl ShearedRay {
 
     /// Sheared x and y, and distance along the ray, of a vertex.
     ///
-    /// All of it is in f32, and it has the same bits for one vertex as for many: the test is watertight only if each
+    /// The arithmetic is in f32, and has the same bits for one vertex as for many: the test is watertight only if each
     /// vertex has a single sheared position.
     #[cfg_attr(not(unoptimized), inline(always))]
     pub(crate) fn shear(&self, vertex: Vec3) -> [f32; 3] {
@@ -67,7 +67,7 @@ impl ShearedRay {
                 (low * 0.5 + high * 0.5, high * 0.5 - low * 0.5)
             },
         );
-        // More than corners, sheared in f32, and this test may be off.
+        // More than the error of the sheared corners plus the error of this test, both in f32.
         let size = x.abs() + y.abs() + z.abs() + half_x + half_y + half_z;
         let slack = SLACK * size + f32::MIN_POSITIVE;
         let [shear_x, shear_y, scale] = self.shear;

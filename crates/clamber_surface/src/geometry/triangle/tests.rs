@@ -99,7 +99,7 @@ fn two_triangles_find_the_same_distance_to_the_edge_they_share() {
     let mut shared = 0;
     for case in 0..5_000 {
         let [a, b] = [(); 2].map(|()| random_point(&mut rng));
-        // Both third corners point away from p, so that the edge is nearest for both.
+        // The third corners of both triangles point away from p, so that the shared edge is nearest for both.
         let p = (a + b) * 0.5 + random_point(&mut rng) * 0.3;
         let away = (a + b) * 0.5 - p;
         let [c, d] = [(); 2].map(|()| a + away * 3.0 + random_point(&mut rng) * 0.1);

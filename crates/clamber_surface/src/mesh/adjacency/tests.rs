@@ -8,6 +8,7 @@ use crate::mesh::{BuildOptions, Influence, MeshSource, SurfaceTag, VertexId};
 use crate::rig::JointId;
 use crate::surface::SkinnedSurface;
 
+/// An influence with all weight on joint 0.
 const BONE: Influence = Influence {
     joint: JointId(0),
     weight: 1.0,

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use super::super::{PartId, TriangleId, VertexId};
 use super::{Cluster, Clusters, ROW};
 
-/// The owner of vertices that no part owns.
+/// Stands for the owner of vertices that no part owns.
 const NOBODY: PartId = PartId(u32::MAX);
 
 /// The clusters that an edit killed.
@@ -113,7 +113,7 @@ impl Clusters {
     }
 }
 
-/// The vertices that a cluster owns. `vertices` are those of all clusters.
+/// The vertices that a cluster owns. `vertices` holds the vertices of all clusters.
 fn owned<'a>(cluster: &Cluster, vertices: &'a [VertexId]) -> &'a [VertexId] {
     &vertices[cluster.first_row as usize * ROW..][..usize::from(cluster.owned)]
 }

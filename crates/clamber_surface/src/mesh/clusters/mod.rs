@@ -105,36 +105,36 @@ impl Cluster {
         self.triangles == 0
     }
 
-    /// Number of rows that its slots take.
+    /// Number of rows that the cluster's slots take.
     pub(crate) fn rows(&self) -> usize {
         usize::from(self.slots).div_ceil(ROW)
     }
 
-    /// Its rows of rest data.
+    /// The cluster's rows of rest data.
     pub(crate) fn rest<'a>(&self, clusters: &'a Clusters) -> &'a [Row] {
         let first = self.first_rest as usize;
         &clusters.rest[first..first + (3 + self.joints as usize) * self.rows()]
     }
 
-    /// Its joints, ascending.
+    /// The cluster's joints, in ascending order.
     pub(crate) fn joints<'a>(&self, clusters: &'a Clusters) -> &'a [u32] {
         let first = self.first_joint as usize;
         &clusters.joints[first..first + self.joints as usize]
     }
 
-    /// Its vertices, slot by slot.
+    /// The cluster's vertices, slot by slot.
     pub(crate) fn vertices<'a>(&self, clusters: &'a Clusters) -> &'a [VertexId] {
         let first = self.first_row as usize * ROW;
         &clusters.vertices[first..first + usize::from(self.slots)]
     }
 
-    /// Its triangles.
+    /// The cluster's triangles.
     pub(crate) fn triangles<'a>(&self, clusters: &'a Clusters) -> &'a [TriangleId] {
         let first = self.first_block as usize * BLOCK;
         &clusters.triangles[first..first + usize::from(self.triangles)]
     }
 
-    /// The corners of its triangles.
+    /// The corners of the cluster's triangles.
     pub(crate) fn corners<'a>(&self, clusters: &'a Clusters) -> &'a [CornerBlock] {
         let first = self.first_block as usize;
         &clusters.corners[first..first + usize::from(self.triangles).div_ceil(BLOCK)]

@@ -12,6 +12,7 @@ use crate::mesh::summary::Summarizer;
 /// Maximum number of rounds over the triangles. The last ones gain little.
 const ROUNDS: u8 = 8;
 
+/// Stands for the leaf of a triangle that is in no leaf.
 const NONE: u32 = u32::MAX;
 
 /// Moves triangles between leaves of the same part; no leaf becomes empty.

@@ -65,7 +65,7 @@ impl Hierarchy {
         hierarchy
     }
 
-    /// Makes a node with up to eight children, and appends its joints and weights to those of the hierarchy.
+    /// Makes a node with up to eight children, and appends its joints and weights to the arrays of the hierarchy.
     pub(crate) fn node_of(&mut self, children: &[(Child, Summary)]) -> Node {
         let spans = children.iter().flat_map(|(_, summary)| &summary.spans);
         let mut joints: Vec<u32> = spans.map(|span| span.joint).collect();

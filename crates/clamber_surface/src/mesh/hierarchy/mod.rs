@@ -18,7 +18,8 @@ pub(crate) const LANES: usize = 8;
 /// entries, see [`Hierarchy::stack_needed`].
 pub(crate) const STACK: usize = 256;
 
-/// A child of a node: another node or a cluster. In [`Hierarchy::of_parts`], a cluster's index is that of a part.
+/// A child of a node: another node or a cluster. In [`Hierarchy::of_parts`], the index of a cluster is the index of a
+/// part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Child {
     Node(u32),
@@ -71,6 +72,7 @@ pub(crate) struct Hierarchy {
     further_roots: Vec<PartRoot>,
 }
 
+/// The bit that marks a cluster in a packed [`Child`]. The other bits are the index.
 const CLUSTER: u32 = 1 << 31;
 
 impl Child {

@@ -1,4 +1,4 @@
-//! Which of several triangles wins, and what the search for it does not touch.
+//! The choice among several triangles, and the data that the search for it leaves untouched.
 
 use glam::Vec3;
 

@@ -12,9 +12,10 @@ use crate::rig::{JointId, Palette};
 use crate::surface::SkinnedSurface;
 use crate::testing::{ball, bend, capsule, direction, point, tube};
 
+/// Number of joints of the tube.
 const JOINTS: u32 = 5;
 
-/// 2^90.
+/// 2^90: a thousandth of the largest coordinate, 2^100.
 const HUGE: f32 = (1u128 << 90) as f32;
 
 /// A bent tube, `scale` times as large.

@@ -8,7 +8,7 @@ use crate::testing::{bend, capsule, cases, tube};
 use fastrand::Rng;
 use glam::{DVec3, Vec3};
 
-/// A tube that bends and turns by a lot in this tick.
+/// A tube that bends and turns far in this tick.
 fn bending(level: SimdLevel, rng: &mut Rng) -> SkinnedSurface {
     let mut surface = SkinnedSurface::with_simd_level(tube(12, 24), level);
     for _ in 0..2 {
@@ -84,7 +84,7 @@ fn a_part_of_a_tick_has_the_bits_of_brute_force() {
     );
 }
 
-/// The parts of a motion, one after the other, come upon what the whole comes upon.
+/// Casts over the parts of a motion, one after the other, find the contact that the cast over the whole motion finds.
 #[test]
 fn a_sweep_in_parts_meets_what_the_whole_sweep_meets() {
     let mut rng = Rng::with_seed(12);
@@ -109,7 +109,8 @@ fn a_sweep_in_parts_meets_what_the_whole_sweep_meets() {
             let hit = space.cast_capsule(&capsule(a, b, 0.05), ways, &options)?;
             Some((from + (to - from) * hit.time, hit.started_inside))
         });
-        // Times are never late and, beside grazing, early by no more than the tolerance takes.
+        // Times are never late. Except in grazing contacts, they are early by at most the time in which the tolerance
+        // is passed.
         match (whole, in_parts) {
             (Some(hit), Some((time, _))) => {
                 met += 1;

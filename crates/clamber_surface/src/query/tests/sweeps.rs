@@ -12,7 +12,10 @@ use crate::surface::{CastOptions, SkinnedSurface, SweepHit};
 use crate::testing::{ball, bend, capsule, cases, rigid, tube};
 use glam::{DQuat, DVec3, Vec3};
 
+/// Tick rates, Hz.
 const RATES: [f64; 3] = [30.0, 60.0, 120.0];
+
+/// Speeds of the limb, metres a second.
 const SPEEDS: [f64; 5] = [5.0, 20.0, 60.0, 100.0, 300.0];
 
 /// A resting ball, far thinner than the distance that the limb moves in a tick.
@@ -144,7 +147,7 @@ fn a_swinging_limb_does_not_miss_a_sphere() {
     assert!(swings >= 10, "{swings}");
 }
 
-/// The tube, posed at rest, from the side.
+/// The tube at rest.
 fn resting() -> SkinnedSurface {
     SkinnedSurface::new(tube(4, 64))
 }

@@ -12,7 +12,10 @@ use crate::rig::{JointId, Palette};
 use crate::surface::SkinnedSurface;
 use crate::testing::{cases, point};
 
+/// Number of columns of the sphere, around Y.
 const COLUMNS: u32 = 200;
+
+/// Number of rows of the sphere, from pole to pole.
 const ROWS: u32 = 100;
 
 /// A sphere of radius 1 about `center`. Its south follows one joint and its north another, blended between.
@@ -72,7 +75,7 @@ fn pose(center: Vec3, angle: f64, shift: Vec3) -> Palette {
     Palette::from_matrices([still, turn].map(|map| Affine::from_f64(&map)))
 }
 
-/// How many rays, aimed at points of edges or at vertices, leave without a hit.
+/// The number of rays, aimed at points of edges or at vertices, that leave without a hit.
 fn leaks(surface: &SkinnedSurface, center: Vec3, rays: u32, at_vertices: bool) -> u32 {
     let mut rng = fastrand::Rng::with_seed(91);
     let mut positions = Vec::new();

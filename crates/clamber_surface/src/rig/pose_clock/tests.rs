@@ -1,10 +1,12 @@
 use super::*;
 
+/// Tick rates, Hz.
 const RATES: [f64; 4] = [30.0, 60.0, 64.0, 240.0];
 
-/// Runs ticks at 64 Hz. Poses come at these intervals, seconds, after the ticks before them. Gives, per tick, how much
-/// later the time that it sees is than the one before it, in ticks, and whether it has moved there.
+/// Runs ticks at 64 Hz with poses at the given intervals, seconds. A pose comes after the ticks before it. Returns for
+/// each tick the step of the seen time, in ticks, and the motion.
 fn run(intervals: impl IntoIterator<Item = f64>) -> Vec<(f64, PoseMotion)> {
+    /// Length of a tick, seconds.
     const TICK: f64 = 1.0 / 64.0;
     let mut clock = PoseClock::default();
     let (mut now, mut next) = (0.0, TICK);
@@ -58,7 +60,7 @@ fn a_long_interval_is_jumped_and_does_not_change_the_lag() {
         intervals[200] = hitch / 1000.0;
         let ticks = run(intervals);
         let jumps = jumps(&ticks[100..]);
-        // As many as there are ticks in the long interval, and the one that comes back.
+        // A jump for each tick in the long interval, and one for the first tick after it.
         let most = hitch / 15.625 + 3.0;
         assert!(
             jumps > 0 && (jumps as f64) < most,
@@ -105,7 +107,7 @@ fn with_regular_poses_the_lag_is_one_interval_or_how_late_they_come() {
                     let (clock, ticks) = regular(rate, every, late, start);
                     let lag = f64::from(every.max(every + late - 1)) / rate;
                     assert!((clock.lag() - lag).abs() < 1e-9, "{case}: {}", clock.lag());
-                    // Nothing is known until the second pose has come.
+                    // The interval is not known until the second pose has come.
                     let first = (every + late + u32::from(late == 0)) as usize;
                     for (tick, motion) in ticks.iter().enumerate() {
                         let moved = *motion == PoseMotion::Moved;

@@ -89,7 +89,7 @@ fn steady_motion_stays_steady_however_seldom_poses_come() {
                     for late in [0, 1, 3] {
                         let found = error(&Rhythm::Every(every, late), rate, size, frame);
                         let case = format!("{rate} Hz, {size}, {frame} m/s, {every}, {late}");
-                        // Of f32: 1e-7 of where the joint is, in a tick.
+                        // The limit of f32: 1e-7 of the joint's position, in a tick.
                         assert!(found.0 < 1e-4 && found.1 == 0, "{case}: {found:?}");
                     }
                 }
@@ -114,6 +114,7 @@ fn poses_of_another_rhythm_than_ticks_move_evenly() {
 
 #[test]
 fn a_missed_pose_places_and_does_not_move_faster() {
+    /// Tick rate, Hz.
     const RATE: f64 = 60.0;
     for missed in 1..4 {
         let mut track = PoseTrack::default();
@@ -136,7 +137,7 @@ fn a_missed_pose_places_and_does_not_move_faster() {
                 placed += 1;
             }
         }
-        // The ticks without a pose, and the one that comes back.
+        // The ticks without a pose, and the tick in which poses come again.
         assert!(
             (3 * missed..3 * missed + 2).contains(&placed),
             "{missed}: {placed}"
@@ -273,7 +274,7 @@ fn bad_input_is_refused_and_changes_nothing() {
         Err(RigError::TimeGoesBack { .. })
     ));
     assert_eq!(track, before);
-    // What was refused has not left a trace in what follows, either.
+    // The rejected calls have no effect on later ticks, either.
     let mut same = before;
     for track in [&mut track, &mut same] {
         track.record(0.9, &good, there).unwrap();

@@ -58,6 +58,7 @@ fn each_triangle_is_in_one_cluster_whose_flags_match_the_diagnostics() {
 /// Diagnostics of ticks with eight equal queries on a number of threads: at the start of each tick, where clusters may
 /// be skinned ahead, and after its queries.
 fn ticks(threads: usize, count: u32) -> Vec<[Diagnostics; 2]> {
+    /// Number of queries in a tick, shared among the threads.
     const QUERIES: usize = 8;
     let mesh = tube(24, 48);
     let mut surface = SkinnedSurface::new(mesh);

@@ -84,7 +84,7 @@ impl<'a> SurfaceEdit<'a> {
     pub fn remove_triangle(&mut self, triangle: TriangleId) -> Result<(), SurfaceError> {
         let part = self.surface.mesh().part_of(triangle);
         let part = part.ok_or(SurfaceError::Triangle(triangle))?;
-        // It no longer counts as hidden.
+        // A removed triangle no longer counts as hidden.
         self.surface.enable_triangle(triangle)?;
         self.mesh_mut().remove_triangle(triangle);
         self.touched.insert(part);

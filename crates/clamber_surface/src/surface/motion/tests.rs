@@ -5,6 +5,7 @@ use crate::surface::SkinnedSurface;
 use crate::surface::deformation::is_collapsed;
 use crate::testing::{bend, rigid, tube};
 
+/// Number of joints of the tube.
 const JOINTS: u32 = 5;
 
 fn surface() -> SkinnedSurface {

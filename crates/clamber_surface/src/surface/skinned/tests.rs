@@ -8,6 +8,7 @@ use crate::surface::agreement::assert_queries_agree;
 use crate::testing::{bend, rigid, tube};
 use glam::{DQuat, DVec3};
 
+/// Number of joints of the tube.
 const JOINTS: u32 = 6;
 
 fn surface() -> SkinnedSurface {

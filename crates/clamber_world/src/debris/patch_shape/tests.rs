@@ -12,8 +12,8 @@ type Manifold = rapier3d::parry::query::ContactManifold<(), ()>;
 struct Sheet {
     side: u32,
     triangles: Vec<[u32; 3]>,
-    /// For each vertex, its place in the grid. Vertices are in the order in which triangles use them: a mesh of parry's
-    /// with normals sorts them so.
+    /// For each vertex, its place in the grid. Vertices are in the order in which triangles use them, because a mesh of
+    /// parry's with normals sorts them in this order.
     places: Vec<u32>,
 }
 
@@ -44,7 +44,7 @@ impl Sheet {
         }
     }
 
-    /// Other positions of its vertices, with other heights each time.
+    /// New positions of the sheet's vertices, with other heights each time.
     fn heave(&self, rng: &mut fastrand::Rng) -> Vec<Vector> {
         let row = self.side + 1;
         let place = |place: &u32| {
@@ -62,7 +62,7 @@ impl Sheet {
     }
 }
 
-/// The same as the mesh of parry's that it replaces.
+/// Parry's mesh that the shape replaces.
 fn mesh(sheet: &Sheet, vertices: &[Vector]) -> TriMesh {
     let flags = TriMeshFlags::FIX_INTERNAL_EDGES_TWO_SIDED;
     let mesh = TriMesh::with_flags(vertices.to_vec(), sheet.triangles.clone(), flags).unwrap();
@@ -70,7 +70,7 @@ fn mesh(sheet: &Sheet, vertices: &[Vector]) -> TriMesh {
     mesh
 }
 
-/// The bits of what contact normals are kept to.
+/// The bits of the directions that contact normals are kept to.
 fn bits(normals: Option<TrianglePseudoNormals>) -> Option<(Vec<u32>, bool)> {
     normals.map(|normals| {
         let all = [normals.face].into_iter().chain(normals.edges);
@@ -113,7 +113,7 @@ fn rays_and_points_find_the_same_triangles_as_in_a_trimesh() {
             vertices = sheet.heave(&mut rng);
             shape.place(vertices.iter().copied());
         }
-        // Without flags, since a mesh with normals takes points behind it for inside.
+        // Without flags, because a mesh with normals counts points behind it as inside.
         let mesh = TriMesh::new(vertices.clone(), sheet.triangles.clone()).unwrap();
         let point = Vector::new(rng.f32(), rng.f32() * 0.5, rng.f32()) * 10.0 - Vector::ONE;
         let toward = Vector::new(rng.f32(), rng.f32(), rng.f32()) - 0.5;
@@ -133,7 +133,7 @@ fn rays_and_points_find_the_same_triangles_as_in_a_trimesh() {
     assert!((300..1700).contains(&hits), "{hits} rays hit");
 }
 
-/// Contacts of a shape with a body at a pose: part, normal, depth; in an order of their own.
+/// Contacts of a shape with a body at a pose: part, normal, depth; sorted.
 fn contacts(
     skin: &dyn Shape,
     body: &dyn Shape,
@@ -158,8 +158,8 @@ fn contacts(
     all
 }
 
-/// A body that stands still for some ticks while the sheet heaves, then is elsewhere: contacts are those that a new
-/// mesh without any memory gives.
+/// A body stands still for some ticks while the sheet heaves, then is elsewhere. A new mesh without any memory gives
+/// the same contacts.
 #[test]
 fn contacts_are_those_of_a_trimesh_that_is_made_anew() {
     let mut rng = fastrand::Rng::with_seed(13);

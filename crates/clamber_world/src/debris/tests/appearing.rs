@@ -19,7 +19,7 @@ use crate::ObstacleId;
 use crate::debris::inner_capsule::InnerCapsule;
 use crate::debris::{Debris, DebrisConfig, DebrisReport};
 
-/// What moves every vertex of a creature.
+/// The influence of each vertex of a creature: its one joint.
 const BONE: Influence = Influence {
     joint: JointId(0),
     weight: 1.0,
@@ -33,12 +33,12 @@ struct Creature {
     half: DVec3,
 }
 
-/// What a creature does in a tick: its place at the end of it.
+/// The motion of a creature in a tick, with its place at the end of the tick.
 #[derive(Clone, Copy, Debug)]
 enum Does {
     Moves(DVec3),
     IsPlaced(DVec3),
-    /// It is not in the list.
+    /// The creature is not in the list.
     IsAway,
 }
 
@@ -188,12 +188,12 @@ impl Stage {
         report
     }
 
-    /// Where a rock is.
+    /// Place of a rock in the frame.
     fn place(&self, rock: RigidBodyHandle) -> DVec3 {
         self.world.bodies[rock].translation().as_dvec3() - self.shift()
     }
 
-    /// How fast a rock is.
+    /// Velocity of a rock in the frame.
     fn velocity(&self, rock: RigidBodyHandle) -> DVec3 {
         self.world.bodies[rock].linvel().as_dvec3() - self.frame
     }
@@ -240,7 +240,7 @@ fn extent(surface: &SkinnedSurface) -> Vec3 {
     corners.fold(Vec3::ZERO, |most, p| most.max(p.abs()))
 }
 
-/// Rocks about as large as a ball of a radius, with the radius of the largest ball inside.
+/// Rocks about as large as a ball of radius `size`, each with the radius of the largest ball inside.
 fn shapes(size: f32) -> Vec<(ColliderBuilder, f64)> {
     let corners = [
         [0.9, 0.3, -0.2],

@@ -6,6 +6,7 @@ use rapier3d::prelude::*;
 use super::scene::{CREATURE, DT, Scene, at, lifted, slab};
 use crate::debris::{Debris, DebrisConfig, DebrisError};
 
+/// Half the size of the creature, metres.
 const HALF: Vec3 = Vec3::new(4.0, 0.5, 4.0);
 
 /// Rocks on a heaving back over some ticks, with rapier's origin at `origin`.
@@ -184,7 +185,7 @@ fn moving_skin_wakes_a_sleeping_rock() {
         scene.tick(&palette, Similarity::IDENTITY);
     }
     assert!(scene.world.bodies[rock].is_sleeping());
-    // Slow enough that rapier would let the rock sleep.
+    // The skin is so slow that rapier would let the rock sleep.
     for tick in 0..600 {
         let x = 0.02 * DT * f64::from(tick);
         scene.tick(&palette, at(DVec3::X * x, DVec3::Y, 0.0));

@@ -1,4 +1,4 @@
-//! What skin encloses, checked against the winding number.
+//! The test for enclosed points, checked against the winding number.
 
 use std::sync::Arc;
 
@@ -13,6 +13,7 @@ use glam::{Vec2, Vec3, Vec3Swizzles};
 use super::scene::slab;
 use crate::debris::enclosed::{is_enclosed, is_within};
 
+/// Half the size of the slab, metres.
 const HALF: Vec3 = Vec3::new(3.0, 1.5, 2.0);
 
 /// Random points in a box of twice the size of a slab.
@@ -77,7 +78,9 @@ fn a_hole_that_covers_little_of_the_view_does_not_matter() {
 
 /// A sheet over a disc of radius 1, lifted by a function of the distance from its middle; its back is below.
 fn disc(lift: impl Fn(f32) -> f32) -> SkinnedSurface {
+    /// Number of rings of vertices around the middle.
     const RINGS: u32 = 16;
+    /// Number of vertices in a ring.
     const SIDES: u32 = 32;
     let mut positions = vec![Vec3::Y * lift(0.0)];
     let mut triangles = Vec::new();
@@ -116,7 +119,7 @@ fn disc(lift: impl Fn(f32) -> f32) -> SkinnedSurface {
 #[test]
 fn open_skin_encloses_nothing_that_is_not_deep_in_it() {
     let mut hits = Vec::new();
-    // Flat, domes, and a half ball, which may enclose what is near its wall.
+    // Flat, domes, and a half ball, which may enclose points near its wall.
     for height in [0.0, 0.2, 0.4, 0.6, 1.0f32] {
         let dome = disc(|radius| height * (1.0 - radius * radius).max(0.0).sqrt());
         for point in points(3).take(4_000) {
@@ -170,7 +173,7 @@ fn a_hollow_below_added_skin_is_enclosed_and_a_mouth_is_not() {
     let (middle, half) = (Vec3::new(0.3, HALF.y + 0.6, -0.2), Vec3::new(1.5, 0.6, 1.2));
     let mut scab = slab(HALF, 0.7, 1);
     add_box(&mut scab, middle, half, true);
-    // A room inside a larger creature.
+    // A closed room inside a larger creature.
     let mut mouth = slab(HALF * 3.0, 2.1, 1);
     add_box(&mut mouth, middle, half, false);
     let (mut hits, mut inside) = (Vec::new(), 0);
@@ -183,7 +186,7 @@ fn a_hollow_below_added_skin_is_enclosed_and_a_mouth_is_not() {
         let [found, within] =
             [is_enclosed, is_within].map(|asks| asks(scab.in_model(), point, &mut hits));
         let wanted = in_box || point.abs().cmplt(HALF).all();
-        // Also what is just above the skin beside the scab is in the open.
+        // Points just above the skin beside the scab are in the open, too.
         assert_eq!((found, within), (wanted, wanted), "scab: {point}");
         let found = is_enclosed(mouth.in_model(), point, &mut hits);
         assert_eq!(found, !in_box, "mouth: {point}");

@@ -8,9 +8,10 @@ use rapier3d::prelude::*;
 
 use super::scene::{DT, Scene, at, lifted, slab};
 
+/// Half the size of a jaw, metres.
 const HALF: Vec3 = Vec3::new(3.0, 0.5, 3.0);
 
-/// Height of the upper jaw above the lower one, at rest.
+/// Height of the upper jaw above the lower one, at rest, metres.
 const OPEN: f32 = 3.0;
 
 /// Two slabs of one creature, one above the other, each on a joint of its own.
@@ -42,7 +43,7 @@ fn jaws() -> SkinnedSurface {
 }
 
 /// Jaws close on a rock, down to a fifth of its width, and stay closed. The creature moves along meanwhile. Skin passes
-/// through the rock until it has fallen out of the creature; it does not stay inside as if nothing were wrong.
+/// through the rock until the rock has fallen out of the creature; the rock does not stay inside unnoticed.
 #[test]
 fn a_rock_on_which_skin_closes_from_both_sides_is_let_through_until_it_is_outside() {
     for (shape, drift) in [

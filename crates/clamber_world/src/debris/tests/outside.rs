@@ -149,6 +149,6 @@ fn a_body_behind_a_large_open_sheet_is_outside_whatever_way_the_sheet_faces() {
             by_three_rays += u32::from(sheet.in_model().is_inside(place));
         }
     }
-    // The case is a hard one.
+    // In many of these cases, a test with three rays would fail.
     assert!(by_three_rays > 100, "{by_three_rays}");
 }

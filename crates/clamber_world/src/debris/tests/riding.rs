@@ -3,6 +3,7 @@ use rapier3d::prelude::*;
 
 use super::scene::{DT, Scene, at, lifted, slab};
 
+/// Half the size of the back, metres.
 const HALF: Vec3 = Vec3::new(6.0, 0.5, 3.0);
 
 /// Time of a tick, seconds.

@@ -10,6 +10,7 @@ use rapier3d::prelude::*;
 use crate::ObstacleId;
 use crate::debris::{Debris, DebrisConfig, DebrisReport};
 
+/// Length of a tick, seconds.
 pub(super) const DT: f64 = 1.0 / 60.0;
 
 /// The one creature of most scenes.

@@ -10,6 +10,7 @@ use super::scene::{DT, lifted, slab};
 use crate::ObstacleId;
 use crate::debris::{Debris, DebrisConfig, DebrisError, DebrisReport};
 
+/// Radius of the rock, metres.
 const RADIUS: f64 = 0.3;
 
 /// One rock with a radius of 0.3 m, and rapier's world.
@@ -132,6 +133,7 @@ fn the_order_of_the_list_changes_no_bit() {
 fn a_creature_that_leaves_the_list_does_not_change_the_state_against_the_others() {
     // A foot stands on a rock and is let through it. In the tick in which the foot leaves the list, an arm reaches
     // the rock.
+    /// Tick in which the foot leaves the list.
     const GONE: i32 = 60;
     for speed in [2.0, 10.0, 20.0, 40.0, 60.0] {
         for listed_first in [false, true] {

@@ -5,7 +5,7 @@ use rapier3d::prelude::*;
 
 use super::scene::{DT, Scene, at, lifted, slab};
 
-/// Half extents of the foot.
+/// Half the size of the foot, metres.
 const HALF: Vec3 = Vec3::new(1.2, 1.0, 1.2);
 
 /// Height of the sole over the ground: it comes down at `speed` metres a second, stands and lifts again.
@@ -29,7 +29,7 @@ fn stamp(shape: &ColliderBuilder, start: Pose, speed: f64, tilt: f64, plate: boo
     }
     let (rock, _) = scene.drop(shape.clone(), Vector::ZERO);
     scene.world.bodies[rock].set_position(start, true);
-    // A rock that a tilted sole squeezes out must not roll away for ever.
+    // A rock that a tilted sole squeezes out must stop rolling.
     scene.world.bodies[rock].set_angular_damping(5.0);
     let kind = shape.shape.shape_type();
     let case = format!("plate {plate}, {kind:?} at {start:?}, {speed} m/s, tilt {tilt}");

@@ -3,7 +3,7 @@ use rapier3d::prelude::*;
 
 use super::scene::{DT, Scene, at, lifted, slab};
 
-/// An arm: 8 m long, 60 cm thick.
+/// Half the size of an arm, metres: the arm is 8 m long and 60 cm thick.
 const ARM: Vec3 = Vec3::new(0.3, 0.5, 4.0);
 
 fn shapes() -> [ColliderBuilder; 4] {

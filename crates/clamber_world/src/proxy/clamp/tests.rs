@@ -6,7 +6,7 @@ use parry3d::shape::{Ball, Capsule, Compound, Cuboid, SharedShape};
 
 use super::*;
 
-/// A climber without a body of its own, which moves.
+/// A moving climber of a size, for a physics engine.
 fn climber(rng: &mut Rng, size: f64) -> ProxyBody {
     let axis = [DVec3::ZERO, DVec3::Y, any(rng, 1.0)][rng.usize(0..3)] * size;
     let first = any(rng, size);
@@ -31,7 +31,7 @@ fn any(rng: &mut Rng, size: f64) -> DVec3 {
     DVec3::from_array(std::array::from_fn(|_| size * (2.0 * rng.f64() - 1.0)))
 }
 
-/// A rotation by as many radians as a vector is long.
+/// A rotation by a vector: the axis times radians.
 fn turned(by: DVec3) -> DQuat {
     let angle = by.length();
     if angle > 0.0 {
@@ -45,7 +45,7 @@ fn turn(rng: &mut Rng) -> DQuat {
     turned(any(rng, 2.0))
 }
 
-/// Shapes that are in the middle of their body or beside it.
+/// Shapes in the middle of their body or beside it.
 fn shapes(rng: &mut Rng, size: f32) -> Vec<(SharedShape, RigidPose)> {
     let side = |rng: &mut Rng| size * (0.05 + rng.f32());
     let cuboid = Cuboid::new(Vec3::new(side(rng), side(rng), side(rng)));
@@ -107,7 +107,7 @@ fn a_stopped_body_is_in_the_layer_around_the_climber_and_not_in_it() {
     for round in 0..20_000 {
         let size = [0.02, 1.0, 100.0][round % 3];
         let climber = climber(&mut rng, size);
-        // Whatever touches it has come by itself, and nothing is ground for it.
+        // Every body that touches the climber has come by itself, and no body is ground for it.
         let climber = ProxyBody {
             frame_velocity: climber.drift,
             up: DVec3::ZERO,
@@ -163,7 +163,7 @@ fn numbers_that_are_not_finite_stop_nothing() {
             stop(&sound, DVec3::ZERO, [&at(x), &to], 0.1),
             stop(&sound, DVec3::ZERO, [&from, &at(x)], 0.1),
         ];
-        // Nothing moves but the body itself.
+        // Only the body itself moves.
         let by_time = stop(&sound, DVec3::ZERO, [&from, &to], x);
         assert!(
             by_time.is_none_or(|pose| pose.translation.is_finite()),

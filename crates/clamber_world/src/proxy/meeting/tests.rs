@@ -29,7 +29,7 @@ fn vector() -> DVec3 {
     DVec3::new(entry(), entry(), entry())
 }
 
-/// A ball that an engine without friction stopped at an immovable climber, in a frame.
+/// A ball that an engine without friction stopped at an immovable climber, in the climber's frame.
 fn stopped(climber: &ProxyBody, normal: DVec3, speed: f64) -> ProxyMeeting {
     let before = climber.drift - normal * speed + vector().reject_from_normalized(normal);
     ProxyMeeting {
@@ -87,7 +87,8 @@ fn the_ground_takes_what_presses_a_climber_into_it() {
         let share = climber.share(&meeting, |impulse| impulse / 20.0).unwrap();
         let impulse = 4.0 / (1.0 / 20.0 + mobility / 80.0);
         assert!((share.climber.unwrap() + normal * impulse).length() < 1e-9);
-        // What is struck by a mountain is struck as by its own fall onto one.
+        // A very heavy body changes the climber's velocity by no more than the approach, like a fall of the climber
+        // onto it.
         let share = climber.share(&meeting, |impulse| impulse / 1e5).unwrap();
         assert!(share.climber.unwrap().length() <= 80.0 * 4.0 + 1e-9);
         let after = meeting.after + share.body / 1e5;
@@ -96,7 +97,7 @@ fn the_ground_takes_what_presses_a_climber_into_it() {
     }
 }
 
-/// Friction is shared as the impact is, so that it makes no momentum.
+/// Friction is shared like the impact, so that it does not change the momentum of both.
 #[test]
 fn friction_keeps_the_momentum_of_both() {
     fastrand::seed(2);
@@ -195,8 +196,8 @@ fn turning(mass: f64) -> impl Fn(DVec3) -> DVec3 {
     move |impulse| impulse / mass + (inverse * arm.cross(impulse)).cross(arm)
 }
 
-/// Bodies that turn, with friction, and climbers on supports: a blow is bounded by the approach, and nobody gains
-/// energy.
+/// For bodies that turn, with friction, and for climbers on supports, the approach bounds a blow, and the impact makes
+/// no energy.
 #[test]
 fn no_blow_is_harder_than_the_approach_and_makes_energy() {
     fastrand::seed(3);
@@ -229,7 +230,7 @@ fn no_blow_is_harder_than_the_approach_and_makes_energy() {
         let Some(share) = climber.share(&meeting, &respond) else {
             panic!("round {round}: {meeting:?}");
         };
-        // All in the climber's frame.
+        // All velocities are in the climber's frame.
         let [before, after] =
             [meeting.before, meeting.after + respond(share.body)].map(|v| v - frame);
         let gains = (engine + share.body).dot(before + after) * 0.5;

@@ -11,7 +11,7 @@ use crate::rapier::BodyPoses;
 use crate::rapier::terrain::pose_of;
 
 impl ClimberProxy {
-    /// Puts each body that entered the climber by its own motion back to where it touched it first.
+    /// Puts each body that entered the climber by its own motion back to where it first touched the climber.
     pub(super) fn clamp(
         &mut self,
         before: &BodyPoses,
@@ -47,7 +47,7 @@ impl ClimberProxy {
     }
 }
 
-/// What a body collides with.
+/// The shapes of a body's solid colliders, with their poses on the body.
 fn solids<'a>(
     body: &'a RigidBody,
     colliders: &'a ColliderSet,

@@ -1,4 +1,4 @@
-//! What collided with the climber in a step, and what a climber of its mass takes of it.
+//! The impacts of bodies on the climber in a step, and the share of each that a climber of its mass takes.
 
 use glam::DVec3;
 use rapier3d::dynamics::{RigidBody, RigidBodyHandle, RigidBodySet};
@@ -10,7 +10,7 @@ use crate::rapier::push::point_response;
 use crate::rapier::terrain::{key_of, pose_of};
 use crate::{MaterialPoint, ProxyImpact, ProxyMeeting};
 
-/// Of bodies and colliders, the index and the generation.
+/// An impact. Bodies and colliders are named by index and generation.
 pub(super) type Impact = ProxyImpact<(u32, u32), (u32, u32)>;
 
 impl ClimberProxy {
@@ -39,7 +39,7 @@ impl ClimberProxy {
         hit.map(|(_, hit)| hit)
     }
 
-    /// The contacts of one collider with the climber; `None` if they do not touch, or it is not of a dynamic body.
+    /// The contacts of one collider with the climber; `None` if they do not touch, or if its body is not dynamic.
     fn contacts_of(
         &self,
         pair: &ContactPair,
@@ -73,13 +73,15 @@ impl ClimberProxy {
             }
             impact.touches()
         };
-        // A body that rapier has pushed out is on its way in the last of rapier's substeps, which has no impulse.
+        // A body that rapier has pushed out already leaves in the last of rapier's substeps, so its contacts there have
+        // no impulse. Then their depths are the weights.
         let touches =
             add(&|impulse, _| impulse.max(0.0)) || add(&|_, distance| (-distance).max(0.0));
         touches.then_some(impact)
     }
 
-    /// Gives back to a body what the climber does not take, and adds what it takes to the hit.
+    /// Shares an impact: gives back to the body the impulse that the climber does not take, and adds the climber's
+    /// impulse to the hit.
     fn weigh(
         &self,
         impact: &Impact,
@@ -150,8 +152,8 @@ impl ClimberProxy {
     }
 }
 
-/// Acceleration of a body by gravity and the forces of its game in rapier's last step, metres per square second. Rapier
-/// tells where it would be in a second with them and without.
+/// Acceleration of a body by gravity and the forces of its game in rapier's last step, metres per square second: the
+/// difference between rapier's predictions of its place in a second with forces and without.
 fn acceleration(body: &RigidBody) -> DVec3 {
     let center = body.mass_properties().local_mprops.local_com;
     let forced = body.predict_position_using_velocity_and_forces(1.0) * center;

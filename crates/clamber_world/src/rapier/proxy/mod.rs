@@ -1,11 +1,12 @@
 //! A climber as a kinematic body of a rapier world.
 //!
-//! Rapier's solver knows kinematic bodies of infinite mass only. So it stops whatever meets the proxy, and afterwards
-//! [`ClimberProxy::after_step`] gives back what a climber of its mass would not have taken, by [`ProxyBody::share`].
+//! Rapier's solver treats kinematic bodies as infinitely heavy. So it stops every body that meets the proxy, and
+//! afterwards [`ClimberProxy::after_step`] gives back the impulse that a climber of its mass would not have taken, by
+//! [`ProxyBody::share`].
 //!
-//! A body that is fast enough to enter the climber between two of rapier's detections is put back to where it first
-//! touched it, along its own path, and collides with the next step. It is the motion clamping of continuous collision
-//! detection, in the climber's frame.
+//! A body that is fast enough to enter the climber between two of rapier's detections is put back along its own path to
+//! where it first touched the climber, and collides in the next step. This is the motion clamping of continuous
+//! collision detection, in the climber's frame.
 
 mod clamp;
 mod impact;
@@ -24,8 +25,9 @@ use rapier3d::pipeline::{ActiveHooks, PhysicsWorld};
 use super::{BodyPoses, RapierTerrain};
 use crate::{MaterialPoint, ProxyBody, ProxyTouch};
 
-/// Rapier takes the contacts of two bodies that hardly moved from the last step, and does not see then that a joint
-/// disables them since. It does so for no collider that has hooks. This hook is for sensors, which a proxy is not.
+/// Hooks that make rapier compute the proxy's contacts in every step. For colliders without hooks, rapier reuses the
+/// contacts of two bodies that hardly moved, and does not see that a joint has disabled them since. This hook is only
+/// called for sensors, and a proxy is no sensor.
 const FRESH: ActiveHooks = ActiveHooks::FILTER_INTERSECTION_PAIR;
 
 /// A climber's kinematic body in a rapier world: dynamic bodies collide with it, rest on it and strike it.
@@ -73,16 +75,16 @@ const FRESH: ActiveHooks = ActiveHooks::FILTER_INTERSECTION_PAIR;
 /// assert!((impulse / 20.0 - 5.0).abs() < 0.2, "{impulse}");
 /// ```
 ///
-/// The proxy does not collide with the body that carries the climber, nor with what the climber walks into: to these it
-/// gives its weight and its pushes. Such pairs are joined by a joint that locks nothing and disables contacts. Static
-/// and kinematic bodies do not collide with it either, since rapier lets kinematic bodies collide with dynamic ones
-/// only.
+/// The proxy does not collide with the body that carries the climber, nor with bodies that the climber walks into: the
+/// climber itself gives them its weight and its pushes. Such pairs are joined by a joint that locks no axis and
+/// disables contacts. Static and kinematic bodies do not collide with the proxy either, because in rapier kinematic
+/// bodies collide with dynamic ones only.
 ///
-/// Everything is in the world and in this value: save both between two ticks, with the climber's state, and they go on
-/// with the same bits. [`DebrisSnapshot`](crate::DebrisSnapshot) saves a world.
+/// All state is in the world and in this value. If you save both between two ticks, with the climber's state, and
+/// restore them, they go on with the same bits. [`DebrisSnapshot`](crate::DebrisSnapshot) saves a world.
 ///
-/// Without it in the filter, the climber would touch its own proxy. Leave the proxies of all climbers out, since these
-/// see each other as obstacles of their own.
+/// Without a filter, the climber would touch its own proxy. Leave the proxies of all climbers out, because climbers see
+/// each other as obstacles of their own.
 #[derive(Clone, Debug)]
 pub struct ClimberProxy {
     handle: RigidBodyHandle,
@@ -91,7 +93,7 @@ pub struct ClimberProxy {
     origin: DVec3,
     /// The climber as it was followed last.
     body: ProxyBody,
-    /// Bodies with which it does not collide, ascending, and the joints that say so.
+    /// Bodies that the proxy does not collide with, ascending, and the joints that disable their contacts.
     apart: Vec<(RigidBodyHandle, ImpulseJointHandle)>,
     /// Reused by [`ClimberProxy::follow`].
     wanted: Vec<RigidBodyHandle>,
@@ -100,15 +102,15 @@ pub struct ClimberProxy {
     clamped: Vec<(RigidBodyHandle, Pose)>,
 }
 
-/// What struck a climber in a step of rapier.
+/// The impact on a climber in a step of rapier.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ProxyHit {
     /// The impulse that the climber gets, newton seconds, in world space; the sum, if several bodies struck it.
     pub impulse: DVec3,
-    /// The point of rapier's world that struck it hardest.
+    /// The point of rapier's world that struck the climber hardest.
     pub material: MaterialPoint,
-    /// Where that was, in world space.
+    /// Position of that point, in world space.
     pub point: DVec3,
 }
 
@@ -143,32 +145,32 @@ impl ClimberProxy {
         }
     }
 
-    /// Removes the body, its collider and its joints. Of a world whose sets are kept apart, remove
-    /// [`body`](Self::body) instead.
+    /// Removes the body, its collider and its joints. If your world keeps rapier's sets separately, remove
+    /// [`body`](Self::body) from them instead.
     pub fn remove(self, world: &mut PhysicsWorld) {
         world.remove_body(self.handle);
     }
 
-    /// Its collider, to be left out of the climber's own queries by [`RapierTerrain::with_filter`]. Its friction,
-    /// restitution and collision groups may be changed.
+    /// The proxy's collider. Leave it out of the climber's own queries with [`RapierTerrain::with_filter`]. Its
+    /// friction, restitution and collision groups may be changed.
     pub fn collider(&self) -> ColliderHandle {
         self.collider
     }
 
-    /// Its rigid body.
+    /// The proxy's rigid body.
     pub fn body(&self) -> RigidBodyHandle {
         self.handle
     }
 
-    /// Sets the world position of rapier's origin, where the game moves it.
+    /// Sets the world position of rapier's origin, for a game that moves it.
     pub fn set_origin(&mut self, origin: DVec3) {
         self.origin = origin;
     }
 
-    /// Follows the climber: call it after the climber's step, and before the next step of rapier. `touched` is what the
-    /// climber touches in this world (`Climber::proxy_touches`).
+    /// Follows the climber: call it after the climber's step, and before the next step of rapier. `touched` has the
+    /// climber's contacts in this world (`Climber::proxy_touches`).
     ///
-    /// A body whose numbers are not finite changes nothing. Nor does a proxy that was removed from the world.
+    /// Does nothing if a number of the body is not finite, or if the proxy was removed from the world.
     pub fn follow(
         &mut self,
         body: &ProxyBody,
@@ -248,9 +250,9 @@ impl ClimberProxy {
             .sort_unstable_by_key(|(handle, _)| handle.into_raw_parts());
     }
 
-    /// After a step of rapier: weighs what collided with the climber by its mass, gives back to each body what the
-    /// climber does not take, and puts bodies that entered the climber back to where they touched it first. Returns
-    /// what struck the climber, for `Climber::blow_of`; `None` if nothing did.
+    /// Shares the impacts of rapier's last step by mass: gives back to each body the impulse that the climber does not
+    /// take, and puts bodies that entered the climber back to where they first touched it. Returns the impact on the
+    /// climber, for `Climber::blow_of`; `None` if no body struck it.
     ///
     /// `before` holds the bodies as they were recorded right before the step. `dt` is the length of the tick, seconds.
     pub fn after_step(
@@ -271,12 +273,12 @@ impl ClimberProxy {
     }
 }
 
-/// From one end of the capsule to the other, in rapier's numbers.
+/// Vector from one end of the capsule to the other, in rapier's numbers.
 fn axis(body: &ProxyBody) -> Vector {
     (body.capsule.ends[1] - body.capsule.ends[0]).as_vec3()
 }
 
-/// The shape that bodies touch, from the capsule's first end: the climber's body with a layer around it.
+/// The shape that bodies touch, relative to the capsule's first end: the climber's body with a layer around it.
 fn shape(body: &ProxyBody) -> SharedShape {
     let radius = (body.capsule.radius + body.margin) as f32;
     let axis = axis(body);
@@ -293,7 +295,7 @@ fn velocity_at(body: &RigidBody, point: DVec3) -> DVec3 {
     body.linvel().as_dvec3() + body.angvel().as_dvec3().cross(arm)
 }
 
-/// True for a collider that bodies collide with.
+/// True for a collider that bodies collide with: it is enabled and not a sensor.
 fn is_solid(collider: &Collider) -> bool {
     collider.is_enabled() && !collider.is_sensor()
 }

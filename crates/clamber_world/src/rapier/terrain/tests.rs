@@ -121,6 +121,7 @@ fn a_shape_that_is_its_own_part_has_no_parts() {
     );
 }
 
+/// Bounds of [`SelfPart`].
 const BOX: Aabb = Aabb {
     mins: Vector::NEG_ONE,
     maxs: Vector::ONE,
@@ -420,8 +421,8 @@ fn bad_input_and_removed_colliders_find_nothing() {
 mod agreement;
 mod capsules;
 
-/// Bodies that move across the way of a ball: one of them, and more than are looked at without a tree. The first
-/// contact among all is the first of those with each alone, at whatever place in the list its body is.
+/// Bodies that move across the path of a ball: at most [`FEW`] of them, or more, so that a tree is built. The first
+/// contact among all is the earliest of the contacts with each body alone, wherever in the list that body is.
 #[test]
 fn among_many_moving_bodies_the_first_contact_is_that_with_one_of_them_alone() {
     let mut rng = fastrand::Rng::with_seed(31);

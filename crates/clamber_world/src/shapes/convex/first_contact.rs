@@ -26,10 +26,10 @@ const FARTHEST_AHEAD: f64 = 0.875;
 /// Largest rounding error of a gap, as a fraction of the lengths involved.
 const LOST: f64 = 1.0 / (1u64 << 46) as f64;
 
-/// For solids that turn: how often the interval is shortened in search of a better line.
+/// For solids that turn: how often the interval is shortened in search of a line that reaches farther.
 const HALVINGS: u32 = 5;
 
-/// A time that is never reached.
+/// Stands for a time after the end of the tick.
 const NEVER: f64 = 2.0;
 
 /// The first contact of a moving capsule with a solid.

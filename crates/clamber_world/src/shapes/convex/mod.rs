@@ -1,4 +1,4 @@
-//! Solid convex shapes in f64: a core of which only support points are known, and a radius by which it is rounded.
+//! Solid convex shapes in f64: a core that is known only by its support points, and a radius by which it is rounded.
 
 mod first_contact;
 mod moving_convex;

@@ -29,7 +29,7 @@ pub(in crate::shapes) struct ClosestPoints {
 
 impl Convex<'_> {
     /// The nearest points of a core and a segment in its local space, if the core is a cuboid, the segment is beyond
-    /// one of its faces, and the nearest point is on that face. `None` says nothing.
+    /// one of its faces, and the nearest point is on that face. `None` does not mean that they meet.
     ///
     /// No point of the core is nearer than the plane of a face that the whole segment is beyond. So if the end that is
     /// nearest to the plane lies above the face, its foot is the nearest point.
@@ -58,7 +58,7 @@ impl Convex<'_> {
         if other < height {
             order.swap(0, 1);
         }
-        // If both ends are as near, either will do.
+        // If both ends are equally near, either of them may be the nearest.
         let foot = |end: DVec3| {
             let inside = end.abs().cmple(*half) | axis.cmpne(DVec3::ZERO);
             inside
@@ -75,8 +75,8 @@ impl Convex<'_> {
 }
 
 impl MovingConvex<'_> {
-    /// A segment in the solid's local space at a time, and the solid's rotation then. `None` where the solid has no
-    /// rotation: a turning one between the ends of the tick, since its points move in straight lines.
+    /// A segment in the solid's local space at a time, and the solid's rotation then. `None` for a turning solid
+    /// between the ends of the tick: it has no rotation there, because its points move in straight lines.
     fn in_local_space(&self, time: f64, ends: [DVec3; 2]) -> Option<([DVec3; 2], DQuat)> {
         match &self.before {
             None => Some((ends, DQuat::IDENTITY)),
@@ -92,8 +92,8 @@ impl MovingConvex<'_> {
         }
     }
 
-    /// The nearest points at a time; `None` if core and segment meet. `guess` is the direction from core to segment to
-    /// begin with, of any length; zero if there is none.
+    /// The nearest points at a time; `None` if core and segment meet. `guess` is the first direction from core to
+    /// segment to try, of any length; zero without a guess.
     pub(in crate::shapes) fn nearest(
         &self,
         time: f64,
@@ -139,8 +139,8 @@ impl MovingConvex<'_> {
             if length_sq - kept <= length_sq * GAIN || simplex.has(&next) {
                 break;
             }
-            // A plane separates the two, so they do not meet, whatever rounding makes of four corners that are nearly
-            // flat.
+            // A plane separates the two, so they do not meet, even if rounding puts the origin inside four corners that
+            // are nearly flat.
             let wider = simplex.with(next, gap > 0.0)?;
             let nearest = wider.nearest();
             // Rounding allows no further progress.

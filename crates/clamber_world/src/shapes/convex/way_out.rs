@@ -11,17 +11,18 @@ use glam::DVec3;
 use super::{Convex, Core, MovingConvex};
 use crate::shapes::ShapeContact;
 
-/// Directions tried around the segment if the core has rims.
+/// Number of directions tried around the segment if the core has rims.
 const AROUND: u32 = 48;
 
-/// How often the step between them is halved around the best one.
+/// How often the step between these directions is halved around the best one.
 const HALVINGS: u32 = 30;
 
-/// First step, in radians, and number of rounds to refine the best direction on a rim. The step is about that between
-/// the directions tried. Each round takes a step or halves it.
+/// First step, in radians, and number of rounds to refine the best direction on a rim. The step is about the angle
+/// between the directions tried. Each round takes a step or halves it.
 const OF_RIMS: (f64, u32) = (0.13, 96);
 
-/// The same for polyhedra, where parry merges faces whose normals are up to 1.4 degrees apart.
+/// First step, in radians, and number of rounds for polyhedra, where parry merges faces whose normals are up to 1.4
+/// degrees apart.
 const OF_FACES: (f64, u32) = (0.025, 32);
 
 struct Search<'a> {

@@ -1,9 +1,10 @@
 //! Jolt's `CharacterVirtual`, moved as in Jolt's own sample (`Samples/Tests/Character/CharacterVirtualTest.cpp`).
 //!
-//! In a tick `MoveKinematic` tells the bodies their next poses, and the ground's velocity is updated. The character
-//! gets that velocity, its walk and the fall of a tick. `ExtendedUpdate` moves it, sticks it to the floor and takes it
-//! up steps. Then the world steps. "Character inertia", an option of the sample, is off: feet stick to the ground, as
-//! for the other controllers. The sample's listener keeps a character that does not walk from sliding on still ground.
+//! In a tick, `MoveKinematic` sets the bodies' next poses, and the ground's velocity is updated. The character's
+//! velocity is the ground's velocity plus its walk and the fall of a tick. `ExtendedUpdate` moves the character, sticks
+//! it to the floor and moves it up steps. Then the world steps. "Character inertia", an option of the sample, is off:
+//! feet stick to the ground, as with the other controllers. The sample's listener keeps a character that does not walk
+//! from sliding on still ground.
 //!
 //! The crate `oxijolt-sys` builds Jolt and joltc, a wrapper in C, from their sources, in single precision.
 
@@ -18,6 +19,7 @@ use glam::{DVec3, Vec3};
 use self::world::{Start, World};
 use super::Entry;
 
+/// Jolt's controller.
 pub(super) const ENTRIES: [Entry; 1] = [Entry {
     name: "Jolt 5.6",
     is_ours: false,

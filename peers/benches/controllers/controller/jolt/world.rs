@@ -12,12 +12,15 @@ use clamber_surface::geometry::Similarity;
 use glam::Vec3;
 use oxijolt_sys::*;
 
-/// How far Jolt looks ahead of the shape, metres. The default of 0.1 lets walls of more than 6 m/s in; 0.5 is the
-/// distance that a wall of 30 m/s moves in a tick.
+/// Distance that Jolt looks ahead of the shape, metres. With the default of 0.1, walls faster than 6 m/s enter the
+/// character; 0.5 is the distance that a wall of 30 m/s moves in a tick.
 const PREDICTIVE: f32 = 0.5;
 
+/// Layer of static bodies.
 const STILL: JPH_ObjectLayer = 0;
+/// Layer of kinematic bodies and the character.
 const MOVING: JPH_ObjectLayer = 1;
+/// Number of layers.
 const LAYERS: u32 = 2;
 
 /// Start and properties of a character.
@@ -34,7 +37,7 @@ pub(super) struct World {
     jobs: *mut JPH_JobSystem,
     character: *mut JPH_CharacterVirtual,
     listener: *mut JPH_CharacterContactListener,
-    /// True if the character may slide. The listener, which lives as long, reads it while the character is updated.
+    /// True if the character may slide. The listener reads it while the character is updated, and both live until drop.
     may_slide: *mut bool,
     moving: Vec<Mover>,
 }
@@ -176,13 +179,13 @@ impl World {
         Err(format!("Jolt's step failed: {error}").into())
     }
 
-    /// Updates the ground's velocity, which has changed.
+    /// Updates the ground's velocity, which `drive` has changed.
     pub(super) fn look_at_ground(&mut self) {
         // SAFETY: the character lives until drop.
         unsafe { JPH_CharacterVirtual_UpdateGroundVelocity(self.character) };
     }
 
-    /// Moves the character, sticks it to the floor, and takes it up steps. If it may not slide, it stays in place on
+    /// Moves the character, sticks it to the floor, and moves it up steps. If it may not slide, it stays in place on
     /// still ground.
     pub(super) fn update(&mut self, velocity: Vec3, may_slide: bool, dt: f32) {
         let velocity = vector(velocity);
@@ -253,7 +256,7 @@ impl World {
 
 impl Drop for World {
     fn drop(&mut self) {
-        // SAFETY: each is destroyed once, and before those that it uses.
+        // SAFETY: each object is destroyed once, and before the objects that it uses.
         unsafe {
             if !self.character.is_null() {
                 JPH_CharacterBase_Destroy(self.character.cast());
@@ -268,8 +271,8 @@ impl Drop for World {
     }
 }
 
-/// As in Jolt's tests and samples: a character that does not want to move does not slide on ground that is still and
-/// not too steep.
+/// Keeps a character that does not walk from sliding on ground that is still and not too steep, as in Jolt's tests and
+/// samples.
 ///
 /// # Safety
 /// Called by Jolt during an update, with the `may_slide` that the listener was made with.
@@ -295,11 +298,11 @@ unsafe extern "C" fn stay(
     }
 }
 
-/// A physics system in which moving bodies collide with everything.
+/// A physics system in which moving bodies collide with all bodies.
 fn system(gravity: f32) -> Result<*mut JPH_PhysicsSystem, Box<dyn Error>> {
     let gravity = vector(Vec3::Y * -gravity);
-    // SAFETY: each table has the given number of layers, lives when the next is made from it, and is passed to the
-    // system, which destroys it.
+    // SAFETY: each table has the given number of layers, is alive when the next one is made from it, and is passed to
+    // the system, which destroys it.
     let system = unsafe {
         let pairs = JPH_ObjectLayerPairFilterTable_Create(LAYERS);
         JPH_ObjectLayerPairFilterTable_EnableCollision(pairs, STILL, MOVING);
@@ -420,7 +423,7 @@ fn shape(solid: &Solid) -> Result<(*mut JPH_Shape, glam::DVec3), Box<dyn Error>>
     Ok((shape, middle))
 }
 
-/// Sets any mass: a mesh has none of its own, and a kinematic body needs one.
+/// Sets a mass, of any value: a mesh has no mass of its own, and a kinematic body needs one.
 ///
 /// # Safety
 /// The settings live.
@@ -450,6 +453,7 @@ unsafe fn give_mass(settings: *mut JPH_BodyCreationSettings) {
     }
 }
 
+/// The identity rotation.
 const NO_ROTATION: JPH_Quat = JPH_Quat {
     x: 0.0,
     y: 0.0,

@@ -64,7 +64,7 @@ impl<L: Lanes, const N: usize, const P: usize> Path<L, N, P> {
                 }
                 let h0 = core_start - along[0];
                 let h1 = core_end - along[P - 1];
-                // Where the line `h0 (1 - t) + h1 t` passes through 0, if it does.
+                // The time at which the line `h0 (1 - t) + h1 t` passes through 0, if it does.
                 let root = h0 / (h0 - h1);
                 let (low_first, low_last) = (h0.less(zero), h1.less(zero));
                 let begin = L::select(low_last, never, root * zero.splat(ROUNDED_UP));

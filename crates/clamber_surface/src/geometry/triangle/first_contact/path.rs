@@ -17,7 +17,7 @@ pub(super) struct Path<L, const N: usize, const P: usize> {
 /// The result of each lane so far.
 #[derive(Clone, Copy)]
 pub(super) struct Found<L> {
-    /// One of [`MISS`], [`CONTACT`] and [`UNDECIDED`]; [`GOING`] until one of them is known.
+    /// [`MISS`], [`CONTACT`] or [`UNDECIDED`]; [`GOING`] as long as none of these is known.
     pub(super) verdict: L,
     /// There is no contact before this time.
     pub(super) time: L,
@@ -150,9 +150,9 @@ impl<L: Lanes, const N: usize, const P: usize> Path<L, N, P> {
         L::select(misses, miss, verdict)
     }
 
-    /// Goes on from `found.time` with a direction from a later time: that of the probe time, shortly before the gap
-    /// would close at the rate of the last step. If that fails, tries a direction that turns from that of `nearest`, at
-    /// the beginning of this step, to that of the probe time.
+    /// Moves `found.time` on with the direction at a later time, the probe time: shortly before the gap would close at
+    /// the rate of the last step. If that fails, tries a direction that turns from the direction of `nearest`, at the
+    /// beginning of this step, to the direction at the probe time.
     #[cfg_attr(not(unoptimized), inline(always))]
     fn look_ahead(
         &self,

@@ -8,8 +8,8 @@ use clamber_oracle::exact::{
 use super::cases::{moved, query, segment, triangle};
 use super::*;
 
-/// Largest allowed error of a distance, as a share of the lengths involved. Of 600,000 cases all but 20 stay below
-/// 5e-15, and slivers reach 1e-12; a result that is wrong by more than rounding shows 1e-10.
+/// Largest allowed error of a distance, as a share of the lengths involved. In 600,000 cases all errors but 20 stay
+/// below 5e-15, and slivers reach 1e-12; a result that is wrong by more than rounding shows 1e-10.
 const TOLERANCE: f64 = 5e-12;
 
 /// The point with the weights found; asserts that they are the weights of a point of the triangle.
@@ -99,7 +99,7 @@ fn segments(cases: u32) -> [f64; 2] {
         let found = closest_to_segment(corners, p, q);
         let (wide, [from, to]) = (corners.map(exact), [p, q].map(exact));
         let truth = length_sq(&between_triangle_and_segment(&wide, [&from, &to]));
-        // The distance from a segment is that from a collapsed triangle.
+        // A segment is a collapsed triangle: both have the same distance.
         let point = point_of(&wide, &found);
         let at = length_sq(&from_triangle(&point, &[from.clone(), to.clone(), to]));
         let size = longest_edge(corners) + (widen(q) - widen(p)).length();

@@ -4,7 +4,10 @@ use core::f32::consts::PI;
 
 use super::*;
 
+/// Number of columns of the sphere, around Y.
 const COLUMNS: usize = 200;
+
+/// Number of rows of the sphere, from pole to pole.
 const ROWS: usize = 100;
 
 /// A closed mesh by index, and the triangles at each vertex.
@@ -52,7 +55,7 @@ fn sphere(bumps: f32, centre: Vec3) -> Mesh {
     }
 }
 
-/// How many of `rays` rays, aimed at points of edges or at vertices, meet no triangle around their target.
+/// The number of rays that meet no triangle around their target, out of `rays` rays at points of edges or at vertices.
 fn leaks(mesh: &Mesh, centre: Vec3, rays: u32, at_vertices: bool) -> u32 {
     let mut rng = fastrand::Rng::with_seed(60);
     let mut leaks = 0;

@@ -18,6 +18,7 @@ fn cast(corners: [Vec3; 3], center: Vec3, motion: Vec3, radius: f32) -> Option<C
     first_contact([corners, corners], &core, 1.0).0
 }
 
+/// A large triangle in the plane Y = 0, around the origin.
 const FLOOR: [Vec3; 3] = [
     Vec3::new(-5.0, 0.0, -5.0),
     Vec3::new(-5.0, 0.0, 10.0),
@@ -247,5 +248,5 @@ fn a_turn_of_a_lever_a_thousand_times_as_long_takes_few_steps() {
     assert!(contact.is_some_and(|c| !c.undecided), "{contact:?}");
 }
 
-/// Number of steps that counts as few.
+/// Largest number of steps that counts as few.
 const FEW: u32 = 32;

@@ -1,4 +1,4 @@
-//! Thousands of edits in motion: the results are those of brute force, and those of a mesh clustered from scratch.
+//! Thousands of edits in motion: the results equal brute force, and a mesh clustered from scratch.
 
 use std::sync::Arc;
 

@@ -13,6 +13,7 @@ use crate::surface::{Diagnostics, SkinnedSurface};
 use crate::testing::{ball, bend, tube};
 use glam::{DVec3, Vec3};
 
+/// The part that the tests edit.
 const PART: PartId = PartId(3);
 
 /// All data of a cluster: its entry, and everything that it points to.

@@ -64,7 +64,7 @@ pub(super) fn assert_sound(mesh: &ColliderMesh, case: &str) {
     assert_eq!(clusters.loose, loose, "{case}");
 }
 
-/// Asserts that the positions that both poses have cached, or compute now, are those of plain skinning and within the
+/// Asserts that the positions that both poses have cached, or compute now, equal plain skinning and lie within the
 /// bounds above them.
 pub(super) fn assert_poses_hold(surface: &SkinnedSurface, case: &str) {
     let mesh = surface.mesh();

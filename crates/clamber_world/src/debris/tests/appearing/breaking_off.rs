@@ -42,7 +42,7 @@ fn a_rock_of_which_something_shows_comes_out_and_lies_on_the_skin() {
                         "{case}: at {place} in tick {tick}"
                     );
                     if depth > 0.5 {
-                        // A body that the skin reaches less far into is put back in front of it at once.
+                        // A body that the skin reaches less deep into is put back in front of the skin at once.
                         let risen = (place.y - last.y) / stage.dt;
                         assert!(
                             risen < radius / 0.2 * 1.2 + 1.0,
@@ -85,7 +85,7 @@ fn a_rock_of_which_nothing_shows_falls_through_the_creature() {
                 let report = stage.tick(&case, &[Does::Moves(DVec3::ZERO)]);
                 assert_eq!((report.enclosed, report.caught), (1, 1), "{case}");
                 assert!(stage.debris.is_let_through(rock), "{case}");
-                // It falls freely: through the creature, and then as far again.
+                // The rock falls freely: through the creature, and then as far again.
                 let seconds = (2.0 * 16.0 * f64::from(size) / 9.81).sqrt();
                 for _ in 0..(seconds / stage.dt) as u32 {
                     let report = stage.tick(&case, &[Does::Moves(DVec3::ZERO)]);
@@ -112,7 +112,7 @@ fn a_rock_comes_out_of_the_side_that_is_nearest() {
             for _ in 0..rate {
                 stage.tick(&case, &[Does::Moves(DVec3::ZERO)]);
             }
-            // It has fallen beside or below the creature.
+            // The rock has fallen beside or below the creature.
             let place = stage.place(rock);
             let ahead = place.dot(way);
             assert!(
@@ -140,7 +140,7 @@ fn a_rock_with_a_velocity_of_its_own_keeps_it() {
             stage.tick(&case, &[Does::Moves(DVec3::ZERO)]);
             highest = highest.max(stage.place(rock).y - top);
         }
-        // As high as a throw takes it: v^2 / 2 g, less what it lay deep.
+        // As high as a throw takes it: v^2 / 2 g, less its depth at the start.
         assert!(
             highest > 1.4 && highest < 1.7,
             "{case}: {highest} m over the skin"

@@ -21,6 +21,7 @@ enum Change {
     RemovedWithVertices,
 }
 
+/// All ways in which skin changes.
 const CHANGES: [Change; 4] = [
     Change::Triangles,
     Change::Part,
@@ -110,7 +111,7 @@ fn skin_that_comes_back_leaves_no_rock_below_it() {
                 let top = Top::of(&stage.creatures[0].surface);
                 top.take(change, &mut stage.creatures[0].surface);
                 let rock = stage.rock(&shape, DVec3::new(0.3 * unit, middle, 0.2 * unit));
-                // What is not enclosed may be there.
+                // A rock that is not enclosed may be inside the creature.
                 let rocks = std::mem::take(&mut stage.rocks);
                 for _ in 0..rate / 4 {
                     assert_eq!(stage.tick(&case, &calm).enclosed, 0, "{case}");
@@ -118,7 +119,7 @@ fn skin_that_comes_back_leaves_no_rock_below_it() {
                 assert!(!stage.debris.is_let_through(rock), "{case}");
                 stage.rocks = rocks;
                 let before = stage.place(rock);
-                // Before the creature is posed, or after.
+                // The skin comes back before the creature is posed, or after.
                 if late {
                     stage.start_tick(&calm);
                     top.bring(change, &mut stage.creatures[0].surface);
@@ -202,7 +203,7 @@ fn a_rock_whose_way_out_is_edited_away_is_let_through() {
         assert_eq!(stage.tick(&case, &calm).put_out, 1, "{case}");
         let top = Top::of(&stage.creatures[0].surface);
         top.take(Change::Removed, &mut stage.creatures[0].surface);
-        // The open box does not enclose what is near its rim.
+        // The open box does not enclose a rock near its rim.
         let rocks = std::mem::take(&mut stage.rocks);
         stage.tick(&case, &calm);
         assert!(!stage.debris.is_put_out(rock), "{case}");
@@ -210,7 +211,7 @@ fn a_rock_whose_way_out_is_edited_away_is_let_through() {
             stage.tick(&case, &calm);
         }
         stage.rocks = rocks;
-        // It has fallen farther in.
+        // The rock has fallen farther in.
         let depth = half.y - stage.place(rock).y;
         assert!(depth > 1.2 * radius, "{case}: {depth} m deep");
         top.bring(Change::Removed, &mut stage.creatures[0].surface);

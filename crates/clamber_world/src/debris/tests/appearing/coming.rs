@@ -30,10 +30,11 @@ enum Way {
     Placed,
     /// Placed, and then advanced, before debris sees it.
     PlacedAndMoved,
-    /// It is new.
+    /// The creature is new.
     Spawned,
 }
 
+/// All ways in which a creature comes.
 const WAYS: [Way; 3] = [Way::Placed, Way::PlacedAndMoved, Way::Spawned];
 
 #[test]
@@ -81,7 +82,7 @@ fn rocks_on_the_ground_are_let_through_by_a_creature_that_appears_there_and_walk
                     assert_eq!((report.enclosed, report.caught), (0, 9), "{case}");
                     control.tick(&case, &[Does::IsAway]);
                 }
-                // It walks on, 30 sizes a second.
+                // The creature walks on, 30 sizes a second.
                 for tick in 0..2 * rate {
                     let along = 30.0 * unit * stage.dt * f64::from(tick);
                     stage.tick(&case, &[Does::Moves(here + DVec3::X * along)]);
@@ -110,7 +111,7 @@ fn rocks_under_the_back_of_a_creature_that_appears_come_out_on_it() {
             stage.creature(1, DVec3::new(5.0, 1.0, 5.0), 1.0);
             let [lower, far, here] = [0.0, 50.0, -1.0].map(|y| DVec3::Y * y);
             stage.pose(&[Does::IsPlaced(far), Does::IsPlaced(lower)]);
-            // They rest on one creature. The other appears around it, 20 cm higher.
+            // The rocks rest on one creature. The other appears around it, 20 cm higher.
             let shapes = shapes(0.25);
             let rocks: Vec<_> = (0..8)
                 .map(|number| {
@@ -251,7 +252,7 @@ fn a_rock_that_sleeps_on_a_creature_falls_when_the_creature_is_placed_around_it(
 fn a_large_rock_and_a_small_creature_come_apart() {
     for way in WAYS {
         for rate in [30, 60, 240] {
-            // In the tick in which skin is placed, it stands still for what it touches.
+            // In the tick in which skin is placed, it counts as standing still for bodies that it touches.
             let frame = DVec3::X
                 * if way == Way::PlacedAndMoved {
                     30.0

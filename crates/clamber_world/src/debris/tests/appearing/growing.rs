@@ -50,7 +50,7 @@ fn skin_that_is_added_over_a_rock_on_a_creature_does_not_keep_it() {
     for below in [Below::IsRemoved, Below::Stays] {
         for size in [0.02f32, 0.3, 5.0, 100.0] {
             for shape in 0..4 {
-                // Radii of the rock that are below the new skin, some of which show.
+                // Depths of the rock below the new skin, in radii. With the first two, a part of the rock shows.
                 for deep in [0.5, 0.9, 1.5, 3.0] {
                     let (rate, frame, scale) = settings.next().unwrap();
                     let case = format!(
@@ -79,7 +79,7 @@ fn skin_that_is_added_over_a_rock_on_a_creature_does_not_keep_it() {
                     let mut report = stage.tick(&case, &calm);
                     assert_eq!(report.enclosed, 1, "{case}");
                     assert_eq!(report.put_out, u32::from(deep < 1.0), "{case}");
-                    // As far as it falls through all of the creature.
+                    // As long as a fall through the whole creature takes.
                     let seconds = (2.0 * 20.0 * unit / 9.81).sqrt().max(1.0);
                     for tick in 0..(seconds / stage.dt) as u32 {
                         let within = stage.place(rock) - DVec3::Y * high * 0.5;
@@ -126,7 +126,7 @@ fn a_rock_in_a_closed_hollow_is_let_through_for_as_long_as_it_is_there() {
             stage.tick(&case, &[Does::Moves(DVec3::ZERO)]);
             assert!(stage.debris.is_let_through(rock), "{case}");
         }
-        // The hollow leaves it.
+        // The hollow moves away from the rock.
         for tick in 0..rate {
             let along = DVec3::X * (9.0 * stage.dt * f64::from(tick));
             stage.tick(&case, &[Does::Moves(along)]);
@@ -166,7 +166,8 @@ fn skin_that_is_added_beside_a_rock_does_not_touch_it() {
 
 #[test]
 fn a_rock_that_cannot_come_out_of_a_creature_that_is_placed_again_and_again_is_let_through() {
-    // Skin that is placed stands still for rocks: in a faster frame, they would come in from the side in every tick.
+    // Skin that is placed counts as standing still for rocks: in a faster frame, they would come in from the side in
+    // every tick.
     let slow = settings().filter(|(_, frame, _)| frame.length() < 100.0);
     for (rate, frame, scale) in slow.take(16) {
         let case = format!("{rate} Hz, {frame} m/s, scale {scale}");
@@ -178,13 +179,13 @@ fn a_rock_that_cannot_come_out_of_a_creature_that_is_placed_again_and_again_is_l
         let rock = stage.rock(&shape, DVec3::Y * (2.0 - 0.5 * radius));
         let mut waits = 0.0;
         for tick in 0..2 * rate {
-            // Nobody knows how it moves.
+            // The creature is placed in every tick, so its motion is unknown.
             let aside = DVec3::X * (0.1 * f64::from(tick % 2));
             let report = stage.tick(&case, &[Does::IsPlaced(aside)]);
             waits += f64::from(report.put_out) * stage.dt;
         }
         assert!(stage.debris.is_let_through(rock), "{case}");
-        // A rock on its way has this long: twice the time for 1.5 radii.
+        // The time limit of a rock on its way: twice the time for 1.5 radii.
         assert!(waits > 0.5 && waits < 0.65, "{case}: {waits} s");
     }
 }

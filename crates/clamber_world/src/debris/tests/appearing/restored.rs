@@ -34,7 +34,7 @@ fn does(tick: u32) -> [Does; 2] {
     [large, small]
 }
 
-/// What a game does before a tick: rocks break off.
+/// The game's part before a tick: rocks break off.
 fn before(stage: &mut Stage, tick: u32) {
     let shapes = shapes(0.3);
     if tick.is_multiple_of(12) && tick < 120 {
@@ -80,7 +80,7 @@ fn a_fresh_value_that_restores_a_snapshot_goes_on_with_the_same_bits() {
             continue;
         }
         let snapshot = DebrisSnapshot::save(&went_on.world, &went_on.debris);
-        // Another session, with nothing but the snapshot and creatures that stand where they were.
+        // Another session, which has only the snapshot and creatures at the same places.
         let mut fresh = stage();
         fresh.world = PhysicsWorld::default();
         fresh.world.integration_parameters = went_on.world.integration_parameters;

@@ -10,7 +10,7 @@ use glam::{DQuat, Vec3};
 
 use super::*;
 
-/// At the origin and 100 km from it.
+/// World positions of the scenes' origins, metres: zero, and 100 km from it.
 const ORIGINS: [DVec3; 2] = [DVec3::ZERO, DVec3::new(8e4, -3e3, 6e4)];
 
 /// A bumpy patch of about 4 m, and a lone sliver above it.
@@ -46,7 +46,7 @@ struct Both {
 }
 
 impl Both {
-    /// Both move over a tick from the first place to the second, relative to the origin.
+    /// A surface and a body that move over a tick from the first place to the second, relative to the origin.
     fn new(rng: &mut fastrand::Rng, origin: DVec3, places: [Pose; 2]) -> Self {
         let (positions, triangles) = patch(rng);
         let influence = Influence {
@@ -165,7 +165,7 @@ fn overlaps_agree() {
 /// Counts of how the two answers to a query differ.
 #[derive(Default, Debug)]
 struct Tally {
-    /// Both found a contact.
+    /// Number of cases in which both found a contact.
     met: u32,
     inside: u32,
     /// Only one found a contact: at the very end, or at a grazing angle.

@@ -69,8 +69,8 @@ fn nearest_points_are_right_from_a_micrometre_to_a_kilometre() {
     }
 }
 
-/// A cuboid's faces have a way of their own. It agrees with the search among corners, in all poses that a tick takes a
-/// solid through.
+/// The fast path for a cuboid's faces agrees with the search among corners, in all poses that a solid has during a
+/// tick.
 #[test]
 fn above_a_face_of_a_cuboid_nearest_points_are_those_of_a_hull_of_its_corners() {
     let mut rng = fastrand::Rng::with_seed(23);

@@ -1,6 +1,7 @@
 use super::*;
 use crate::RigidPose;
 
+/// Tolerance of the casts, metres.
 const TOLERANCE: f64 = 1e-4;
 
 /// A capsule that moves, and in half of the cases turns by up to 1.5 rad, in the frame of the shape.
