@@ -23,7 +23,7 @@ pub(super) struct Limbs {
 impl Limbs {
     /// Updates the list: a limb that has thrown the bot off is avoided.
     pub(super) fn watch(&mut self, config: &BotConfig, view: &View<'_>) {
-        // Time may have begun anew.
+        // `seconds` may have been set back, as in a new fight.
         self.avoided.retain(|(_, until)| {
             let left = until - view.seconds;
             left > 0.0 && left <= AVOIDS

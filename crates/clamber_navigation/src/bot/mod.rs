@@ -523,7 +523,7 @@ impl Bot {
         }
     }
 
-    /// It is where the graph knows no place near it: if that lasts, it is lost.
+    /// The climber is on the creature, but the graph has no patch near it. If this lasts, the bot is lost.
     fn strays(&mut self, view: &View<'_>) -> ClimberInput {
         let first = self.lost.map_or(view.seconds, |[first, _]| first);
         self.lost = Some([first, view.seconds]);

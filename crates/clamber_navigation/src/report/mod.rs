@@ -205,7 +205,7 @@ impl View<'_> {
             source.plates.iter().any(|plate| plate.contains(triangle))
         };
         let near: Vec<usize> = (0..pieces.len()).filter(is_near).collect();
-        // Who is on a plate above it is not there yet, but if there is nothing else, the plate is what is meant.
+        // A plate that covers the point is no goal. If there is only the plate, the point is on it.
         let bare = near.iter().copied().filter(|index| !is_plate(index));
         let bare: Vec<usize> = bare.collect();
         let goals = if bare.is_empty() { near } else { bare };
@@ -374,7 +374,7 @@ impl View<'_> {
         let reach = survey.config.reach();
         let mut settled = vec![false; survey.pieces.len()];
         let mut open = BinaryHeap::new();
-        // Where it stands there may be nothing to hold on to.
+        // Hands may reach nothing where the climber stands.
         let first = |piece: usize| Turn {
             arm: reach.max(survey.arms[piece]),
             is_measured: true,
@@ -388,7 +388,7 @@ impl View<'_> {
         );
         while let Some(turn) = open.pop() {
             let Turn { arm, from, to, .. } = turn;
-            // All that are left ask for as much.
+            // The remaining links lead past skin without any grip near.
             if !arm.is_finite() {
                 break;
             }

@@ -181,7 +181,7 @@ fn a_belt_of_stone_is_missed_by_as_much_as_longer_arms_need() {
     }
 }
 
-/// Who stands on stone holds on to nothing: how far its hands would have to reach is told from there as well.
+/// A climber that stands on stone has no grip. The missing reach is measured from there, too.
 #[test]
 fn fur_above_a_step_of_stone_is_missed_by_as_much_as_longer_arms_need() {
     let step = Body::grid(
@@ -214,7 +214,7 @@ fn fur_above_a_step_of_stone_is_missed_by_as_much_as_longer_arms_need() {
     assert!(report.weak_points[0].reachable, "{by}");
 }
 
-/// A plate that juts out over a weak point can be got onto; what is below it, once it is gone, is another thing.
+/// A weak point below a plate is reachable only if the skin below the plate is, even if the plate can be reached.
 #[test]
 fn who_is_on_a_plate_is_not_at_what_it_covers() {
     let wall = |depth: f32, kind| {

@@ -239,7 +239,7 @@ fn a_way_over_skin_that_is_gone_is_none() {
     }
 }
 
-/// On a ball of stone, which the graph knows no place on: who is put there says so, and gets off.
+/// The graph has no patch on a ball of stone. A bot whose climber is put there says that it is lost, and gets off.
 #[test]
 fn who_is_where_the_graph_knows_no_place_says_so_and_gets_off() {
     let stone = ball(Vec3::new(0.0, 30.0, 0.0), 12.0, |_, _| Stone);
@@ -289,7 +289,7 @@ fn who_is_where_the_graph_knows_no_place_says_so_and_gets_off() {
     assert!(!bot.is_lost(30.0));
 }
 
-/// Nobody is foreseen to land on skin that is gone by then.
+/// No landing is predicted on triangles that were disabled.
 #[test]
 fn a_landing_is_foreseen_on_the_skin_that_is_left() {
     let body = wall(8.0);

@@ -42,7 +42,7 @@ impl Skin {
     }
 }
 
-/// No points: what was drawn in a frame is drawn no longer.
+/// A cloud without points, which replaces the one that was drawn in `frame`.
 pub(crate) fn no_skin(nanoseconds: u64, frame: &str) -> PointCloud {
     cloud(nanoseconds, frame, Vec::new())
 }

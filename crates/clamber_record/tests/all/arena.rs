@@ -457,7 +457,7 @@ fn orders_are_recorded_and_played_again() {
     let part = (ArenaPart::Fighter(FighterId(3)), "fighter 3".to_owned());
     assert_eq!(difference.parts.first(), Some(&part));
 
-    // Who has left is drawn no longer.
+    // Creatures and fighters that left are not drawn any more.
     let all = mcap::MessageStream::new(&file).unwrap();
     let (mut points, mut deleted) = (BTreeMap::new(), Vec::new());
     for message in all.map(Result::unwrap) {
