@@ -6,13 +6,13 @@ use clamber::prelude::*;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let dt = 1.0 / 60.0;
-    let creature = clamber_scenes::beast::beast(6_000);
-    let shake = creature.clip_like(&["shake"]).ok_or("no shake")?;
+    let creature = clamber::gltf::load("assets/colossus.glb")?;
+    let shake = creature.clip("shake").ok_or("no shake")?;
     let far_away = Similarity::from_translation(DVec3::new(1e5, 0.0, -1e5));
     let mut surface = SkinnedSurface::new(creature.collider.clone());
 
     // Shot from the left into the shoulder, in the rest pose.
-    let shot = Ray::new(Vec3::new(30.0, 14.0, 5.0), Vec3::NEG_X).ok_or("no ray")?;
+    let shot = Ray::new(Vec3::new(30.0, 30.0, 0.0), Vec3::NEG_X).ok_or("no ray")?;
     let hit = surface.in_model().cast_ray(&shot, 100.0).ok_or("missed")?;
     let mut arrow = surface.anchor_at(&hit)?;
 

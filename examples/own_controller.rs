@@ -5,7 +5,6 @@
 use clamber::glam::DVec3;
 use clamber::mover::{Ground, GroundProbe, Mover, MoverBody, MoverMemory, Path, StepUp, Walking};
 use clamber::prelude::*;
-use clamber_scenes::giant::giant;
 
 /// Length of a tick, seconds.
 const DT: f64 = 1.0 / 60.0;
@@ -157,10 +156,10 @@ fn probe(reach: f64) -> GroundProbe {
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let giant = giant()?;
-    let clip = giant.clip_like(&["walk"]).ok_or("no walk")?;
+    let giant = clamber::gltf::load("assets/colossus.glb")?;
+    let clip = giant.clip("walk").ok_or("no walk")?;
     let rest = giant.skeleton.rest_pose();
-    let pace = DVec3::Z * giant.walk_speed.ok_or("no speed")?;
+    let pace = DVec3::Z * clip.ground_speed().ok_or("no speed")?;
     let mut skin = SkinnedSurface::new(giant.collider.clone());
     // The player starts above the back, as fast as the giant.
     let mut player = Controller::at(DVec3::new(0.0, 36.0, -2.0));

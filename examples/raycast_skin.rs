@@ -4,10 +4,10 @@ use clamber::glam::DVec3;
 use clamber::prelude::*;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let creature = clamber_scenes::beast::beast(6_000);
-    let walk = creature.clip_like(&["walk"]).ok_or("no walk")?;
+    let creature = clamber::gltf::load("assets/colossus.glb")?;
+    let walk = creature.clip("walk").ok_or("no walk")?;
     let mut surface = SkinnedSurface::new(creature.collider.clone());
-    let above = DVec3::new(0.3, 60.0, 15.0);
+    let above = DVec3::new(0.0, 60.0, 4.0);
 
     let mut heights = Vec::new();
     for tick in 0..12 {

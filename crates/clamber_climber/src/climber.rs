@@ -33,6 +33,26 @@ pub struct StepRules<'a> {
 }
 
 impl<'a> StepRules<'a> {
+    /// Checks the rules as each step does. A game that steps several climbers with the same rules can so refuse them
+    /// before the first step.
+    ///
+    /// # Errors
+    /// [`ClimberError::SameMode`] if two of the modes have the same id, and [`ClimberError::NotFinite`] if the air's
+    /// velocity is not finite.
+    pub fn check(&self) -> Result<(), ClimberError> {
+        for (index, mode) in self.modes.iter().enumerate() {
+            let mut before = self.modes[..index].iter();
+            if before.any(|other| other.id() == mode.id()) {
+                return Err(ClimberError::SameMode(mode.id()));
+            }
+        }
+        if self.air_velocity.is_finite() {
+            Ok(())
+        } else {
+            Err(ClimberError::NotFinite("air_velocity"))
+        }
+    }
+
     /// Rules with a function that decides about contacts, without custom modes.
     pub const fn by(contact: &'a ContactRuleFn<'a>) -> Self {
         Self {
@@ -179,17 +199,7 @@ impl Climber {
         rules: &StepRules<'_>,
         dt: f64,
     ) -> Result<StepReport, ClimberError> {
-        for (index, mode) in rules.modes.iter().enumerate() {
-            if rules.modes[..index]
-                .iter()
-                .any(|other| other.id() == mode.id())
-            {
-                return Err(ClimberError::SameMode(mode.id()));
-            }
-        }
-        if !rules.air_velocity.is_finite() {
-            return Err(ClimberError::NotFinite("air_velocity"));
-        }
+        rules.check()?;
         let judge = Judge {
             rules,
             config: &self.config,

@@ -37,9 +37,9 @@ const LONGEST: f64 = 1.01;
 
 /// A player's input for one tick in thirteen bytes, to be sent over a network.
 ///
-/// [`PlayerInput::from_input`] rounds: directions to 1/127 of their length, the aim to 0.006 degrees. It sets `order`
-/// to 0. All peers step their arenas with [`PlayerInput::to_input`], which gives all of them the same bits. A blow is
-/// not sent, since the arena itself deals the blows. Only the lower eight bits of the actions are sent.
+/// [`PlayerInput::from_input`] rounds directions to 1/127 and the aim to 0.006 degrees. It sets `order` to 0 (none): a
+/// game sets its own number afterwards. All peers step with [`PlayerInput::to_input`] and so get the same bits. Blows
+/// are not sent, since the arena deals them. Only the lower eight bits of the actions are sent.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct PlayerInput {
     /// Direction to walk in, along x and z, in 127ths.

@@ -5,7 +5,8 @@ use glam::DVec3;
 /// How to shoot an arrow so that it meets a target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lead {
-    /// Launch velocity, metres a second. Its length is the arrow's speed.
+    /// Launch velocity in world space, metres a second. Its length is the arrow's speed. A moving fighter adds its own
+    /// velocity to its arrow: give [`lead`] the target's velocity relative to the fighter.
     pub velocity: DVec3,
     /// Seconds until the arrow meets the target.
     pub seconds: f64,

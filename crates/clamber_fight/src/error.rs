@@ -111,7 +111,7 @@ pub enum ArenaError {
         /// Why it cannot be followed.
         reason: String,
     },
-    /// A climber rejects its configuration, its state or its input.
+    /// A climber rejects its configuration, its state, its input or the rules of a step.
     #[error(transparent)]
     Climber(#[from] ClimberError),
     /// A creature cannot be posed, or rejects its configuration or state. If a step returns this, the arena has to be

@@ -40,7 +40,8 @@ impl FutureSkin {
         }
     }
 
-    /// Takes a triangle away, as it was from the creature's own skin: no landing is predicted on it.
+    /// Removes a triangle: no landing is predicted on it. Call it when the creature's own skin loses the triangle, as
+    /// with a broken plate. [`FutureSkin::enable_triangle`] puts it back.
     ///
     /// # Errors
     /// [`NavigationError::Surface`] if the mesh does not have it.

@@ -31,7 +31,7 @@ pub struct RideEnd {
     pub cause: ThrowOff,
 }
 
-/// The outcome of a ride.
+/// The prediction of [`FutureSkin::ride`] for an idle climber on a creature: its fall, its stay, or no answer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Ride {
     /// The climber is thrown off.

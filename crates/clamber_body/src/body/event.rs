@@ -13,7 +13,8 @@ pub struct Plant {
     pub obstacle: ObstacleId,
     /// The touched point, in world space.
     pub point: DVec3,
-    /// Unit normal of the surface there, in world space.
+    /// Unit normal of the surface at `point`, in world space, when the hand or foot came down. It does not follow the
+    /// surface afterwards.
     pub normal: DVec3,
     /// Tag of the surface there.
     pub tag: SurfaceTag,

@@ -71,7 +71,8 @@ pub struct StateFile {
     /// True if the state is never left.
     #[serde(rename = "final", default, skip_serializing_if = "is_false")]
     pub is_final: bool,
-    /// The inner state that is entered when this state is entered.
+    /// Name of the inner state that the creature enters together with this state: one of `states`. A state with inner
+    /// states needs it; any other state must not have it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub start: Option<String>,
     /// Transitions out of this state and of all its inner states.
@@ -87,7 +88,8 @@ pub struct StateFile {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TransitionFile {
-    /// The target state.
+    /// Name of the target state, without the names of its outer states. Any state of the file is allowed. If it has
+    /// inner states, the creature enters its `start`.
     pub to: String,
     /// Conditions that must all hold, such as `"riders >= 1"` or `"!prey_seen"`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]

@@ -222,7 +222,8 @@ impl Brain {
         regions.map(|(name, joints)| (name.as_str(), joints.as_slice()))
     }
 
-    /// The names of the game's own senses, in their order.
+    /// The names of the game's own senses, in the order of the file: the index for [`Senses::own`](crate::Senses::own).
+    /// [`Creature::set_sense`](crate::Creature::set_sense) takes the name.
     pub fn own_senses(&self) -> &[String] {
         &self.file.senses
     }

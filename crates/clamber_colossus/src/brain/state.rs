@@ -184,7 +184,9 @@ impl Brain {
         hash
     }
 
-    /// Goes to a state at once, for a scripted scene. Does nothing if `state` or `to` belongs to another brain.
+    /// Enters a state at once, for a scripted scene; a creature has [`Creature::enter`](crate::Creature::enter) for it.
+    /// Does nothing if `state` does not fit this brain, or if `to` is not below [`Brain::len`]. An id is only an index:
+    /// an id of another brain enters the state with the same index.
     pub fn go_to(&self, state: &mut BrainState, to: StateId) {
         if state.fits(self) && self.state(to).is_some() {
             self.enter(state, to);

@@ -19,7 +19,7 @@ pub struct CreatureReport {
 pub struct ActiveBeam {
     /// State whose attack sends the beam.
     pub state: StateId,
-    /// Start of the beam.
+    /// Start of the beam at the limb's end, in world space, metres.
     pub from: DVec3,
     /// End of the beam: at its full length, or at the obstacle that stops it.
     pub to: DVec3,
@@ -27,7 +27,8 @@ pub struct ActiveBeam {
     pub radius: f64,
 }
 
-/// An event of a creature's step: an action of the creature, or an effect on it.
+/// An event of a creature's step: an action of the creature, or an effect on it. A beam and a blow to a person are no
+/// events: [`CreatureReport::beam`] and [`CreatureReport::blows`] have them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum CreatureEvent {

@@ -166,7 +166,7 @@ pub struct WeakPointFile {
     /// Place at rest relative to the joint, along the model's axes: +X to the creature's left, +Y up, +Z ahead.
     #[serde(default)]
     pub at: [f64; 3],
-    /// Radius of the weak point.
+    /// Radius of the weak point, in heights of the creature, from 0 to 10. Hits on skin within it count.
     pub radius: f64,
     /// Damage that uses it up, more than 0.
     pub hit_points: f64,

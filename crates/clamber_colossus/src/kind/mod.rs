@@ -314,8 +314,9 @@ impl CreatureKind {
         self.height
     }
 
-    /// Half the width of the body on the ground, at rest, in the model's units: the largest `min(|x|, |z|)` of its
-    /// skin, so that arms that are held aside do not count.
+    /// Half the body's width as seen from above, at rest, in the model's units: the largest `min(|x|, |z|)` of all
+    /// vertices of its skin, so that arms held aside do not count. [`Creature::scale`](crate::Creature::scale) gives
+    /// the metres per unit.
     pub fn girth(&self) -> f64 {
         self.girth
     }

@@ -258,7 +258,9 @@ impl Arena {
         self.fighters.binary_search_by_key(&id, Fighter::id).ok()
     }
 
-    /// Arrows and stones, by ascending number.
+    /// All projectiles, by ascending number: arrows and stones in flight, stuck arrows, and arrows that came loose. A
+    /// stone is removed at its first contact, any projectile in flight after 20 s. A stuck arrow falls if its material
+    /// is gone, or if it is the oldest and more than [`ArenaConfig::stuck_arrows`] stick.
     pub fn projectiles(&self) -> &[Projectile] {
         &self.projectiles
     }

@@ -21,7 +21,7 @@ pub struct ArenaState {
     pub fighters: Vec<SavedFighter>,
     /// The number that the next fighter gets.
     pub next_fighter: u32,
-    /// Arrows and stones, by ascending number.
+    /// All projectiles, in flight, stuck or falling, by ascending number. [`Arena::restore`] refuses any other order.
     pub projectiles: Vec<Projectile>,
     /// The number that the next projectile gets.
     pub next_projectile: u64,

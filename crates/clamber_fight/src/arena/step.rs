@@ -58,13 +58,13 @@ impl Arena {
         self.step_with(inputs, &[], terrain, &StepRules::default())
     }
 
-    /// [`Arena::step`] with orders, and with the game's own rules for climbers: contacts and custom modes. The orders
-    /// are followed first. `inputs` belong to the fighters that were there before the orders. The arena replaces
-    /// [`StepRules::id`] by [`fighter_obstacle`] for each fighter's climber.
+    /// [`Arena::step`] with [`Order`]s and the game's own contact rules and custom modes. Orders are followed first.
+    /// `inputs` has one input for each fighter before the orders; a fighter that joins by an order is idle in this
+    /// step. The arena ignores [`StepRules::id`] and gives each climber its own [`fighter_obstacle`].
     ///
     /// # Errors
-    /// The errors of [`Arena::step`], and [`ArenaError::Order`] for an order that cannot be followed: nothing is
-    /// changed then.
+    /// Those of [`Arena::step`]. [`ArenaError::Order`] for an order that cannot be followed and [`ArenaError::Climber`]
+    /// for rules that [`StepRules::check`] refuses: nothing is changed then.
     pub fn step_with(
         &mut self,
         inputs: &[ClimberInput],
@@ -73,6 +73,7 @@ impl Arena {
         rules: &StepRules<'_>,
     ) -> Result<&[ArenaEvent], ArenaError> {
         self.check(inputs, terrain)?;
+        rules.check()?;
         let joining = self.check_orders(orders)?;
         self.tick = self.tick.wrapping_add(1);
         self.events.clear();

@@ -51,7 +51,8 @@ pub struct SwordConfig {
     pub charge: f64,
     /// Factor on the charge's growth while the button stays down; 1.25 by default.
     pub pressed: f64,
-    /// Seconds from the second press until the stab lands; 0.12 by default.
+    /// Seconds from the second press of the stab button until the stab lands; 0.12 by default. The first press raises
+    /// the sword ([`STAB`](crate::actions::STAB)). A stab in a fall lands on contact instead.
     pub strike: f64,
     /// Length of the ray by which a stab looks for skin, metres; 1.8 by default. It begins beside the climber's ball.
     pub reach: f64,

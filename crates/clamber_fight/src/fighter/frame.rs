@@ -17,7 +17,7 @@ pub struct BodyFrame {
 const HEADING: f64 = 0.5;
 
 impl BodyFrame {
-    /// The frame of a climber after its last step.
+    /// The centre of the climber's ball and the rotation of its body after its last step, in world space.
     pub fn of(climber: &Climber) -> Self {
         let (state, up) = (climber.state(), climber.config().up());
         let out = state
@@ -50,7 +50,8 @@ impl BodyFrame {
         self.rotation * DVec3::new(direction.x, direction.y, -direction.z)
     }
 
-    /// Interpolates to another frame.
+    /// The body between this frame and `other`: this one at `share` 0, `other` at 1. The origin moves on a straight
+    /// line, the rotation on the shorter arc.
     pub fn to(&self, other: &Self, share: f64) -> Self {
         Self {
             origin: self.origin + (other.origin - self.origin) * share,

@@ -12,7 +12,7 @@ use crate::projectile::{
 const MOST_STRAY: f64 = 0.5;
 
 impl BowConfig {
-    /// The bow's arrow as a projectile.
+    /// The properties of this bow's arrow in flight and at a hit, with its speed from a fully drawn bow.
     pub fn arrow(&self) -> ProjectileBody {
         ProjectileBody {
             radius: self.radius,

@@ -45,8 +45,8 @@ pub struct ProjectileBody {
     pub drag: f64,
     /// How deep its tip goes into the obstacle that it hits, metres.
     pub depth: f64,
-    /// Damage at [`ProjectileBody::speed`]. It grows with the square of the speed relative to the material that it
-    /// hits.
+    /// Damage of a hit at [`ProjectileBody::speed`], in a weak point's hit points. It grows with the square of the
+    /// speed relative to the struck point of the skin, which may move.
     pub damage: f64,
     /// Relative speed at which it does its nominal damage, metres a second.
     pub speed: f64,
@@ -96,7 +96,7 @@ pub enum ProjectileMotion {
 /// Position and direction of a projectile after a tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProjectilePlace {
-    /// Its tip, in world space.
+    /// The tip of an arrow, or the middle of a stone, in world space, metres.
     pub tip: DVec3,
     /// Direction in which it points; a unit vector.
     pub direction: DVec3,

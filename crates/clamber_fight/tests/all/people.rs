@@ -7,7 +7,7 @@ use crate::support;
 use crate::support::{
     GIANT, GROUND, HERO, Slab, land, mode, pressing, step, step_with, weak_point,
 };
-use clamber_climber::{ClimberInput, ClimberMode};
+use clamber_climber::{ClimberError, ClimberInput, ClimberMode, StepRules};
 use clamber_colossus::CreatureConfig;
 use clamber_fight::actions::STAB;
 use clamber_fight::{
@@ -253,6 +253,17 @@ fn bad_inputs_change_nothing() {
     };
     let blow = refused(&mut arena, &[blow, ClimberInput::IDLE]);
     assert!(matches!(blow, ArenaError::Blow { fighter: 0 }), "{blow}");
+    let rules = StepRules {
+        air_velocity: DVec3::X * f64::INFINITY,
+        ..StepRules::default()
+    };
+    let wind = arena.step_with(&[ClimberInput::IDLE; 2], &[], &[], &rules);
+    let wind = wind.unwrap_err();
+    let is_wind = matches!(
+        wind,
+        ArenaError::Climber(ClimberError::NotFinite("air_velocity"))
+    );
+    assert!(is_wind, "{wind}");
     let ground = HalfSpace::below(0.0);
     let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(u64::MAX), &ground)];
     let id = arena.step(&[ClimberInput::IDLE; 2], &terrain).unwrap_err();

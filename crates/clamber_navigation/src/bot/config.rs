@@ -4,9 +4,9 @@
 pub struct BotConfig {
     /// The bot stands and rests in shakes up to this share of the shake that throws it off. Default 0.35.
     pub stands_in: f64,
-    /// Stamina below which the bot rests before it goes on, until it has `rested`. It goes on all the same if it has
-    /// the stamina that its plan expects there, or if the forecast is still and its stamina is enough for its goal.
-    /// Default 0.3.
+    /// Stamina, 0 to 1, below which the bot rests until it has `rested`. Default 0.3. The bot goes on if it has the
+    /// stamina that its plan expects there. It also goes on if the creature keeps still by its forecast
+    /// ([`Forecast::still`](crate::Forecast::still)) and its stamina is enough for its goal.
     pub tired: f64,
     /// Stamina at which a rest ends. Default 0.9.
     pub rested: f64,

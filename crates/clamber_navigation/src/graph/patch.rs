@@ -16,7 +16,7 @@ use crate::survey::Survey;
 pub struct Patch {
     /// The triangle at the patch's middle.
     pub triangle: TriangleId,
-    /// Barycentric weights of the middle in that triangle.
+    /// Barycentric weights of the patch's middle for the corners of `triangle`, in the mesh's order. Their sum is 1.
     pub barycentric: [f64; 3],
     /// The material at the middle.
     pub tag: SurfaceTag,
@@ -32,7 +32,8 @@ pub struct Patch {
     pub can_stand: bool,
     /// True if a climber can hold on there at rest.
     pub can_hold: bool,
-    /// The plate that has to be removed before a climber has room there; `None` if it has room already.
+    /// Index in [`GraphSource::plates`](crate::GraphSource::plates): a climber has room here only without that plate.
+    /// `None` if it has room with all plates. The index stays after the plate breaks.
     pub below: Option<u16>,
     /// The vector from the middle to the seat at rest, along the axes of the triangle, metres.
     pub(crate) away: [f64; 3],

@@ -46,7 +46,7 @@ pub struct ClimbReport {
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct WayOn {
-    /// Number of entries.
+    /// Number of entries in this group: patches onto which a climber gets from the ground ([`Entry`](crate::Entry)).
     pub entries: usize,
     /// The seat of the lowest of these entries at rest, in the world.
     pub place: DVec3,
