@@ -41,13 +41,15 @@ pub enum ArenaError {
     /// An input holds a blow.
     #[error("the input of fighter {fighter} holds a blow; the arena deals the blows itself")]
     Blow {
-        /// The fighter's position in the list of inputs, from 0.
+        /// The fighter's number ([`FighterId`](crate::FighterId)), which may differ from its position in the list of
+        /// inputs.
         fighter: usize,
     },
     /// An input has a number that is not finite.
     #[error("the input of fighter {fighter} has a number that is not finite")]
     InputNotFinite {
-        /// The fighter's position in the list of inputs, from 0.
+        /// The fighter's number ([`FighterId`](crate::FighterId)), which may differ from its position in the list of
+        /// inputs.
         fighter: usize,
     },
     /// Two terrains have the same id.

@@ -234,8 +234,8 @@ impl<'a> Mover<'a> {
         &self.memory.overlaps
     }
 
-    /// The first contact over the tick of a capsule whose ends move by `ways`, against moving obstacles. `capsule` is
-    /// the capsule at the start of the tick.
+    /// The first contact over the tick of a capsule whose ends move by `ways`, while the obstacles move as well.
+    /// `capsule` is the capsule at the start of the tick.
     pub fn sweep(&mut self, capsule: &WorldCapsule, ways: [DVec3; 2]) -> Option<Hit> {
         self.first_solid(capsule, ways, TargetMotion::Moving)
     }
@@ -274,10 +274,10 @@ impl<'a> Mover<'a> {
         })
     }
 
-    /// True if the body's core meets no moving obstacle when it is swept over the tick from `start` to `end`, both
-    /// shifted by `correction`. Use it after a step up or a snap to the ground, which consider only the end of the
-    /// tick. Overlaps at the start are ignored, and so are other characters, since characters move apart. Also true for
-    /// input that is not finite.
+    /// True if the body's core meets no obstacle when it is swept over the tick from `start` to `end`, both shifted by
+    /// `correction`, while the obstacles move as well. Use it after a step up or a snap to the ground, which consider
+    /// only the end of the tick. Overlaps at the start are ignored, and so are other characters, since characters move
+    /// apart. Also true for input that is not finite.
     pub fn is_clear_with(
         &mut self,
         body: &MoverBody,

@@ -1,7 +1,7 @@
 //! Moves a body from its position a tick ago to its wanted position, among obstacles that move.
 //!
 //! The body's core is swept over the tick against all moving obstacles. Each contact becomes a half-space in which the
-//! body must end. Its plane touches the body where the touched material point is at the tick's end. The displacement
+//! body must end. Its plane goes through the touched material point's position at the tick's end. The displacement
 //! inside all half-spaces that is nearest to the wanted displacement is taken and swept again, until no obstacle is in
 //! the way. Then each contact that overlaps the whole body, margin included, at the tick's end adds its half-space, the
 //! deepest first. All contacts are evaluated anew after every push, so that inner edges of flat ground, which are

@@ -1,7 +1,7 @@
 /// How a character behaves when it runs into the side of another one. In each case, characters can stand on each other,
 /// no character is pressed through a wall, and overlapping characters move apart by their masses.
 ///
-/// The softer of the two characters' choices counts for both ([`Others::between`]):
+/// Pass wins over block, and block over push, for both characters ([`Others::between`]):
 ///
 /// | | block | push | pass |
 /// |---|---|---|---|

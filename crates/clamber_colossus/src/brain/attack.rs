@@ -19,9 +19,10 @@ const STRONGEST: f64 = 1_000.0;
 /// A clip in which a limb strikes: with its skin, by a wave from where it comes down, by a shot, by a beam, or by
 /// several of these.
 ///
-/// Waves, shots and beams spare riders of the creature, and people behind terrain. The creature's own body does not
-/// stop them. Lengths and speeds are in metres and metres a second of world space, and do not scale with the creature's
-/// size. A limb, wave, shot or beam with neither damage nor throw strikes nobody.
+/// Waves, shots and beams spare riders of the creature, and people behind terrain; shots and beams also spare people
+/// behind another creature. The creature's own body does not stop them. Lengths and speeds are in metres and metres a
+/// second of world space, and do not scale with the creature's size. A limb, wave, shot or beam with neither damage nor
+/// throw strikes nobody.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Attack {

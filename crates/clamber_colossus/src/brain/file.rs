@@ -53,7 +53,8 @@ pub struct RaiseFile {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StateFile {
-    /// The creature's act in this state. With `None` it stands; if it has a gait, it plays the idle clip.
+    /// The creature's act in this state. With `None` it stands: it plays the idle clip if it has a gait, else goes on
+    /// with its last clip.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub act: Option<Act>,
     /// Where the creature looks. `None` takes the gaze of the outer state.
@@ -175,7 +176,7 @@ pub enum Place {
     /// The nearest person in view that does not ride the creature. If no such person is in view, the place where one
     /// was last seen, or home if none was ever seen.
     Prey,
-    /// The place where the creature was first put.
+    /// The place where the creature began or was last put. Ground that carries the creature carries this place along.
     Home,
     /// A random place in the arena, drawn when the act begins.
     Patrol,

@@ -15,7 +15,8 @@ const MOST: f64 = 6.0;
 /// Free room behind the creature below which it does not begin to retreat, in heights.
 const LEAST: f64 = 0.02;
 
-/// Shortest retreat, in heights. A longer one ends soon after the creature can turn.
+/// Length of a retreat, in heights, from which on it ends if the creature can turn. An obstacle behind the creature
+/// ends it sooner.
 const ENOUGH: f64 = 0.2;
 
 /// Length that is added to a retreat once a turn is free, in heights. A turn that is only just free may still be
@@ -61,8 +62,8 @@ impl Creature {
     /// Reacts to an obstacle on the way at which the creature has stopped.
     ///
     /// At the first stop, the creature skips the next corner of its way, since it may get past the obstacle from here.
-    /// Later it looks for a wider way or begins a retreat. It is blocked if neither is possible, or after too many
-    /// stops at this place.
+    /// Later it looks for a wider way or begins a retreat. It is blocked if neither is possible, if it has no corners
+    /// left to go round, or after too many stops at this place.
     pub(super) fn stop(&mut self, around: &Surroundings<'_>, on_spot: &Extent) {
         self.get_stuck();
         let walked = &mut self.state.walked;

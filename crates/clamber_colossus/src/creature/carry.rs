@@ -13,8 +13,8 @@ use crate::feet::Carried;
 /// creature's height.
 const NEAR: f64 = 0.15;
 
-/// Distance from the origin at which the motion of the ground is compared with that below the origin, as a share of the
-/// creature's height.
+/// Distance ahead of the origin, and behind and to both sides of it, at which the motion of the ground is compared with
+/// that below the origin, as a share of the creature's height.
 const BROAD: f64 = 0.12;
 
 /// Largest difference between these motions for ground that moves as one, as a share of the distance that the ground
@@ -83,7 +83,7 @@ impl Creature {
     /// ground.
     ///
     /// The creature remembers a point of the ground, since asking for its motion costs less than a ray. At intervals, a
-    /// ray looks for a new point. `went` is how far the ground moved in the last tick, metres.
+    /// ray looks for a new point. `went` is how far the ground carried the creature in the last tick, metres.
     fn ground_motion(
         &mut self,
         around: &Surroundings<'_>,

@@ -73,7 +73,8 @@ pub(crate) struct Foot {
     path: Path,
     /// The last predicted landing place.
     landing: Option<Footing>,
-    /// True if the foot stands too far from its place in the clip.
+    /// True if the foot stands too far from its place in the clip, or turned too far against the clip, and waits for
+    /// its turn to step. False in a gait.
     wants_step: bool,
     /// True if the leg was stretched in the last tick.
     is_stretched: bool,
@@ -246,7 +247,8 @@ impl Foot {
         matches!(self.hold, Hold::Planted { .. })
     }
 
-    /// True if the foot stands in the wrong place, and waits for its turn to step.
+    /// True if the foot stands too far from its place in the clip, or turned too far against the clip, and waits for
+    /// its turn to step.
     pub(crate) fn wants_step(&self) -> bool {
         self.wants_step
     }

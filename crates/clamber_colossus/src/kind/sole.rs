@@ -38,7 +38,8 @@ pub(crate) struct SoleShape {
     pub(crate) points: Vec<DVec3>,
     /// Height of the ball above the lowest skin.
     pub(crate) ball_height: f64,
-    /// Vertices that also follow the shin; empty if most of the sole follows the foot alone.
+    /// All low vertices of the foot, if many of the lowest also follow the shin ([`MOST`]); empty if most follow the
+    /// foot alone.
     pub(crate) blended: BlendedSole,
 }
 

@@ -10,7 +10,8 @@ use crate::kind::LegFile;
 
 /// Skin touches the ground if it is no higher above the lowest skin than this share of the creature's height.
 const LOW: f64 = 0.04;
-/// A joint nearer to the plane X = 0 than this share of the creature's height is no foot.
+/// A joint is no foot if the mean X of its skin is nearer to 0 than this share of the creature's height. [`is_aside`]
+/// tests the joint's own X by it.
 const MIDDLE: f64 = 0.01;
 
 /// An ankle is no higher above the lowest skin than this share of the creature's height.

@@ -40,7 +40,7 @@ pub enum Sense {
     NoiseBearingDeg,
     /// Distance to the nearest wall, metres; infinite if none is within the creature's height.
     WallDistance,
-    /// Level distance to the place where the creature was first put, metres.
+    /// Level distance to the place where the creature began or was last put, metres.
     HomeDistance,
     /// 1 if the current act is over, else 0: its clip has ended, or its goal is reached. A blocked walk or turn is over
     /// as well.

@@ -85,7 +85,8 @@ pub enum Order {
         /// The centre of its climber's ball.
         position: DVec3,
     },
-    /// Sets the spawn point for a fighter's next respawn, also if it is dead now.
+    /// Sets a fighter's spawn point for its next respawn and all later ones. If the fighter is dead now, it already
+    /// respawns there.
     Checkpoint {
         /// The fighter.
         fighter: FighterId,

@@ -62,8 +62,9 @@ impl Goal {
     /// The least time from a patch to the goal on a creature at rest for a climber with some stamina, 0 to 1, rests
     /// included, seconds; infinite if that stamina is not enough. No plan is faster.
     ///
-    /// On every way the climber holds on for a least number of seconds. The stamina that this costs beyond its own has
-    /// to be refilled by standing, which takes the rest of the bound.
+    /// Whichever way the climber takes, it has to hold on for at least some time. If this costs more stamina than the
+    /// climber has, it has to stand until the difference is refilled. The bound is the sum of both times, and at least
+    /// [`Goal::least_seconds`].
     pub fn least_seconds_with(&self, patch: usize, footing: Footing, stamina: f64) -> f64 {
         if self.of(patch, footing).is_some() {
             return self.at(node(patch, footing), stamina);

@@ -100,13 +100,14 @@ pub struct ClipReport {
     pub slips_from: f64,
     /// Area on which a standing climber is thrown or knocked down, square metres.
     pub throws_from: f64,
-    /// Earliest time at which a climber is thrown, to half a second: seconds from the clip's beginning at its rate.
+    /// Earliest time at which a standing climber is thrown or knocked down, to half a second: seconds from the clip's
+    /// beginning at its rate. `None` if the clip does neither on any reachable skin.
     pub throws_at: Option<f64>,
     /// Area on which a climber loses its hold if it begins with full stamina and holds on for the clip's whole length,
     /// square metres.
     pub exhausts_on: f64,
     /// Earliest time at which a climber loses its hold, to half a second: seconds from the clip's beginning at its
-    /// rate.
+    /// rate. `None` if no climber loses its hold.
     pub exhausts_at: Option<f64>,
 }
 

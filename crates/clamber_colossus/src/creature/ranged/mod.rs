@@ -1,6 +1,7 @@
 //! Ranged attacks: waves, shots and beams.
 //!
-//! Ranged attacks strike people that do not ride the creature and are not hidden from the attack by terrain.
+//! Ranged attacks strike people that do not ride the creature and are not hidden from the attack by terrain or, from a
+//! shot or a beam, by another creature.
 
 mod beam;
 mod line;

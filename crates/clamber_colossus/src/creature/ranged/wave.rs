@@ -50,7 +50,7 @@ pub(super) struct WaveState {
     pub(super) attack: u32,
     /// Current radius, metres.
     pub(super) reach: f64,
-    /// Ids of the people that the wave has struck.
+    /// Ids of the people that the wave strikes no more: those struck by it, by its limb and beam, or by its shot.
     pub(super) struck: Vec<u64>,
 }
 
