@@ -85,10 +85,13 @@ fn app(start: DVec3, collider: SkinnedCollider) -> (App, Entity) {
     app.insert_resource(Start(start))
         .insert_resource(WorldOrigin(start));
     app.init_resource::<Frames>();
+    // No time passes while the collider is built, which takes more updates on a busy machine.
+    app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::ZERO));
     let lying = Transform::from_rotation(common::LYING);
     let creature = limb(&mut app, lying.with_scale(Vec3::splat(10.0)), collider);
     app.world_mut().entity_mut(creature.root).insert(Creature);
     app.add_systems(PostUpdate, note.after(ClamberSystems::Draw));
+    rate(&mut app, 144.0);
     (app, creature.root)
 }
 
@@ -201,9 +204,15 @@ fn a_walker_on_still_ground_is_drawn_evenly() {
 
 #[test]
 fn landing_on_a_creature_whose_skin_is_ahead_is_drawn_without_a_jump() {
-    for fps in [60.0, 144.0] {
+    for (fps, phase) in (0..12).flat_map(|phase| [(60.0, phase), (144.0, phase)]) {
         let (mut app, creature) = app(DVec3::ZERO, SkinnedCollider::default());
         app.add_systems(Update, stride);
+        // Frames begin at some time of a tick.
+        let begins = f64::from(phase) / (12.0 * 60.0);
+        app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs_f64(
+            begins,
+        )));
+        app.update();
         rate(&mut app, fps);
         app.update();
         let root = *app.world().get::<Transform>(creature).unwrap();
@@ -227,7 +236,7 @@ fn landing_on_a_creature_whose_skin_is_ahead_is_drawn_without_a_jump() {
             .collect();
         for pair in steps.windows(2) {
             let change = (pair[1] - pair[0]) * DVec3::new(1.0, 0.0, 1.0);
-            assert!(change.length() < 4.6 / fps, "{fps}: {change}");
+            assert!(change.length() < 4.6 / fps, "{fps}, {phase}: {change}");
         }
     }
 }

@@ -23,7 +23,7 @@ use bevy_mesh::{Mesh, Mesh3d};
 use bevy_time::{Time, TimeUpdateStrategy, Virtual};
 use bevy_transform::components::Transform;
 
-use super::common::{self, Limb, app_with, limb, limb_mesh, wait};
+use super::common::{self, Limb, app_with, limb, limb_mesh, wait, wait_with};
 
 /// Metres a second that the creature moves along X.
 const SPEED: f32 = 2.0;

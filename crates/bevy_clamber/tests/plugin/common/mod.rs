@@ -162,8 +162,15 @@ pub(crate) fn limb(app: &mut App, place: Transform, collider: SkinnedCollider) -
 
 /// Updates the app until a collider is ready or has failed.
 pub(crate) fn wait(app: &mut App, entity: Entity) {
+    wait_with(app, entity, |_| ());
+}
+
+/// [`wait`], with a function that is called after each update. Messages live for two updates only, and the number of
+/// updates depends on how busy the machine is.
+pub(crate) fn wait_with(app: &mut App, entity: Entity, mut look: impl FnMut(&App)) {
     for _ in 0..10_000 {
         app.update();
+        look(app);
         let status = app.world().get::<ColliderStatus>(entity);
         if matches!(
             status,
