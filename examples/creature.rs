@@ -27,8 +27,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let terrain: [&dyn Obstacle; 1] = [&ground];
     let (mut states, mut blows) = (0, 0);
     for tick in 0..60 * 60 {
-        // A person of 1.75 m that stands still. If it rode on the giant, `riding` would say how.
-        let feet = DVec3::new(6.0, 0.0, 50.0);
+        // A person of 1.75 m comes nearer, and stops. If it rode on the giant, `riding` would say how.
+        let feet = DVec3::new(0.0, 0.0, (40.0 - 0.05 * f64::from(tick)).max(12.0));
         let ends = [feet + DVec3::Y * 0.3, feet + DVec3::Y * 1.45];
         let body = WorldCapsule { ends, radius: 0.3 };
         let people = [Person {
