@@ -34,8 +34,8 @@ pub(super) struct Spot {
 pub(super) struct Shown {
     before: Spot,
     now: Spot,
-    /// Spots of ticks since the last frame that are drawn differently from one tick to the next.
-    switches: Vec<[Spot; 2]>,
+    /// Ticks since the last frame from which on the climber is drawn in another way.
+    switches: Vec<Switch>,
     /// What is left of the difference between two ways to draw, metres and metres a second.
     offset: DVec3,
     fading: DVec3,
@@ -43,6 +43,30 @@ pub(super) struct Shown {
     held: Option<(Spot, DVec3)>,
     /// How far the support has carried the climber from the last frame to this one, metres.
     carried: DVec3,
+}
+
+/// A tick from which on a climber is drawn in another way: on skin instead of in the world, or the reverse.
+#[derive(Clone, Copy, Debug)]
+struct Switch {
+    /// The climber at the beginning and at the end of the tick, to be drawn in the way before.
+    before: [Spot; 2],
+    /// The same, in the way from now on.
+    after: [Spot; 2],
+    /// Another tick has come since.
+    is_over: bool,
+}
+
+impl Switch {
+    /// The difference of both ways at a fraction of the tick, metres.
+    fn difference<'a>(
+        &self,
+        fraction: f64,
+        drawn: impl Fn(&Attachment) -> Option<&'a SkinnedSurface>,
+    ) -> DVec3 {
+        let fraction = if self.is_over { 1.0 } else { fraction };
+        let at = |[from, to]: [Spot; 2]| from.draw(&drawn).0.lerp(to.draw(&drawn).0, fraction);
+        at(self.before) - at(self.after)
+    }
 }
 
 impl Spot {
@@ -112,8 +136,20 @@ impl Shown {
             }
             (true, Some(_)) => {}
         }
+        self.switches
+            .iter_mut()
+            .for_each(|switch| switch.is_over = true);
         if was.on != before.on && self.switches.len() < MOST {
-            self.switches.push([was, before]);
+            let on = was.on.as_ref();
+            let as_before = Spot {
+                on: on.and_then(|on| relative(&now, on, surface(on), dt, false)),
+                ..now
+            };
+            self.switches.push(Switch {
+                before: [was, as_before],
+                after: [before, now],
+                is_over: false,
+            });
         }
         self.before = before;
         self.now = now;
@@ -140,8 +176,8 @@ impl Shown {
         let left = libm::exp(-FADE * dt);
         self.offset = (self.offset + pull) * left;
         self.fading = (self.fading - pull * FADE) * left;
-        for [was, is] in self.switches.drain(..) {
-            self.offset += was.draw(&drawn).0 - is.draw(&drawn).0;
+        for switch in self.switches.drain(..) {
+            self.offset += switch.difference(fraction, &drawn);
         }
         let (from, to) = (self.before.draw(&drawn), self.now.draw(&drawn));
         let position = from.0.lerp(to.0, fraction) + self.offset;
