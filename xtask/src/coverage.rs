@@ -1,9 +1,9 @@
 //! Checks that a step of `cargo xtask ci` or of `cargo xtask nightly` runs each test, bench, example and program in the
 //! documentation, with the features that it requires, and each test that is marked as ignored.
 //!
-//! The steps' [`TestRun`](crate::test_run::TestRun)s list what they run, and cargo's arguments follow from the same
-//! values. Cargo's metadata lists the targets, and the sources mark ignored tests. The check covers the main workspace
-//! and all others in the repository.
+//! Each step lists its [`TestRun`](crate::test_run::TestRun)s, from which cargo's arguments follow as well. Cargo's
+//! metadata lists the targets, and the sources mark ignored tests. The check covers the main workspace and all others in
+//! the repository.
 //!
 //! A program in the documentation that is marked `no_run` is compiled with the others. A program that is marked
 //! `ignore`, or `rs` instead of `rust`, is not even compiled, so a test must have the same program.

@@ -238,7 +238,7 @@ fn walk(file: impl Read, found: &mut Found) -> Result<(), Stop> {
     }
 }
 
-/// Reads what follows the data: a summary, which is ignored, and the magic bytes at the end of the file.
+/// Reads the rest of the file after the data. It skips the summary and checks the magic bytes at the end.
 fn end_of<R: Read>(reader: &mut Reader<R>) -> Result<(), Stop> {
     let mut last: Vec<u8> = Vec::new();
     let mut piece = vec![0; 1 << 16];

@@ -4,8 +4,8 @@ use clamber_surface::geometry::Affine;
 use clamber_surface::mesh::{ColliderMesh, VertexId};
 use glam::{DAffine3, DVec3};
 
-/// The low vertices of a foot, many of which also follow the shin, so that their places depend on how the leg is bent.
-/// They are skinned in f64 by the same method as the surface.
+/// The low vertices of a foot. Many of them also follow the shin, so their places depend on the bend of the leg. They
+/// are skinned in f64 by the same method as the surface.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BlendedSole {
     /// The joints that move it, with their inverse bind matrices.

@@ -101,7 +101,7 @@ impl Bot {
     }
 
     /// True if the bot has been on the creature for some seconds and finds no way from where it is, not even with full
-    /// stamina. It then lets go and tries another entry.
+    /// stamina, or has no patch of the graph near it. It then lets go and tries another entry.
     pub fn is_lost(&self, seconds: f64) -> bool {
         let lasts = self.lost.map_or(0.0, |[first, last]| last - first);
         lasts > LOST && self.lost.is_some_and(|[_, last]| seconds - last <= LOST)
@@ -502,7 +502,7 @@ impl Bot {
             };
             find(&tireless, view.goal, &still, &any).is_none()
         };
-        self.lost = is_lost.then(|| [self.lost.map_or(seconds, |[first, _]| first), seconds]);
+        self.lost = is_lost.then(|| self.lost_until(seconds));
         self.plan = plan.map(|plan| Progress::new(plan, lasts, seconds));
     }
 
@@ -523,10 +523,15 @@ impl Bot {
         }
     }
 
+    /// Since when the bot finds no way, and now. It begins anew if the last time was too long ago to count.
+    fn lost_until(&self, seconds: f64) -> [f64; 2] {
+        let lately = self.lost.filter(|[_, last]| seconds - last <= LOST);
+        [lately.map_or(seconds, |[first, _]| first), seconds]
+    }
+
     /// The climber is on the creature, but the graph has no patch near it. If this lasts, the bot is lost.
     fn strays(&mut self, view: &View<'_>) -> ClimberInput {
-        let first = self.lost.map_or(view.seconds, |[first, _]| first);
-        self.lost = Some([first, view.seconds]);
+        self.lost = Some(self.lost_until(view.seconds));
         if self.is_lost(view.seconds) {
             self.approach.drops = true;
             return self.approach.leave(view);

@@ -6,15 +6,16 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use crate::support::{Body, ball, climber, skeleton};
-use clamber_climber::{Climber, ClimberInput, ContactQuery, StepRules};
+use clamber_climber::{Climber, ClimberInput, StepRules};
 use clamber_navigation::{
-    Bot, BotConfig, ClimbGraph, ClimbReport, Danger, Flight, Forecast, FutureSkin, GraphSource,
-    NavigationError, View,
+    Bot, BotConfig, ClimbGraph, ClimbReport, Danger, Flight, Forecast, FutureSkin, Goal,
+    GraphSource, NavigationError, View,
 };
 use clamber_surface::geometry::Similarity;
 use clamber_surface::mesh::SurfaceKind::{Fur, Stone};
 use clamber_surface::mesh::TriangleId;
 use clamber_surface::rig::{Channel, Clip, Interpolation, JointId, Keyframes, Palette};
+use clamber_surface::surface::SkinnedSurface;
 use clamber_world::{HalfSpace, Obstacle, ObstacleId};
 use glam::{DVec3, Vec3};
 
@@ -136,6 +137,37 @@ fn what_is_looked_at_grows_with_the_skin_and_not_with_its_triangles() {
     assert!(grows(fine.2, coarse.2) <= 2.0, "{coarse:?} {fine:?}");
 }
 
+/// A bot climbs on a surface above level ground at height 0, at 60 ticks a second. `look` sees each tick after the bot has
+/// chosen its input, and ends the run by returning true.
+fn climbs(
+    (bot, who): (&mut Bot, &mut Climber),
+    surface: &SkinnedSurface,
+    goal: &Goal,
+    ticks: u32,
+    mut look: impl FnMut(&Bot, &View<'_>) -> bool,
+) {
+    let floor = HalfSpace::below(0.0);
+    let obstacles: [(ObstacleId, &dyn Obstacle); 2] =
+        [(ObstacleId(0), &floor), (ObstacleId(1), surface)];
+    for tick in 0..ticks {
+        let view = View {
+            seconds: f64::from(tick) / 60.0,
+            climber: who,
+            creature: ObstacleId(1),
+            surface,
+            goal,
+            forecast: &Forecast::still(),
+            danger: Danger::None,
+            shake_ahead: 0.0,
+        };
+        let input = bot.input(&view);
+        if look(bot, &view) {
+            return;
+        }
+        who.step(&input, &obstacles, 1.0 / 60.0).unwrap();
+    }
+}
+
 /// Two walls that no way joins: a bot that holds on to one of them and wants to get to the other reports that it is
 /// lost, lets go, and goes there.
 #[test]
@@ -152,34 +184,14 @@ fn who_finds_no_way_says_so_and_tries_another_one() {
     let mut bot = Bot::new(Arc::new(graph), BotConfig::default());
     let radius = climber().climber.body.radius;
     let mut who = Climber::new(climber().climber, DVec3::new(0.0, 3.0, 1.02 * radius)).unwrap();
-    let floor = HalfSpace::below(0.0);
-    let obstacles: [(ObstacleId, &dyn Obstacle); 2] =
-        [(ObstacleId(0), &floor), (ObstacleId(1), &surface)];
-    let rule = |query: &ContactQuery<'_>| query.usual().with_grip(query.id == ObstacleId(1));
     let (mut lost, mut there) = (None, None);
-    for tick in 0..2400 {
-        let seconds = f64::from(tick) / 60.0;
-        let view = View {
-            seconds,
-            climber: &who,
-            creature: ObstacleId(1),
-            surface: &surface,
-            goal: &goal,
-            forecast: &Forecast::still(),
-            danger: Danger::None,
-            shake_ahead: 0.0,
-        };
-        if bot.is_there(&view) {
-            there = Some(seconds);
-            break;
+    climbs((&mut bot, &mut who), &surface, &goal, 2400, |bot, view| {
+        if bot.is_lost(view.seconds) {
+            lost.get_or_insert(view.seconds);
         }
-        let input = bot.input(&view);
-        if bot.is_lost(seconds) {
-            lost.get_or_insert(seconds);
-        }
-        who.step_with(&input, &obstacles, &StepRules::by(&rule), 1.0 / 60.0)
-            .unwrap();
-    }
+        there = bot.is_there(view).then_some(view.seconds);
+        there.is_some()
+    });
     let lost = lost.expect("it never says so");
     assert!((3.0..4.5).contains(&lost), "{lost}");
     assert!(there.is_some(), "{:?}", who.state());
@@ -204,33 +216,16 @@ fn a_way_over_skin_that_is_gone_is_none() {
         let mut bot = Bot::new(Arc::new(graph), BotConfig::default());
         let radius = climber().climber.body.radius;
         let mut who = Climber::new(climber().climber, DVec3::new(0.0, 2.0, 1.02 * radius)).unwrap();
-        let floor = HalfSpace::below(0.0);
-        let rule = |query: &ContactQuery<'_>| query.usual().with_grip(query.id == ObstacleId(1));
         let (mut lost, mut there) = (None, None);
-        for tick in 0..1200 {
-            let seconds = f64::from(tick) / 60.0;
-            let view = View {
-                seconds,
-                climber: &who,
-                creature: ObstacleId(1),
-                surface: &surface,
-                goal: &goal,
-                forecast: &Forecast::still(),
-                danger: Danger::None,
-                shake_ahead: 0.0,
-            };
-            if bot.is_there(&view) {
-                there.get_or_insert(seconds);
+        climbs((&mut bot, &mut who), &surface, &goal, 1200, |bot, view| {
+            if bot.is_there(view) {
+                there.get_or_insert(view.seconds);
             }
-            let input = bot.input(&view);
-            if bot.is_lost(seconds) {
-                lost.get_or_insert(seconds);
+            if bot.is_lost(view.seconds) {
+                lost.get_or_insert(view.seconds);
             }
-            let obstacles: [(ObstacleId, &dyn Obstacle); 2] =
-                [(ObstacleId(0), &floor), (ObstacleId(1), &surface)];
-            who.step_with(&input, &obstacles, &StepRules::by(&rule), 1.0 / 60.0)
-                .unwrap();
-        }
+            false
+        });
         assert_eq!(
             [lost.is_some(), there.is_some()],
             [gone, !gone],
@@ -255,33 +250,25 @@ fn who_is_where_the_graph_knows_no_place_says_so_and_gets_off() {
     let mut bot = Bot::new(Arc::new(graph), BotConfig::default());
     let radius = climber().climber.body.radius;
     let mut who = Climber::new(climber().climber, DVec3::new(8.0, 39.3 + radius, 0.0)).unwrap();
-    let floor = HalfSpace::below(0.0);
-    let obstacles: [(ObstacleId, &dyn Obstacle); 2] =
-        [(ObstacleId(0), &floor), (ObstacleId(1), &surface)];
     let (mut strays, mut lost, mut off) = (None, None, None);
-    for tick in 0..1800 {
-        let seconds = f64::from(tick) / 60.0;
-        let view = View {
-            seconds,
-            climber: &who,
-            creature: ObstacleId(1),
-            surface: &surface,
-            goal: &goal,
-            forecast: &Forecast::still(),
-            danger: Danger::None,
-            shake_ahead: 0.0,
-        };
+    climbs((&mut bot, &mut who), &surface, &goal, 1800, |bot, view| {
         if view.is_on_creature() {
-            strays.get_or_insert(seconds);
+            if strays.is_none() {
+                // A bot that is asked again after a long pause has not been lost all the time.
+                let seconds = view.seconds + 20.0;
+                let mut later = bot.clone();
+                later.input(&View { seconds, ..*view });
+                assert!(!later.is_lost(seconds));
+            }
+            strays.get_or_insert(view.seconds);
         } else if lost.is_some() {
-            off.get_or_insert(seconds);
+            off.get_or_insert(view.seconds);
         }
-        let input = bot.input(&view);
-        if bot.is_lost(seconds) {
-            lost.get_or_insert(seconds);
+        if bot.is_lost(view.seconds) {
+            lost.get_or_insert(view.seconds);
         }
-        who.step(&input, &obstacles, 1.0 / 60.0).unwrap();
-    }
+        false
+    });
     let strays = strays.expect("it is never on the ball");
     let lost: f64 = lost.expect("it never says so");
     assert!((2.9..4.5).contains(&(lost - strays)), "{strays} {lost}");

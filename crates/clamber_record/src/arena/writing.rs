@@ -123,7 +123,12 @@ impl<W: Write> ArenaWriting<W> {
         }
         let mut entities: Vec<SceneEntity> = Vec::new();
         // Fighters that have left are no longer drawn.
-        let is_here = |id: &FighterId| taken.fighters.iter().any(|fighter| fighter.id == *id);
+        let is_here = |id: &FighterId| {
+            let found = taken
+                .fighters
+                .binary_search_by_key(id, |fighter| fighter.id);
+            found.is_ok()
+        };
         let gone = self.fighters.extract_if(.., |id, _| !is_here(id));
         let deletions = gone.map(|(_, (name, _))| deletion(now, &name)).collect();
         for fighter in &taken.fighters {
@@ -143,7 +148,12 @@ impl<W: Write> ArenaWriting<W> {
             entities,
         };
         self.output.send(self.scene, now, &scene)?;
-        let is_here = |id: &CreatureId| taken.creatures.iter().any(|creature| creature.id == *id);
+        let is_here = |id: &CreatureId| {
+            let found = taken
+                .creatures
+                .binary_search_by_key(id, |creature| creature.id);
+            found.is_ok()
+        };
         for (id, frame) in self.drawn.extract_if(.., |id, _| !is_here(id)) {
             if let Some((_, skin)) = self.creatures.get(&id) {
                 self.output.send(*skin, now, &no_skin(now, &frame))?;
@@ -201,7 +211,9 @@ impl<W: Write> ArenaWriting<W> {
         let mut points = self.skin.message(now, mesh, &self.positions, scale);
         let frame = &creature.figure.joints.figure;
         points.frame_id.clone_from(frame);
-        self.drawn.insert(creature.id, frame.clone());
+        self.drawn
+            .entry(creature.id)
+            .or_insert_with(|| frame.clone());
         self.output.send(skin, now, &points)
     }
 }
