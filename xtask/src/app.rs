@@ -1,4 +1,4 @@
-//! Checks `examples/bevy_app`, which has a workspace of its own.
+//! Checks `examples/bevy`, which has a workspace of its own.
 
 use cargo_metadata::Metadata;
 
@@ -7,7 +7,7 @@ use crate::run::{IGNORE_RUST_VERSION, cargo, cargo_output, cargo_refuses};
 use crate::test_run::{self, Targets, TestRun};
 
 /// Manifest of the app's workspace, from the root of the repository.
-const WORKSPACE: &str = "examples/bevy_app/Cargo.toml";
+const WORKSPACE: &str = "examples/bevy/Cargo.toml";
 
 /// Options that the checks pass to the game.
 const GIVEN: [&str; 3] = [SCRIPT, SCREENSHOT, FILMED];
@@ -108,7 +108,7 @@ fn play_all() -> Result<(), String> {
 /// Climbs the giant, and draws a picture at the end. The game itself checks the arrows' places.
 fn play() -> Result<(), String> {
     remove(PICTURE)?;
-    let script = "examples/bevy_app/climb.script";
+    let script = "examples/bevy/climb.script";
     let said = cargo_output(&played(&[SCRIPT, script, SCREENSHOT, PICTURE]))?;
     print!("{said}");
     let number = |before: &str| {
@@ -161,7 +161,7 @@ fn refuse(file: &str, content: Option<&str>, says: &str) -> Result<(), String> {
     if let Some(content) = content {
         std::fs::write(file, content).map_err(|error| format!("{file}: {error}"))?;
     }
-    let script = [SCRIPT, "examples/bevy_app/climb.script"];
+    let script = [SCRIPT, "examples/bevy/climb.script"];
     let said = cargo_refuses(&played(
         &[&script[..], &[SCREENSHOT, "target/none.png", file]].concat(),
     ))?;

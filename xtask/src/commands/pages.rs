@@ -141,7 +141,7 @@ bench --bench tick`, in `cargo`. A `clamber::body` and a `Body` are none.
 # a comment
 $ cargo run --example battle -- \\
     --seconds 1   # and this
-cd examples/bevy_app
+cd examples/bevy
 cargo run
 '''
 
@@ -157,7 +157,7 @@ let a = 1; // `cargo no`
             "cargo bench --bench tick",
             "A=1 cargo run | grep x",
             "cargo run --example battle -- --seconds 1",
-            "cd examples/bevy_app && cargo run",
+            "cd examples/bevy && cargo run",
             "cargo xtask soak",
         ];
         assert_eq!(found, expected);

@@ -121,10 +121,10 @@ fn the_program_is_run_by_its_tests() {
 #[test]
 fn another_workspace_is_entered() {
     assert_step(
-        "cd examples/bevy_app && cargo run --release -- --screenshot a.png",
+        "cd examples/bevy && cargo run --release -- --screenshot a.png",
         "nightly: app",
     );
-    assert_nobody("cd examples/bevy_app && cargo run --features gamepad");
+    assert_nobody("cd examples/bevy && cargo run --features gamepad");
     assert_nobody("cargo run --release --example battle -- --out x | cat");
 }
 

@@ -16,7 +16,15 @@ use crate::{Arguments, Task, ci, nightly};
 const DOCUMENTATION: &str = "documentation";
 
 /// Folders at the root of the repository. A word that begins with one of them is a path that must exist.
-const FOLDERS: [&str; 5] = [".ci/", "assets/", "crates/", "examples/", "peers/"];
+const FOLDERS: [&str; 7] = [
+    ".ci/",
+    "assets/",
+    "benches/",
+    "crates/",
+    "examples/",
+    "peers/",
+    "tests/",
+];
 
 /// The variable that may precede a command without changing it.
 const DATA: &str = "CLAMBER_TEST_DATA=";

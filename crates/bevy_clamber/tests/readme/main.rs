@@ -128,8 +128,8 @@ fn the_readme_has_the_programs_word_for_word() {
     let text = |text: &str| text.replace("\r\n", "\n");
     let readme = text(include_str!("../../README.md"));
     // The first two need a renderer; they are built with the game.
-    let first = include_str!("../../../../examples/bevy_app/examples/first.rs");
-    let fox = include_str!("../../../../examples/bevy_app/examples/fox.rs");
+    let first = include_str!("../../../../examples/bevy/examples/first.rs");
+    let fox = include_str!("../../../../examples/bevy/examples/fox.rs");
     for program in [first, fox, include_str!("headless.rs")] {
         let block = format!("```rust,ignore\n{}```\n", text(program));
         assert!(readme.contains(&block), "not in the README:\n{block}");

@@ -1,4 +1,4 @@
-//! Benches of clamber, in `benches/`. Each answers one question. Run one from the repository's root:
+//! Benches of clamber. Each answers one question. Run one from the repository's root:
 //!
 //! ```sh
 //! cargo bench -p clamber_benches --bench tick

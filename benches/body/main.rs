@@ -40,7 +40,7 @@ fn main() -> ExitCode {
 }
 
 fn run(brief: bool) -> Result<(), Box<dyn Error>> {
-    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/hero.glb");
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../assets/hero.glb");
     let rig = clamber::gltf::load(file)?;
     let humanoid = Humanoid::find(&rig.skeleton)?;
     let figure = Figure::new(rig.skeleton, humanoid, rig.clips)?;

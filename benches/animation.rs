@@ -39,7 +39,7 @@ fn main() -> ExitCode {
 }
 
 fn run(brief: bool) -> Result<(), Box<dyn Error>> {
-    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/hero.glb");
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../assets/hero.glb");
     let rig = clamber::gltf::load(file)?;
     let set = AnimationSet::new(&rig.skeleton, rig.clips.clone())?;
     let find = |name: &str| set.find(name).ok_or("no such clip");
