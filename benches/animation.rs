@@ -16,7 +16,7 @@ use std::time::Instant;
 
 use clamber::animation::ik::{LookAt, LookMemory, PoleMemory, TwoBoneGoal};
 use clamber::animation::{AnimationSet, Animator, ClipId, Layer, LayerKind, PoseBuffers};
-use clamber::gltf::Rig;
+use clamber::mesh::Rig;
 use clamber::rig::{Palette, Playback, Pose};
 use clamber_body::Humanoid;
 use clamber_scenes::measure::{Bound, Cells, is_brief, quantile};
@@ -40,7 +40,7 @@ fn main() -> ExitCode {
 
 fn run(brief: bool) -> Result<(), Box<dyn Error>> {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../assets/hero.glb");
-    let rig = clamber::gltf::load(file)?;
+    let rig = clamber::gltf::load(file)?.rig;
     let set = AnimationSet::new(&rig.skeleton, rig.clips.clone())?;
     let find = |name: &str| set.find(name).ok_or("no such clip");
     let (walk, run) = (find("walk")?, find("run")?);

@@ -61,13 +61,13 @@ fn main() -> ExitCode {
 }
 
 fn run(brief: bool) -> Result<(), Box<dyn Error>> {
-    let rig = giant::rig()?;
-    let walk = rig.clip("walk").ok_or("no walk")?;
-    let (mut pose, mut palette, mut time) = (rig.skeleton.rest_pose(), Palette::default(), 0.0);
+    let rig = giant::model()?;
+    let walk = rig.rig.clip("walk").ok_or("no walk")?;
+    let (mut pose, mut palette, mut time) = (rig.rig.skeleton.rest_pose(), Palette::default(), 0.0);
     let mut sampling = || -> Result<(), Box<dyn Error>> {
         time += DT;
         walk.sample_into(time, Playback::Loop, &mut pose)?;
-        rig.skeleton.palette_into(&pose, &mut palette)?;
+        rig.rig.skeleton.palette_into(&pose, &mut palette)?;
         Ok(())
     };
     let world = valley::world();

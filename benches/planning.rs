@@ -24,7 +24,7 @@ use clamber::surface::SkinnedSurface;
 use clamber::world::{HalfSpace, Obstacle, ObstacleId};
 use clamber_navigation::{
     Bot, BotConfig, ClimbGraph, Danger, Flight, Footing, Forecast, FutureSkin, GraphConfig,
-    GraphOrigin, GraphSource, Start, View,
+    GraphOrigin, Start, View,
 };
 use clamber_scenes::measure::{Bound, Cells, is_brief, quantile};
 use clamber_scenes::{Creature, giant};
@@ -78,20 +78,14 @@ fn run(brief: bool) -> Result<(), Failure> {
 
 /// The time to read the giant's graph from its cache file, seconds.
 fn read(creature: &Creature) -> Result<f64, Failure> {
-    let (world_from_model, ground) = creature.standing(HEIGHT)?;
-    let source = GraphSource {
-        skeleton: &creature.skeleton,
-        mesh: &creature.collider,
-        clips: &creature.clips,
-        rate: 1.0,
-        plates: &[],
-        weak_points: &creature.weak_points,
-        world_from_model,
-        ground,
-    };
-    let config = GraphConfig::new(ClimberConfig::colossus_climber());
+    let mut config = GraphConfig::new(ClimberConfig::colossus_climber());
+    (config.world_from_model, config.ground) = creature.standing(HEIGHT)?;
     let folder = std::env::temp_dir().join("clamber_planning");
-    let get = || ClimbGraph::cached(&folder, &source, &config, |_| ControlFlow::Continue(()));
+    let get = || {
+        ClimbGraph::cached(&folder, &creature.rig(), &config, |_| {
+            ControlFlow::Continue(())
+        })
+    };
     get()?;
     let start = Instant::now();
     let cached = get()?;

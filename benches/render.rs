@@ -96,7 +96,7 @@ fn measure_frames(gpu: Gpu, effort: &Effort, cells: &mut Cells) -> Result<(), Bo
     let [width, rows] = SIZE;
     let what = format!("battle of {width} x {rows} on {}", gpu.name());
     let mut renderer = Renderer::new(gpu, width, rows)?;
-    let seen = add_visual(&mut renderer, &giant::rig()?)?;
+    let seen = add_visual(&mut renderer, &giant::model()?)?;
     let mut stage = Stage::new(&mut renderer, seen)?;
     // The first frame is not counted.
     let mut measure = |draw: &dyn Fn(&mut Renderer, &Frame<'_>) -> Result<(), RenderError>| {

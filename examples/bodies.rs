@@ -11,7 +11,8 @@ use std::process::ExitCode;
 use clamber::body::{Body, BodyFrame, Figure, Humanoid, Retarget};
 use clamber::geometry::Similarity;
 use clamber::glam::DVec3;
-use clamber::gltf::Rig;
+use clamber::gltf::Model;
+
 use clamber::render::{
     Camera, Drawn, Frame, Gpu, Image, Light, Overlay, RenderMeshId, Renderer, TextSize,
 };
@@ -44,7 +45,7 @@ const TICK: f64 = 1.0 / 60.0;
 /// Width and height of a picture on a sheet, pixels.
 const SIZE: [u32; 2] = [360, 440];
 
-fn hero() -> Result<Rig, Box<dyn Error>> {
+fn hero() -> Result<Model, Box<dyn Error>> {
     Ok(clamber::gltf::load(concat!(
         env!("CARGO_MANIFEST_DIR"),
         "/assets/hero.glb"
@@ -52,19 +53,20 @@ fn hero() -> Result<Rig, Box<dyn Error>> {
 }
 
 /// A figure from a file, with the hero's clips.
-fn figure(file: Option<&Path>) -> Result<(Figure, Rig), Box<dyn Error>> {
+fn figure(file: Option<&Path>) -> Result<(Figure, Model), Box<dyn Error>> {
     let hero = hero()?;
-    let own = Humanoid::find(&hero.skeleton)?;
+    let own = Humanoid::find(&hero.rig.skeleton)?;
     let Some(file) = file else {
         return Ok((
-            Figure::new(hero.skeleton.clone(), own, hero.clips.clone())?,
+            Figure::new(hero.rig.skeleton.clone(), own, hero.rig.clips.clone())?,
             hero,
         ));
     };
-    let rig = clamber::gltf::load(file)?;
-    let other = Humanoid::find(&rig.skeleton)?;
-    let retarget = Retarget::new((&hero.skeleton, &own), (&rig.skeleton, &other))?;
+    let model = clamber::gltf::load(file)?;
+    let other = Humanoid::find(&model.rig.skeleton)?;
+    let retarget = Retarget::new((&hero.rig.skeleton, &own), (&model.rig.skeleton, &other))?;
     let clips = hero
+        .rig
         .clips
         .iter()
         .map(|clip| retarget.clip(clip))
@@ -72,8 +74,8 @@ fn figure(file: Option<&Path>) -> Result<(Figure, Rig), Box<dyn Error>> {
     let leg = |body: &Humanoid| body.legs[0].length();
     let scale = leg(&own) / leg(&other);
     Ok((
-        Figure::with_scale(rig.skeleton.clone(), other, clips, scale)?,
-        rig,
+        Figure::with_scale(model.rig.skeleton.clone(), other, clips, scale)?,
+        model,
     ))
 }
 
@@ -139,12 +141,12 @@ fn run(options: &Options) -> Result<(), Box<dyn Error>> {
 fn sheet(
     scene: &Scene,
     figure: &Figure,
-    rig: &Rig,
+    model: &Model,
     options: &Options,
 ) -> Result<Image, Box<dyn Error>> {
     let [width, height] = SIZE;
     let mut renderer = Renderer::new(Gpu::new()?, width, height)?;
-    let person = picture::add_visual(&mut renderer, rig)?;
+    let person = picture::add_visual(&mut renderer, model)?;
     let mut stage = Stage::new(scene)?;
     let mut things = Vec::new();
     for surface in &stage.surfaces {

@@ -3,24 +3,16 @@
 use std::sync::Arc;
 
 use clamber::colossus::{
-    Brain, Creature, CreatureConfig, CreatureEvent, CreatureKind, CreatureParts, Person,
-    Surroundings,
+    Brain, Creature, CreatureConfig, CreatureEvent, CreatureKind, Person, Surroundings,
 };
 use clamber::glam::DVec3;
 use clamber::world::{HalfSpace, Obstacle, WorldCapsule};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let rig = clamber::gltf::load("assets/colossus.glb")?;
-    let parts = CreatureParts {
-        skeleton: rig.skeleton,
-        clips: rig.clips,
-        mesh: rig.collider,
-        materials: rig.collider_materials,
-        weak_points: rig.weak_points,
-    };
+    let rig = clamber::gltf::load("assets/colossus.glb")?.rig;
     let brain = std::fs::read_to_string("assets/colossus.brain.json")?;
     let brain = Brain::from_json(&brain, 1.0 / 60.0)?; // 60 ticks a second
-    let kind = Arc::new(CreatureKind::new(parts, brain)?);
+    let kind = Arc::new(CreatureKind::new(&rig, brain)?);
     let mut giant = Creature::new(Arc::clone(&kind), CreatureConfig::default())?;
 
     let ground = HalfSpace::below(0.0);

@@ -3,23 +3,16 @@
 use std::sync::Arc;
 
 use clamber::climber::ClimberInput;
-use clamber::colossus::{Brain, CreatureConfig, CreatureKind, CreatureParts};
+use clamber::colossus::{Brain, CreatureConfig, CreatureKind};
 use clamber::fight::{Arena, ArenaConfig, ArenaEvent, FighterConfig, actions};
 use clamber::glam::DVec3;
 use clamber::world::{HalfSpace, Obstacle, ObstacleId};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let rig = clamber::gltf::load("assets/colossus.glb")?;
-    let parts = CreatureParts {
-        skeleton: rig.skeleton,
-        clips: rig.clips,
-        mesh: rig.collider,
-        materials: rig.collider_materials,
-        weak_points: rig.weak_points,
-    };
+    let rig = clamber::gltf::load("assets/colossus.glb")?.rig;
     let config = ArenaConfig::default(); // 60 ticks a second
     let brain = std::fs::read_to_string("assets/colossus.brain.json")?;
-    let kind = CreatureKind::new(parts, Brain::from_json(&brain, config.tick)?)?;
+    let kind = CreatureKind::new(&rig, Brain::from_json(&brain, config.tick)?)?;
 
     let mut arena = Arena::new(config)?;
     arena.add_creature(Arc::new(kind), CreatureConfig::default())?;

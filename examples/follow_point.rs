@@ -6,7 +6,7 @@ use clamber::prelude::*;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let dt = 1.0 / 60.0;
-    let creature = clamber::gltf::load("assets/colossus.glb")?;
+    let creature = clamber::gltf::load("assets/colossus.glb")?.rig;
     let shake = creature.clip("shake").ok_or("no shake")?;
     let far_away = Similarity::from_translation(DVec3::new(1e5, 0.0, -1e5));
     let mut surface = SkinnedSurface::new(creature.collider.clone());

@@ -156,7 +156,7 @@ fn probe(reach: f64) -> GroundProbe {
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let giant = clamber::gltf::load("assets/colossus.glb")?;
+    let giant = clamber::gltf::load("assets/colossus.glb")?.rig;
     let clip = giant.clip("walk").ok_or("no walk")?;
     let rest = giant.skeleton.rest_pose();
     let pace = DVec3::Z * clip.ground_speed().ok_or("no speed")?;

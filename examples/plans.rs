@@ -10,9 +10,9 @@ use std::sync::mpsc::channel;
 
 use clamber::climber::ContactQuery;
 use clamber::glam::DVec3;
-use clamber::gltf::{LoadOptions, Rig, load_with};
+use clamber::gltf::{LoadOptions, load_with};
 use clamber::navigation::{
-    Bot, BotConfig, ClimbGraph, Danger, Forecast, FutureSkin, GraphConfig, GraphSource, View,
+    Bot, BotConfig, ClimbGraph, Danger, Forecast, FutureSkin, GraphConfig, View,
 };
 use clamber::prelude::*;
 use clamber::world::HalfSpace;
@@ -28,7 +28,7 @@ const GIANT: ObstacleId = ObstacleId(1);
 
 fn main() -> Result<(), Failure> {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/colossus.glb");
-    let rig = Arc::new(load_with(file, &LoadOptions::default().with_height(40.0))?);
+    let rig = Arc::new(load_with(file, &LoadOptions::default().with_height(40.0))?.rig);
     let mut config = GraphConfig::new(ClimberConfig::colossus_climber());
     config.grips = vec![SurfaceKind::Fur, SurfaceKind::Stone];
     let graph = graph(&rig, &config)?;
@@ -99,18 +99,8 @@ fn graph(rig: &Arc<Rig>, config: &GraphConfig) -> Result<Arc<ClimbGraph>, Failur
     let (rig, config) = (Arc::clone(rig), config.clone());
     let (tell, told) = channel();
     let build = std::thread::spawn(move || {
-        let source = GraphSource {
-            skeleton: &rig.skeleton,
-            mesh: &rig.collider,
-            clips: &rig.clips,
-            rate: 1.0,
-            plates: &[],
-            weak_points: &rig.weak_points,
-            world_from_model: Similarity::IDENTITY,
-            ground: 0.0,
-        };
         let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/target/plans");
-        ClimbGraph::cached(folder.as_ref(), &source, &config, |progress| {
+        ClimbGraph::cached(folder.as_ref(), &rig, &config, |progress| {
             // A receiver that has been dropped cancels the build.
             match tell.send(progress) {
                 Ok(()) => ControlFlow::Continue(()),

@@ -4,7 +4,7 @@ use clamber::glam::DVec3;
 use clamber::prelude::*;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let creature = clamber::gltf::load("assets/colossus.glb")?;
+    let creature = clamber::gltf::load("assets/colossus.glb")?.rig;
     let walk = creature.clip("walk").ok_or("no walk")?;
     let mut surface = SkinnedSurface::new(creature.collider.clone());
     let above = DVec3::new(0.0, 60.0, 4.0);

@@ -5,14 +5,14 @@
     reason = "a test's helpers may fail like the test"
 )]
 
-use clamber::gltf::{LoadOptions, Rig, load, load_with};
+use clamber::gltf::{LoadOptions, Model, load, load_with};
 use clamber::mesh::VertexId;
 use clamber::prelude::*;
 use clamber_scenes::closed::{Flaws, flaws, volume};
 use clamber_scenes::giant;
 use glam::{DVec3, Vec3};
 
-fn rig() -> Rig {
+fn model() -> Model {
     load(giant::path()).unwrap()
 }
 
@@ -30,46 +30,60 @@ fn positions_of(surface: &SkinnedSurface) -> Vec<Vec3> {
 
 #[test]
 fn the_file_has_the_expected_joints_meshes_clips_weak_points_and_tags() {
-    let rig = rig();
-    let joints = rig.skeleton.joints().len();
+    let model = model();
+    let joints = model.rig.skeleton.joints().len();
     assert!(joints >= 40, "{joints} joints");
-    let vertices = rig.collider.positions().len();
+    let vertices = model.rig.collider.positions().len();
     assert!((5_000..=10_000).contains(&vertices), "{vertices} vertices");
-    let seen: usize = rig.visual.iter().map(|seen| seen.positions.len()).sum();
+    let seen: usize = model.visual.iter().map(|seen| seen.positions.len()).sum();
     assert!(
         (50_000..=100_000).contains(&seen),
         "{seen} vertices to be seen"
     );
-    for seen in &rig.visual {
+    for seen in &model.visual {
         assert_eq!(seen.normals.len(), seen.positions.len());
         assert_eq!(seen.tex_coords[0].len(), seen.positions.len());
     }
-    let clips: Vec<&str> = rig.clips.iter().map(|clip| clip.name.as_str()).collect();
+    let clips: Vec<&str> = model
+        .rig
+        .clips
+        .iter()
+        .map(|clip| clip.name.as_str())
+        .collect();
     for name in ["idle", "walk", "shake", "swipe", "stomp", "stagger", "die"] {
         assert!(clips.contains(&name), "{name} of {clips:?}");
     }
     assert_eq!(clips.len(), 26, "{clips:?}");
-    assert_eq!(rig.weak_points.len(), 3);
-    let major: Vec<_> = rig.weak_points.iter().filter(|point| point.major).collect();
+    assert_eq!(model.rig.weak_points.len(), 3);
+    let major: Vec<_> = model
+        .rig
+        .weak_points
+        .iter()
+        .filter(|point| point.major)
+        .collect();
     assert_eq!(major.len(), 1);
-    let joint = &rig.skeleton.joints()[major[0].joint.0 as usize];
+    let joint = &model.rig.skeleton.joints()[major[0].joint.0 as usize];
     assert!(joint.name.to_lowercase().contains("head"), "{}", joint.name);
     let has = |kind, ledge| {
         let tag = SurfaceTag {
             ledge,
             ..SurfaceTag::new(kind)
         };
-        rig.collider.tags().contains(&tag)
+        model.rig.collider.tags().contains(&tag)
     };
     assert!(has(SurfaceKind::Fur, false) && has(SurfaceKind::Stone, true));
     assert!(has(SurfaceKind::Stone, false) && has(SurfaceKind::Skin, false));
-    assert!(rig.report.warnings.is_empty(), "{:?}", rig.report.warnings);
     assert!(
-        rig.report.build.worst_weight_error < 1e-5,
+        model.report.warnings.is_empty(),
         "{:?}",
-        rig.report.build
+        model.report.warnings
     );
-    let (low, high) = heights(rig.collider.positions());
+    assert!(
+        model.report.build.worst_weight_error < 1e-5,
+        "{:?}",
+        model.report.build
+    );
+    let (low, high) = heights(model.rig.collider.positions());
     assert!(
         (36.0..44.0).contains(&(high - low)) && low.abs() < 0.5,
         "{low} to {high}"
@@ -78,27 +92,28 @@ fn the_file_has_the_expected_joints_meshes_clips_weak_points_and_tags() {
 
 #[test]
 fn its_collision_mesh_is_closed_and_faces_outwards() {
-    let rig = rig();
-    assert_eq!(rig.report.build.cracks, 0);
-    assert_eq!(flaws(&rig.collider), Flaws::default());
+    let model = model();
+    assert_eq!(model.report.build.cracks, 0);
+    assert_eq!(flaws(&model.rig.collider), Flaws::default());
     assert!(
-        volume(&rig.collider) > 1_000.0,
+        volume(&model.rig.collider) > 1_000.0,
         "{} m^3",
-        volume(&rig.collider)
+        volume(&model.rig.collider)
     );
 }
 
 #[test]
 fn ledges_are_level_and_wide_enough_to_stand_on() {
-    let rig = rig();
+    let model = model();
     let mut area = 0.0;
-    for (corners, tag) in rig
+    for (corners, tag) in model
+        .rig
         .collider
         .triangles()
         .iter()
-        .zip(rig.collider.tags().iter())
+        .zip(model.rig.collider.tags().iter())
     {
-        let [a, b, c] = corners.map(|v| rig.collider.positions()[v.index()].as_dvec3());
+        let [a, b, c] = corners.map(|v| model.rig.collider.positions()[v.index()].as_dvec3());
         let normal = (b - a).cross(c - a);
         if tag.ledge && normal.y > 0.98 * normal.length() {
             area += normal.length() * 0.5;
@@ -109,13 +124,13 @@ fn ledges_are_level_and_wide_enough_to_stand_on() {
 
 #[test]
 fn loops_close_and_no_clip_sinks_into_the_ground() {
-    let rig = rig();
-    let rest = rig.skeleton.rest_pose();
-    let mut surface = SkinnedSurface::new(rig.collider.clone());
-    for clip in &rig.clips {
+    let model = model();
+    let rest = model.rig.skeleton.rest_pose();
+    let mut surface = SkinnedSurface::new(model.rig.collider.clone());
+    for clip in &model.rig.clips {
         let ends = [0.0, clip.duration()].map(|time| {
             let pose = clip.sample(&rest, time, Playback::Clamp).unwrap();
-            rig.skeleton.palette(&pose).unwrap()
+            model.rig.skeleton.palette(&pose).unwrap()
         });
         if ["idle", "walk", "shake"].contains(&clip.name.as_str()) {
             let mut at = |palette| {
@@ -130,7 +145,7 @@ fn loops_close_and_no_clip_sinks_into_the_ground() {
         for k in 0..20 {
             let time = clip.duration() * f64::from(k) / 20.0;
             let pose = clip.sample(&rest, time, Playback::Clamp).unwrap();
-            let palette = rig.skeleton.palette(&pose).unwrap();
+            let palette = model.rig.skeleton.palette(&pose).unwrap();
             surface.advance(&palette, Similarity::IDENTITY).unwrap();
             let (low, high) = heights(&positions_of(&surface));
             assert!(
@@ -188,7 +203,7 @@ fn its_feet_do_not_slide_when_it_walks_at_its_speed() {
 
 #[test]
 fn it_can_be_made_with_any_number_of_vertices() {
-    let whole = volume(&rig().collider);
+    let whole = volume(&model().rig.collider);
     for vertices in [3_000, 20_000, 100_000] {
         let mesh = giant::giant_of(vertices).unwrap().collider;
         let found = mesh.positions().len();
@@ -206,19 +221,19 @@ fn it_can_be_made_with_any_number_of_vertices() {
 }
 
 /// Skinned vertices of the giant at rest, and in the middle of its walk.
-fn skinned(rig: &Rig) -> [Vec<Vec3>; 2] {
-    let rest = rig.skeleton.rest_pose();
-    let walk = rig.clip("walk").unwrap();
+fn skinned(model: &Model) -> [Vec<Vec3>; 2] {
+    let rest = model.rig.skeleton.rest_pose();
+    let walk = model.rig.clip("walk").unwrap();
     let stride = walk.sample(&rest, 0.4 * walk.duration(), Playback::Loop);
     [rest, stride.unwrap()].map(|pose| {
-        let palette = rig.skeleton.palette(&pose).unwrap();
-        clamber::skin::skin(&rig.collider, palette.matrices()).unwrap()
+        let palette = model.rig.skeleton.palette(&pose).unwrap();
+        clamber::skin::skin(&model.rig.collider, palette.matrices()).unwrap()
     })
 }
 
 #[test]
 fn it_can_be_loaded_at_any_height() {
-    let own = rig();
+    let own = model();
     for wanted in [1.8, 250.0f32] {
         let options = LoadOptions::default().with_height(wanted);
         let scaled = load_with(giant::path(), &options).unwrap();
@@ -233,7 +248,7 @@ fn it_can_be_loaded_at_any_height() {
                 assert!(off < 2e-6 * f64::from(wanted), "{own} became {scaled}");
             }
         }
-        for (own, scaled) in own.weak_points.iter().zip(&scaled.weak_points) {
+        for (own, scaled) in own.rig.weak_points.iter().zip(&scaled.rig.weak_points) {
             let radius = f64::from(own.radius) * factor;
             assert!((radius - f64::from(scaled.radius)).abs() < 1e-6 * radius);
         }

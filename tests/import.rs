@@ -9,7 +9,7 @@ use std::path::Path;
 use std::sync::{Arc, Mutex};
 
 use clamber::geometry::Ray;
-use clamber::gltf::{GltfErrorKind, LoadOptions, Rig, load, load_slice, load_with};
+use clamber::gltf::{GltfErrorKind, LoadOptions, Model, load, load_slice, load_with};
 use clamber::prelude::*;
 use clamber_scenes::test_data;
 use glam::{DVec3, Vec3};
@@ -50,7 +50,7 @@ fn every_file_loads_and_moves_or_is_refused_for_a_known_reason() {
             (*name == format!("{place}{file}")).then(|| format!("{place}{reason}"))
         };
         match (load(path), REFUSED.iter().find_map(known)) {
-            (Ok(rig), None) => pose_in_every_clip(name, &rig),
+            (Ok(model), None) => pose_in_every_clip(name, &model),
             (Err(error), Some(expected)) => {
                 let error = error.to_string();
                 assert!(error.contains(&expected), "{error}\nexpected {expected}");
@@ -65,21 +65,21 @@ fn every_file_loads_and_moves_or_is_refused_for_a_known_reason() {
     }
 }
 
-fn pose_in_every_clip(name: &str, rig: &Rig) {
-    let mut surface = SkinnedSurface::new(rig.collider.clone());
-    let rest = rig.skeleton.rest_pose();
+fn pose_in_every_clip(name: &str, model: &Model) {
+    let mut surface = SkinnedSurface::new(model.rig.collider.clone());
+    let rest = model.rig.skeleton.rest_pose();
     let mut positions = Vec::new();
     let middle = |clip: &Clip| {
         clip.sample(&rest, clip.duration() * 0.5, Playback::Loop)
             .unwrap()
     };
-    for pose in std::iter::once(rest.clone()).chain(rig.clips.iter().map(middle)) {
-        let palette = rig.skeleton.palette(&pose).unwrap();
+    for pose in std::iter::once(rest.clone()).chain(model.rig.clips.iter().map(middle)) {
+        let palette = model.rig.skeleton.palette(&pose).unwrap();
         surface.advance(&palette, Similarity::IDENTITY).unwrap();
         surface.skin_all(&mut positions);
         assert!(positions.iter().all(|p| p.is_finite()), "{name}");
     }
-    for seen in &rig.visual {
+    for seen in &model.visual {
         let vertices = seen.positions.len();
         assert_eq!(seen.influence_ends.len(), vertices, "{name}, {}", seen.name);
         let corners = seen
@@ -104,8 +104,8 @@ fn fixtures_show_the_features_that_they_are_made_for() {
         let name = format!(
             "AssetGenerator-0.6/BabylonJS+MeshesLibrary/Mesh_PrimitiveMode/Mesh_PrimitiveMode_{number:02}.gltf"
         );
-        let rig = load(fixtures.join(&name)).unwrap();
-        let area: f64 = areas(&rig).sum();
+        let model = load(fixtures.join(&name)).unwrap();
+        let area: f64 = areas(&model).sum();
         assert!((area - 1.0).abs() < 1e-6, "{name}: {area}");
     }
     // Two sets of weights, and sparse positions.
@@ -116,12 +116,13 @@ fn fixtures_show_the_features_that_they_are_made_for() {
         sets.report.build
     );
     let sparse = load(fixtures.join("gltf-rs+gltf/box_sparse.glb")).unwrap();
-    assert_eq!(sparse.collider.triangles().len(), 12);
+    assert_eq!(sparse.rig.collider.triangles().len(), 12);
     // Some of its nodes mirror.
     let mirrored = load(fixtures.join("unavi-xyz+gltf_kun/NegativeScaleTest.glb")).unwrap();
     let palette = mirrored
+        .rig
         .skeleton
-        .palette(&mirrored.skeleton.rest_pose())
+        .palette(&mirrored.rig.skeleton.rest_pose())
         .unwrap();
     let flipped = palette
         .matrices()
@@ -132,9 +133,9 @@ fn fixtures_show_the_features_that_they_are_made_for() {
 }
 
 /// Areas of a rig's triangles at rest.
-fn areas(rig: &Rig) -> impl Iterator<Item = f64> {
-    let positions = rig.collider.positions();
-    rig.collider.triangles().iter().map(|corners| {
+fn areas(model: &Model) -> impl Iterator<Item = f64> {
+    let positions = model.rig.collider.positions();
+    model.rig.collider.triangles().iter().map(|corners| {
         let [a, b, c] = corners.map(|v| positions[v.index()].as_dvec3());
         (b - a).cross(c - a).length() * 0.5
     })
@@ -146,9 +147,13 @@ fn at_rest_a_man_stands_upright() {
     let Some(path) = test_data::file("bind pose", "models/CesiumMan.glb") else {
         return;
     };
-    let rig = load(&path).unwrap();
-    let palette = rig.skeleton.palette(&rig.skeleton.rest_pose()).unwrap();
-    let mut surface = SkinnedSurface::new(rig.collider.clone());
+    let model = load(&path).unwrap();
+    let palette = model
+        .rig
+        .skeleton
+        .palette(&model.rig.skeleton.rest_pose())
+        .unwrap();
+    let mut surface = SkinnedSurface::new(model.rig.collider.clone());
     surface.place(&palette, Similarity::IDENTITY).unwrap();
     let mut positions = Vec::new();
     surface.skin_all(&mut positions);
@@ -176,14 +181,14 @@ fn materials_are_tagged_by_the_callers_function() {
         seen.lock().unwrap().push(name.map(str::to_owned));
         fur
     });
-    let rig = load_with(&path, &options).unwrap();
+    let model = load_with(&path, &options).unwrap();
     // The function is called for each material, then for triangles without a material.
     let names = names.lock().unwrap();
-    let mut expected: Vec<_> = rig.materials.iter().map(|m| m.name.clone()).collect();
+    let mut expected: Vec<_> = model.materials.iter().map(|m| m.name.clone()).collect();
     assert!(!expected.is_empty());
     expected.push(None);
     assert_eq!(*names, expected);
-    assert!(rig.collider.tags().iter().all(|tag| *tag == fur));
+    assert!(model.rig.collider.tags().iter().all(|tag| *tag == fur));
 }
 
 #[test]
@@ -255,9 +260,13 @@ fn two_triangles() -> String {
 /// The user numbers of hits from above and from below. Asserts that rays of the surface and of the obstacle find the
 /// same.
 fn users_found(options: &LoadOptions) -> [u32; 2] {
-    let rig = load_slice(two_triangles().as_bytes(), options).unwrap();
-    let palette = rig.skeleton.palette(&rig.skeleton.rest_pose()).unwrap();
-    let mut surface = SkinnedSurface::new(rig.collider.clone());
+    let model = load_slice(two_triangles().as_bytes(), options).unwrap();
+    let palette = model
+        .rig
+        .skeleton
+        .palette(&model.rig.skeleton.rest_pose())
+        .unwrap();
+    let mut surface = SkinnedSurface::new(model.rig.collider.clone());
     surface.advance(&palette, Similarity::IDENTITY).unwrap();
     [(2.0, -1.0), (-1.0, 1.0)].map(|(y, down)| {
         let origin = Vec3::new(0.25, y, 0.25);

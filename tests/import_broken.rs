@@ -1,4 +1,4 @@
-//! Real models, cut short or with flipped bits: loading gives an error or a usable rig, never a panic, an endless loop,
+//! Real models, cut short or with flipped bits: loading gives an error or a usable model, never a panic, an endless loop,
 //! or unbounded memory.
 
 #![expect(
@@ -66,9 +66,9 @@ fn each_model(test: &str, broken: impl Fn(&[u8], &mut fastrand::Rng) -> Vec<u8>)
         let (mut loaded, mut worst) = (0, 0);
         for trial in 0..trials() {
             let bytes = broken(&bytes, &mut rng);
-            let mut rig = None;
+            let mut model = None;
             let start = Instant::now();
-            let memory = measure(|| rig = load_slice(&bytes, &LoadOptions::default()).ok());
+            let memory = measure(|| model = load_slice(&bytes, &LoadOptions::default()).ok());
             assert!(
                 start.elapsed() < PATIENCE,
                 "{name}, trial {trial}: {:?}",
@@ -80,17 +80,18 @@ fn each_model(test: &str, broken: impl Fn(&[u8], &mut fastrand::Rng) -> Vec<u8>)
                 "{name}, trial {trial}: {memory:?}"
             );
             worst = worst.max(memory.bytes_max / bytes.len().max(1 << 10) as u64);
-            let Some(rig) = rig else {
+            let Some(model) = model else {
                 continue;
             };
             loaded += 1;
             // A rig that loads can be posed, or gives an error.
-            let mut surface = SkinnedSurface::new(rig.collider.clone());
+            let mut surface = SkinnedSurface::new(model.rig.collider.clone());
             let mut positions = Vec::new();
-            let clip = rig.clips.get(trial % rig.clips.len().max(1));
-            let rest = rig.skeleton.rest_pose();
+            let clip = model.rig.clips.get(trial % model.rig.clips.len().max(1));
+            let rest = model.rig.skeleton.rest_pose();
             let pose = clip.map(|clip| clip.sample(&rest, clip.duration() * 0.3, Playback::Loop));
-            if let Ok(palette) = rig
+            if let Ok(palette) = model
+                .rig
                 .skeleton
                 .palette(&pose.and_then(Result::ok).unwrap_or(rest))
                 && surface.advance(&palette, Similarity::IDENTITY).is_ok()

@@ -7,7 +7,6 @@
 )]
 
 use allocation_counter::measure;
-use clamber::gltf::Rig;
 use clamber::prelude::*;
 use clamber::rig::{Pose, PoseMotion, PoseTrack};
 use clamber_scenes::giant;
@@ -203,7 +202,7 @@ fn ride(rig: &Rig, place: &Place, rhythm: Rhythm, scene: Scene) -> Ride {
 /// Rides at all places in these rhythms, and compares the rides with those on a giant that is posed in each tick.
 /// Returns the rides that differ too much.
 fn compare(scene: Scene, rhythms: &[Rhythm]) -> Vec<String> {
-    let rig = giant::rig().unwrap();
+    let rig = giant::model().unwrap().rig;
     let (mut wrong, mut held) = (Vec::new(), 0);
     for place in &PLACES {
         let full = ride(&rig, place, Rhythm::EachTick, scene);
@@ -277,7 +276,7 @@ fn without_a_track_riders_are_shaken_off() {
 
 #[test]
 fn a_steady_tick_of_a_track_allocates_nothing() {
-    let rig = giant::rig().unwrap();
+    let rig = giant::model().unwrap().rig;
     let walk = rig.clip("walk").unwrap();
     let rest = rig.skeleton.rest_pose();
     let (mut track, mut palette) = (PoseTrack::default(), Palette::default());

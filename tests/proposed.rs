@@ -4,7 +4,7 @@
 
 use std::path::PathBuf;
 
-use clamber_colossus::{BrainFile, CreatureParts};
+use clamber_colossus::BrainFile;
 use clamber_scenes::battle::{BattleOptions, fight_all};
 
 /// Number of fights that the bot won against an animal, with the seeds from 1 to `seeds`; `None` without the test data.
@@ -16,15 +16,8 @@ fn won(animal: &str, seeds: u64) -> Option<u64> {
         return None;
     };
     let path = PathBuf::from(root).join("models").join(animal);
-    let rig = clamber::gltf::load(&path).unwrap();
-    let parts = CreatureParts {
-        skeleton: rig.skeleton,
-        clips: rig.clips,
-        mesh: rig.collider,
-        materials: rig.collider_materials,
-        weak_points: rig.weak_points,
-    };
-    let brain = BrainFile::propose(&parts, 20.0).unwrap();
+    let rig = clamber::gltf::load(&path).unwrap().rig;
+    let brain = BrainFile::propose(&rig, 20.0).unwrap();
     let file = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("{animal}.brain.json"));
     std::fs::write(&file, serde_json::to_string(&brain).unwrap()).unwrap();
     let options = BattleOptions {

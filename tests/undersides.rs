@@ -6,7 +6,7 @@
 )]
 
 use clamber::climber::ClimberMode;
-use clamber::gltf::{Rig, load};
+use clamber::gltf::load;
 use clamber::prelude::*;
 use clamber_scenes::giant;
 use glam::DVec3;
@@ -129,7 +129,7 @@ fn ride(rig: &Rig, clip: &str, rng: &mut fastrand::Rng, seen: &mut Seen) {
 
 #[test]
 fn a_held_stick_leads_one_way_on_the_undersides_of_the_giant() {
-    let rig = load(giant::path()).unwrap();
+    let rig = load(giant::path()).unwrap().rig;
     let mut rng = fastrand::Rng::with_seed(52);
     for clip in ["idle", "walk"] {
         let mut seen = Seen::default();

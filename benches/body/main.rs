@@ -41,7 +41,7 @@ fn main() -> ExitCode {
 
 fn run(brief: bool) -> Result<(), Box<dyn Error>> {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../assets/hero.glb");
-    let rig = clamber::gltf::load(file)?;
+    let rig = clamber::gltf::load(file)?.rig;
     let humanoid = Humanoid::find(&rig.skeleton)?;
     let figure = Figure::new(rig.skeleton, humanoid, rig.clips)?;
     let giant = giant::giant()?;

@@ -58,9 +58,9 @@ impl Film {
         eprintln!("pictures by {}", gpu.name());
         let mut renderer = Renderer::new(gpu, film.width, film.rows)?;
         let path = battle.creature.clone().unwrap_or_else(giant::path);
-        let rig = load(path)?;
-        let creature = add_visual(&mut renderer, &rig)?;
-        let stage = Stage::new(&mut renderer, creature)?.with_plates(&rig);
+        let model = load(path)?;
+        let creature = add_visual(&mut renderer, &model)?;
+        let stage = Stage::new(&mut renderer, creature)?.with_plates(&model);
         let stage = stage.with_arms(&mut renderer)?;
         if let Some(folder) = &film.frames {
             let failed = |error| format!("{}: {error}", folder.display());

@@ -13,10 +13,10 @@ use clamber_scenes::giant::giant;
 
 /// Hash of the ride. It changes with any bit of a result, and with rapier's version. Check that a change is intended,
 /// then store the new hash, and the file by `CLAMBER_BLESS=1`.
-const RIDE: u64 = 0x1a24_53f9_17c8_3503;
+const RIDE: u64 = 0xaed0_c1e4_cca6_1b1a;
 
 /// Hash of the climb, under the same rules as [`RIDE`].
-const CLIMB: u64 = 0xf762_4345_35ac_1ca4;
+const CLIMB: u64 = 0x62ab_6d67_2580_3b65;
 
 /// Adds a tick of a battle: the climber's fields, the creature's pose, the rocks and the fight.
 fn add(run: &mut GoldenRun, battle: &Battle<'_>) {

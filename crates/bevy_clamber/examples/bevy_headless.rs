@@ -17,7 +17,8 @@ use bevy_mesh::skinning::SkinnedMeshInverseBindposes;
 use bevy_time::{TimePlugin, TimeUpdateStrategy};
 use bevy_transform::TransformPlugin;
 use bevy_transform::components::Transform;
-use clamber_gltf::Rig;
+use clamber_gltf::Model;
+use clamber_surface::mesh::Rig;
 use clap::Parser;
 
 const COLOSSUS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/colossus.glb");
@@ -84,10 +85,10 @@ fn not_run(error: RunSystemError) -> Error {
 }
 
 fn run(arguments: &Arguments) -> Result<String, Error> {
-    let rig = clamber_gltf::load(&arguments.file)?;
-    let clip = clip(&rig, arguments.clip.as_deref())?;
+    let model = clamber_gltf::load(&arguments.file)?;
+    let clip = clip(&model.rig, arguments.clip.as_deref())?;
     let mut app = app();
-    let creature = spawn(&mut app, rig, clip.clone(), arguments.scale)?;
+    let creature = spawn(&mut app, model, clip.clone(), arguments.scale)?;
     wait(&mut app, &creature)?;
     let (low, top) = bounds(&app, &creature);
     let climber = (
@@ -189,12 +190,17 @@ fn app() -> App {
 }
 
 /// The creature, with a surface of each of its meshes.
-fn spawn(app: &mut App, rig: Rig, clip: Option<String>, scale: f32) -> Result<SpawnedRig, Error> {
+fn spawn(
+    app: &mut App,
+    model: Model,
+    clip: Option<String>,
+    scale: f32,
+) -> Result<SpawnedRig, Error> {
     let add =
         move |mut commands: Commands,
               mut meshes: ResMut<Assets<Mesh>>,
               mut inverse_bindposes: ResMut<Assets<SkinnedMeshInverseBindposes>>| {
-            let assets = RigAssets::new(rig.clone(), &mut meshes, &mut inverse_bindposes)?;
+            let assets = RigAssets::new(model.clone(), &mut meshes, &mut inverse_bindposes)?;
             let spawned = assets.spawn(&mut commands, Transform::from_scale(Vec3::splat(scale)));
             if let Some(clip) = &clip {
                 commands

@@ -55,7 +55,7 @@ pub mod prelude {
     };
     pub use clamber_surface::geometry::{Affine, Similarity};
     pub use clamber_surface::mesh::{
-        BuildOptions, ColliderMesh, Influence, MeshSource, SurfaceKind, SurfaceTag, TriangleId,
+        BuildOptions, ColliderMesh, Influence, MeshSource, Rig, SurfaceKind, SurfaceTag, TriangleId,
     };
     pub use clamber_surface::rig::{
         Clip, JointId, Palette, Playback, PoseClock, PoseTrack, Skeleton, Transform,

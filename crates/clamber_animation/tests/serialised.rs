@@ -8,7 +8,7 @@ use clamber_animation::{AnimationSet, Animator, Layer, PoseBuffers};
 #[test]
 fn a_restored_animator_goes_on_equally() {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/colossus.glb");
-    let rig = clamber_gltf::load(file).unwrap();
+    let rig = clamber_gltf::load(file).unwrap().rig;
     let set = AnimationSet::new(&rig.skeleton, rig.clips).unwrap();
     let [walk, swipe] = ["walk", "swipe"].map(|name| set.find(name).unwrap());
     let mut animator = Animator::new(vec![Layer::new(walk)]);

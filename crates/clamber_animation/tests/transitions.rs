@@ -13,7 +13,7 @@ use clamber_gltf::LoadOptions;
 fn giant() -> (Skeleton, AnimationSet) {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/colossus.glb");
     let options = LoadOptions::default().with_height(1.75);
-    let rig = clamber_gltf::load_with(file, &options).unwrap();
+    let rig = clamber_gltf::load_with(file, &options).unwrap().rig;
     let set = AnimationSet::new(&rig.skeleton, rig.clips).unwrap();
     (rig.skeleton, set)
 }

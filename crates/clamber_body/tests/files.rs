@@ -4,14 +4,14 @@
 
 use clamber_animation::ik::{Reach, TwoBoneGoal};
 use clamber_body::{HumanJoint, Humanoid, HumanoidError, Limb, LimbEnd, Retarget, Side};
-use clamber_gltf::Rig;
 use clamber_scenes::test_data;
+use clamber_surface::mesh::Rig;
 use clamber_surface::rig::{JointId, Pose};
 use glam::DVec3;
 
 fn load(name: &str) -> Option<Rig> {
     let file = test_data::file("bodies", &format!("models/{name}.glb"))?;
-    Some(clamber_gltf::load(file).unwrap())
+    Some(clamber_gltf::load(file).unwrap().rig)
 }
 
 fn hero() -> Rig {
@@ -20,6 +20,7 @@ fn hero() -> Rig {
         "/../../assets/hero.glb"
     ))
     .unwrap()
+    .rig
 }
 
 /// The name of a joint.

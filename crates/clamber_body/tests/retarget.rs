@@ -3,9 +3,9 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
 use clamber_body::{Humanoid, Limb, LimbEnd, Retarget};
-use clamber_gltf::Rig;
 use clamber_scenes::test_data;
 use clamber_surface::geometry::Affine;
+use clamber_surface::mesh::Rig;
 use clamber_surface::rig::{
     Channel, Clip, Interpolation, Joint, JointId, Keyframes, Playback, Pose, Skeleton, Transform,
 };
@@ -13,7 +13,7 @@ use glam::{DAffine3, DQuat, DVec3, Quat};
 
 fn hero() -> Rig {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/hero.glb");
-    clamber_gltf::load(file).unwrap()
+    clamber_gltf::load(file).unwrap().rig
 }
 
 fn models(skeleton: &Skeleton, pose: &Pose) -> Vec<DAffine3> {
@@ -89,7 +89,7 @@ fn limbs_of_other_bodies_point_where_the_heros_do() {
         let Some(file) = test_data::file("retargeted clips", &format!("models/{name}.glb")) else {
             return;
         };
-        let other = clamber_gltf::load(file).unwrap();
+        let other = clamber_gltf::load(file).unwrap().rig;
         let found = Humanoid::find(&other.skeleton).unwrap();
         let retarget = Retarget::new((&rig.skeleton, &body), (&other.skeleton, &found)).unwrap();
         let turn = DQuat::from_rotation_arc(body.facing, found.facing);

@@ -16,7 +16,7 @@ pub use creature::{
 };
 pub use error::ColossusError;
 pub use kind::{
-    BodyFile, ClipFile, CreatureKind, CreatureParts, Facing, FurFile, GaitFile, HeadFile, Knee,
-    LegFile, Plate, PlateFile, Times, WeakPointFile,
+    BodyFile, ClipFile, CreatureKind, Facing, FurFile, GaitFile, HeadFile, Knee, LegFile, Plate,
+    PlateFile, Times, WeakPointFile,
 };
 pub use senses::{RegionSense, Sense, Senses};

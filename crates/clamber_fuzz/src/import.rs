@@ -1,6 +1,6 @@
 //! The fuzz target of imports: any file is rejected with a reason, or gives a rig that can be used.
 
-use clamber_gltf::{LoadOptions, Rig, load_slice};
+use clamber_gltf::{LoadOptions, Model, load_slice};
 use clamber_oracle::agreement::{Comparison, Question, Shape};
 use clamber_surface::geometry::Similarity;
 use clamber_surface::measure::BruteForce;
@@ -10,7 +10,7 @@ use glam::Vec3;
 
 use crate::seed::glb;
 
-/// Loads any bytes as a file, and uses the rig; returns true if the file loads.
+/// Loads any bytes as a file, and uses the model; returns true if the file loads.
 ///
 /// Bytes that contain a zero and do not begin as a GLB are wrapped as the two chunks of a GLB: JSON before the first
 /// zero, binary after it. So a fuzzer does not have to get any length right.
@@ -24,8 +24,8 @@ pub fn import(data: &[u8]) -> bool {
         _ => None,
     };
     match load_slice(wrapped.as_deref().unwrap_or(data), &LoadOptions::default()) {
-        Ok(rig) => {
-            use_rig(&rig);
+        Ok(model) => {
+            use_rig(&model);
             true
         }
         Err(error) => {
@@ -36,11 +36,11 @@ pub fn import(data: &[u8]) -> bool {
 }
 
 /// Poses and queries a rig as a user would.
-fn use_rig(rig: &Rig) {
-    let mut surface = SkinnedSurface::new(rig.collider.clone());
-    let rest = rig.skeleton.rest_pose();
+fn use_rig(model: &Model) {
+    let mut surface = SkinnedSurface::new(model.rig.collider.clone());
+    let rest = model.rig.skeleton.rest_pose();
     let mut poses = vec![rest.clone()];
-    for clip in rig.clips.iter().take(4) {
+    for clip in model.rig.clips.iter().take(4) {
         for (share, playback) in [(0.3, Playback::Loop), (1.5, Playback::Clamp)] {
             poses.extend(clip.sample(&rest, clip.duration() * share, playback));
         }
@@ -48,7 +48,7 @@ fn use_rig(rig: &Rig) {
     let mut positions = Vec::new();
     for pose in &poses {
         // A valid file may have poses beyond the library's limits. The library rejects them with an error.
-        let Ok(palette) = rig.skeleton.palette(pose) else {
+        let Ok(palette) = model.rig.skeleton.palette(pose) else {
             continue;
         };
         if surface.advance(&palette, Similarity::IDENTITY).is_err() {
@@ -58,13 +58,13 @@ fn use_rig(rig: &Rig) {
         assert!(positions.iter().all(|p| p.is_finite()), "{positions:?}");
     }
     // Brute force takes long on a large file.
-    if rig.collider.triangles().len() < 1_000 {
+    if model.rig.collider.triangles().len() < 1_000 {
         compare(&surface);
     }
-    for weak_point in &rig.weak_points {
-        assert!((weak_point.joint.0 as usize) < rig.skeleton.joints().len());
+    for weak_point in &model.rig.weak_points {
+        assert!((weak_point.joint.0 as usize) < model.rig.skeleton.joints().len());
     }
-    let _ = rig.visual_collider();
+    let _ = model.visual_collider();
 }
 
 /// Compares an overlap query around a vertex with brute force.

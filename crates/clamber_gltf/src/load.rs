@@ -3,7 +3,7 @@ use std::io;
 use std::path::Path;
 use std::sync::Arc;
 
-use clamber_surface::mesh::{BuildReport, ColliderMesh, TriangleId};
+use clamber_surface::mesh::{BuildReport, ColliderMesh, Rig, TriangleId};
 use clamber_surface::rig::Skeleton;
 
 use crate::accessor::Reader;
@@ -13,8 +13,8 @@ use crate::contents::Contents;
 use crate::members::{self, Members};
 use crate::mesh::{self, Meshes};
 use crate::{
-    GltfError, GltfErrorKind, ImportReport, ImportWarning, LoadOptions, Rig, clip, document, scale,
-    skeleton, weak_point,
+    GltfError, GltfErrorKind, ImportReport, ImportWarning, LoadOptions, Model, clip, document,
+    scale, skeleton, weak_point,
 };
 
 /// Loads the creature with the most triangles of the default scene of a `.glb` or `.gltf` file.
@@ -25,7 +25,7 @@ use crate::{
 ///
 /// # Errors
 /// [`GltfError`] with the file, the object in it and the reason.
-pub fn load(path: impl AsRef<Path>) -> Result<Rig, GltfError> {
+pub fn load(path: impl AsRef<Path>) -> Result<Model, GltfError> {
     load_with(path, &LoadOptions::default())
 }
 
@@ -35,7 +35,7 @@ pub fn load(path: impl AsRef<Path>) -> Result<Rig, GltfError> {
 /// As [`load`]. Also [`GltfErrorKind::NoSuchScene`] and [`GltfErrorKind::NoSuchSkin`] if the file lacks the scene or
 /// the skin in the options, [`GltfErrorKind::BadHeight`] for a height that is not finite or not greater than 0, and
 /// [`GltfErrorKind::NoHeight`] if a height is set but the collider has no height in the rest pose.
-pub fn load_with(path: impl AsRef<Path>, options: &LoadOptions) -> Result<Rig, GltfError> {
+pub fn load_with(path: impl AsRef<Path>, options: &LoadOptions) -> Result<Model, GltfError> {
     from_path(path.as_ref(), |bytes, files| one(bytes, files, options))
 }
 
@@ -45,7 +45,7 @@ pub fn load_with(path: impl AsRef<Path>, options: &LoadOptions) -> Result<Rig, G
 ///
 /// # Errors
 /// As [`load_with`], for the first creature that cannot be loaded.
-pub fn load_all(path: impl AsRef<Path>, options: &LoadOptions) -> Result<Vec<Rig>, GltfError> {
+pub fn load_all(path: impl AsRef<Path>, options: &LoadOptions) -> Result<Vec<Model>, GltfError> {
     let all = |creatures: Vec<Members>, _: &Contents<'_>, _: &mut Vec<ImportWarning>| Ok(creatures);
     from_path(path.as_ref(), |bytes, files| {
         from_bytes(bytes, files, options, all)
@@ -56,9 +56,9 @@ pub fn load_all(path: impl AsRef<Path>, options: &LoadOptions) -> Result<Vec<Rig
 ///
 /// # Errors
 /// As [`load_with`]. Also [`GltfErrorKind::Invalid`] if a buffer is in another file.
-pub fn load_slice(bytes: &[u8], options: &LoadOptions) -> Result<Rig, GltfError> {
-    let rig = one(bytes, Files::None, options);
-    rig.map_err(|kind| GltfError { path: None, kind })
+pub fn load_slice(bytes: &[u8], options: &LoadOptions) -> Result<Model, GltfError> {
+    let model = one(bytes, Files::None, options);
+    model.map_err(|kind| GltfError { path: None, kind })
 }
 
 /// Loads a creature from the bytes of a `.glb` or `.gltf` file, with a function that provides its buffer files.
@@ -99,9 +99,9 @@ pub fn load_slice_with(
     bytes: &[u8],
     options: &LoadOptions,
     mut resolve: impl FnMut(&str) -> io::Result<Vec<u8>>,
-) -> Result<Rig, GltfError> {
-    let rig = one(bytes, Files::Resolver(&mut resolve), options);
-    rig.map_err(|kind| GltfError { path: None, kind })
+) -> Result<Model, GltfError> {
+    let model = one(bytes, Files::Resolver(&mut resolve), options);
+    model.map_err(|kind| GltfError { path: None, kind })
 }
 
 /// Reads a file, passes its bytes and its folder to `load`, and adds its path to errors.
@@ -122,15 +122,15 @@ fn from_path<T>(
 }
 
 /// Loads the creature that the options select.
-fn one(bytes: &[u8], files: Files<'_>, options: &LoadOptions) -> Result<Rig, GltfErrorKind> {
+fn one(bytes: &[u8], files: Files<'_>, options: &LoadOptions) -> Result<Model, GltfErrorKind> {
     let choose =
         |creatures: Vec<Members>, contents: &Contents<'_>, warnings: &mut Vec<ImportWarning>| {
             let chosen = members::choose(&contents.tree, &creatures, options.skin, warnings)?;
             Ok(vec![chosen])
         };
-    let mut rigs = from_bytes(bytes, files, options, choose)?;
+    let mut models = from_bytes(bytes, files, options, choose)?;
     let object = "the file".to_owned();
-    rigs.pop().ok_or(GltfErrorKind::NoTriangles { object })
+    models.pop().ok_or(GltfErrorKind::NoTriangles { object })
 }
 
 /// Loads the creatures of a file that `choose` selects, at least one.
@@ -143,7 +143,7 @@ fn from_bytes(
         &Contents<'_>,
         &mut Vec<ImportWarning>,
     ) -> Result<Vec<Members>, GltfErrorKind>,
-) -> Result<Vec<Rig>, GltfErrorKind> {
+) -> Result<Vec<Model>, GltfErrorKind> {
     scale::check(options.height)?;
     let mut warnings = Vec::new();
     let parsed = document::parse(bytes, options, &mut warnings)?;
@@ -157,19 +157,19 @@ fn from_bytes(
         return Err(GltfErrorKind::NoTriangles { object });
     }
     let chosen = choose(creatures, &contents, &mut warnings)?;
-    let rigs = chosen
+    let models = chosen
         .iter()
-        .map(|members| rig(&contents, members, warnings.clone()));
-    rigs.collect()
+        .map(|members| model(&contents, members, warnings.clone()));
+    models.collect()
 }
 
-fn rig(
+fn model(
     contents: &Contents<'_>,
     members: &Members,
     mut warnings: Vec<ImportWarning>,
-) -> Result<Rig, GltfErrorKind> {
+) -> Result<Model, GltfErrorKind> {
     let object = members.object();
-    // Every rig has its own copy of the materials and warnings.
+    // Every model has its own copy of the materials and warnings.
     let lines: usize = warnings.iter().map(ImportWarning::bytes).sum();
     let bytes = size_of_val(contents.materials.as_slice()) + lines;
     contents.reader.charge(&object, bytes)?;
@@ -178,14 +178,14 @@ fn rig(
     let collider = collider(collision, &joints.skeleton, contents, &object)?;
     let clips = clip::load(contents, &joints.of_node, &mut warnings)?;
     let weak_points = weak_point::load(contents, members, &joints, &mut warnings)?;
-    let mut rig = Rig {
-        skeleton: joints.skeleton,
-        clips,
-        collider: Arc::new(collider.mesh),
+    let mut rig = Rig::new(joints.skeleton, Arc::new(collider.mesh));
+    rig.clips = clips;
+    rig.collider_materials = collider.materials;
+    rig.weak_points = weak_points;
+    let mut model = Model {
+        rig,
         visual,
         materials: contents.materials.clone(),
-        collider_materials: collider.materials,
-        weak_points,
         report: ImportReport {
             build: collider.report,
             scale: collider.scale,
@@ -193,9 +193,9 @@ fn rig(
         },
     };
     if let Some(factor) = collider.scale {
-        scale::all_but_collider(&mut rig, factor, &object)?;
+        scale::all_but_collider(&mut model, factor, &object)?;
     }
-    Ok(rig)
+    Ok(model)
 }
 
 /// A collider mesh, scaled if a height was set.

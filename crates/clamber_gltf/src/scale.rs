@@ -9,7 +9,7 @@ use clamber_surface::rig::{Channel, Clip, Keyframes, RigError, Skeleton};
 use clamber_surface::skin::skin;
 use glam::Vec3;
 
-use crate::{GltfErrorKind, Rig};
+use crate::{GltfErrorKind, Model};
 
 /// Refuses a height that is not finite or not greater than 0.
 pub(crate) fn check(height: Option<f32>) -> Result<(), GltfErrorKind> {
@@ -57,14 +57,15 @@ pub(crate) fn points(points: &mut [Vec3], factor: f64) {
     }
 }
 
-/// Scales everything in a rig except its collider.
+/// Scales everything in a model except its collider.
 pub(crate) fn all_but_collider(
-    rig: &mut Rig,
+    model: &mut Model,
     factor: f64,
     object: &str,
 ) -> Result<(), GltfErrorKind> {
     let too_large =
         |object: String| GltfErrorKind::invalid(object, "is too large for f32 at that height");
+    let rig = &mut model.rig;
     rig.skeleton = skeleton(&rig.skeleton, factor).map_err(|error| GltfErrorKind::Skeleton {
         object: object.to_owned(),
         error,
@@ -73,13 +74,13 @@ pub(crate) fn all_but_collider(
         let scaled = self::clip(clip, factor);
         *clip = scaled.map_err(|_| too_large(format!("animation {:?}", clip.name)))?;
     }
-    for visual in &mut rig.visual {
+    for visual in &mut model.visual {
         points(&mut visual.positions, factor);
         if !visual.positions.iter().all(|p| p.is_finite()) {
             return Err(too_large(format!("mesh {:?}", visual.name)));
         }
     }
-    for point in &mut rig.weak_points {
+    for point in &mut model.rig.weak_points {
         point.position = times(point.position, factor);
         point.radius = (f64::from(point.radius) * factor) as f32;
         if !(point.position.is_finite() && point.radius.is_finite()) {

@@ -43,7 +43,7 @@ pub struct VisualMesh {
 #[derive(Clone, Debug, Default)]
 #[non_exhaustive]
 pub struct VisualPrimitive {
-    /// Index into [`Rig::materials`](crate::Rig::materials); `None` for glTF's default material.
+    /// Index into [`Model::materials`](crate::Model::materials); `None` for glTF's default material.
     pub material: Option<usize>,
     /// The tag of the material. Without a material, the tagger's tag for surfaces without one, or the default without a
     /// tagger.

@@ -1,9 +1,10 @@
 use clamber_climber::ClimberConfig;
-use clamber_surface::mesh::{SurfaceKind, SurfaceTag};
+use clamber_surface::geometry::Similarity;
+use clamber_surface::mesh::{SurfaceKind, SurfaceTag, TriangleId};
 
 use crate::NavigationError;
 
-/// The climber of a graph, and how finely its skin is divided.
+/// The climber of a graph, the place and state of the creature, and how finely its skin is divided.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "cache", derive(serde::Serialize, serde::Deserialize))]
 pub struct GraphConfig {
@@ -16,7 +17,22 @@ pub struct GraphConfig {
     /// rule, as `StepRules::by(&|query| query.usual().with_grip(config.can_grip(&query.tag())))`; otherwise the climber
     /// does not find the holds that the graph promises.
     pub grips: Vec<SurfaceKind>,
+    /// The creature's transform in the world, with its scale. Default: identity.
+    pub world_from_model: Similarity,
+    /// Height of the ground below the creature, in the world, metres. Default: 0, which fits most files, whose feet
+    /// stand at the origin.
+    pub ground: f64,
+    /// The rate at which the creature plays its clips, as a share of the file's, from 0.0001 to 10,000: 1 for a
+    /// creature of the size for which the clips were made, less for a larger one. A living creature's rate is
+    /// `clamber_colossus::Creature::rate`. Default: 1.
+    pub clip_rate: f64,
+    /// Parts of the skin that can be removed one by one, such as plates of armour. The skin below them is divided into
+    /// patches as well. A living creature's plates are `clamber_colossus::CreatureKind::plates`. Default: none.
+    pub plates: Vec<Vec<TriangleId>>,
 }
+
+/// Allowed rates of clips, as a share of the file's rate.
+const CLIP_RATES: std::ops::RangeInclusive<f64> = 1e-4..=1e4;
 
 impl GraphConfig {
     /// The defaults for a climber.
@@ -25,6 +41,10 @@ impl GraphConfig {
             climber,
             spacing: climber.body.radius,
             grips: vec![SurfaceKind::Fur],
+            world_from_model: Similarity::IDENTITY,
+            ground: 0.0,
+            clip_rate: 1.0,
+            plates: Vec::new(),
         }
     }
 
@@ -52,14 +72,18 @@ impl GraphConfig {
     pub(crate) fn check(&self) -> Result<(), NavigationError> {
         // Creating a climber validates its configuration.
         clamber_climber::Climber::new(self.climber, glam::DVec3::ZERO)?;
-        let most = self.link();
-        if self.spacing > 0.0 && self.spacing <= most {
-            return Ok(());
+        let out_of_range = |name, range, found| NavigationError::OutOfRange { name, range, found };
+        if !(self.spacing > 0.0 && self.spacing <= self.link()) {
+            let range = "positive, and at most 1.4 radii of the climber";
+            return Err(out_of_range("spacing", range, self.spacing));
         }
-        Err(NavigationError::OutOfRange {
-            name: "spacing",
-            range: "positive, and at most 1.4 radii of the climber",
-            found: self.spacing,
-        })
+        if !CLIP_RATES.contains(&self.clip_rate) {
+            let range = "from 0.0001 to 10,000";
+            return Err(out_of_range("clip_rate", range, self.clip_rate));
+        }
+        if !self.ground.is_finite() {
+            return Err(out_of_range("ground", "finite", self.ground));
+        }
+        Ok(())
     }
 }

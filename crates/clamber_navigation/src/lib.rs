@@ -13,7 +13,6 @@ mod plan;
 mod progress;
 mod report;
 mod ride;
-mod source;
 mod survey;
 
 pub use bot::{Bot, BotConfig, Danger, View};
@@ -28,4 +27,3 @@ pub use plan::{Forecast, Goal, Plan, PlanStep, Start};
 pub use progress::{Progress, Stage};
 pub use report::{ClimbReport, ClipReport, Missing, PointReport, WayOn};
 pub use ride::{Ride, RideEnd, ThrowOff};
-pub use source::GraphSource;

@@ -1,8 +1,8 @@
-use clamber_gltf::{Rig, VisualMesh};
+use clamber_gltf::{Model, VisualMesh};
 
 use crate::{Paint, RenderMesh, SkinSource};
 
-/// A visual mesh of a rig, prepared for a renderer.
+/// A visual mesh of a model, prepared for a renderer.
 #[derive(Clone, Debug)]
 pub struct VisualSource<'a> {
     mesh: &'a VisualMesh,
@@ -36,21 +36,21 @@ impl VisualSource<'_> {
 /// ```no_run
 /// use clamber_render::{Gpu, Renderer, visual_meshes};
 ///
-/// let rig = clamber_gltf::load("creature.glb")?;
+/// let model = clamber_gltf::load("creature.glb")?;
 /// let mut renderer = Renderer::new(Gpu::new()?, 640, 360)?;
 /// let mut meshes = Vec::new();
-/// for visual in visual_meshes(&rig) {
+/// for visual in visual_meshes(&model) {
 ///     meshes.push(renderer.add_mesh(&visual.source())?);
 /// }
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn visual_meshes(rig: &Rig) -> impl Iterator<Item = VisualSource<'_>> {
-    rig.visual.iter().map(|mesh| {
+pub fn visual_meshes(model: &Model) -> impl Iterator<Item = VisualSource<'_>> {
+    model.visual.iter().map(|mesh| {
         let mut paint = Paint::new(mesh.positions.len());
         for primitive in &mesh.primitives {
             let material = primitive
                 .material
-                .and_then(|index| rig.materials.get(index));
+                .and_then(|index| model.materials.get(index));
             let [r, g, b, _] = material.map_or([1.0; 4], |material| material.base_color);
             let look = primitive.tag.kind.into();
             paint.add(&primitive.triangles, [r, g, b], &mesh.colors, look);
@@ -58,7 +58,7 @@ pub fn visual_meshes(rig: &Rig) -> impl Iterator<Item = VisualSource<'_>> {
         VisualSource {
             mesh,
             paint,
-            joint_count: rig.skeleton.joints().len(),
+            joint_count: model.rig.skeleton.joints().len(),
         }
     })
 }

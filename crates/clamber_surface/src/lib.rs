@@ -1,6 +1,7 @@
 #![doc = include_str!("../README.md")]
 
 mod bounds;
+mod fingerprint;
 pub mod geometry;
 #[doc(hidden)]
 pub mod measure;
@@ -12,9 +13,10 @@ mod simd;
 pub mod skin;
 pub mod surface;
 
+#[doc(hidden)]
+pub use fingerprint::Fingerprint;
 /// The version of `glam` that provides the vector and quaternion types of this crate.
 pub use glam;
-#[doc(hidden)]
 pub use simd::SimdLevel;
 
 #[cfg(test)]

@@ -16,6 +16,8 @@ mod surface;
 mod triangle_terrain;
 
 pub use attachment::{Attachment, Continuity, Followed};
+/// A hash for comparing runs.
+pub use clamber_surface::Fingerprint;
 /// The shape that obstacles are queried with.
 pub use clamber_surface::geometry::WorldCapsule;
 /// The material tag of a contact.

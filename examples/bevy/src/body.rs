@@ -24,17 +24,17 @@ pub struct Person {
 /// # Errors
 /// If the file is missing, is no humanoid, or lacks clips.
 pub fn load(app: &mut App) -> Result<(), Box<dyn std::error::Error>> {
-    let rig = clamber_gltf::load(FILE)?;
-    let humanoid = Humanoid::find(&rig.skeleton)?;
-    let figure = Figure::new(rig.skeleton.clone(), humanoid, rig.clips.clone())?;
+    let model = clamber_gltf::load(FILE)?;
+    let humanoid = Humanoid::find(&model.rig.skeleton)?;
+    let figure = Figure::new(model.rig.skeleton.clone(), humanoid, model.rig.clips.clone())?;
     let world = app.world_mut();
     let mut looks = world.resource_mut::<Assets<StandardMaterial>>();
-    let materials = rig.materials.iter();
+    let materials = model.materials.iter();
     let materials = materials.map(|material| looks.add(standard(material)));
     let materials = materials.collect();
     let assets = world.resource_scope(|world, mut meshes: Mut<Assets<Mesh>>| {
         let mut poses = world.resource_mut::<Assets<SkinnedMeshInverseBindposes>>();
-        RigAssets::new(rig, &mut meshes, &mut poses)
+        RigAssets::new(model, &mut meshes, &mut poses)
     })?;
     app.insert_resource(Person {
         assets,
@@ -59,9 +59,9 @@ fn standard(material: &Material) -> StandardMaterial {
 impl Person {
     /// Spawns the person for a climber.
     pub fn figure(&self, commands: &mut Commands) -> ClimberFigure {
-        let rig = self.assets.spawn(commands, Transform::IDENTITY);
+        let model = self.assets.spawn(commands, Transform::IDENTITY);
         commands.entity(rig.root).insert(Visibility::default());
-        let looks = self.assets.rig().visual.iter();
+        let looks = self.assets.model().visual.iter();
         let looks = looks.flat_map(|mesh| &mesh.primitives);
         for (mesh, primitive) in rig.meshes.iter().zip(looks) {
             let material = primitive
@@ -70,6 +70,6 @@ impl Person {
             let material = material.cloned().unwrap_or_default();
             commands.entity(*mesh).insert(MeshMaterial3d(material));
         }
-        ClimberFigure::new(self.figure.clone(), &rig).expect("the rig is the figure's own")
+        ClimberFigure::new(self.figure.clone(), &model).expect("the rig is the figure's own")
     }
 }

@@ -4,13 +4,13 @@ use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use clamber_climber::ClimberConfig;
-use clamber_navigation::{ClimbGraph, GraphConfig, GraphSource, NavigationError};
+use clamber_navigation::{ClimbGraph, GraphConfig, NavigationError};
 use clamber_surface::geometry::Similarity;
 use clamber_surface::mesh::{SurfaceKind, SurfaceTag, TriangleId, VertexId};
 
-use clamber_colossus::{Brain, ColossusError, CreatureKind, CreatureParts};
+use clamber_colossus::{Brain, ColossusError, CreatureKind};
 use clamber_gltf::{GltfError, LoadOptions};
-use clamber_surface::mesh::{ColliderMesh, MeshError, PaletteError};
+use clamber_surface::mesh::{ColliderMesh, MeshError, PaletteError, Rig};
 use clamber_surface::rig::{Clip, Palette, Pose, RigError, Skeleton, WeakPoint};
 use clamber_surface::skin::skin;
 use clamber_surface::surface::{SurfaceError, creature_fingerprint};
@@ -94,7 +94,7 @@ impl Creature {
     /// # Errors
     /// [`CreatureError::Load`].
     pub fn load(path: &Path) -> Result<Self, CreatureError> {
-        let rig = clamber_gltf::load_with(path, &LoadOptions::default())?;
+        let rig = clamber_gltf::load_with(path, &LoadOptions::default())?.rig;
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
         Ok(Self {
             materials: rig.collider_materials,
@@ -128,16 +128,6 @@ impl Creature {
             return Ok(Arc::clone(graph));
         }
         let (world_from_model, ground) = self.standing(height)?;
-        let source = GraphSource {
-            skeleton: &self.skeleton,
-            mesh: &self.collider,
-            clips: &self.clips,
-            rate,
-            plates,
-            weak_points: &self.weak_points,
-            world_from_model,
-            ground,
-        };
         let is_fur = |tag: &SurfaceTag| tag.kind == SurfaceKind::Fur;
         let grips = if self.collider.tags().iter().any(is_fur) {
             vec![SurfaceKind::Fur, SurfaceKind::Stone]
@@ -146,9 +136,13 @@ impl Creature {
         };
         let config = GraphConfig {
             grips,
+            world_from_model,
+            ground,
+            clip_rate: rate,
+            plates: plates.to_vec(),
             ..GraphConfig::new(*climber)
         };
-        let graph = ClimbGraph::build(&source, &config, |_| ControlFlow::Continue(()))?;
+        let graph = ClimbGraph::build(&self.rig(), &config, |_| ControlFlow::Continue(()))?;
         let graph = Arc::new(graph);
         known.push((key, Arc::clone(&graph)));
         Ok(graph)
@@ -182,19 +176,21 @@ impl Creature {
         self.collider.triangles().iter().map(area).sum()
     }
 
+    /// Skeleton, clips, collider, materials and weak points.
+    pub fn rig(&self) -> Rig {
+        let mut rig = Rig::new(self.skeleton.clone(), Arc::clone(&self.collider));
+        rig.clips.clone_from(&self.clips);
+        rig.collider_materials.clone_from(&self.materials);
+        rig.weak_points.clone_from(&self.weak_points);
+        rig
+    }
+
     /// The creature with a brain, to live by it.
     ///
     /// # Errors
     /// As [`CreatureKind::new`].
     pub fn with_brain(&self, brain: Brain) -> Result<CreatureKind, ColossusError> {
-        let parts = CreatureParts {
-            skeleton: self.skeleton.clone(),
-            clips: self.clips.clone(),
-            mesh: Arc::clone(&self.collider),
-            materials: self.materials.clone(),
-            weak_points: self.weak_points.clone(),
-        };
-        CreatureKind::new(parts, brain)
+        CreatureKind::new(&self.rig(), brain)
     }
 
     /// The creature as it is when it lives by a brain, whose file may turn it, and say more of its clips, fur and weak

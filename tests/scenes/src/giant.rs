@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use clamber_gltf::Rig;
+use clamber_gltf::Model;
+use clamber_surface::mesh::Rig;
 
 use crate::resample::resample;
 use crate::{Creature, CreatureError};
@@ -29,14 +30,14 @@ pub fn brain_path() -> PathBuf {
 /// # Errors
 /// [`CreatureError`] if its file is missing or broken.
 pub fn giant() -> Result<Creature, CreatureError> {
-    Ok(creature(&rig()?))
+    Ok(creature(&model()?.rig))
 }
 
 /// The whole content of the giant's file, visual meshes included.
 ///
 /// # Errors
 /// As [`giant`].
-pub fn rig() -> Result<Rig, CreatureError> {
+pub fn model() -> Result<Model, CreatureError> {
     Ok(clamber_gltf::load(path())?)
 }
 

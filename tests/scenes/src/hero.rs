@@ -9,7 +9,7 @@ use clamber_body::clamber_animation::AnimationError;
 use clamber_body::clamber_animation::ik::IkError;
 use clamber_body::{Body, BodyError, BodyFrame, Figure, FigureError, Humanoid, HumanoidError};
 use clamber_fight::ArenaEvent;
-use clamber_gltf::{GltfError, Rig};
+use clamber_gltf::{GltfError, Model};
 use clamber_surface::geometry::Similarity;
 use clamber_surface::rig::{Palette, Pose, RigError, Skeleton};
 use glam::DVec3;
@@ -68,9 +68,9 @@ impl Hero {
     ///
     /// # Errors
     /// [`HeroError`].
-    pub fn new(rig: Rig) -> Result<Self, HeroError> {
-        let humanoid = Humanoid::find(&rig.skeleton)?;
-        let figure = Figure::new(rig.skeleton, humanoid, rig.clips)?;
+    pub fn new(model: Model) -> Result<Self, HeroError> {
+        let humanoid = Humanoid::find(&model.rig.skeleton)?;
+        let figure = Figure::new(model.rig.skeleton, humanoid, model.rig.clips)?;
         let body = Body::new(&figure);
         Ok(Self {
             palette: figure.skeleton().palette(body.pose())?,

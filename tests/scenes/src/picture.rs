@@ -3,7 +3,7 @@
 mod arrows;
 
 use arrows::Arrows;
-use clamber_gltf::Rig;
+use clamber_gltf::Model;
 use clamber_render::{
     Camera, Drawn, Light, Look, RenderError, RenderMesh, RenderMeshId, Renderer, SkinSource,
     visual_meshes,
@@ -54,13 +54,13 @@ impl Stage {
     /// # Errors
     /// [`StageError`].
     pub fn new(renderer: &mut Renderer, creature: Vec<RenderMeshId>) -> Result<Self, StageError> {
-        let rig = clamber_gltf::load(hero_path()).map_err(HeroError::from)?;
+        let model = clamber_gltf::load(hero_path()).map_err(HeroError::from)?;
         Ok(Self {
             creature,
             ground: add_ground(renderer)?,
             outcrop: add_outcrop(renderer)?,
-            hero_meshes: add_visual(renderer, &rig)?,
-            hero: Hero::new(rig)?,
+            hero_meshes: add_visual(renderer, &model)?,
+            hero: Hero::new(model)?,
             watched: false,
             plates: Vec::new(),
             arrows: None,
@@ -85,7 +85,7 @@ impl Stage {
     /// Tells which of the creature's meshes are plates, which are drawn until they break: the file's whose meshes
     /// [`add_visual`] added.
     #[must_use]
-    pub fn with_plates(mut self, rig: &Rig) -> Self {
+    pub fn with_plates(mut self, model: &Model) -> Self {
         let user = |mesh: &clamber_gltf::VisualMesh| {
             let first = mesh.primitives.first();
             first.map_or(0, |primitive| primitive.tag.user)
@@ -94,7 +94,7 @@ impl Stage {
             .creature
             .iter()
             .copied()
-            .zip(rig.visual.iter().map(user));
+            .zip(model.visual.iter().map(user));
         self.plates = all.filter(|(_, user)| *user > 0).collect();
         self
     }
@@ -176,8 +176,11 @@ pub fn beside(battle: &Battle<'_>, away: DVec3) -> Camera {
 ///
 /// # Errors
 /// [`RenderError`].
-pub fn add_visual(renderer: &mut Renderer, rig: &Rig) -> Result<Vec<RenderMeshId>, RenderError> {
-    visual_meshes(rig)
+pub fn add_visual(
+    renderer: &mut Renderer,
+    model: &Model,
+) -> Result<Vec<RenderMeshId>, RenderError> {
+    visual_meshes(model)
         .map(|mesh| renderer.add_mesh(&mesh.source()))
         .collect()
 }

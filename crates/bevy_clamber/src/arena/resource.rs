@@ -8,7 +8,7 @@ use clamber_fight::{Arena, ArenaEvent, Order};
 ///
 /// ```
 /// # use std::sync::Arc;
-/// use bevy_clamber::clamber_colossus::{Brain, CreatureConfig, CreatureKind, CreatureParts};
+/// use bevy_clamber::clamber_colossus::{Brain, CreatureConfig, CreatureKind};
 /// use bevy_clamber::clamber_fight::{Arena, ArenaConfig, FighterConfig};
 /// use bevy_clamber::prelude::*;
 /// # use bevy_clamber::glam::DVec3;
@@ -20,15 +20,8 @@ use clamber_fight::{Arena, ArenaEvent, Order};
 ///
 /// fn spawn(mut commands: Commands, giant: Res<Giant>) -> Result<(), BevyError> {
 ///     let rig = giant.0.rig();
-///     let parts = CreatureParts {
-///         skeleton: rig.skeleton.clone(),
-///         clips: rig.clips.clone(),
-///         mesh: Arc::clone(&rig.collider),
-///         materials: rig.collider_materials.clone(),
-///         weak_points: rig.weak_points.clone(),
-///     };
 ///     let brain = Brain::from_json(&std::fs::read_to_string("assets/colossus.brain.json")?, 1.0 / 60.0)?;
-///     let kind = Arc::new(CreatureKind::new(parts, brain)?);
+///     let kind = Arc::new(CreatureKind::new(rig, brain)?);
 ///
 ///     let mut arena = Arena::new(ArenaConfig::default())?;
 ///     let creature = arena.add_creature(kind, CreatureConfig::default())?;

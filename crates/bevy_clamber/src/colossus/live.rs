@@ -7,11 +7,10 @@ use bevy_math::Vec3;
 use bevy_time::Time;
 use bevy_transform::components::Transform;
 use clamber_colossus::{
-    Brain, ColossusError, Creature, CreatureConfig, CreatureKind, CreatureParts, Noise,
-    Surroundings,
+    Brain, ColossusError, Creature, CreatureConfig, CreatureKind, Noise, Surroundings,
 };
-use clamber_gltf::Rig;
 use clamber_surface::geometry::Similarity;
+use clamber_surface::mesh::Rig;
 use glam::DVec3;
 
 use super::ColossusBrain;
@@ -88,14 +87,7 @@ fn make(
     origin: DVec3,
     before: Option<&Creature>,
 ) -> Result<Creature, ColossusError> {
-    let parts = CreatureParts {
-        skeleton: rig.skeleton.clone(),
-        clips: rig.clips.clone(),
-        mesh: Arc::clone(&rig.collider),
-        materials: rig.collider_materials.clone(),
-        weak_points: rig.weak_points.clone(),
-    };
-    let kind = Arc::new(CreatureKind::new(parts, brain)?);
+    let kind = Arc::new(CreatureKind::new(rig, brain)?);
     let ahead = (root.rotation * Vec3::Z).as_dvec3();
     let config = CreatureConfig {
         position: origin + root.translation.as_dvec3(),

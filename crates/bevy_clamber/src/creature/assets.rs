@@ -6,7 +6,8 @@ use bevy_mesh::skinning::{SkinnedMesh, SkinnedMeshInverseBindposes};
 use bevy_mesh::{Mesh, Mesh3d};
 use bevy_transform::components::Transform;
 use clamber_animation::{AnimationError, AnimationSet};
-use clamber_gltf::Rig;
+use clamber_gltf::Model;
+use clamber_surface::mesh::Rig;
 use clamber_surface::mesh::SurfaceTag;
 use clamber_surface::rig;
 use glam::DMat4;
@@ -32,7 +33,7 @@ pub struct TooManyJoints(pub usize);
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct RigAssets {
-    rig: Arc<Rig>,
+    model: Arc<Model>,
     /// Its clips; or why they do not fit its skeleton.
     animations: Result<Arc<AnimationSet>, AnimationError>,
     inverse_bindposes: Handle<SkinnedMeshInverseBindposes>,
@@ -70,7 +71,7 @@ pub struct RigMaterial(pub usize);
 /// A component on the root of a [`SpawnedRig`]: its joints, and the rig that they were made from.
 #[derive(Component, Clone, Debug)]
 pub struct RigJoints {
-    pub(super) rig: Arc<Rig>,
+    pub(super) model: Arc<Model>,
     #[entities]
     pub(super) joints: Vec<Entity>,
     pub(super) animations: Result<Arc<AnimationSet>, AnimationError>,
@@ -78,9 +79,9 @@ pub struct RigJoints {
 }
 
 impl RigJoints {
-    /// The loaded rig: clips, names, weak points.
+    /// The rig: skeleton, clips, skin, weak points.
     pub fn rig(&self) -> &Rig {
-        &self.rig
+        &self.model.rig
     }
 
     /// The joints' entities, in the order of the rig's skeleton.
@@ -95,11 +96,11 @@ impl RigAssets {
     /// # Errors
     /// [`TooManyJoints`] if the rig has more than 65,536 joints.
     pub fn new(
-        rig: Rig,
+        model: Model,
         meshes: &mut Assets<Mesh>,
         inverse_bindposes: &mut Assets<SkinnedMeshInverseBindposes>,
     ) -> Result<Self, TooManyJoints> {
-        let joints = rig.skeleton.joints();
+        let joints = model.rig.skeleton.joints();
         if joints.len() > MAX_JOINTS {
             return Err(TooManyJoints(joints.len()));
         }
@@ -109,7 +110,7 @@ impl RigAssets {
         });
         let inverse_bindposes = inverse_bindposes.add(matrices.collect::<Vec<_>>());
         let mut added = Vec::new();
-        for visual in &rig.visual {
+        for visual in &model.visual {
             for primitive in &visual.primitives {
                 added.push(RigMesh {
                     name: visual.name.clone(),
@@ -119,9 +120,10 @@ impl RigAssets {
                 });
             }
         }
-        let animations = AnimationSet::new(&rig.skeleton, rig.clips.clone()).map(Arc::new);
+        let animations =
+            AnimationSet::new(&model.rig.skeleton, model.rig.clips.clone()).map(Arc::new);
         Ok(Self {
-            rig: Arc::new(rig),
+            model: Arc::new(model),
             animations,
             inverse_bindposes,
             meshes: added,
@@ -130,7 +132,12 @@ impl RigAssets {
 
     /// The rig that the assets were made from.
     pub fn rig(&self) -> &Rig {
-        &self.rig
+        &self.model.rig
+    }
+
+    /// The whole content of the file, with the meshes to draw and their materials.
+    pub fn model(&self) -> &Model {
+        &self.model
     }
 
     /// Spawns a creature in its rest pose: a root at `place`, and below it the named joints and the skinned meshes.
@@ -138,7 +145,7 @@ impl RigAssets {
     /// Each mesh gets the [`ColliderTag`] of its material in the file. Materials and visibility are left to the app: to
     /// draw the creature, insert `Visibility` on the root, and on each mesh a material chosen by its [`RigMaterial`].
     pub fn spawn(&self, commands: &mut Commands<'_, '_>, place: Transform) -> SpawnedRig {
-        let skeleton = &self.rig.skeleton;
+        let skeleton = &self.model.rig.skeleton;
         let root = commands.spawn(place).id();
         let joints: Vec<Entity> = skeleton
             .joints()
@@ -171,7 +178,7 @@ impl RigAssets {
         });
         let meshes = meshes.collect();
         commands.entity(root).insert(RigJoints {
-            rig: Arc::clone(&self.rig),
+            model: Arc::clone(&self.model),
             joints: joints.clone(),
             animations: self.animations.clone(),
             played: Played::default(),

@@ -6,7 +6,7 @@ use bevy_app::{App, TaskPoolPlugin};
 use bevy_asset::{AssetApp, AssetPlugin, Assets};
 use bevy_clamber::clamber_body::{Extremity, Figure, Humanoid};
 use bevy_clamber::clamber_climber::ClimberInput as Input;
-use bevy_clamber::clamber_colossus::{Brain, CreatureConfig, CreatureKind, CreatureParts};
+use bevy_clamber::clamber_colossus::{Brain, CreatureConfig, CreatureKind};
 use bevy_clamber::clamber_fight::actions::{BOW, STAB};
 use bevy_clamber::clamber_fight::{
     Arena, ArenaConfig, ArenaEvent, CreatureId, FighterConfig, FighterId,
@@ -34,17 +34,10 @@ fn asset(name: &str) -> String {
 fn kind() -> &'static Arc<CreatureKind> {
     static KIND: OnceLock<Arc<CreatureKind>> = OnceLock::new();
     KIND.get_or_init(|| {
-        let rig = clamber_gltf::load(asset("colossus.glb")).unwrap();
-        let parts = CreatureParts {
-            skeleton: rig.skeleton,
-            clips: rig.clips,
-            mesh: rig.collider,
-            materials: rig.collider_materials,
-            weak_points: rig.weak_points,
-        };
+        let rig = clamber_gltf::load(asset("colossus.glb")).unwrap().rig;
         let brain = std::fs::read_to_string(asset("colossus.brain.json")).unwrap();
         let brain = Brain::from_json(&brain, TICK).unwrap();
-        Arc::new(CreatureKind::new(parts, brain).unwrap())
+        Arc::new(CreatureKind::new(&rig, brain).unwrap())
     })
 }
 
@@ -89,12 +82,12 @@ fn app(plugin: ArenaPlugin) -> (App, Entity) {
 }
 
 fn spawn_rig(app: &mut App, file: &str) -> SpawnedRig {
-    let rig = clamber_gltf::load(asset(file)).unwrap();
+    let model = clamber_gltf::load(asset(file)).unwrap();
     let assets = app
         .world_mut()
         .resource_scope(|world, mut meshes: Mut<'_, Assets<Mesh>>| {
             let mut poses = world.resource_mut::<Assets<SkinnedMeshInverseBindposes>>();
-            RigAssets::new(rig, &mut meshes, &mut poses).unwrap()
+            RigAssets::new(model, &mut meshes, &mut poses).unwrap()
         });
     let spawned = assets.spawn(&mut app.world_mut().commands(), Transform::IDENTITY);
     app.world_mut().flush();
@@ -320,7 +313,7 @@ fn a_game_that_steps_the_arena_itself_has_its_terrain() {
 #[test]
 fn a_fighters_figure_holds_the_giant_as_it_is_shown() {
     let (mut app, _) = app(ArenaPlugin::default());
-    let rig = clamber_gltf::load(asset("hero.glb")).unwrap();
+    let rig = clamber_gltf::load(asset("hero.glb")).unwrap().rig;
     let humanoid = Humanoid::find(&rig.skeleton).unwrap();
     let figure = Figure::new(rig.skeleton.clone(), humanoid, rig.clips.clone()).unwrap();
     let spawned = spawn_rig(&mut app, "hero.glb");

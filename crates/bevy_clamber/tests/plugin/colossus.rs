@@ -7,7 +7,7 @@ use std::time::Duration;
 use bevy_app::{App, TaskPoolPlugin};
 use bevy_asset::{AssetApp, AssetPlugin, AssetServer, Assets, Handle, LoadState};
 use bevy_clamber::clamber_colossus::{
-    Brain, Creature, CreatureConfig, CreatureKind, CreatureParts, Sense, Surroundings,
+    Brain, Creature, CreatureConfig, CreatureKind, Sense, Surroundings,
 };
 use bevy_clamber::clamber_world::{HalfSpace, Obstacle};
 use bevy_clamber::events::ClimberHurt;
@@ -72,12 +72,12 @@ fn app(folder: &Path, tick: f64) -> App {
 
 /// Spawns the giant with a brain; waits for its surfaces.
 fn giant(app: &mut App, brain: Handle<ColossusBrain>, at: Transform) -> SpawnedRig {
-    let rig = clamber_gltf::load(COLOSSUS).unwrap();
+    let model = clamber_gltf::load(COLOSSUS).unwrap();
     let assets = app
         .world_mut()
         .resource_scope(|world, mut meshes: Mut<'_, Assets<Mesh>>| {
             let mut poses = world.resource_mut::<Assets<SkinnedMeshInverseBindposes>>();
-            RigAssets::new(rig, &mut meshes, &mut poses).unwrap()
+            RigAssets::new(model, &mut meshes, &mut poses).unwrap()
         });
     let spawned = assets.spawn(&mut app.world_mut().commands(), at);
     app.world_mut().flush();
@@ -143,17 +143,10 @@ fn lives_as_without_an_app(size: f32, tick: f64, origin: DVec3) {
         .with_scale(Vec3::splat(size));
     let spawned = giant(&mut app, handle, place);
 
-    let rig = clamber_gltf::load(COLOSSUS).unwrap();
-    let parts = CreatureParts {
-        skeleton: rig.skeleton,
-        clips: rig.clips,
-        mesh: rig.collider,
-        materials: rig.collider_materials,
-        weak_points: rig.weak_points,
-    };
+    let rig = clamber_gltf::load(COLOSSUS).unwrap().rig;
     let dt = app.world().resource::<Time<Fixed>>().timestep();
     let made = Brain::from_json(&text, dt.as_secs_f64()).unwrap();
-    let kind = Arc::new(CreatureKind::new(parts, made).unwrap());
+    let kind = Arc::new(CreatureKind::new(&rig, made).unwrap());
     let ahead = (place.rotation * Vec3::Z).as_dvec3();
     let config = CreatureConfig {
         position: origin + place.translation.as_dvec3(),

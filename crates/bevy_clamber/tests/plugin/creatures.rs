@@ -16,18 +16,18 @@ use bevy_mesh::Mesh;
 use bevy_mesh::skinning::SkinnedMeshInverseBindposes;
 use bevy_time::{Fixed, Time};
 use bevy_transform::components::Transform;
-use clamber_gltf::Rig;
+use clamber_gltf::Model;
 use clamber_scenes::test_data;
 
 use super::common::{app, app_with};
 
 const COLOSSUS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/colossus.glb");
 
-fn assets(app: &mut App, rig: Rig) -> Result<RigAssets, TooManyJoints> {
+fn assets(app: &mut App, model: Model) -> Result<RigAssets, TooManyJoints> {
     let world = app.world_mut();
     world.resource_scope(|world, mut meshes: Mut<'_, Assets<Mesh>>| {
         let mut inverse_bindposes = world.resource_mut::<Assets<SkinnedMeshInverseBindposes>>();
-        RigAssets::new(rig, &mut meshes, &mut inverse_bindposes)
+        RigAssets::new(model, &mut meshes, &mut inverse_bindposes)
     })
 }
 
@@ -64,17 +64,17 @@ fn surfaces(app: &mut App, spawned: &SpawnedRig, collider: SkinnedCollider) {
 fn check_ticks(file: PathBuf, clip: &str, rate: f64) {
     #[derive(Resource)]
     struct Watch {
-        rig: Rig,
+        model: Model,
         clip: String,
         mesh: Entity,
         seen: usize,
     }
-    let rig = clamber_gltf::load(file).unwrap();
+    let model = clamber_gltf::load(file).unwrap();
     let mut app = app_with(
         rate,
         (ClamberPlugins::default(), RigPlayerPlugin::default()),
     );
-    let assets = assets(&mut app, rig.clone()).unwrap();
+    let assets = assets(&mut app, model.clone()).unwrap();
     let place = Transform::from_xyz(500.0, -20.0, 70.0).with_scale(Vec3::splat(2.0));
     let [played, still] = [place, Transform::IDENTITY].map(|at| spawn(&mut app, &assets, at));
     for spawned in [&played, &still] {
@@ -87,10 +87,10 @@ fn check_ticks(file: PathBuf, clip: &str, rate: f64) {
         let surface = surfaces.get(watch.mesh).unwrap();
         let player = players.single().unwrap();
         let elapsed = time.elapsed_secs_f64();
-        let rest = watch.rig.skeleton.rest_pose();
-        let clip = watch.rig.clip(&watch.clip).unwrap();
+        let rest = watch.model.rig.skeleton.rest_pose();
+        let clip = watch.model.rig.clip(&watch.clip).unwrap();
         let pose = clip.sample(&rest, player.time, Playback::Loop).unwrap();
-        let palette = watch.rig.skeleton.palette(&pose).unwrap();
+        let palette = watch.model.rig.skeleton.palette(&pose).unwrap();
         let expected = skin(surface.mesh(), palette.matrices()).unwrap();
         let mut found = Vec::new();
         surface.skin_all(&mut found);
@@ -110,7 +110,7 @@ fn check_ticks(file: PathBuf, clip: &str, rate: f64) {
         .entity_mut(played.root)
         .insert(RigPlayer::new(&clip));
     app.insert_resource(Watch {
-        rig,
+        model,
         clip,
         mesh: played.meshes[0],
         seen: 0,
@@ -147,11 +147,11 @@ fn a_tick_sees_the_pose_of_the_clip_at_the_players_time() {
 #[test]
 fn meshes_have_the_tags_and_materials_of_the_file() {
     let mut app = app(60.0);
-    let rig = clamber_gltf::load(COLOSSUS).unwrap();
-    let assets = assets(&mut app, rig).unwrap();
+    let model = clamber_gltf::load(COLOSSUS).unwrap();
+    let assets = assets(&mut app, model).unwrap();
     let spawned = spawn(&mut app, &assets, Transform::IDENTITY);
     surfaces(&mut app, &spawned, SkinnedCollider::default());
-    let materials = &assets.rig().materials;
+    let materials = &assets.model().materials;
     let mut kinds = std::collections::BTreeSet::new();
     for mesh in &spawned.meshes {
         let material = app.world().get::<RigMaterial>(*mesh).unwrap().0;
@@ -186,7 +186,7 @@ fn play(player: RigPlayer, frames: usize) -> (Vec<Transform>, RigPlayer) {
 #[test]
 fn clips_are_held_looped_slowed_and_reversed() {
     let length = clamber_gltf::load(COLOSSUS).unwrap();
-    let length = length.clip("walk").unwrap().duration();
+    let length = length.rig.clip("walk").unwrap().duration();
     let walk = RigPlayer::new("walk");
     let once = RigPlayer {
         time: length - 0.1,
@@ -217,12 +217,12 @@ fn clips_are_held_looped_slowed_and_reversed() {
 /// A change of clip passes without a jump, and markers are told.
 #[test]
 fn a_change_of_clip_fades_and_markers_are_told() {
-    let mut rig = clamber_gltf::load(COLOSSUS).unwrap();
+    let mut model = clamber_gltf::load(COLOSSUS).unwrap();
     let step = |time: f64| Marker {
         name: format!("step at {time}"),
         time,
     };
-    for clip in &mut rig.clips {
+    for clip in &mut model.rig.clips {
         *clip = clip
             .clone()
             .with_markers(vec![step(0.1), step(0.3)])
@@ -235,7 +235,7 @@ fn a_change_of_clip_fades_and_markers_are_told() {
     app.init_resource::<Heard>().add_observer(
         |passed: On<RigMarkerPassed>, mut heard: ResMut<Heard>| heard.0.push(passed.marker.clone()),
     );
-    let assets = assets(&mut app, rig).unwrap();
+    let assets = assets(&mut app, model).unwrap();
     let spawned = spawn(&mut app, &assets, Transform::IDENTITY);
     app.update();
     let mut entity = app.world_mut().entity_mut(spawned.root);
@@ -320,13 +320,13 @@ fn a_despawned_joint_ends_the_surface_and_a_despawned_root_leaves_nothing() {
 
 #[test]
 fn more_joints_than_a_mesh_can_index_are_refused() {
-    let mut rig = clamber_gltf::load(COLOSSUS).unwrap();
-    let joint: Joint = rig.skeleton.joints()[0].clone();
+    let mut model = clamber_gltf::load(COLOSSUS).unwrap();
+    let joint: Joint = model.rig.skeleton.joints()[0].clone();
     let joint = Joint {
         parent: None,
         ..joint
     };
-    rig.skeleton = Skeleton::new(vec![joint; 65_537]).unwrap();
-    let refused = assets(&mut app(60.0), rig).err();
+    model.rig.skeleton = Skeleton::new(vec![joint; 65_537]).unwrap();
+    let refused = assets(&mut app(60.0), model).err();
     assert_eq!(refused, Some(TooManyJoints(65_537)));
 }

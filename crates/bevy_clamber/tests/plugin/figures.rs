@@ -63,13 +63,14 @@ fn hero(place: Vec3) -> (App, Entity, SpawnedRig) {
     let mut app = app_with(144.0, plugins);
     app.init_resource::<Seen>()
         .add_systems(PostUpdate, watch.after(ClamberSystems::Anchor));
-    let rig = clamber_gltf::load(HERO).unwrap();
+    let model = clamber_gltf::load(HERO).unwrap();
+    let rig = &model.rig;
     let humanoid = Humanoid::find(&rig.skeleton).unwrap();
     let figure = Figure::new(rig.skeleton.clone(), humanoid, rig.clips.clone()).unwrap();
     let world = app.world_mut();
     let assets = world.resource_scope(|world, mut meshes: Mut<'_, Assets<Mesh>>| {
         let mut bindposes = world.resource_mut::<Assets<SkinnedMeshInverseBindposes>>();
-        RigAssets::new(rig, &mut meshes, &mut bindposes).unwrap()
+        RigAssets::new(model, &mut meshes, &mut bindposes).unwrap()
     });
     let spawned = assets.spawn(&mut world.commands(), Transform::IDENTITY);
     world.flush();

@@ -25,8 +25,8 @@ fn spawn_fox(
     mut meshes: ResMut<Assets<Mesh>>,
     mut inverse_bindposes: ResMut<Assets<SkinnedMeshInverseBindposes>>,
 ) -> Result {
-    let rig = clamber_gltf::load(&file.0)?;
-    let rig = RigAssets::new(rig, &mut meshes, &mut inverse_bindposes)?;
+    let model = clamber_gltf::load(&file.0)?;
+    let rig = RigAssets::new(model, &mut meshes, &mut inverse_bindposes)?;
     let fox = rig.spawn(&mut commands, Transform::IDENTITY);
     commands.entity(fox.root).insert(RigPlayer::new("Walk"));
     for mesh in fox.meshes {

@@ -54,8 +54,8 @@ fn spawn(
     mut meshes: ResMut<Assets<Mesh>>,
     mut inverse_bindposes: ResMut<Assets<SkinnedMeshInverseBindposes>>,
 ) -> Result {
-    let rig = clamber_gltf::load("colossus.glb")?; // from `assets` in clamber's repository
-    let rig = RigAssets::new(rig, &mut meshes, &mut inverse_bindposes)?;
+    let model = clamber_gltf::load("colossus.glb")?; // from `assets` in clamber's repository
+    let rig = RigAssets::new(model, &mut meshes, &mut inverse_bindposes)?;
     let giant = rig.spawn(&mut commands, Transform::IDENTITY); // as often as you like
     commands.entity(giant.root).insert(RigPlayer::new("walk")); // plays in FixedUpdate
     for mesh in giant.meshes {

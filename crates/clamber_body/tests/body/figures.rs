@@ -1,10 +1,10 @@
 use clamber_body::{Figure, Humanoid, Retarget};
-use clamber_gltf::Rig;
 use clamber_scenes::test_data;
+use clamber_surface::mesh::Rig;
 
 pub(crate) fn hero_rig() -> Rig {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/hero.glb");
-    clamber_gltf::load(file).unwrap()
+    clamber_gltf::load(file).unwrap().rig
 }
 
 pub(crate) fn hero() -> Figure {
@@ -18,7 +18,7 @@ fn other(name: &str) -> Option<Figure> {
     let file = test_data::file("another body", &format!("models/{name}.glb"))?;
     let hero = hero_rig();
     let own = Humanoid::find(&hero.skeleton).unwrap();
-    let rig = clamber_gltf::load(file).unwrap();
+    let rig = clamber_gltf::load(file).unwrap().rig;
     let body = Humanoid::find(&rig.skeleton).unwrap();
     let retarget = Retarget::new((&hero.skeleton, &own), (&rig.skeleton, &body)).unwrap();
     let clips = hero.clips.iter().map(|clip| retarget.clip(clip).unwrap());

@@ -11,9 +11,7 @@ use std::path::PathBuf;
 use clamber_climber::ClimberConfig;
 use clamber_colossus::{BrainError, ColossusError};
 use clamber_gltf::GltfError;
-use clamber_navigation::{
-    ClimbReport, GraphConfig, GraphSource, NavigationError, Progress as Built, Stage,
-};
+use clamber_navigation::{ClimbReport, GraphConfig, NavigationError, Progress as Built, Stage};
 use clamber_surface::geometry::Similarity;
 use clamber_surface::mesh::SurfaceKind;
 use clap::Args;
@@ -161,9 +159,13 @@ pub enum ClimbabilityError {
 /// [`ClimbabilityError`] if a file cannot be loaded, no graph can be built, or the report cannot be written.
 pub fn print(options: &ClimbabilityOptions) -> Result<bool, ClimbabilityError> {
     let creature = Creature::load(options)?;
-    let palette = creature.skeleton.palette(&creature.skeleton.rest_pose());
+    let palette = creature
+        .rig
+        .skeleton
+        .palette(&creature.rig.skeleton.rest_pose());
     let palette = palette.map_err(NavigationError::from)?;
-    let skin = clamber_surface::skin::skin(&creature.mesh, palette.matrices()).unwrap_or_default();
+    let skin =
+        clamber_surface::skin::skin(&creature.rig.collider, palette.matrices()).unwrap_or_default();
     let low = skin.iter().map(|p| p.y).fold(f32::INFINITY, f32::min);
     let high = skin.iter().map(|p| p.y).fold(f32::NEG_INFINITY, f32::max);
     let own = f64::from(high - low);
@@ -172,16 +174,6 @@ pub fn print(options: &ClimbabilityOptions) -> Result<bool, ClimbabilityError> {
         return Err(ClimbabilityError::NoHeight(creature.height.unwrap_or(own)));
     }
     let made_for = creature.made_for;
-    let source = GraphSource {
-        skeleton: &creature.skeleton,
-        mesh: &creature.mesh,
-        clips: &creature.clips,
-        rate: made_for.map_or(1.0, |made_for| (made_for / (own * scale)).sqrt()),
-        plates: &creature.plates,
-        weak_points: &creature.weak_points,
-        world_from_model: Similarity::from_scale(scale),
-        ground: f64::from(low) * scale,
-    };
     let mut climber = ClimberConfig::colossus_climber();
     if let Some(grip) = &mut climber.grip {
         grip.reach = options.reach;
@@ -193,10 +185,14 @@ pub fn print(options: &ClimbabilityOptions) -> Result<bool, ClimbabilityError> {
             .iter()
             .map(|material| material.kind())
             .collect(),
+        world_from_model: Similarity::from_scale(scale),
+        ground: f64::from(low) * scale,
+        clip_rate: made_for.map_or(1.0, |made_for| (made_for / (own * scale)).sqrt()),
+        plates: creature.plates.clone(),
         ..GraphConfig::new(climber)
     };
     let mut bar: Option<(Stage, Progress)> = None;
-    let built = ClimbReport::new(&source, &config, |built| {
+    let built = ClimbReport::new(&creature.rig, &config, |built| {
         show(&mut bar, built);
         ControlFlow::Continue(())
     });
@@ -207,12 +203,12 @@ pub fn print(options: &ClimbabilityOptions) -> Result<bool, ClimbabilityError> {
     if options.json {
         println!("{}", serde_json::to_string_pretty(&report)?);
     } else {
-        print!("{}", table::table(&report, own * scale, source.ground));
+        print!("{}", table::table(&report, own * scale, config.ground));
     }
     if let Some(path) = &options.picture {
-        let place = |p: &glam::Vec3| source.world_from_model.transform_point(p.as_dvec3());
+        let place = |p: &glam::Vec3| config.world_from_model.transform_point(p.as_dvec3());
         let skin: Vec<glam::DVec3> = skin.iter().map(place).collect();
-        let longest = picture::draw(path, &creature.mesh, &skin, &graph, &report);
+        let longest = picture::draw(path, &creature.rig.collider, &skin, &graph, &report);
         let longest = longest.map_err(|error| ClimbabilityError::Picture {
             path: path.clone(),
             error,

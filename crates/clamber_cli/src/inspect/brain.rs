@@ -1,11 +1,10 @@
 //! Prints a brain's file: its states, its transitions, and the ones that can never happen.
 
 use std::collections::BTreeSet;
-use std::sync::Arc;
 
 use clamber_animation::SeamProbe;
 use clamber_colossus::brain::Act;
-use clamber_colossus::{Brain, CreatureKind, CreatureParts};
+use clamber_colossus::{Brain, CreatureKind};
 use clamber_gltf::load;
 
 use super::{InspectError, InspectOptions};
@@ -25,15 +24,8 @@ pub(super) fn print(options: &InspectOptions) -> Result<bool, InspectError> {
     })?;
     let report = match &options.creature {
         Some(creature) => {
-            let rig = load(creature)?;
-            let parts = CreatureParts {
-                skeleton: rig.skeleton,
-                clips: rig.clips,
-                mesh: Arc::clone(&rig.collider),
-                materials: rig.collider_materials,
-                weak_points: rig.weak_points,
-            };
-            let kind = CreatureKind::new(parts, brain).map_err(|error| InspectError::Colossus {
+            let rig = load(creature)?.rig;
+            let kind = CreatureKind::new(&rig, brain).map_err(|error| InspectError::Colossus {
                 file: file(),
                 error,
             })?;

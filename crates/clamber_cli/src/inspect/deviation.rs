@@ -1,6 +1,6 @@
 //! Measures how far skinned vertices are from exact arithmetic, and the collider from the visual meshes.
 
-use clamber_gltf::Rig;
+use clamber_gltf::Model;
 use clamber_surface::geometry::{Affine, Similarity};
 use clamber_surface::measure::{error_bound, skin_vertex_reference};
 use clamber_surface::mesh::{ColliderMesh, MeshError, VertexId};
@@ -43,8 +43,8 @@ pub(super) struct VisualDistance {
 }
 
 impl VisualDistance {
-    pub(super) fn new(rig: &Rig) -> Result<Self, MeshError> {
-        let visual = match rig.visual_collider() {
+    pub(super) fn new(model: &Model) -> Result<Self, MeshError> {
+        let visual = match model.visual_collider() {
             Ok(mesh) => Some(SkinnedSurface::new(Arc::new(mesh))),
             Err(MeshError::NoTriangles { .. }) => None,
             Err(error) => return Err(error),

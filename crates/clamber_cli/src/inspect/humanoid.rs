@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use clamber_body::{HumanJoint, Humanoid, Limb, LimbEnd, Side};
-use clamber_gltf::Rig;
+use clamber_gltf::Model;
 use clamber_surface::rig::JointId;
 use glam::DVec3;
 use plotters::prelude::*;
@@ -13,23 +13,23 @@ use super::{InspectError, InspectOptions};
 
 /// Prints the human body of a file, and draws it if `options.draw` is given. Returns false if the file has no human
 /// body.
-pub(super) fn print(rig: &Rig, options: &InspectOptions) -> Result<bool, InspectError> {
+pub(super) fn print(model: &Model, options: &InspectOptions) -> Result<bool, InspectError> {
     println!("{}", options.file.display());
-    let body = match Humanoid::find(&rig.skeleton) {
+    let body = match Humanoid::find(&model.rig.skeleton) {
         Ok(body) => Some(body),
         Err(error) => {
             println!("  no human body: {error}");
-            let joints = rig.skeleton.joints().iter();
+            let joints = model.rig.skeleton.joints().iter();
             let names: Vec<&str> = joints.map(|joint| joint.name.as_str()).collect();
             println!("  its joints: {}", names.join(", "));
             None
         }
     };
     if let Some(body) = &body {
-        print!("{}", table(rig, body));
+        print!("{}", table(model, body));
     }
     if let Some(file) = &options.draw {
-        draw(rig, body.as_ref(), file).map_err(|error| InspectError::Draw {
+        draw(model, body.as_ref(), file).map_err(|error| InspectError::Draw {
             file: file.clone(),
             error,
         })?;
@@ -39,8 +39,8 @@ pub(super) fn print(rig: &Rig, options: &InspectOptions) -> Result<bool, Inspect
 }
 
 /// The joints of the body, the lengths of its limbs and the direction that it faces, as text.
-fn table(rig: &Rig, body: &Humanoid) -> String {
-    let name = |joint: JointId| rig.skeleton.joints()[joint.index()].name.as_str();
+fn table(model: &Model, body: &Humanoid) -> String {
+    let name = |joint: JointId| model.rig.skeleton.joints()[joint.index()].name.as_str();
     let mut text = String::new();
     let mut line = |what: &str, found: &str| {
         // Writing to a string does not fail.
@@ -81,14 +81,14 @@ const SIZE: (u32, u32) = (1200, 720);
 
 /// Draws the skeleton at rest from the front and from its left. The labels are the roles of the body's joints, or the
 /// names of all joints if there is no body.
-fn draw(rig: &Rig, body: Option<&Humanoid>, file: &Path) -> Result<(), String> {
-    let palette = rig.skeleton.palette(&rig.skeleton.rest_pose());
+fn draw(model: &Model, body: Option<&Humanoid>, file: &Path) -> Result<(), String> {
+    let palette = model.rig.skeleton.palette(&model.rig.skeleton.rest_pose());
     let palette = palette.map_err(|error| error.to_string())?;
     let place = |joint: JointId| {
         let model = palette.model_from_joint(joint);
         model.map_or(DVec3::ZERO, |model| model.translation)
     };
-    let all: Vec<DVec3> = (0..rig.skeleton.joints().len() as u32)
+    let all: Vec<DVec3> = (0..model.rig.skeleton.joints().len() as u32)
         .map(|joint| place(JointId(joint)))
         .collect();
     let facing = body.map_or(DVec3::Z, |body| body.facing);
@@ -102,7 +102,7 @@ fn draw(rig: &Rig, body: Option<&Humanoid>, file: &Path) -> Result<(), String> {
                 .collect()
         }
         None => {
-            let joints = rig.skeleton.joints().iter().zip(0..);
+            let joints = model.rig.skeleton.joints().iter().zip(0..);
             joints
                 .map(|(joint, id)| (joint.name.clone(), JointId(id)))
                 .collect()
@@ -139,7 +139,7 @@ fn draw(rig: &Rig, body: Option<&Humanoid>, file: &Path) -> Result<(), String> {
             .caption(title, ("sans-serif", 18))
             .build_cartesian_2d(range(middle[0], tall * aspect), range(middle[1], tall))
             .map_err(|error| failed(&error))?;
-        for (index, joint) in rig.skeleton.joints().iter().enumerate() {
+        for (index, joint) in model.rig.skeleton.joints().iter().enumerate() {
             let Some(parent) = joint.parent else { continue };
             let child = JointId(index as u32);
             let color = if is_body(child) && is_body(parent) {

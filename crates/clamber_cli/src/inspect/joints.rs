@@ -2,31 +2,31 @@
 
 use std::fmt::Write as _;
 
-use clamber_gltf::Rig;
+use clamber_gltf::Model;
 use clamber_surface::mesh::VertexId;
 use clamber_surface::rig::JointId;
 use clamber_surface::skin::skin;
 
 /// The joints as a tree, with their places at rest, in heights of the creature, and the number of vertices that each
 /// joint moves, as the sum of their weights. Empty if the skeleton cannot be posed at rest.
-pub(super) fn tree(rig: &Rig) -> String {
-    let skeleton = &rig.skeleton;
+pub(super) fn tree(model: &Model) -> String {
+    let skeleton = &model.rig.skeleton;
     let joints = skeleton.joints();
     let mut text = String::new();
     let Ok(palette) = skeleton.palette(&skeleton.rest_pose()) else {
         return text;
     };
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-    if let Ok(positions) = skin(&rig.collider, palette.matrices()) {
-        for corner in rig.collider.triangles().iter().flatten() {
+    if let Ok(positions) = skin(&model.rig.collider, palette.matrices()) {
+        for corner in model.rig.collider.triangles().iter().flatten() {
             let y = f64::from(positions[corner.index()].y);
             (low, high) = (low.min(y), high.max(y));
         }
     }
     let height = (high - low).max(f64::MIN_POSITIVE);
     let mut moved = vec![0.0f64; joints.len()];
-    for vertex in 0..rig.collider.positions().len() as u32 {
-        for (joint, weight) in rig.collider.influences(VertexId(vertex)) {
+    for vertex in 0..model.rig.collider.positions().len() as u32 {
+        for (joint, weight) in model.rig.collider.influences(VertexId(vertex)) {
             moved[joint.index()] += f64::from(weight);
         }
     }

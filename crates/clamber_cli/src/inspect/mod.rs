@@ -15,7 +15,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use clamber_colossus::{BrainError, ColossusError};
-use clamber_gltf::{GltfError, LoadOptions, Rig, load_with};
+use clamber_gltf::{GltfError, LoadOptions, Model, load_with};
 use clamber_oracle::agreement::{Agreement, Aims, Comparison, extent};
 use clamber_surface::geometry::{Similarity, Sphere};
 use clamber_surface::measure::{BruteForce, posed_triangles};
@@ -120,21 +120,21 @@ pub fn print(options: &InspectOptions) -> Result<bool, InspectError> {
     }
     let mut load = LoadOptions::default();
     (load.scene, load.skin) = (options.scene, options.skin);
-    let rig = load_with(&options.file, &load)?;
+    let model = load_with(&options.file, &load)?;
     if options.propose_brain {
-        print!("{}", propose::text(rig, options)?);
+        print!("{}", propose::text(&model.rig, options)?);
         return Ok(true);
     }
     if options.joints {
         println!("{}", options.file.display());
-        print!("{}", joints::tree(&rig));
+        print!("{}", joints::tree(&model));
         return Ok(true);
     }
     if options.humanoid {
-        return humanoid::print(&rig, options);
+        return humanoid::print(&model, options);
     }
-    let chosen = chosen(&rig, options)?;
-    let found = Inspection::of_import(&rig);
+    let chosen = chosen(&model, options)?;
+    let found = Inspection::of_import(&model);
     if !options.json {
         println!("{}", options.file.display());
         print!("{}", found.import());
@@ -150,7 +150,7 @@ pub fn print(options: &InspectOptions) -> Result<bool, InspectError> {
         // Also a pipe shows the import before the measurements begin.
         let _ = std::io::stdout().flush();
     }
-    let inspection = inspect(&rig, options)?;
+    let inspection = inspect(&model, options)?;
     if options.json {
         println!("{}", inspection.to_json());
     } else {
@@ -166,26 +166,26 @@ pub fn print(options: &InspectOptions) -> Result<bool, InspectError> {
 ///
 /// # Errors
 /// [`InspectError`] if no clip has a chosen name, a clip does not fit the creature, or the visual meshes are broken.
-pub fn inspect(rig: &Rig, options: &InspectOptions) -> Result<Inspection, InspectError> {
-    let mut inspection = Inspection::of_import(rig);
-    let mut surface = SkinnedSurface::new(rig.collider.clone());
-    let mut visual = VisualDistance::new(rig)?;
+pub fn inspect(model: &Model, options: &InspectOptions) -> Result<Inspection, InspectError> {
+    let mut inspection = Inspection::of_import(model);
+    let mut surface = SkinnedSurface::new(model.rig.collider.clone());
+    let mut visual = VisualDistance::new(model)?;
     let mut rng = fastrand::Rng::with_seed(options.seed);
     let mut timings = Timings::default();
     let mut positions = Vec::new();
-    let poses = poses(rig, options)?;
+    let poses = poses(model, options)?;
     let mut agreement = Agreement::default();
     let mut progress = Progress::new(poses.len(), "poses");
     for pose in &poses {
-        let palette = rig.skeleton.palette(pose)?;
+        let palette = model.rig.skeleton.palette(pose)?;
         surface.advance(&palette, Similarity::IDENTITY)?;
         surface.skin_all(&mut positions);
-        let share = skinning_error_share(&rig.collider, palette.matrices(), &positions);
+        let share = skinning_error_share(&model.rig.collider, palette.matrices(), &positions);
         inspection.skinning_error_share = inspection.skinning_error_share.max(share);
         compare_queries(&surface, &mut rng, &mut agreement);
         inspection.bound_violations += violations(&surface, &positions);
         visual.measure(&palette, &surface, &mut rng)?;
-        timings.measure(rig, &palette)?;
+        timings.measure(model, &palette)?;
         progress.step();
     }
     progress.finish();
@@ -221,26 +221,31 @@ pub fn compare_queries(
 }
 
 /// The clips to measure: the chosen ones, or all if none is chosen.
-fn chosen<'a>(rig: &'a Rig, options: &InspectOptions) -> Result<Vec<&'a Clip>, InspectError> {
+fn chosen<'a>(model: &'a Model, options: &InspectOptions) -> Result<Vec<&'a Clip>, InspectError> {
     for name in &options.clips {
-        if !rig.clips.iter().any(|clip| clip.name == *name) {
-            let names: Vec<&str> = rig.clips.iter().map(|clip| clip.name.as_str()).collect();
+        if !model.rig.clips.iter().any(|clip| clip.name == *name) {
+            let names: Vec<&str> = model
+                .rig
+                .clips
+                .iter()
+                .map(|clip| clip.name.as_str())
+                .collect();
             return Err(InspectError::Clip {
                 name: name.clone(),
                 clips: names.join(", "),
             });
         }
     }
-    let all = rig.clips.iter();
+    let all = model.rig.clips.iter();
     let asked = all.filter(|clip| options.clips.is_empty() || options.clips.contains(&clip.name));
     Ok(asked.collect())
 }
 
 /// The rest pose, and poses of the chosen clips.
-fn poses(rig: &Rig, options: &InspectOptions) -> Result<Vec<Pose>, InspectError> {
-    let rest = rig.skeleton.rest_pose();
+fn poses(model: &Model, options: &InspectOptions) -> Result<Vec<Pose>, InspectError> {
+    let rest = model.rig.skeleton.rest_pose();
     let mut poses = vec![rest.clone()];
-    let chosen = chosen(rig, options)?;
+    let chosen = chosen(model, options)?;
     let count = options.poses_of_each(chosen.len());
     for clip in chosen {
         for k in 0..count {
@@ -261,8 +266,8 @@ struct Timings {
 }
 
 impl Timings {
-    fn measure(&mut self, rig: &Rig, palette: &Palette) -> Result<(), PaletteError> {
-        let mesh = &rig.collider;
+    fn measure(&mut self, model: &Model, palette: &Palette) -> Result<(), PaletteError> {
+        let mesh = &model.rig.collider;
         self.positions.resize(mesh.positions().len(), Vec3::ZERO);
         let start = Instant::now();
         skin_into(mesh, palette.matrices(), &mut self.positions)?;

@@ -2,8 +2,8 @@
 
 use std::fmt;
 
-use clamber_colossus::{BrainFile, CreatureParts};
-use clamber_gltf::Rig;
+use clamber_colossus::BrainFile;
+use clamber_surface::mesh::Rig;
 use serde::de::{Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
 
 use super::{InspectError, InspectOptions};
@@ -13,19 +13,12 @@ use super::{InspectError, InspectOptions};
 const WIDTH: usize = 175;
 
 /// The text of a brain's file that fits the creature.
-pub(super) fn text(rig: Rig, options: &InspectOptions) -> Result<String, InspectError> {
-    let parts = CreatureParts {
-        skeleton: rig.skeleton,
-        clips: rig.clips,
-        mesh: rig.collider,
-        materials: rig.collider_materials,
-        weak_points: rig.weak_points,
-    };
+pub(super) fn text(rig: &Rig, options: &InspectOptions) -> Result<String, InspectError> {
     let in_words = |error: &dyn fmt::Display| InspectError::Propose {
         file: options.file.clone(),
         error: error.to_string(),
     };
-    let file = BrainFile::propose(&parts, options.height).map_err(|error| in_words(&error))?;
+    let file = BrainFile::propose(rig, options.height).map_err(|error| in_words(&error))?;
     let json = serde_json::to_string(&file).map_err(|error| in_words(&error))?;
     let tree: Tree = serde_json::from_str(&json).map_err(|error| in_words(&error))?;
     let mut text = String::new();

@@ -1,7 +1,7 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
-use clamber_gltf::Rig;
+use clamber_gltf::Model;
 use clamber_surface::mesh::{SurfaceKind, SurfaceTag};
 use serde::{Serialize, Serializer};
 
@@ -98,10 +98,10 @@ pub struct Distances {
 
 impl Inspection {
     /// The report on an import, before any measurement.
-    pub(super) fn of_import(rig: &Rig) -> Self {
-        let build = &rig.report.build;
+    pub(super) fn of_import(model: &Model) -> Self {
+        let build = &model.report.build;
         let mut tags = BTreeMap::new();
-        for tag in rig.collider.tags().iter() {
+        for tag in model.rig.collider.tags().iter() {
             *tags.entry(name_of(*tag)).or_default() += 1;
         }
         let clip = |clip: &clamber_surface::rig::Clip| ClipLine {
@@ -109,7 +109,7 @@ impl Inspection {
             seconds: clip.duration(),
         };
         let joint_name = |joint: clamber_surface::rig::JointId| {
-            let joint = rig.skeleton.joints().get(joint.0 as usize);
+            let joint = model.rig.skeleton.joints().get(joint.0 as usize);
             joint.map(|joint| joint.name.clone()).unwrap_or_default()
         };
         let weak_point = |point: &clamber_gltf::WeakPoint| WeakPointLine {
@@ -124,16 +124,16 @@ impl Inspection {
             cracks: build.cracks,
             triangles: build.triangles,
             dropped_triangles: build.degenerate_triangles + build.duplicate_triangles,
-            joints: rig.skeleton.joints().len(),
+            joints: model.rig.skeleton.joints().len(),
             max_influences: build.max_influences,
             worst_weight_error: build.worst_weight_error,
-            clips: rig.clips.iter().map(clip).collect(),
-            parts: rig.collider.part_count(),
+            clips: model.rig.clips.iter().map(clip).collect(),
+            parts: model.rig.collider.part_count(),
             tags,
-            weak_points: rig.weak_points.iter().map(weak_point).collect(),
-            visual_meshes: rig.visual.len(),
-            visual_vertices: rig.visual.iter().map(|seen| seen.positions.len()).sum(),
-            warnings: rig
+            weak_points: model.rig.weak_points.iter().map(weak_point).collect(),
+            visual_meshes: model.visual.len(),
+            visual_vertices: model.visual.iter().map(|seen| seen.positions.len()).sum(),
+            warnings: model
                 .report
                 .warnings
                 .iter()

@@ -1,38 +1,31 @@
-use glam::DVec3;
+use clamber_world::Fingerprint;
 
 use super::ClimberState;
 
 impl ClimberState {
-    /// A 64-bit hash of the state, for comparing runs: FNV-1a over the bits of its fields, except the support's tag.
-    /// Not for hash tables.
+    /// A hash of the bits of the state's fields, except the support's tag, for comparing runs.
     pub fn fingerprint(&self) -> u64 {
-        let mut hash = Fnv::default();
+        let mut hash = Fingerprint::default();
         for v in self.vectors() {
-            hash.vector(v);
+            hash.numbers(v.to_array());
         }
         hash.word(u64::from(self.mode.number()));
         if let Some(support) = &self.support {
             let attachment = &support.attachment;
             hash.word(attachment.obstacle.0);
             hash.word(attachment.material.key);
-            hash.vector(DVec3::from_array(attachment.material.coordinates));
-            hash.vector(attachment.point);
-            hash.vector(attachment.offset);
-            hash.vector(support.normal);
-            hash.vector(support.face);
-            for x in attachment.frame.to_array() {
-                hash.word(x.to_bits());
-            }
+            hash.numbers(attachment.material.coordinates);
+            hash.numbers(attachment.point.to_array());
+            hash.numbers(attachment.offset.to_array());
+            hash.numbers(support.normal.to_array());
+            hash.numbers(support.face.to_array());
+            hash.numbers(attachment.frame.to_array());
         }
         if let Some(velocity) = self.support_velocity {
-            hash.vector(velocity);
+            hash.numbers(velocity.to_array());
         }
-        for x in self.numbers() {
-            hash.word(x.to_bits());
-        }
-        for x in self.memory {
-            hash.word(x.to_bits());
-        }
+        hash.numbers(self.numbers());
+        hash.numbers(self.memory);
         let flags = [
             self.crouched,
             self.flying.jumping,
@@ -43,29 +36,6 @@ impl ClimberState {
         ];
         let flags = flags.iter().rev();
         hash.word(flags.fold(0, |word, flag| word << 1 | u64::from(*flag)));
-        hash.0
-    }
-}
-
-/// FNV-1a with 64 bits (Fowler, Noll, Vo).
-struct Fnv(u64);
-
-impl Default for Fnv {
-    fn default() -> Self {
-        Self(0xcbf2_9ce4_8422_2325)
-    }
-}
-
-impl Fnv {
-    fn word(&mut self, word: u64) {
-        for byte in word.to_le_bytes() {
-            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
-        }
-    }
-
-    fn vector(&mut self, v: DVec3) {
-        for x in v.to_array() {
-            self.word(x.to_bits());
-        }
+        hash.value()
     }
 }

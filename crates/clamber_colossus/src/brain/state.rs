@@ -1,3 +1,4 @@
+use clamber_surface::Fingerprint;
 use serde::{Deserialize, Serialize};
 
 use super::{Brain, MOST_DEPTH, MOST_TRANSITIONS, StateId, Transition};
@@ -167,21 +168,15 @@ impl Brain {
 
     /// A hash of the names of its states and moods, in their order, and of the moods' fading times.
     pub(crate) fn own_mark(&self) -> u64 {
-        let mut hash = 0xcbf2_9ce4_8422_2325u64;
-        let mut add = |bytes: &[u8]| {
-            for byte in bytes {
-                hash = (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
-            }
-        };
+        let mut hash = Fingerprint::default();
         for state in &self.states {
-            add(state.path.as_bytes());
-            add(&[0]);
+            hash.text(&state.path);
         }
         for (name, mood) in self.file.moods.keys().zip(&self.moods) {
-            add(name.as_bytes());
-            add(&mood.fades.to_le_bytes());
+            hash.text(name);
+            hash.word(u64::from(mood.fades));
         }
-        hash
+        hash.value()
     }
 
     /// Enters a state at once, for a scripted scene; a creature has [`Creature::enter`](crate::Creature::enter) for it.

@@ -14,14 +14,14 @@ mod plate;
 mod sole;
 mod strikes;
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use clamber_animation::ik::{IkError, LookAt, LookLimits};
 use clamber_animation::rig::{Channel, Clip, JointId, Keyframes, Playback, Skeleton, WeakPoint};
 use clamber_animation::{AnimationSet, ClipId, joint_in_model};
-use clamber_surface::mesh::{ColliderMesh, TriangleId};
+use clamber_surface::Fingerprint;
+use clamber_surface::mesh::{ColliderMesh, Rig, TriangleId};
 use clamber_surface::surface::creature_fingerprint;
 use glam::{DAffine3, DVec3};
 
@@ -95,40 +95,20 @@ pub(crate) struct CompiledAct {
     pub(crate) contacts: Vec<Contacts>,
 }
 
-/// The parts of a creature's file. They have the names of the fields of `clamber_gltf::Rig`.
-#[derive(Clone, Debug)]
-pub struct CreatureParts {
-    /// The skeleton.
-    pub skeleton: Skeleton,
-    /// The clips.
-    pub clips: Vec<Clip>,
-    /// The skin that people touch.
-    pub mesh: Arc<ColliderMesh>,
-    /// Per material name, the triangles of the skin that have it; [`FurFile::materials`] names them.
-    pub materials: BTreeMap<String, Vec<TriangleId>>,
-    /// The weak points of the file.
-    pub weak_points: Vec<WeakPoint>,
-}
-
 impl CreatureKind {
-    /// Combines a creature's parts with a brain.
+    /// Combines a creature with a brain.
     ///
     /// # Errors
-    /// [`ColossusError::Brain`] if the brain names a clip, joint or weak point that the parts do not have, with the
-    /// state and its line, or if legs or head cannot be moved; [`ColossusError::Animation`] if the parts do not fit
-    /// each other.
-    pub fn new(parts: CreatureParts, brain: Brain) -> Result<Self, ColossusError> {
-        let CreatureParts {
-            skeleton,
-            clips,
-            mesh,
-            materials,
-            weak_points,
-        } = parts;
+    /// [`ColossusError::Brain`] if the brain names a clip, joint or weak point that the rig does not have, with the
+    /// state and its line, or if legs or head cannot be moved; [`ColossusError::Animation`] if the parts of the rig do
+    /// not fit each other.
+    pub fn new(rig: &Rig, brain: Brain) -> Result<Self, ColossusError> {
+        let (mesh, materials) = (Arc::clone(&rig.collider), &rig.collider_materials);
         let body = &brain.file().body;
-        let (skeleton, clips) = facing::turned(skeleton, clips, body.facing)?;
+        let (skeleton, clips) =
+            facing::turned(rig.skeleton.clone(), rig.clips.clone(), body.facing)?;
         let mut clips = additions::changed(clips, body)?;
-        let mut weak_points = weak_points;
+        let mut weak_points = rig.weak_points.clone();
         // A copy, since the clip itself may be played as well.
         let breath = brain.file().body.breathe.as_ref();
         let breath = breath.and_then(|name| clips.iter().find(|clip| clip.name == *name));
@@ -160,7 +140,7 @@ impl CreatureKind {
             clips: &clips,
             gravity: GRAVITY * height / known.unwrap_or(HUMAN),
         };
-        let mesh = additions::furred(&names, &body.fur, mesh, &materials)?;
+        let mesh = additions::furred(&names, &body.fur, mesh, materials)?;
         for file in &body.weak_points {
             weak_points.push(additions::weak_point(&names, file, height)?);
         }
@@ -256,23 +236,29 @@ impl CreatureKind {
     /// saved states.
     pub fn fingerprint(&self) -> u64 {
         let body = creature_fingerprint(&self.skeleton, self.clips.clips(), &self.mesh);
-        let mut hash = body ^ self.brain.tick().to_bits();
-        let mut add = |word: u64| {
-            hash = (hash.rotate_left(5) ^ word).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-        };
+        let mut hash = Fingerprint::new(body);
+        hash.numbers([self.brain.tick()]);
         for point in &self.weak_points {
-            point.name.bytes().for_each(|byte| add(u64::from(byte)));
-            for x in point.position.to_array() {
-                add(u64::from(x.to_bits()));
-            }
-            add(u64::from(point.joint.0) << 32 | u64::from(point.radius.to_bits()));
-            add(point.hit_points.to_bits());
-            add(u64::from(point.order) << 1 | u64::from(point.major));
+            hash.text(&point.name);
+            hash.floats(&point.position.to_array());
+            hash.word(u64::from(point.joint.0) << 32 | u64::from(point.radius.to_bits()));
+            hash.numbers([point.hit_points]);
+            hash.word(u64::from(point.order) << 1 | u64::from(point.major));
         }
         // A brain file that was read can always be written.
-        let file = serde_json::to_string(self.brain.file()).unwrap_or_default();
-        file.bytes().for_each(|byte| add(u64::from(byte)));
-        hash
+        hash.text(&serde_json::to_string(self.brain.file()).unwrap_or_default());
+        hash.value()
+    }
+
+    /// The creature as it lives by its brain, whose file may turn it, and change its clips, materials and weak points.
+    /// The breath, which is added to other clips, is left out.
+    pub fn rig(&self) -> Rig {
+        let breath = usize::from(self.breathe.is_some());
+        let clips = self.clips.clips();
+        let mut rig = Rig::new(self.skeleton.clone(), Arc::clone(&self.mesh));
+        rig.clips = clips.iter().take(clips.len() - breath).cloned().collect();
+        rig.weak_points.clone_from(&self.weak_points);
+        rig
     }
 
     /// The skeleton.

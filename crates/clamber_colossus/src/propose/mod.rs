@@ -9,14 +9,14 @@ mod strike;
 
 use clamber_animation::SeamProbe;
 use clamber_animation::rig::JointId;
-use clamber_surface::mesh::SurfaceKind;
+use clamber_surface::mesh::{Rig, SurfaceKind};
 use glam::DVec3;
 
 use crate::brain::{Brain, BrainFile, StateFile};
 use crate::error::ColossusError;
 use crate::kind::{
-    BodyFile, ClipFile, CreatureKind, CreatureParts, Facing, FurFile, GaitFile, HUMAN, HeadFile,
-    LegFile, Times, WeakPointFile,
+    BodyFile, ClipFile, CreatureKind, Facing, FurFile, GaitFile, HUMAN, HeadFile, LegFile, Times,
+    WeakPointFile,
 };
 use clips::Clips;
 use look::{Look, rounded};
@@ -67,10 +67,10 @@ impl BrainFile {
     ///
     /// # Errors
     /// The errors of [`CreatureKind::new`] for a brain that names nothing of the creature, with this height.
-    pub fn propose(parts: &CreatureParts, height: f64) -> Result<Self, ColossusError> {
+    pub fn propose(rig: &Rig, height: f64) -> Result<Self, ColossusError> {
         let mut proposal = Proposal {
-            parts,
-            clips: Clips::of(&parts.clips),
+            rig,
+            clips: Clips::of(&rig.clips),
             body: BodyFile {
                 height: Some(height),
                 made_for: Some(HUMAN),
@@ -85,7 +85,7 @@ impl BrainFile {
         proposal.head()?;
         proposal.skin()?;
         let fits = |file: &BrainFile| -> Result<CreatureKind, ColossusError> {
-            CreatureKind::new(parts.clone(), Brain::new(file.clone(), TICK)?)
+            CreatureKind::new(rig, Brain::new(file.clone(), TICK)?)
         };
         let file = states::file(&proposal, attack.as_ref())?;
         if fits(&file).is_ok() {
@@ -100,7 +100,7 @@ impl BrainFile {
 
 /// A proposal under construction. At any time its body fits the creature.
 struct Proposal<'a> {
-    parts: &'a CreatureParts,
+    rig: &'a Rig,
     clips: Clips,
     body: BodyFile,
 }
@@ -131,7 +131,7 @@ impl Proposal<'_> {
             states: [("stands".to_owned(), StateFile::default())].into(),
             ..BrainFile::default()
         };
-        CreatureKind::new(self.parts.clone(), Brain::new(file, TICK)?)
+        CreatureKind::new(self.rig, Brain::new(file, TICK)?)
     }
 
     /// Makes a change to the body, unless the creature does not fit the changed body.
@@ -302,7 +302,7 @@ impl Proposal<'_> {
 
     /// Proposes fur, and a weak point on top of the head, or without a head at the highest skin.
     fn skin(&mut self) -> Result<(), ColossusError> {
-        let mut tags = self.parts.mesh.tags().iter();
+        let mut tags = self.rig.collider.tags().iter();
         if !tags.any(|tag| tag.kind == SurfaceKind::Fur) {
             let joints = vec!["*".to_owned()];
             self.body.fur = FurFile {
@@ -310,7 +310,7 @@ impl Proposal<'_> {
                 ..FurFile::default()
             };
         }
-        if self.parts.weak_points.iter().any(|point| point.major) {
+        if self.rig.weak_points.iter().any(|point| point.major) {
             return Ok(());
         }
         let kind = self.kind()?;

@@ -12,9 +12,7 @@ use crate::support::TICK;
 use clamber_animation::rig::{
     Channel, Clip, Interpolation, JointId, Keyframes, Playback, Skeleton,
 };
-use clamber_colossus::{
-    Brain, Creature, CreatureConfig, CreatureKind, CreatureParts, Noise, Surroundings,
-};
+use clamber_colossus::{Brain, Creature, CreatureConfig, CreatureKind, Noise, Surroundings};
 use clamber_gltf::load;
 use clamber_surface::mesh::VertexId;
 use clamber_world::{HalfSpace, Obstacle};
@@ -180,7 +178,9 @@ fn kind_with(
         );
         return None;
     };
-    let rig = load(PathBuf::from(root).join("models").join(animal.file)).unwrap();
+    let mut rig = load(PathBuf::from(root).join("models").join(animal.file))
+        .unwrap()
+        .rig;
     let mut brain = json!({
         "body": {
             "height": height,
@@ -203,15 +203,10 @@ fn kind_with(
         clips.push(still(&clips[0], &rig.skeleton, 3.0));
         brain["body"]["gait"]["speed"] = json!(0.3);
     }
-    let parts = CreatureParts {
-        skeleton: rig.skeleton,
-        clips,
-        mesh: rig.collider,
-        materials: rig.collider_materials,
-        weak_points: Vec::new(),
-    };
+    rig.clips = clips;
+    rig.weak_points.clear();
     let brain = Brain::from_json(&brain.to_string(), TICK).unwrap();
-    Some(Arc::new(CreatureKind::new(parts, brain).unwrap()))
+    Some(Arc::new(CreatureKind::new(&rig, brain).unwrap()))
 }
 
 /// A clip of one second that holds the pose of another clip at a time.
@@ -461,20 +456,16 @@ fn legs_that_cannot_be_are_refused_by_name() {
         return;
     };
     // A pole target is a helper joint: no skin moves with it.
-    let rig = load(PathBuf::from(root).join("models/Stag.glb")).unwrap();
+    let mut rig = load(PathBuf::from(root).join("models/Stag.glb"))
+        .unwrap()
+        .rig;
     let joints = ["BackLeg.L", "BackUpperLeg.L", "PoleTarget.L"];
     let brain = json!({
         "body": { "legs": [{ "joints": joints }] }, "start": "rests", "states": { "rests": {} }
     });
-    let parts = CreatureParts {
-        skeleton: rig.skeleton,
-        clips: rig.clips,
-        mesh: rig.collider,
-        materials: rig.collider_materials,
-        weak_points: Vec::new(),
-    };
+    rig.weak_points.clear();
     let brain = Brain::from_json(&brain.to_string(), TICK).unwrap();
-    let error = CreatureKind::new(parts, brain)
+    let error = CreatureKind::new(&rig, brain)
         .map(|_| ())
         .unwrap_err()
         .to_string();

@@ -11,10 +11,10 @@ use clamber_animation::rig::{
     Channel, Clip, Interpolation, JointId, Keyframes, Marker, Playback, Skeleton, Transform,
 };
 use clamber_colossus::{
-    Brain, Creature, CreatureConfig, CreatureEvent, CreatureKind, CreatureParts, Noise,
-    Surroundings,
+    Brain, Creature, CreatureConfig, CreatureEvent, CreatureKind, Noise, Surroundings,
 };
-use clamber_gltf::{Rig, load};
+use clamber_gltf::load;
+use clamber_surface::mesh::Rig;
 use clamber_surface::mesh::{SurfaceKind, SurfaceTag, TriangleId};
 use clamber_world::{HalfSpace, Obstacle};
 use glam::{DVec3, Quat, Vec3};
@@ -25,19 +25,16 @@ fn rig(file: &str) -> Option<Rig> {
         eprintln!("SKIPPED {file}: set CLAMBER_TEST_DATA to the folder that holds models/Trex.glb");
         return None;
     };
-    Some(load(PathBuf::from(root).join("models").join(file)).unwrap())
+    Some(
+        load(PathBuf::from(root).join("models").join(file))
+            .unwrap()
+            .rig,
+    )
 }
 
 fn try_kind(rig: &Rig, brain: &Value) -> Result<Arc<CreatureKind>, String> {
-    let parts = CreatureParts {
-        skeleton: rig.skeleton.clone(),
-        clips: rig.clips.clone(),
-        mesh: Arc::clone(&rig.collider),
-        materials: rig.collider_materials.clone(),
-        weak_points: rig.weak_points.clone(),
-    };
     let brain = Brain::from_json(&brain.to_string(), TICK).map_err(|error| error.to_string())?;
-    let kind = CreatureKind::new(parts, brain).map_err(|error| error.to_string())?;
+    let kind = CreatureKind::new(rig, brain).map_err(|error| error.to_string())?;
     Ok(Arc::new(kind))
 }
 

@@ -6,9 +6,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use crate::support::{TICK, person};
-use clamber_colossus::{
-    Brain, BrainFile, Creature, CreatureConfig, CreatureKind, CreatureParts, Surroundings,
-};
+use clamber_colossus::{Brain, BrainFile, Creature, CreatureConfig, CreatureKind, Surroundings};
 use clamber_gltf::load;
 use clamber_world::{HalfSpace, Obstacle};
 use glam::DVec3;
@@ -21,15 +19,10 @@ fn animal(file: &str, height: f64, aim: f64) -> Option<Arc<CreatureKind>> {
         eprintln!("SKIPPED {file}: set CLAMBER_TEST_DATA to the folder that holds models/Trex.glb");
         return None;
     };
-    let rig = load(PathBuf::from(root).join("models").join(file)).unwrap();
-    let parts = CreatureParts {
-        skeleton: rig.skeleton,
-        clips: rig.clips,
-        mesh: rig.collider,
-        materials: rig.collider_materials,
-        weak_points: rig.weak_points,
-    };
-    let proposed = BrainFile::propose(&parts, height).unwrap();
+    let rig = load(PathBuf::from(root).join("models").join(file))
+        .unwrap()
+        .rig;
+    let proposed = BrainFile::propose(&rig, height).unwrap();
     let proposed = serde_json::to_value(&proposed).unwrap();
     let mut act: Value =
         proposed["states"]["alive"]["states"]["alert"]["states"]["strikes"]["act"].clone();
@@ -48,7 +41,7 @@ fn animal(file: &str, height: f64, aim: f64) -> Option<Arc<CreatureKind>> {
         }
     });
     let brain = Brain::from_json(&brain.to_string(), TICK).unwrap();
-    Some(Arc::new(CreatureKind::new(parts, brain).unwrap()))
+    Some(Arc::new(CreatureKind::new(&rig, brain).unwrap()))
 }
 
 /// The place in the world where the attack strikes without an aim: the last position of the joint at the limb's end

@@ -7,12 +7,12 @@ use std::sync::Arc;
 use clamber_animation::rig::{Joint, JointId, Skeleton, Transform, WeakPoint};
 use clamber_climber::{Climber, ClimberConfig, ClimberInput, ClimberMode};
 use clamber_colossus::{
-    Brain, Creature, CreatureConfig, CreatureEvent, CreatureKind, CreatureParts, CreatureState,
-    Sense, Surroundings, Wound,
+    Brain, Creature, CreatureConfig, CreatureEvent, CreatureKind, CreatureState, Sense,
+    Surroundings, Wound,
 };
 use clamber_surface::geometry::Affine;
 use clamber_surface::mesh::{
-    BuildOptions, ColliderMesh, Influence, MeshSource, SurfaceKind, SurfaceTag, TriangleId,
+    BuildOptions, ColliderMesh, Influence, MeshSource, Rig, SurfaceKind, SurfaceTag, TriangleId,
 };
 use clamber_world::{MaterialPoint, Obstacle, ObstacleId};
 use glam::{DVec3, Vec3};
@@ -79,14 +79,9 @@ fn slab() -> Creature {
         (point.radius, point.hit_points, point.order) = (0.5, 2.0, order);
         point
     };
-    let parts = CreatureParts {
-        skeleton: Skeleton::new(vec![root]).unwrap(),
-        clips: Vec::new(),
-        mesh: Arc::new(mesh),
-        materials: std::collections::BTreeMap::new(),
-        weak_points: vec![point("first", -3.0, 0), point("second", 3.0, 1)],
-    };
-    let kind = CreatureKind::new(parts, Brain::from_json(BRAIN, TICK).unwrap()).unwrap();
+    let mut rig = Rig::new(Skeleton::new(vec![root]).unwrap(), Arc::new(mesh));
+    rig.weak_points = vec![point("first", -3.0, 0), point("second", 3.0, 1)];
+    let kind = CreatureKind::new(&rig, Brain::from_json(BRAIN, TICK).unwrap()).unwrap();
     Creature::new(Arc::new(kind), CreatureConfig::default()).unwrap()
 }
 

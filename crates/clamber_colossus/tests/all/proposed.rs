@@ -12,23 +12,16 @@ use crate::support::{TICK, person};
 use clamber_animation::rig::{Channel, Clip, Interpolation, JointId, Keyframes, Marker, Skeleton};
 use clamber_animation::{SeamProbe, joint_in_model};
 use clamber_colossus::{
-    Brain, BrainFile, Creature, CreatureConfig, CreatureKind, CreatureParts, Noise, Person, Riding,
-    Surroundings, Wound,
+    Brain, BrainFile, Creature, CreatureConfig, CreatureKind, Noise, Person, Riding, Surroundings,
+    Wound,
 };
 use clamber_gltf::load;
-use clamber_surface::mesh::{SurfaceKind, TriangleId};
+use clamber_surface::mesh::{Rig, SurfaceKind, TriangleId};
 use clamber_world::{HalfSpace, MaterialPoint, Obstacle};
 use glam::{DVec3, Vec3};
 
-fn parts(path: &Path) -> Option<CreatureParts> {
-    let rig = load(path).ok()?;
-    Some(CreatureParts {
-        skeleton: rig.skeleton,
-        clips: rig.clips,
-        mesh: rig.collider,
-        materials: rig.collider_materials,
-        weak_points: rig.weak_points,
-    })
+fn rig(path: &Path) -> Option<Rig> {
+    Some(load(path).ok()?.rig)
 }
 
 fn name(path: &Path) -> String {
@@ -36,12 +29,12 @@ fn name(path: &Path) -> String {
     name.to_string_lossy().into_owned()
 }
 
-fn kind(parts: &CreatureParts, file: &BrainFile) -> Arc<CreatureKind> {
+fn kind(rig: &Rig, file: &BrainFile) -> Arc<CreatureKind> {
     // The brain is read from text, as in a game.
     let text = serde_json::to_string(file).unwrap();
     let brain = Brain::from_json(&text, TICK).unwrap();
     assert_eq!(brain.file(), file);
-    Arc::new(CreatureKind::new(parts.clone(), brain).unwrap())
+    Arc::new(CreatureKind::new(rig, brain).unwrap())
 }
 
 /// Records of a creature's life.
@@ -98,9 +91,9 @@ impl Life {
 fn lives(height: f64, share: f64) {
     let mut count = 0;
     for path in models() {
-        let Some(parts) = parts(&path) else { continue };
-        let file = BrainFile::propose(&parts, height).unwrap();
-        let kind = kind(&parts, &file);
+        let Some(rig) = rig(&path) else { continue };
+        let file = BrainFile::propose(&rig, height).unwrap();
+        let kind = kind(&rig, &file);
         assert!(
             kind.report().never.is_empty(),
             "{}: {:?}",
@@ -204,14 +197,14 @@ fn creatures_from_elsewhere_live_by_what_is_proposed() {
 fn attacks_that_are_proposed_strike_who_stays() {
     let (mut count, mut missed) = (0, Vec::new());
     for path in models() {
-        let Some(parts) = parts(&path) else { continue };
+        let Some(rig) = rig(&path) else { continue };
         for height in [3.0, 20.0, 60.0] {
-            let file = BrainFile::propose(&parts, height).unwrap();
+            let file = BrainFile::propose(&rig, height).unwrap();
             let text = serde_json::to_string(&file).unwrap();
             if !text.contains("\"attack\"") {
                 continue;
             }
-            let kind = kind(&parts, &file);
+            let kind = kind(&rig, &file);
             let mut creature = Creature::new(Arc::clone(&kind), CreatureConfig::default()).unwrap();
             let prey = [person(if kind.can_walk() {
                 DVec3::new(0.3, 0.0, 2.0) * height
@@ -264,11 +257,11 @@ fn attacks_that_are_proposed_stay_above_the_ground() {
     let mut worst = [0f64; 2];
     let mut count = 0;
     for path in models() {
-        let Some(parts) = parts(&path) else { continue };
+        let Some(rig) = rig(&path) else { continue };
         for height in [3.0, 20.0] {
-            let file = BrainFile::propose(&parts, height).unwrap();
+            let file = BrainFile::propose(&rig, height).unwrap();
             let legs = file.body.legs.len();
-            let kind = kind(&parts, &file);
+            let kind = kind(&rig, &file);
             let mut one = Creature::new(Arc::clone(&kind), CreatureConfig::default()).unwrap();
             if legs == 0 || !one.enter("strikes") {
                 continue;
@@ -325,7 +318,7 @@ fn legs_are_those_that_people_find() {
             continue;
         }
         let path = PathBuf::from(&root).join("models").join(animal.file);
-        let file = BrainFile::propose(&parts(&path).unwrap(), 20.0).unwrap();
+        let file = BrainFile::propose(&rig(&path).unwrap(), 20.0).unwrap();
         let found: BTreeMap<String, Option<String>> = file
             .body
             .legs
@@ -363,16 +356,16 @@ fn legs_are_those_that_people_find() {
 #[test]
 fn skin_is_fur_and_the_weak_point_is_on_it() {
     for path in models() {
-        let Some(parts) = parts(&path) else { continue };
-        let file = BrainFile::propose(&parts, 20.0).unwrap();
-        let kind = kind(&parts, &file);
-        let has_fur = parts
-            .mesh
+        let Some(rig) = rig(&path) else { continue };
+        let file = BrainFile::propose(&rig, 20.0).unwrap();
+        let kind = kind(&rig, &file);
+        let has_fur = rig
+            .collider
             .tags()
             .iter()
             .any(|tag| tag.kind == SurfaceKind::Fur);
         if has_fur {
-            assert_eq!(kind.mesh().tags(), parts.mesh.tags());
+            assert_eq!(kind.mesh().tags(), rig.collider.tags());
             continue;
         }
         let mut tags = kind.mesh().tags().iter();
@@ -397,15 +390,15 @@ fn skin_is_fur_and_the_weak_point_is_on_it() {
 fn what_is_played_again_and_again_ends_as_it_begins() {
     let mut closed = 0;
     for path in models() {
-        let Some(parts) = parts(&path) else { continue };
-        let file = BrainFile::propose(&parts, 20.0).unwrap();
+        let Some(rig) = rig(&path) else { continue };
+        let file = BrainFile::propose(&rig, 20.0).unwrap();
         closed += file
             .body
             .clips
             .values()
             .filter(|clip| clip.close.is_some())
             .count();
-        let kind = kind(&parts, &file);
+        let kind = kind(&rig, &file);
         let probe = SeamProbe::new(kind.skeleton(), kind.mesh(), kind.height());
         let gait = file
             .body
@@ -424,22 +417,22 @@ fn what_is_played_again_and_again_ends_as_it_begins() {
 
 #[test]
 fn what_is_no_height_is_refused() {
-    let parts = parts(&models()[0]).unwrap();
+    let rig = rig(&models()[0]).unwrap();
     for height in [0.0, -1.0, 1e-4, 1e6, f64::NAN, f64::INFINITY] {
-        let error = BrainFile::propose(&parts, height).unwrap_err().to_string();
+        let error = BrainFile::propose(&rig, height).unwrap_err().to_string();
         assert!(error.contains("height"), "{error}");
     }
 }
 
-/// The Trex of the test data with changed parts.
-fn changed(change: impl FnOnce(&mut CreatureParts)) -> Option<CreatureParts> {
+/// The Trex of the test data with a changed rig.
+fn changed(change: impl FnOnce(&mut Rig)) -> Option<Rig> {
     let Some(root) = std::env::var_os("CLAMBER_TEST_DATA") else {
         eprintln!("SKIPPED files: set CLAMBER_TEST_DATA to the folder that holds models/Trex.glb");
         return None;
     };
-    let mut parts = parts(&PathBuf::from(root).join("models").join("Trex.glb")).unwrap();
-    change(&mut parts);
-    Some(parts)
+    let mut rig = rig(&PathBuf::from(root).join("models").join("Trex.glb")).unwrap();
+    change(&mut rig);
+    Some(rig)
 }
 
 fn keys(name: &str, seconds: f32) -> Clip {
@@ -455,56 +448,56 @@ fn keys(name: &str, seconds: f32) -> Clip {
 
 #[test]
 fn clips_without_end_take_no_time() {
-    let parts = changed(|parts| {
-        parts.clips = ["Idle", "Walk", "Attack"]
+    let rig = changed(|rig| {
+        rig.clips = ["Idle", "Walk", "Attack"]
             .map(|name| keys(name, 1e9))
             .to_vec();
     });
-    let Some(parts) = parts else { return };
-    let file = BrainFile::propose(&parts, 20.0).unwrap();
+    let Some(rig) = rig else { return };
+    let file = BrainFile::propose(&rig, 20.0).unwrap();
     assert_eq!((file.body.gait.as_ref(), file.body.clips.len()), (None, 0));
 }
 
 #[test]
 fn what_does_not_fit_is_left_out() {
     // The file's own markers are in the wrong order.
-    let parts = changed(|parts| {
+    let rig = changed(|rig| {
         let marker = |name: &str, time| Marker {
             name: name.into(),
             time,
         };
-        for clip in &mut parts.clips {
+        for clip in &mut rig.clips {
             if clip.name.ends_with("Attack") {
                 let markers = vec![marker("active", 0.6), marker("recovery", 0.5)];
                 *clip = clip.clone().with_markers(markers).unwrap();
             }
         }
     });
-    let Some(parts) = parts else { return };
-    let file = BrainFile::propose(&parts, 20.0).unwrap();
+    let Some(rig) = rig else { return };
+    let file = BrainFile::propose(&rig, 20.0).unwrap();
     let text = serde_json::to_string(&file).unwrap();
     assert!(
         !text.contains("attack\":") && text.contains("TRex_Walk"),
         "{text}"
     );
-    kind(&parts, &file);
+    kind(&rig, &file);
     // If two joints have the same name, the name stands for the first one only.
     let twice = |name: &'static str, other: &'static str| {
-        changed(move |parts| {
-            let mut joints = parts.skeleton.joints().to_vec();
+        changed(move |rig| {
+            let mut joints = rig.skeleton.joints().to_vec();
             for joint in &mut joints {
                 if joint.name == name {
                     joint.name = other.to_owned();
                 }
             }
-            parts.skeleton = Skeleton::new(joints).unwrap();
+            rig.skeleton = Skeleton::new(joints).unwrap();
         })
         .unwrap()
     };
     // The root gets the head's name, and comes before the head.
-    let parts = twice("root", "Head");
-    let file = BrainFile::propose(&parts, 20.0).unwrap();
-    let kind = kind(&parts, &file);
+    let rig = twice("root", "Head");
+    let file = BrainFile::propose(&rig, 20.0).unwrap();
+    let kind = kind(&rig, &file);
     for (name, _) in file.body.head.iter().flat_map(|head| &head.joints) {
         assert_ne!(name, "Head");
     }
@@ -514,7 +507,7 @@ fn what_does_not_fit_is_left_out() {
         "{:?}",
         kind.height()
     );
-    let parts = twice("BackFoot.L", "BackFoot.R");
-    let file = BrainFile::propose(&parts, 20.0).unwrap();
+    let rig = twice("BackFoot.L", "BackFoot.R");
+    let file = BrainFile::propose(&rig, 20.0).unwrap();
     assert!(file.body.legs.is_empty(), "{:?}", file.body.legs);
 }

@@ -9,8 +9,9 @@ use std::sync::Arc;
 
 use crate::support::{TICK, brain_file, brain_with, person};
 use clamber_colossus::{Creature, CreatureConfig, CreatureKind, Noise, Surroundings};
-use clamber_gltf::{LoadOptions, Rig, load_with};
+use clamber_gltf::{LoadOptions, load_with};
 use clamber_surface::measure::skin_vertex_reference;
+use clamber_surface::mesh::Rig;
 use clamber_surface::mesh::VertexId;
 use clamber_world::{HalfSpace, Obstacle};
 use glam::DVec3;
@@ -38,11 +39,11 @@ pub(crate) fn models() -> Vec<PathBuf> {
 fn rig(path: &PathBuf, height: Option<f64>) -> Option<Rig> {
     let mut options = LoadOptions::default();
     options.height = height.map(|height| height as f32);
-    load_with(path, &options).ok()
+    Some(load_with(path, &options).ok()?.rig)
 }
 
 fn kind_of(rig: Rig, brain: &str) -> Arc<CreatureKind> {
-    Arc::new(support::kind_of(rig, brain).unwrap())
+    Arc::new(support::kind_of(&rig, brain).unwrap())
 }
 
 fn giant(height: Option<f64>, brain: &str) -> Arc<CreatureKind> {

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use crate::support::{TICK, person};
 use clamber_colossus::{
-    Brain, Creature, CreatureConfig, CreatureKind, CreatureParts, Person, Riding, Surroundings,
+    Brain, Creature, CreatureConfig, CreatureKind, Person, Riding, Surroundings,
 };
 use clamber_surface::mesh::TriangleId;
 use clamber_world::{HalfSpace, MaterialPoint, Obstacle};
@@ -22,19 +22,14 @@ fn kind() -> Option<Arc<CreatureKind>> {
         eprintln!("SKIPPED trex: set CLAMBER_TEST_DATA to the folder that holds models/Trex.glb");
         return None;
     };
-    let rig = clamber_gltf::load(PathBuf::from(root).join("models/Trex.glb")).unwrap();
+    let rig = clamber_gltf::load(PathBuf::from(root).join("models/Trex.glb"))
+        .unwrap()
+        .rig;
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/trex.brain.json");
     let text = std::fs::read_to_string(path).unwrap();
     assert!(text.lines().count() <= 60);
-    let parts = CreatureParts {
-        skeleton: rig.skeleton,
-        clips: rig.clips,
-        mesh: rig.collider,
-        materials: rig.collider_materials,
-        weak_points: rig.weak_points,
-    };
     let brain = Brain::from_json(&text, TICK).unwrap();
-    Some(Arc::new(CreatureKind::new(parts, brain).unwrap()))
+    Some(Arc::new(CreatureKind::new(&rig, brain).unwrap()))
 }
 
 #[test]

@@ -1,8 +1,8 @@
 //! A saved arena as bytes: a version, the hash of the configuration, the state, and a checksum.
 
-use super::fingerprint::hash_of;
 use super::{Arena, ArenaState};
 use crate::error::ArenaError;
+use clamber_surface::Fingerprint;
 
 /// First bytes of a saved arena. Other bytes are refused.
 const MAGIC: [u8; 8] = *b"clamarna";
@@ -76,12 +76,7 @@ fn split<const N: usize>(bytes: &[u8]) -> Option<([u8; N], &[u8])> {
 }
 
 fn checksum(bytes: &[u8]) -> u64 {
-    // `serialize_bytes` hashes eight bytes at a time. A serialised slice would be hashed byte by byte.
-    struct Bytes<'a>(&'a [u8]);
-    impl serde::Serialize for Bytes<'_> {
-        fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-            serializer.serialize_bytes(self.0)
-        }
-    }
-    hash_of(0, &Bytes(bytes))
+    let mut hash = Fingerprint::default();
+    hash.bytes(bytes);
+    hash.value()
 }

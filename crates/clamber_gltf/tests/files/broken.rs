@@ -1,7 +1,7 @@
 //! Files that claim too much memory, and files with changed values, flipped bits and cuts.
 
 use allocation_counter::measure;
-use clamber_gltf::{LoadOptions, Rig, load_slice};
+use clamber_gltf::{LoadOptions, Model, load_slice};
 use clamber_surface::geometry::Similarity;
 use clamber_surface::rig::Playback;
 use clamber_surface::surface::SkinnedSurface;
@@ -10,12 +10,12 @@ use serde_json::{Value, json};
 use crate::builder::File;
 
 /// Poses a rig in the middle of every clip, as a user would: a rig that was loaded must not panic later.
-fn use_rig(rig: &Rig) {
-    let mut surface = SkinnedSurface::new(rig.collider.clone());
-    for clip in &rig.clips {
-        let rest = rig.skeleton.rest_pose();
+fn use_rig(model: &Model) {
+    let mut surface = SkinnedSurface::new(model.rig.collider.clone());
+    for clip in &model.rig.clips {
+        let rest = model.rig.skeleton.rest_pose();
         if let Ok(pose) = clip.sample(&rest, clip.duration() * 0.5, Playback::Loop)
-            && let Ok(palette) = rig.skeleton.palette(&pose)
+            && let Ok(palette) = model.rig.skeleton.palette(&pose)
         {
             let _ = surface.advance(&palette, Similarity::IDENTITY);
         }
@@ -165,7 +165,7 @@ fn sparse_accessors_cannot_replace_more_elements_than_there_are() {
     let error = file.load().unwrap_err().to_string();
     assert!(error.contains("replaces 5 of 4 elements"), "{error}");
     file.json["accessors"][0]["sparse"]["count"] = json!(1);
-    let moved = file.load().unwrap().collider.positions()[0];
+    let moved = file.load().unwrap().rig.collider.positions()[0];
     assert_eq!(moved, glam::Vec3::splat(0.5));
 }
 
@@ -222,11 +222,11 @@ fn no_change_of_a_value_panics() {
                 bytes: file.bytes.clone(),
             };
             match changed.load() {
-                Ok(rig) => {
-                    use_rig(&rig);
+                Ok(model) => {
+                    use_rig(&model);
                     let tall = LoadOptions::default().with_height(7.0);
-                    if let Ok(rig) = load_slice(&changed.glb(), &tall) {
-                        use_rig(&rig);
+                    if let Ok(model) = load_slice(&changed.glb(), &tall) {
+                        use_rig(&model);
                     }
                     loaded += 1;
                 }
@@ -254,8 +254,8 @@ fn no_flip_or_cut_of_bytes_panics() {
             let at = rng.usize(0..broken.len());
             broken[at] ^= 1 << rng.u32(0..8);
         }
-        if let Ok(rig) = load_slice(&broken, &LoadOptions::default()) {
-            use_rig(&rig);
+        if let Ok(model) = load_slice(&broken, &LoadOptions::default()) {
+            use_rig(&model);
         }
     }
     for cut in 0..glb.len() {

@@ -1,6 +1,6 @@
 //! Builds small files in code.
 
-use clamber_gltf::{GltfErrorKind, LoadOptions, Rig, load_slice};
+use clamber_gltf::{GltfErrorKind, LoadOptions, Model, load_slice};
 use clamber_surface::geometry::Similarity;
 use clamber_surface::rig::Playback;
 use clamber_surface::surface::SkinnedSurface;
@@ -160,7 +160,7 @@ impl File {
         serde_json::to_vec(&json).unwrap()
     }
 
-    pub(crate) fn load(&self) -> Result<Rig, GltfErrorKind> {
+    pub(crate) fn load(&self) -> Result<Model, GltfErrorKind> {
         load_slice(&self.glb(), &LoadOptions::default()).map_err(|error| error.kind)
     }
 }
@@ -186,17 +186,19 @@ fn glb_of(json: &[u8], bin: &[u8]) -> Vec<u8> {
 }
 
 /// The names of a rig's joints, in order.
-pub(crate) fn joint_names(rig: &Rig) -> Vec<&str> {
-    let joints = rig.skeleton.joints().iter();
+pub(crate) fn joint_names(model: &Model) -> Vec<&str> {
+    let joints = model.rig.skeleton.joints().iter();
     joints.map(|joint| joint.name.as_str()).collect()
 }
 
 /// The rig's surface, posed at a time of its first clip.
-pub(crate) fn posed(rig: &Rig, time: f64) -> SkinnedSurface {
-    let rest = rig.skeleton.rest_pose();
-    let pose = rig.clips[0].sample(&rest, time, Playback::Clamp).unwrap();
-    let palette = rig.skeleton.palette(&pose).unwrap();
-    let mut surface = SkinnedSurface::new(rig.collider.clone());
+pub(crate) fn posed(model: &Model, time: f64) -> SkinnedSurface {
+    let rest = model.rig.skeleton.rest_pose();
+    let pose = model.rig.clips[0]
+        .sample(&rest, time, Playback::Clamp)
+        .unwrap();
+    let palette = model.rig.skeleton.palette(&pose).unwrap();
+    let mut surface = SkinnedSurface::new(model.rig.collider.clone());
     surface.advance(&palette, Similarity::IDENTITY).unwrap();
     surface
 }

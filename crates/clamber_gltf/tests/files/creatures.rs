@@ -11,21 +11,27 @@ use crate::builder::{File, joint_names, posed};
 
 #[test]
 fn the_square_loads_as_it_was_made() {
-    let rig = File::square().load().unwrap();
-    assert!(rig.report.warnings.is_empty(), "{:?}", rig.report.warnings);
-    let names = joint_names(&rig);
-    assert_eq!(names, ["lower", "upper", "armature"]);
-    assert_eq!(rig.skeleton.joints()[0].parent, Some(JointId(2)));
-    assert_eq!(rig.collider.positions().len(), 4);
+    let model = File::square().load().unwrap();
     assert!(
-        rig.collider
+        model.report.warnings.is_empty(),
+        "{:?}",
+        model.report.warnings
+    );
+    let names = joint_names(&model);
+    assert_eq!(names, ["lower", "upper", "armature"]);
+    assert_eq!(model.rig.skeleton.joints()[0].parent, Some(JointId(2)));
+    assert_eq!(model.rig.collider.positions().len(), 4);
+    assert!(
+        model
+            .rig
+            .collider
             .tags()
             .iter()
             .all(|tag| tag.kind == SurfaceKind::Fur)
     );
     // At half time the upper edge has turned by 45 degrees about (0, 1), at twice the size.
-    assert_eq!(rig.clips[0].name, "turn");
-    let surface = posed(&rig, 0.5);
+    assert_eq!(model.rig.clips[0].name, "turn");
+    let surface = posed(&model, 0.5);
     let corner = surface.in_model().position(VertexId(2)).unwrap();
     let diagonal = 2.0 * 0.5f32.sqrt();
     let expected = glam::Vec3::new(diagonal, 2.0 + diagonal, 0.0);
@@ -50,9 +56,14 @@ fn harmless_extensions_and_unused_channels_meshes_and_skins_are_skipped() {
         .push(json!({"mesh": 0}));
     let bare = file.node(json!({}));
     file.push("skins", json!({"joints": [bare]}));
-    let rig = file.load().unwrap();
-    assert_eq!(rig.clips[0].channels().len(), 1);
-    assert_eq!(rig.report.warnings.len(), 5, "{:?}", rig.report.warnings);
+    let model = file.load().unwrap();
+    assert_eq!(model.rig.clips[0].channels().len(), 1);
+    assert_eq!(
+        model.report.warnings.len(),
+        5,
+        "{:?}",
+        model.report.warnings
+    );
 
     file.json["extensionsRequired"] = json!(["KHR_draco_mesh_compression"]);
     assert!(matches!(file.load(), Err(GltfErrorKind::Format { .. })));
@@ -69,8 +80,11 @@ fn surplus_bind_matrices_are_ignored_and_unknown_joints_refused() {
     }
     let binds = file.floats("MAT4", &binds);
     file.json["skins"][0]["inverseBindMatrices"] = json!(binds);
-    let rig = file.load().unwrap();
-    assert_eq!(rig.skeleton.joints()[2].inverse_bind, Affine::IDENTITY);
+    let model = file.load().unwrap();
+    assert_eq!(
+        model.rig.skeleton.joints()[2].inverse_bind,
+        Affine::IDENTITY
+    );
 
     let mut file = File::square();
     file.json["skins"][0]["joints"] = json!([1]);
@@ -106,7 +120,7 @@ fn animated_nodes_above_the_joints_move_them_at_any_scale() {
     channels.push(json!({"sampler": 1, "target": {"node": 0, "path": "scale"}}));
     // The channel of the joint is removed: only the node above the joints moves.
     channels.remove(0);
-    let rig = file.load().unwrap();
+    let model = file.load().unwrap();
     for (time, scale) in [
         (0.0, Vec3::splat(2.0)),
         (0.5, Vec3::ONE),
@@ -115,7 +129,7 @@ fn animated_nodes_above_the_joints_move_them_at_any_scale() {
     ] {
         let expected = Vec3::new(1.0, 1.0, 0.0) * scale;
         assert_eq!(
-            posed(&rig, time).in_model().position(VertexId(2)),
+            posed(&model, time).in_model().position(VertexId(2)),
             Some(expected),
             "at {time} s"
         );
@@ -149,25 +163,30 @@ fn skins_that_share_joints_are_one_creature_and_others_another_one() {
     file.node(json!({"mesh": 0, "skin": third}));
     with_a_stranger(&mut file);
 
-    let rig = file.load().unwrap();
-    let names = joint_names(&rig);
+    let model = file.load().unwrap();
+    let names = joint_names(&model);
     // Two skins bind "lower" alike, but "upper" with different matrices.
     assert_eq!(
         names,
         ["lower", "upper", "upper", "finger", "nail", "armature"]
     );
-    assert_eq!(rig.skeleton.joints()[3].parent, Some(JointId(1)));
+    assert_eq!(model.rig.skeleton.joints()[3].parent, Some(JointId(1)));
     assert_eq!(
-        rig.collider.triangles().len(),
+        model.rig.collider.triangles().len(),
         6,
         "a mesh shown twice is one"
     );
     assert_eq!(
-        rig.report.build.cracks, 0,
+        model.report.build.cracks, 0,
         "each skin has a space of its own"
     );
-    assert_eq!(rig.report.warnings.len(), 1, "{:?}", rig.report.warnings);
-    let warning = &rig.report.warnings[0];
+    assert_eq!(
+        model.report.warnings.len(),
+        1,
+        "{:?}",
+        model.report.warnings
+    );
+    let warning = &model.report.warnings[0];
     let expected = ImportWarning::OtherCreatures {
         skins: vec![0, 1, 2],
         others: 1,
@@ -178,10 +197,10 @@ fn skins_that_share_joints_are_one_creature_and_others_another_one() {
 
     let pick = |skin| LoadOptions::default().with_skin(skin);
     let stranger = load_slice(&file.glb(), &pick(3)).unwrap();
-    assert_eq!(stranger.skeleton.joints()[0].name, "stranger");
-    assert!(stranger.clips.is_empty(), "the clip moves the others");
+    assert_eq!(stranger.rig.skeleton.joints()[0].name, "stranger");
+    assert!(stranger.rig.clips.is_empty(), "the clip moves the others");
     let same = load_slice(&file.glb(), &pick(2)).unwrap();
-    assert_eq!(same.skeleton.joints().len(), 6);
+    assert_eq!(same.rig.skeleton.joints().len(), 6);
     let error = load_slice(&file.glb(), &pick(4)).unwrap_err();
     assert!(error.path.is_none());
     let expected = matches!(
@@ -204,17 +223,17 @@ fn load_all_gives_all_creatures_of_a_file() {
     file.node(json!({"mesh": 0, "skin": second}));
     let path = std::env::temp_dir().join(format!("clamber-all-{}.glb", std::process::id()));
     std::fs::write(&path, file.glb()).unwrap();
-    let rigs = load_all(&path, &LoadOptions::default()).unwrap();
+    let models = load_all(&path, &LoadOptions::default()).unwrap();
     std::fs::remove_file(&path).unwrap();
-    let first_joints: Vec<_> = rigs
+    let first_joints: Vec<_> = models
         .iter()
-        .map(|rig| &rig.skeleton.joints()[0].name)
+        .map(|model| &model.rig.skeleton.joints()[0].name)
         .collect();
     assert_eq!(first_joints, ["lower", "stranger"]);
-    assert_eq!(rigs[0].clips.len(), 1);
-    let triangles: Vec<_> = rigs
+    assert_eq!(models[0].rig.clips.len(), 1);
+    let triangles: Vec<_> = models
         .iter()
-        .map(|rig| rig.collider.triangles().len())
+        .map(|model| model.rig.collider.triangles().len())
         .collect();
     assert_eq!(triangles, [2, 4]);
 }
@@ -230,9 +249,9 @@ fn weak_points_are_on_the_joint_that_they_hang_under() {
     file.json["nodes"][1]["extras"] = says(json!({"hit_points": 1, "radius": 0.25}));
     file.node(json!({"extras": says(json!({"hit_points": 1}))}));
 
-    let rig = file.load().unwrap();
-    let [lower, eye] = rig.weak_points.as_slice() else {
-        panic!("{:?}", rig.weak_points);
+    let model = file.load().unwrap();
+    let [lower, eye] = model.rig.weak_points.as_slice() else {
+        panic!("{:?}", model.rig.weak_points);
     };
     assert_eq!((lower.joint, lower.position), (JointId(0), Vec3::ZERO));
     assert!(!lower.major && lower.hit_points == 1.0 && lower.name == "lower");
@@ -244,8 +263,8 @@ fn weak_points_are_on_the_joint_that_they_hang_under() {
     // The first radius is in the file. The second is the scale of the node, 0.4, under a node of scale 2, in an
     // armature of scale 2.
     assert_eq!((lower.radius, eye.radius), (0.25, 0.4 * 2.0 * 2.0));
-    let [warning] = rig.report.warnings.as_slice() else {
-        panic!("{:?}", rig.report.warnings);
+    let [warning] = model.report.warnings.as_slice() else {
+        panic!("{:?}", model.report.warnings);
     };
     assert!(matches!(warning, ImportWarning::WeakPointWithoutJoint { node } if node == "node 6"));
 

@@ -1,6 +1,6 @@
 //! Creatures that are scaled to a height.
 
-use clamber_gltf::{GltfErrorKind, LoadOptions, Rig, load_slice};
+use clamber_gltf::{GltfErrorKind, LoadOptions, Model, load_slice};
 use clamber_surface::rig::Playback;
 use glam::Vec3;
 use serde_json::json;
@@ -47,20 +47,22 @@ fn moving_square() -> File {
     file
 }
 
-fn with_height(file: &File, height: f32) -> Result<Rig, GltfErrorKind> {
+fn with_height(file: &File, height: f32) -> Result<Model, GltfErrorKind> {
     let options = LoadOptions::default().with_height(height);
     load_slice(&file.glb(), &options).map_err(|error| error.kind)
 }
 
 /// All vertices at a time of the first clip, or at rest.
-fn skinned(rig: &Rig, time: Option<f64>) -> Vec<Vec3> {
-    let rest = rig.skeleton.rest_pose();
+fn skinned(model: &Model, time: Option<f64>) -> Vec<Vec3> {
+    let rest = model.rig.skeleton.rest_pose();
     let pose = match time {
-        Some(time) => rig.clips[0].sample(&rest, time, Playback::Clamp).unwrap(),
+        Some(time) => model.rig.clips[0]
+            .sample(&rest, time, Playback::Clamp)
+            .unwrap(),
         None => rest,
     };
-    let palette = rig.skeleton.palette(&pose).unwrap();
-    clamber_surface::skin::skin(&rig.collider, palette.matrices()).unwrap()
+    let palette = model.rig.skeleton.palette(&pose).unwrap();
+    clamber_surface::skin::skin(&model.rig.collider, palette.matrices()).unwrap()
 }
 
 #[test]
@@ -79,11 +81,17 @@ fn scaling_multiplies_every_length() {
     let height = ys().fold(f32::MIN, f32::max) - ys().fold(f32::MAX, f32::min);
     assert!((height - 5.0).abs() < 1e-5, "{height}");
     assert_eq!(scaled.visual[0].positions[2], Vec3::new(2.5, 2.5, 0.0));
-    let (eye, plain_eye) = (&scaled.weak_points[0], &plain.weak_points[0]);
+    let (eye, plain_eye) = (&scaled.rig.weak_points[0], &plain.rig.weak_points[0]);
     assert_eq!(eye.position, plain_eye.position * 2.5);
     assert_eq!(eye.radius, 0.3 * 2.5);
-    assert_eq!(scaled.skeleton.joints()[1].inverse_bind.rows[1][3], -2.5);
-    assert_eq!(scaled.collider.radius(), plain.collider.radius() * 2.5);
+    assert_eq!(
+        scaled.rig.skeleton.joints()[1].inverse_bind.rows[1][3],
+        -2.5
+    );
+    assert_eq!(
+        scaled.rig.collider.radius(),
+        plain.rig.collider.radius() * 2.5
+    );
 }
 
 #[test]

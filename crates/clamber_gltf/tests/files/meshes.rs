@@ -39,14 +39,14 @@ fn visual_meshes_keep_normals_texture_coordinates_colours_and_materials() {
         }),
     );
 
-    let rig = file.load().unwrap();
+    let model = file.load().unwrap();
     let names = vec!["COLOR_1".to_owned()];
     let unread = [ImportWarning::UnreadAttributes { names }];
-    assert_eq!(rig.report.warnings, unread);
+    assert_eq!(model.report.warnings, unread);
     let text = unread[0].to_string();
     assert_eq!(text, "attributes that were not read: COLOR_1");
-    let [seen] = rig.visual.as_slice() else {
-        panic!("{} visual meshes", rig.visual.len());
+    let [seen] = model.visual.as_slice() else {
+        panic!("{} visual meshes", model.visual.len());
     };
     assert_eq!(seen.name, "body");
     assert_eq!(seen.positions.len(), 4);
@@ -57,7 +57,7 @@ fn visual_meshes_keep_normals_texture_coordinates_colours_and_materials() {
     assert_eq!(seen.influence_ends, [1, 2, 3, 4]);
     let materials: Vec<_> = seen.primitives.iter().map(|p| p.material).collect();
     assert_eq!(materials, [Some(0), Some(1)]);
-    let glow = &rig.materials[1];
+    let glow = &model.materials[1];
     assert_eq!(glow.name.as_deref(), Some("glow"));
     assert_eq!(
         (glow.emissive, glow.alpha),
@@ -65,7 +65,7 @@ fn visual_meshes_keep_normals_texture_coordinates_colours_and_materials() {
     );
     assert_eq!((glow.base_color[3], glow.roughness), (0.5, 0.25));
     assert!(glow.double_sided);
-    let again = rig.visual_collider().unwrap();
+    let again = model.visual_collider().unwrap();
     assert_eq!(again.triangles().len(), 2);
 }
 
@@ -79,15 +79,16 @@ fn visual_meshes_merge_into_one_collider_with_their_tags() {
     let primitives = file.json["meshes"][0]["primitives"].as_array_mut().unwrap();
     primitives.push(json!({"attributes": {
         "POSITION": positions, "JOINTS_0": joints, "WEIGHTS_0": weights}}));
-    let rig = file.load().unwrap();
-    assert_eq!(rig.visual.len(), 2);
-    let seen = rig.visual_collider().unwrap();
-    assert_eq!(seen.positions(), rig.collider.positions());
-    assert_eq!(seen.triangles(), rig.collider.triangles());
-    assert_eq!(seen.tags(), rig.collider.tags());
+    let model = file.load().unwrap();
+    assert_eq!(model.visual.len(), 2);
+    let seen = model.visual_collider().unwrap();
+    assert_eq!(seen.positions(), model.rig.collider.positions());
+    assert_eq!(seen.triangles(), model.rig.collider.triangles());
+    assert_eq!(seen.tags(), model.rig.collider.tags());
     for vertex in (0..7).map(VertexId) {
         assert!(
-            seen.influences(vertex).eq(rig.collider.influences(vertex)),
+            seen.influences(vertex)
+                .eq(model.rig.collider.influences(vertex)),
             "{vertex:?}"
         );
     }
@@ -120,8 +121,11 @@ fn two_nodes_can_give_one_mesh_different_roles() {
     let mut file = File::square();
     file.json["nodes"][3]["extras"] = role("visual");
     file.node(json!({"mesh": 0, "skin": 0, "extras": role("collision")}));
-    let rig = file.load().unwrap();
-    assert_eq!((rig.collider.triangles().len(), rig.visual.len()), (2, 1));
+    let model = file.load().unwrap();
+    assert_eq!(
+        (model.rig.collider.triangles().len(), model.visual.len()),
+        (2, 1)
+    );
 }
 
 #[test]
@@ -134,8 +138,11 @@ fn roles_select_collision_and_visual_meshes() {
         Err(GltfErrorKind::NoTriangles { .. })
     ));
     file.json["nodes"][3]["extras"] = role("collision");
-    let rig = file.load().unwrap();
-    assert_eq!((rig.collider.triangles().len(), rig.visual.len()), (2, 0));
+    let model = file.load().unwrap();
+    assert_eq!(
+        (model.rig.collider.triangles().len(), model.visual.len()),
+        (2, 0)
+    );
 
     // If one mesh is for collision, a mesh without a role is visual only.
     let mut seen = file.json["meshes"][0].clone();
@@ -148,22 +155,34 @@ fn roles_select_collision_and_visual_meshes() {
         "POSITION": positions, "JOINTS_0": joints, "WEIGHTS_0": weights}}]);
     let seen = file.push("meshes", seen);
     let node = file.node(json!({"mesh": seen, "skin": 0}));
-    let rig = file.load().unwrap();
-    assert_eq!((rig.collider.triangles().len(), rig.visual.len()), (2, 1));
+    let model = file.load().unwrap();
+    assert_eq!(
+        (model.rig.collider.triangles().len(), model.visual.len()),
+        (2, 1)
+    );
     file.json["nodes"][node]["extras"] = role("both");
-    let rig = file.load().unwrap();
-    assert_eq!((rig.collider.triangles().len(), rig.visual.len()), (3, 1));
+    let model = file.load().unwrap();
+    assert_eq!(
+        (model.rig.collider.triangles().len(), model.visual.len()),
+        (3, 1)
+    );
     file.json["nodes"][3]
         .as_object_mut()
         .unwrap()
         .remove("extras");
-    let rig = file.load().unwrap();
-    assert_eq!((rig.collider.triangles().len(), rig.visual.len()), (3, 2));
+    let model = file.load().unwrap();
+    assert_eq!(
+        (model.rig.collider.triangles().len(), model.visual.len()),
+        (3, 2)
+    );
 
     // The role of the mesh applies where its node has none.
     file.json["meshes"][0]["extras"] = role("visual");
-    let rig = file.load().unwrap();
-    assert_eq!((rig.collider.triangles().len(), rig.visual.len()), (1, 2));
+    let model = file.load().unwrap();
+    assert_eq!(
+        (model.rig.collider.triangles().len(), model.visual.len()),
+        (1, 2)
+    );
 
     file.json["nodes"][3]["extras"] = role("colission");
     let error = file.load().unwrap_err().to_string();
@@ -188,25 +207,33 @@ fn a_rigid_mesh_under_a_joint_follows_it_alone() {
     // The same mesh once more, under no joint.
     file.node(json!({"mesh": plate}));
 
-    let rig = file.load().unwrap();
-    let names = joint_names(&rig);
+    let model = file.load().unwrap();
+    let names = joint_names(&model);
     assert_eq!(names, ["lower", "upper", "plate", "armature", "mount"]);
-    assert_eq!(rig.collider.triangles().len(), 4);
+    assert_eq!(model.rig.collider.triangles().len(), 4);
     assert_eq!(
-        rig.report.build.cracks, 0,
+        model.report.build.cracks, 0,
         "equal positions in different spaces"
     );
-    assert_eq!(rig.visual.len(), 2);
-    assert_eq!(rig.report.warnings.len(), 1, "{:?}", rig.report.warnings);
-    assert_eq!(rig.collider.parts()[2].joint, JointId(2));
+    assert_eq!(model.visual.len(), 2);
+    assert_eq!(
+        model.report.warnings.len(),
+        1,
+        "{:?}",
+        model.report.warnings
+    );
+    assert_eq!(model.rig.collider.parts()[2].joint, JointId(2));
 
     // Turned about (0, 1) with "upper", doubled by "armature", mirrored by "mount".
-    let surface = posed(&rig, 1.0);
+    let surface = posed(&model, 1.0);
     let corner = surface.in_model().position(VertexId(4 + 1)).unwrap();
     let expected = Vec3::new(0.0, 2.0 + 2.0, -6.0);
     assert!((corner - expected).length() < 1e-5, "{corner}");
     let hit = surface.in_model().closest_point(expected, 1.0).unwrap();
-    assert_eq!(rig.collider.parts()[hit.part.index()].joint, JointId(2));
+    assert_eq!(
+        model.rig.collider.parts()[hit.part.index()].joint,
+        JointId(2)
+    );
 }
 
 #[test]
@@ -218,10 +245,13 @@ fn a_file_without_skins_is_one_creature_of_rigid_pieces() {
         .unwrap()
         .remove("skin");
     file.json["nodes"][2]["mesh"] = json!(0);
-    let rig = file.load().unwrap();
-    let names = joint_names(&rig);
+    let model = file.load().unwrap();
+    let names = joint_names(&model);
     assert_eq!(names, ["upper", "body", "lower", "armature"]);
-    assert_eq!((rig.collider.triangles().len(), rig.clips.len()), (4, 1));
+    assert_eq!(
+        (model.rig.collider.triangles().len(), model.rig.clips.len()),
+        (4, 1)
+    );
     file.json["meshes"] = json!([{"primitives": []}]);
     assert!(matches!(
         file.load(),
@@ -236,7 +266,7 @@ fn morph_targets_are_applied_at_their_rest_weights() {
     let aside = file.positions(&[[4.0, 0.0, 0.0]; 4]);
     file.json["meshes"][0]["primitives"][0]["targets"] =
         json!([{"POSITION": up}, {"POSITION": aside}, {}]);
-    let z = |file: &File| file.load().map(|rig| rig.collider.positions()[0]);
+    let z = |file: &File| file.load().map(|model| model.rig.collider.positions()[0]);
     assert_eq!(z(&file).unwrap(), Vec3::ZERO, "no weights are zero weights");
     file.json["meshes"][0]["weights"] = json!([0.5]);
     let error = z(&file).unwrap_err().to_string();
@@ -252,7 +282,7 @@ fn morph_targets_are_applied_at_their_rest_weights() {
 
     // The same mesh with other weights is another mesh.
     file.node(json!({"mesh": 0, "skin": 0}));
-    assert_eq!(file.load().unwrap().collider.triangles().len(), 4);
+    assert_eq!(file.load().unwrap().rig.collider.triangles().len(), 4);
 
     let short = file.positions(&[[0.0, 0.0, 1.0]; 3]);
     file.json["meshes"][0]["primitives"][0]["targets"][0] = json!({"POSITION": short});

@@ -55,12 +55,12 @@ fn a_centipede_of_300_segments_of_one_sphere_loads() {
     for (limit, loads) in [(1 << 20, true), (repeated, true), (repeated - 1, false)] {
         let options = LoadOptions::default().with_max_repeated_vertices(limit);
         match load_slice(&file.glb(), &options) {
-            Ok(rig) => {
+            Ok(model) => {
                 assert!(loads, "limit {limit}");
-                assert_eq!(rig.visual.len(), 301);
-                let vertices: usize = rig.visual.iter().map(|mesh| mesh.positions.len()).sum();
+                assert_eq!(model.visual.len(), 301);
+                let vertices: usize = model.visual.iter().map(|mesh| mesh.positions.len()).sum();
                 assert_eq!(vertices, 300 * 625 + 4);
-                assert_eq!(rig.skeleton.joints().len(), 303);
+                assert_eq!(model.rig.skeleton.joints().len(), 303);
             }
             Err(error) => {
                 assert!(!loads, "limit {limit}: {error}");
@@ -99,20 +99,20 @@ fn a_crowd_of_100_loads_with_one_mesh() {
     }
     let path = std::env::temp_dir().join(format!("clamber_crowd_{}.glb", std::process::id()));
     std::fs::write(&path, file.glb()).unwrap();
-    let rigs = load_all(&path, &LoadOptions::default());
+    let models = load_all(&path, &LoadOptions::default());
     std::fs::remove_file(&path).unwrap();
-    let rigs = rigs.unwrap();
-    assert_eq!(rigs.len(), 101);
-    for rig in &rigs[1..] {
+    let models = models.unwrap();
+    assert_eq!(models.len(), 101);
+    for model in &models[1..] {
         assert_eq!(
-            (rig.collider.positions().len(), rig.visual.len()),
-            (rigs[1].collider.positions().len(), 1)
+            (model.rig.collider.positions().len(), model.visual.len()),
+            (models[1].rig.collider.positions().len(), 1)
         );
     }
     assert!(
-        rigs[1].collider.positions().len() >= 577,
+        models[1].rig.collider.positions().len() >= 577,
         "{}",
-        rigs[1].collider.positions().len()
+        models[1].rig.collider.positions().len()
     );
     // A single member repeats no vertex.
     let alone = LoadOptions::default()

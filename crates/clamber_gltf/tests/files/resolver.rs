@@ -31,14 +31,14 @@ fn the_resolver_is_called_once_per_file_with_the_decoded_path() {
     ];
     let asked = |document: &[u8]| {
         let mut asked = Vec::new();
-        let rig = load_slice_with(document, &LoadOptions::default(), |path| {
+        let model = load_slice_with(document, &LoadOptions::default(), |path| {
             asked.push(path.to_owned());
             Ok(match path {
                 "a b/data.bin" => file.bytes.clone(),
                 _ => vec![0; 100],
             })
         });
-        assert_eq!(rig.unwrap().collider.positions().len(), 4);
+        assert_eq!(model.unwrap().rig.collider.positions().len(), 4);
         asked
     };
     // A buffer that is not read is not asked for: its file may be missing, and its URI may be any.

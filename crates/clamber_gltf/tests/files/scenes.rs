@@ -1,6 +1,6 @@
 //! Which scene of a file is loaded.
 
-use clamber_gltf::{GltfErrorKind, ImportWarning, LoadOptions, Rig, load_all, load_slice};
+use clamber_gltf::{GltfErrorKind, ImportWarning, LoadOptions, Model, load_all, load_slice};
 use serde_json::json;
 
 use crate::builder::File;
@@ -15,11 +15,11 @@ fn two_scenes() -> File {
     file
 }
 
-fn names(rig: &Rig) -> Vec<&str> {
-    rig.visual.iter().map(|mesh| mesh.name.as_str()).collect()
+fn names(model: &Model) -> Vec<&str> {
+    model.visual.iter().map(|mesh| mesh.name.as_str()).collect()
 }
 
-fn load(file: &File, options: &LoadOptions) -> Result<Rig, GltfErrorKind> {
+fn load(file: &File, options: &LoadOptions) -> Result<Model, GltfErrorKind> {
     load_slice(&file.glb(), options).map_err(|error| error.kind)
 }
 
@@ -27,22 +27,22 @@ fn load(file: &File, options: &LoadOptions) -> Result<Rig, GltfErrorKind> {
 fn the_default_scene_is_loaded_or_the_first_with_a_mesh_or_the_wanted_one() {
     let mut file = two_scenes();
     let options = LoadOptions::default();
-    let rig = load(&file, &options).unwrap();
-    assert_eq!(names(&rig), ["body"]);
+    let model = load(&file, &options).unwrap();
+    assert_eq!(names(&model), ["body"]);
     let warning = ImportWarning::HiddenMeshes {
         scene: 1,
         meshes: 2,
     };
-    assert_eq!(rig.report.warnings, [warning]);
-    let text = rig.report.warnings[0].to_string();
+    assert_eq!(model.report.warnings, [warning]);
+    let text = model.report.warnings[0].to_string();
     assert_eq!(
         text,
         "loaded scene 1; left out meshes that it does not show: 2"
     );
 
     // A skin that no shown mesh uses is no creature.
-    let rig = load(&file, &options.clone().with_scene(2)).unwrap();
-    assert_eq!(names(&rig), ["second"]);
+    let model = load(&file, &options.clone().with_scene(2)).unwrap();
+    assert_eq!(names(&model), ["second"]);
     file.json["scene"] = json!(2);
     assert_eq!(names(&load(&file, &options).unwrap()), ["second"]);
     assert_eq!(
@@ -53,10 +53,10 @@ fn the_default_scene_is_loaded_or_the_first_with_a_mesh_or_the_wanted_one() {
     // Without scenes everything is shown.
     file.json.as_object_mut().unwrap().remove("scene");
     file.json.as_object_mut().unwrap().remove("scenes");
-    let rig = load(&file, &options).unwrap();
-    assert_eq!(names(&rig), ["body"]);
+    let model = load(&file, &options).unwrap();
+    assert_eq!(names(&model), ["body"]);
     let warning = ImportWarning::MeshesWithoutJoint { meshes: 2 };
-    assert_eq!(rig.report.warnings, [warning]);
+    assert_eq!(model.report.warnings, [warning]);
 }
 
 #[test]
@@ -65,9 +65,9 @@ fn a_mesh_below_a_root_is_shown_and_its_joints_may_be_elsewhere() {
     let mut file = File::square();
     file.json["scenes"] = json!([{"nodes": [3]}]);
     file.json["nodes"][0]["children"] = json!([1]);
-    let rig = file.load().unwrap();
-    assert_eq!(rig.skeleton.joints().len(), 3);
-    assert_eq!(rig.report.warnings, []);
+    let model = file.load().unwrap();
+    assert_eq!(model.rig.skeleton.joints().len(), 3);
+    assert_eq!(model.report.warnings, []);
 }
 
 #[test]
@@ -113,8 +113,8 @@ fn many_scenes_of_many_nodes_load_in_one_pass() {
     let mut scenes = vec![json!({"nodes": [above - 1, above - 2]}); MANY];
     scenes.push(json!({"nodes": [above]}));
     file.json["scenes"] = scenes.into();
-    let rig = file.load().unwrap();
-    assert_eq!(rig.visual.len(), 1);
+    let model = file.load().unwrap();
+    assert_eq!(model.visual.len(), 1);
 
     file.json["scene"] = json!(0);
     let error = file.load().unwrap_err();

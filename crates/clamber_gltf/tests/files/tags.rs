@@ -1,6 +1,6 @@
 //! Tags from the file and from the caller.
 
-use clamber_gltf::{LoadOptions, Rig, load_slice};
+use clamber_gltf::{LoadOptions, Model, load_slice};
 use clamber_surface::mesh::{SurfaceKind, SurfaceTag};
 use serde_json::json;
 
@@ -29,19 +29,19 @@ fn three() -> File {
     file
 }
 
-fn load(options: &LoadOptions) -> Rig {
+fn load(options: &LoadOptions) -> Model {
     load_slice(&three().glb(), options).unwrap()
 }
 
 /// The tags of the collider, after checking that the visual meshes have the same.
-fn tags(rig: &Rig) -> Vec<SurfaceTag> {
-    let seen = rig.visual_collider().unwrap();
-    assert_eq!(seen.tags(), rig.collider.tags());
-    let primitives = rig.visual.iter().flat_map(|mesh| &mesh.primitives);
+fn tags(model: &Model) -> Vec<SurfaceTag> {
+    let seen = model.visual_collider().unwrap();
+    assert_eq!(seen.tags(), model.rig.collider.tags());
+    let primitives = model.visual.iter().flat_map(|mesh| &mesh.primitives);
     let drawn: Vec<_> = primitives
         .flat_map(|primitive| vec![primitive.tag; primitive.triangles.len()])
         .collect();
-    assert_eq!(drawn, rig.collider.tags().to_vec());
+    assert_eq!(drawn, model.rig.collider.tags().to_vec());
     drawn
 }
 
@@ -64,14 +64,14 @@ fn the_tagger_is_called_for_every_material_with_its_tag_in_the_file() {
     let fur = fur.with_user(100 + SurfaceKind::Fur as u32);
     let horn = SurfaceTag::new(SurfaceKind::Stone).with_ledge();
     let bare = SurfaceTag::default().with_user(100 + SurfaceKind::Skin as u32);
-    let rig = load(&options);
-    assert_eq!(tags(&rig), [fur, fur, horn.with_user(8), bare]);
-    assert_eq!(rig.materials[1].tag, horn.with_user(8));
+    let model = load(&options);
+    assert_eq!(tags(&model), [fur, fur, horn.with_user(8), bare]);
+    assert_eq!(model.materials[1].tag, horn.with_user(8));
 }
 
 #[test]
 fn with_tag_tags_every_surface() {
     let stone = SurfaceTag::new(SurfaceKind::Stone).with_user(u32::MAX);
-    let rig = load(&LoadOptions::default().with_tag(stone));
-    assert_eq!(tags(&rig), [stone; 4]);
+    let model = load(&LoadOptions::default().with_tag(stone));
+    assert_eq!(tags(&model), [stone; 4]);
 }

@@ -2,24 +2,24 @@
 
 use std::io;
 
-use clamber_gltf::{ImportWarning, LoadOptions, Rig, load_slice, load_slice_with};
+use clamber_gltf::{ImportWarning, LoadOptions, Model, load_slice, load_slice_with};
 use serde_json::{Value, json};
 
 use crate::builder::File;
 
 /// Loads the square after a change of its document, and checks that it still is the square.
-fn changed(what: &str, change: impl FnOnce(&mut Value)) -> Rig {
+fn changed(what: &str, change: impl FnOnce(&mut Value)) -> Model {
     let mut file = File::square();
     change(&mut file.json);
-    let rig = file.load();
-    assert!(rig.is_ok(), "{what}: {rig:?}");
-    let rig = rig.unwrap();
+    let model = file.load();
+    assert!(model.is_ok(), "{what}: {model:?}");
+    let model = model.unwrap();
     assert_eq!(
-        (rig.collider.triangles().len(), rig.clips.len()),
+        (model.rig.collider.triangles().len(), model.rig.clips.len()),
         (2, 1),
         "{what}"
     );
-    rig
+    model
 }
 
 #[test]
@@ -42,10 +42,10 @@ fn textures_in_any_format_and_images_that_cannot_be_read() {
         let texture = json!({"extensions": {name: {"source": 0}}});
         let image = json!({"uri": "no/such/image"});
         for required in [&[name][..], &[]] {
-            let rig = changed(name, |json| {
+            let model = changed(name, |json| {
                 textured(json, texture.clone(), image.clone(), required);
             });
-            assert_eq!(rig.report.warnings, warned, "{name}");
+            assert_eq!(model.report.warnings, warned, "{name}");
         }
     }
     // First a texture as Blockbench writes it, then some that are plainly wrong.
@@ -58,8 +58,8 @@ fn textures_in_any_format_and_images_that_cannot_be_read() {
         ),
         (json!(null), json!([])),
     ] {
-        let rig = changed("a texture", |json| textured(json, texture, image, &[]));
-        assert_eq!(rig.report.warnings, warned);
+        let model = changed("a texture", |json| textured(json, texture, image, &[]));
+        assert_eq!(model.report.warnings, warned);
     }
 }
 
@@ -112,10 +112,10 @@ fn a_byte_order_mark_is_no_fault() {
     let mut file = File::square();
     file.json["buffers"] = json!([{"byteLength": file.bytes.len(), "uri": "a.bin"}]);
     let marked = format!("\u{feff}{}", file.json);
-    let rig = load_slice_with(marked.as_bytes(), &LoadOptions::default(), |_| {
+    let model = load_slice_with(marked.as_bytes(), &LoadOptions::default(), |_| {
         Ok::<_, io::Error>(file.bytes.clone())
     });
-    assert_eq!(rig.unwrap().collider.triangles().len(), 2);
+    assert_eq!(model.unwrap().rig.collider.triangles().len(), 2);
 }
 
 #[test]
@@ -124,8 +124,11 @@ fn instances_of_a_mesh_are_told() {
     file.json["extensionsUsed"] = json!(["EXT_mesh_gpu_instancing"]);
     let many = json!({"EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": 0}}});
     file.json["nodes"][3]["extensions"] = many;
-    let rig = file.load().unwrap();
-    assert_eq!(rig.report.warnings, [ImportWarning::Instances { nodes: 1 }]);
+    let model = file.load().unwrap();
+    assert_eq!(
+        model.report.warnings,
+        [ImportWarning::Instances { nodes: 1 }]
+    );
     // If the extension is required, the file is refused.
     file.json["extensionsRequired"] = json!(["EXT_mesh_gpu_instancing"]);
     let error = load_slice(&file.glb(), &LoadOptions::default()).unwrap_err();

@@ -9,7 +9,7 @@ use crate::builder::File;
 
 /// The joints and weights of the square's vertices, after loading.
 fn weights_of(file: &File) -> Vec<Vec<(u32, f32)>> {
-    let collider = file.load().unwrap().collider;
+    let collider = file.load().unwrap().rig.collider;
     let vertex = |v| {
         collider
             .influences(VertexId(v))
@@ -78,10 +78,10 @@ fn weights_that_do_not_sum_to_one_are_normalised_and_reported() {
     // All weights are zero: the first joint named moves the vertex.
     let weights = file.floats("VEC4", &[0.0; 16]);
     replace(&mut file, "WEIGHTS_0", weights);
-    let rig = file.load().unwrap();
+    let model = file.load().unwrap();
     let unweighted = ImportWarning::UnweightedVertices { vertices: 4 };
-    assert_eq!(rig.report.warnings, [unweighted]);
-    assert_eq!(rig.report.build.worst_weight_error, 0.0);
+    assert_eq!(model.report.warnings, [unweighted]);
+    assert_eq!(model.report.build.worst_weight_error, 0.0);
     assert_eq!(weights_of(&file)[2], [(0, 1.0)]);
     for bad in [-1.0, f32::NAN, f32::INFINITY] {
         let weights = file.floats("VEC4", &[bad, 1.0, 0.0, 0.0].repeat(4));

@@ -4,10 +4,12 @@ use std::fmt::{self, Write as _};
 
 use xxhash_rust::xxh3::Xxh3;
 
-use crate::{GraphConfig, GraphSource};
+use clamber_surface::mesh::Rig;
+
+use crate::GraphConfig;
 
 /// Version of the graph's content. Raise it when graphs of the same creature change; otherwise old files are read.
-const FORMAT: u32 = 6;
+const FORMAT: u32 = 7;
 
 /// A hash that takes text.
 struct Digest(Xxh3);
@@ -21,25 +23,20 @@ impl fmt::Write for Digest {
 
 /// A hash of everything that a graph depends on, from its debug output, which prints every field, and floats to their
 /// last bit.
-pub(super) fn key(source: &GraphSource<'_>, config: &GraphConfig) -> u128 {
-    let GraphSource {
+pub(super) fn key(rig: &Rig, config: &GraphConfig) -> u128 {
+    let Rig {
         skeleton,
-        mesh,
         clips,
-        rate,
-        plates,
-        weak_points: _,
-        world_from_model,
-        ground,
-    } = source;
+        collider: mesh,
+        ..
+    } = rig;
     let mut digest = Digest(Xxh3::new());
     let version = env!("CARGO_PKG_VERSION");
     // Writing to a digest never fails.
     let _ = write!(
         digest,
-        "{version} {FORMAT} {config:?} {world_from_model:?} {ground:?} "
+        "{version} {FORMAT} {config:?} {skeleton:?} {clips:?} "
     );
-    let _ = write!(digest, "{skeleton:?} {clips:?} {rate:?} {plates:?} ");
     let _ = write!(digest, "{:?} {:?} ", mesh.triangles(), mesh.tags());
     for (vertex, position) in (0..).zip(mesh.positions()) {
         let vertex = clamber_surface::mesh::VertexId(vertex);

@@ -13,7 +13,9 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use xxhash_rust::xxh3::xxh3_128;
 
-use crate::{ClimbGraph, GraphConfig, GraphSource, NavigationError, Progress};
+use clamber_surface::mesh::Rig;
+
+use crate::{ClimbGraph, GraphConfig, NavigationError, Progress};
 
 /// A graph, and how it was obtained.
 #[derive(Debug)]
@@ -55,27 +57,16 @@ impl ClimbGraph {
     /// use std::sync::atomic::{AtomicBool, Ordering};
     ///
     /// use clamber_climber::ClimberConfig;
-    /// use clamber_navigation::{ClimbGraph, GraphConfig, GraphSource};
-    /// use clamber_surface::geometry::Similarity;
+    /// use clamber_navigation::{ClimbGraph, GraphConfig};
     ///
     /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-    /// let rig = clamber_gltf::load("colossus.glb")?;
+    /// let rig = clamber_gltf::load("colossus.glb")?.rig;
     /// let cancelled = Arc::new(AtomicBool::new(false));
     /// let asked = Arc::clone(&cancelled);
     /// let build = std::thread::spawn(move || {
-    ///     let source = GraphSource {
-    ///         skeleton: &rig.skeleton,
-    ///         mesh: &rig.collider,
-    ///         clips: &rig.clips,
-    ///         rate: 1.0,
-    ///         plates: &[],
-    ///         weak_points: &rig.weak_points,
-    ///         world_from_model: Similarity::IDENTITY,
-    ///         ground: 0.0,
-    ///     };
     ///     let config = GraphConfig::new(ClimberConfig::colossus_climber());
     ///     let folder = "cache/climbing".as_ref();
-    ///     ClimbGraph::cached(folder, &source, &config, |_| {
+    ///     ClimbGraph::cached(folder, &rig, &config, |_| {
     ///         if asked.load(Ordering::Relaxed) {
     ///             return ControlFlow::Break(());
     ///         }
@@ -94,22 +85,22 @@ impl ClimbGraph {
     /// As [`ClimbGraph::build`]. A folder that cannot be written is not an error: see [`GraphOrigin::NotSaved`].
     pub fn cached(
         folder: &Path,
-        source: &GraphSource<'_>,
+        rig: &Rig,
         config: &GraphConfig,
         progress: impl FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<CachedGraph, NavigationError> {
         config.check()?;
-        let key = key::key(source, config);
+        let key = key::key(rig, config);
         let file = folder.join(format!("{key:032x}.climbgraph"));
         let known = contents(&file);
-        if let Some(graph) = known.and_then(|bytes| read(&bytes, key, source, config)) {
+        if let Some(graph) = known.and_then(|bytes| read(&bytes, key, rig, config)) {
             return Ok(CachedGraph {
                 graph,
                 file,
                 origin: GraphOrigin::Read,
             });
         }
-        let graph = Self::build(source, config, progress)?;
+        let graph = Self::build(rig, config, progress)?;
         let origin = match save(&graph, key, folder, &file) {
             Ok(()) => GraphOrigin::Built,
             Err(error) => GraphOrigin::NotSaved(error),
@@ -177,12 +168,7 @@ fn save(graph: &ClimbGraph, key: u128, folder: &Path, file: &Path) -> io::Result
 }
 
 /// The graph in a file's content; `None` if the content is damaged or is another creature's graph.
-fn read(
-    bytes: &[u8],
-    key: u128,
-    source: &GraphSource<'_>,
-    config: &GraphConfig,
-) -> Option<ClimbGraph> {
+fn read(bytes: &[u8], key: u128, rig: &Rig, config: &GraphConfig) -> Option<ClimbGraph> {
     let rest = bytes.strip_prefix(MAGIC)?;
     let (found, rest) = rest.split_first_chunk::<16>()?;
     let (hash, rest) = rest.split_first_chunk::<16>()?;
@@ -191,6 +177,6 @@ fn read(
         return None;
     }
     let graph: ClimbGraph = postcard::from_bytes(rest).ok()?;
-    let fits = graph.config == *config && graph.is_sound(source.mesh.triangles().len());
+    let fits = graph.config == *config && graph.is_sound(rig.collider.triangles().len());
     fits.then_some(graph)
 }

@@ -4,9 +4,11 @@ use clamber_surface::rig::{Clip, Palette, Playback, Pose};
 use clamber_surface::surface::SurfaceError;
 use glam::{DVec3, Vec3};
 
+use clamber_surface::mesh::Rig;
+
 use crate::graph::Patch;
 use crate::progress::{Stage, Tell};
-use crate::{GraphConfig, GraphSource, NavigationError};
+use crate::{GraphConfig, NavigationError};
 
 /// Length of a slice of a clip, seconds. Clips and forecasts are stored in slices. Shorter slices take more memory.
 pub(crate) const SLICE: f64 = 0.5;
@@ -73,21 +75,21 @@ pub(crate) struct ClipFacts {
 impl ClipFacts {
     /// Plays each clip of a creature from its beginning to its end. Loops are played through their seam as well.
     pub(crate) fn measure(
-        source: &GraphSource<'_>,
+        rig: &Rig,
         config: &GraphConfig,
         patches: &[Patch],
         tell: &mut Tell<'_>,
     ) -> Result<Self, NavigationError> {
         let mut facts = Self {
             clips: Vec::new(),
-            rate: source.rate,
+            rate: config.clip_rate,
             patches: patches.len(),
             moments: Vec::new(),
         };
-        for (done, clip) in source.clips.iter().enumerate() {
-            tell.now(Stage::Clips, done, source.clips.len())?;
-            let mut tell = || tell.now(Stage::Clips, done, source.clips.len());
-            facts.play(clip, source, config, patches, &mut tell)?;
+        for (done, clip) in rig.clips.iter().enumerate() {
+            tell.now(Stage::Clips, done, rig.clips.len())?;
+            let mut tell = || tell.now(Stage::Clips, done, rig.clips.len());
+            facts.play(clip, rig, config, patches, &mut tell)?;
         }
         Ok(facts)
     }
@@ -95,7 +97,7 @@ impl ClipFacts {
     fn play(
         &mut self,
         clip: &Clip,
-        source: &GraphSource<'_>,
+        rig: &Rig,
         config: &GraphConfig,
         patches: &[Patch],
         tell: &mut dyn FnMut() -> Result<(), NavigationError>,
@@ -114,13 +116,10 @@ impl ClipFacts {
         let first = last.map_or(0, |last| last.first + last.count);
         let per_slice = (SLICE / TICK).round() as usize;
         let ticks = ((lasts / TICK).ceil() as usize).max(1);
-        let rules = Rules::new(source, config);
-        let seats: Vec<Seat> = patches
-            .iter()
-            .map(|patch| Seat::new(source, patch))
-            .collect();
+        let rules = Rules::new(config);
+        let seats: Vec<Seat> = patches.iter().map(|patch| Seat::new(rig, patch)).collect();
         let mut riders = vec![Rider::default(); patches.len()];
-        let mut played = Played::new(source, clip)?;
+        let mut played = Played::new(rig, clip)?;
         // Before its beginning, a loop plays its end.
         let loops = played.is_loop(&seats, lasts, self.rate, tell)?;
         let lead = if loops { ticks.min(LEAD) } else { 0 };
@@ -245,7 +244,7 @@ const STRIDE: usize = 4;
 
 /// A clip, and the skin in its present pose.
 struct Played<'a> {
-    source: &'a GraphSource<'a>,
+    rig: &'a Rig,
     clip: &'a Clip,
     pose: Pose,
     palette: Palette,
@@ -254,11 +253,11 @@ struct Played<'a> {
 }
 
 impl<'a> Played<'a> {
-    fn new(source: &'a GraphSource<'a>, clip: &'a Clip) -> Result<Self, NavigationError> {
-        let pose = source.skeleton.rest_pose();
+    fn new(rig: &'a Rig, clip: &'a Clip) -> Result<Self, NavigationError> {
+        let pose = rig.skeleton.rest_pose();
         Ok(Self {
-            palette: source.skeleton.palette(&pose)?,
-            source,
+            palette: rig.skeleton.palette(&pose)?,
+            rig,
             clip,
             pose,
             skin: Vec::new(),
@@ -267,13 +266,11 @@ impl<'a> Played<'a> {
 
     /// The skin at a time of the clip, in model space.
     fn at(&mut self, time: f64) -> Result<&[Vec3], NavigationError> {
-        let source = self.source;
+        let rig = self.rig;
         self.clip
             .sample_into(time, Playback::Clamp, &mut self.pose)?;
-        source
-            .skeleton
-            .palette_into(&self.pose, &mut self.palette)?;
-        clamber_surface::skin::skin_into(source.mesh, self.palette.matrices(), &mut self.skin)
+        rig.skeleton.palette_into(&self.pose, &mut self.palette)?;
+        clamber_surface::skin::skin_into(&rig.collider, self.palette.matrices(), &mut self.skin)
             .map_err(SurfaceError::from)?;
         Ok(&self.skin)
     }
@@ -332,8 +329,8 @@ struct Rules {
 }
 
 impl Rules {
-    fn new(source: &GraphSource<'_>, config: &GraphConfig) -> Self {
-        let place = source.world_from_model;
+    fn new(config: &GraphConfig) -> Self {
+        let place = config.world_from_model;
         let threshold = config
             .climber
             .stamina
@@ -354,8 +351,8 @@ struct Seat {
 }
 
 impl Seat {
-    fn new(source: &GraphSource<'_>, patch: &Patch) -> Self {
-        let vertices = source.mesh.triangles().get(patch.triangle.index());
+    fn new(rig: &Rig, patch: &Patch) -> Self {
+        let vertices = rig.collider.triangles().get(patch.triangle.index());
         Self {
             vertices: vertices.map_or([0; 3], |vertices| vertices.map(|vertex| vertex.index())),
             barycentric: patch.barycentric,

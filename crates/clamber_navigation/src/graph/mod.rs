@@ -10,13 +10,13 @@ mod ways;
 
 use std::ops::ControlFlow;
 
-use clamber_surface::mesh::TriangleId;
+use clamber_surface::mesh::{Rig, TriangleId};
 use clamber_surface::surface::SkinnedSurface;
 
 use crate::clips::ClipFacts;
 use crate::progress::Tell;
 use crate::survey::Survey;
-use crate::{GraphConfig, GraphSource, NavigationError, Progress, Start};
+use crate::{GraphConfig, NavigationError, Progress, Start};
 
 pub use entries::Entry;
 pub(crate) use entries::highest_entry;
@@ -50,41 +50,42 @@ impl ClimbGraph {
     /// `progress` is called repeatedly. If it returns [`ControlFlow::Break`], the build is cancelled.
     ///
     /// # Errors
-    /// [`NavigationError`] if a number of the configuration or the source is out of its range, if the creature has no
+    /// [`NavigationError`] if a number of the configuration is out of its range, if the creature has no
     /// skin or cannot be posed, if it has too many patches or too long clips, and if the caller cancels.
     pub fn build(
-        source: &GraphSource<'_>,
+        rig: &Rig,
         config: &GraphConfig,
         mut progress: impl FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<Self, NavigationError> {
         let mut tell = Tell(&mut progress);
-        let survey = Survey::new(source, config, &mut tell)?;
-        Ok(Self::of_survey(&survey, source, &mut tell)?.0)
+        let survey = Survey::new(rig, config, &mut tell)?;
+        Ok(Self::of_survey(&survey, rig, &mut tell)?.0)
     }
 
     /// Builds the graph of a survey. Also returns the patch of each piece.
     pub(crate) fn of_survey(
         survey: &Survey,
-        source: &GraphSource<'_>,
+        rig: &Rig,
         tell: &mut Tell<'_>,
     ) -> Result<(Self, Vec<u32>), NavigationError> {
         let (patches, patch_of) = patch::merge(survey);
-        let clips = ClipFacts::measure(source, &survey.config, &patches, tell)?;
+        let clips = ClipFacts::measure(rig, &survey.config, &patches, tell)?;
         let mut graph = Self {
             config: survey.config.clone(),
             ways: patch::ways(survey, &patches, &patch_of),
             leaps: Leaps::default(),
             entries: entries::entries(survey, &patches, &patch_of),
-            locator: Locator::new(survey, &patch_of, source.mesh),
+            locator: Locator::new(survey, &patch_of, &rig.collider),
             clips,
-            plates: source
+            plates: survey
+                .config
                 .plates
                 .iter()
                 .map(|plate| plate.first().copied())
                 .collect(),
             patches,
         };
-        graph.leaps = Leaps::find(&graph, source, tell)?;
+        graph.leaps = Leaps::find(&graph, rig, tell)?;
         Ok((graph, patch_of))
     }
 

@@ -7,14 +7,14 @@ use std::ops::ControlFlow;
 use clamber_surface::rig::WeakPoint;
 use glam::DVec3;
 
+use clamber_surface::mesh::Rig;
+
 use crate::clips::{HARDEST, SLICE};
 use crate::graph::{NONE, Reachable};
 use crate::plan::{slips, throws};
 use crate::progress::Tell;
 use crate::survey::Survey;
-use crate::{
-    ClimbGraph, Forecast, GraphConfig, GraphSource, NavigationError, Plan, Progress, Start,
-};
+use crate::{ClimbGraph, Forecast, GraphConfig, NavigationError, Plan, Progress, Start};
 
 /// The parts of a creature that a climber can reach, and how the creature's clips treat climbers.
 #[derive(Clone, Debug, PartialEq)]
@@ -132,13 +132,13 @@ impl ClimbReport {
     /// # Errors
     /// As [`ClimbGraph::build`].
     pub fn new(
-        source: &GraphSource<'_>,
+        rig: &Rig,
         config: &GraphConfig,
         mut progress: impl FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<(Self, ClimbGraph), NavigationError> {
         let mut tell = Tell(&mut progress);
-        let survey = Survey::new(source, config, &mut tell)?;
-        let (graph, patch_of) = ClimbGraph::of_survey(&survey, source, &mut tell)?;
+        let survey = Survey::new(rig, config, &mut tell)?;
+        let (graph, patch_of) = ClimbGraph::of_survey(&survey, rig, &mut tell)?;
         let reached = graph.flood(graph.entries().iter().map(|entry| entry.patch));
         let view = View {
             survey: &survey,
@@ -146,16 +146,16 @@ impl ClimbReport {
             patch_of: &patch_of,
             reached: &reached,
         };
-        let palette = source.skeleton.palette(&source.skeleton.rest_pose())?;
+        let palette = rig.skeleton.palette(&rig.skeleton.rest_pose())?;
         let mut weak_points = Vec::new();
-        for point in source.weak_points {
+        for point in &rig.weak_points {
             let place = palette
                 .model_from_joint(point.joint)
                 .map_or(DVec3::NAN, |frame| {
                     let in_model = frame.transform_point3(point.position.as_dvec3());
-                    source.world_from_model.transform_point(in_model)
+                    config.world_from_model.transform_point(in_model)
                 });
-            weak_points.push(view.look_at(point, place, source));
+            weak_points.push(view.look_at(point, place, config));
         }
         let report = Self {
             area: view.sum(|_| true),
@@ -193,8 +193,8 @@ impl View<'_> {
         0.0 + counted.map(|(_, piece)| piece.area).sum::<f64>()
     }
 
-    fn look_at(&self, point: &WeakPoint, place: DVec3, source: &GraphSource<'_>) -> PointReport {
-        let radius = f64::from(point.radius) * source.world_from_model.scale;
+    fn look_at(&self, point: &WeakPoint, place: DVec3, config: &GraphConfig) -> PointReport {
+        let radius = f64::from(point.radius) * config.world_from_model.scale;
         let within = radius + NEAR * self.survey.config.radius();
         let pieces = &self.survey.pieces;
         let is_near = |index: &usize| {
@@ -203,7 +203,7 @@ impl View<'_> {
         };
         let is_plate = |index: &usize| {
             let triangle = &pieces[*index].triangle;
-            source.plates.iter().any(|plate| plate.contains(triangle))
+            config.plates.iter().any(|plate| plate.contains(triangle))
         };
         let near: Vec<usize> = (0..pieces.len()).filter(is_near).collect();
         // A plate that covers the point is no goal. If there is only the plate, the point is on it.

@@ -7,12 +7,12 @@ mod pieces;
 mod seat;
 mod split;
 
-use clamber_surface::mesh::TriangleId;
+use clamber_surface::mesh::{Rig, TriangleId};
 use clamber_surface::surface::SkinnedSurface;
 use glam::DVec3;
 
 use crate::progress::{Stage, Tell};
-use crate::{GraphConfig, GraphSource, NavigationError};
+use crate::{GraphConfig, NavigationError};
 pub(crate) use arms::EXACT;
 use links::Links;
 use pieces::Division;
@@ -56,23 +56,22 @@ pub(crate) struct Survey {
 
 impl Survey {
     pub(crate) fn new(
-        source: &GraphSource<'_>,
+        rig: &Rig,
         config: &GraphConfig,
         tell: &mut Tell<'_>,
     ) -> Result<Self, NavigationError> {
         config.check()?;
-        source.check()?;
-        let palette = source.skeleton.palette(&source.skeleton.rest_pose())?;
-        let mut surface = SkinnedSurface::new(source.mesh.clone());
-        surface.place(&palette, source.world_from_model)?;
+        let palette = rig.skeleton.palette(&rig.skeleton.rest_pose())?;
+        let mut surface = SkinnedSurface::new(rig.collider.clone());
+        surface.place(&palette, config.world_from_model)?;
         let mut holds = surface.clone();
-        for (index, tag) in source.mesh.tags().iter().enumerate() {
+        for (index, tag) in rig.collider.tags().iter().enumerate() {
             if !config.can_grip(tag) {
                 holds.disable_triangle(TriangleId(index as u32))?;
             }
         }
-        let mut plate_of = vec![NO_PLATE; source.mesh.triangles().len()];
-        for (plate, triangles) in (0..).zip(source.plates) {
+        let mut plate_of = vec![NO_PLATE; rig.collider.triangles().len()];
+        for (plate, triangles) in (0..).zip(&config.plates) {
             for triangle in triangles {
                 if let Some(of) = plate_of.get_mut(triangle.index()) {
                     *of = plate;
@@ -86,7 +85,7 @@ impl Survey {
             others,
         } = pieces::divide(&surface, config, &plate)?;
         let of = pieces.len();
-        let lowest = source.ground + LOWEST * config.radius();
+        let lowest = config.ground + LOWEST * config.radius();
         let above = |seat: &DVec3| seat.dot(config.climber.up()) >= lowest;
         let find = |surface: &SkinnedSurface, piece: &Piece| {
             seat::seat(surface, piece.point, piece.normal, config.radius()).filter(above)
@@ -102,7 +101,7 @@ impl Survey {
                 arms[done] = arms::arm(&holds, seat, config);
             }
         }
-        for (plate, triangles) in source.plates.iter().enumerate() {
+        for (plate, triangles) in config.plates.iter().enumerate() {
             let bare = without(&surface, triangles)?;
             let held = without(&holds, triangles)?;
             for ((piece, arm), others) in pieces.iter_mut().zip(&mut arms).zip(&others) {
@@ -118,7 +117,7 @@ impl Survey {
         }
         Ok(Self {
             config: config.clone(),
-            ground: source.ground,
+            ground: config.ground,
             links: Links::new(&pieces, config.link()),
             pieces,
             bits,

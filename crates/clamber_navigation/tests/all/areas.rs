@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use crate::support::{Body, ball, climber};
-use clamber_navigation::{ClimbReport, GraphSource};
+use clamber_navigation::{ClimbReport, GraphConfig};
 use clamber_surface::mesh::SurfaceKind::{Fur, Skin, Stone};
 use clamber_surface::mesh::TriangleId;
 use clamber_surface::rig::{JointId, WeakPoint};
@@ -233,15 +233,11 @@ fn who_is_on_a_plate_is_not_at_what_it_covers() {
             .map(TriangleId)
             .collect();
         let go_on = |_| ControlFlow::Continue(());
-        let (report, _) = body
-            .with_source(|source| {
-                let source = GraphSource {
-                    plates: std::slice::from_ref(&plate),
-                    ..*source
-                };
-                ClimbReport::new(&source, &climber(), go_on)
-            })
-            .unwrap();
+        let config = GraphConfig {
+            plates: vec![plate],
+            ..climber()
+        };
+        let (report, _) = ClimbReport::new(&body.rig(), &config, go_on).unwrap();
         let [found] = &*report.weak_points else {
             panic!("{report:?}")
         };

@@ -26,7 +26,7 @@ fn body() -> Body {
 
 fn cached(folder: &Path, body: &Body, config: &GraphConfig) -> CachedGraph {
     let go_on = |_| ControlFlow::Continue(());
-    body.with_source(|source| ClimbGraph::cached(folder, source, config, go_on).unwrap())
+    ClimbGraph::cached(folder, &body.rig(), config, go_on).unwrap()
 }
 
 /// The content of a graph as text: its patches and entries, and plans on it.
@@ -146,8 +146,7 @@ fn a_folder_that_cannot_be_written_costs_nothing_but_time() {
 fn a_cancelled_build_leaves_no_file() {
     let folder = folder("cancelled");
     let stop = |_| ControlFlow::Break(());
-    let cancelled =
-        body().with_source(|source| ClimbGraph::cached(&folder, source, &climber(), stop));
+    let cancelled = ClimbGraph::cached(&folder, &body().rig(), &climber(), stop);
     assert!(matches!(cancelled, Err(NavigationError::Cancelled)));
     assert!(!folder.exists());
 }
@@ -197,10 +196,11 @@ fn leftovers_and_devices_do_no_harm() {
 fn a_ground_that_is_nowhere_is_refused() {
     let go_on = |_| ControlFlow::Continue(());
     for ground in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-        let refused = body().with_source(|source| {
-            let source = clamber_navigation::GraphSource { ground, ..*source };
-            ClimbGraph::build(&source, &climber(), go_on).map(drop)
-        });
+        let config = GraphConfig {
+            ground,
+            ..climber()
+        };
+        let refused = ClimbGraph::build(&body().rig(), &config, go_on).map(drop);
         let is_ground = matches!(
             refused,
             Err(NavigationError::OutOfRange { name: "ground", .. })

@@ -9,7 +9,7 @@ use crate::support::{Body, ball, climber, skeleton};
 use clamber_climber::{Climber, ClimberInput, StepRules};
 use clamber_navigation::{
     Bot, BotConfig, ClimbGraph, ClimbReport, Danger, Flight, Forecast, FutureSkin, Goal,
-    GraphSource, NavigationError, View,
+    GraphConfig, NavigationError, View,
 };
 use clamber_surface::geometry::Similarity;
 use clamber_surface::mesh::SurfaceKind::{Fur, Stone};
@@ -49,18 +49,13 @@ fn sways(seconds: f32, x: impl Fn(f32) -> f32) -> Clip {
 
 /// The hardest shake of a clip at a rate.
 fn shake(clip: &Clip, rate: f64) -> Result<f64, NavigationError> {
-    let (mesh, skeleton) = (wall(4.0).mesh(), skeleton());
-    let source = GraphSource {
-        skeleton: &skeleton,
-        mesh: &mesh,
-        clips: std::slice::from_ref(clip),
-        rate,
-        plates: &[],
-        weak_points: &[],
-        world_from_model: Similarity::IDENTITY,
-        ground: 0.0,
+    let mut rig = wall(4.0).rig();
+    rig.clips = vec![clip.clone()];
+    let config = GraphConfig {
+        clip_rate: rate,
+        ..climber()
     };
-    let (report, _) = ClimbReport::new(&source, &climber(), |_| ControlFlow::Continue(()))?;
+    let (report, _) = ClimbReport::new(&rig, &config, |_| ControlFlow::Continue(()))?;
     Ok(report.clips[0].hardest_shake)
 }
 
@@ -120,11 +115,9 @@ fn what_is_looked_at_grows_with_the_skin_and_not_with_its_triangles() {
     };
     let built = |cells: [u32; 2]| {
         let mut looked = 0;
-        let graph = round(cells).with_source(|source| {
-            ClimbGraph::build(source, &climber(), |progress| {
-                looked = looked.max(progress.of);
-                ControlFlow::Continue(())
-            })
+        let graph = ClimbGraph::build(&round(cells).rig(), &climber(), |progress| {
+            looked = looked.max(progress.of);
+            ControlFlow::Continue(())
         });
         let graph = graph.unwrap();
         (looked, graph.patches().len(), graph.ways())
@@ -242,7 +235,7 @@ fn who_is_where_the_graph_knows_no_place_says_so_and_gets_off() {
     let mut config = climber();
     config.climber.ground.max_slope = 0.02;
     let go_on = |_| ControlFlow::Continue(());
-    let graph = body.with_source(|source| ClimbGraph::build(source, &config, go_on));
+    let graph = ClimbGraph::build(&body.rig(), &config, go_on);
     let graph = graph.unwrap();
     let surface = body.surface();
     let goal = graph.goal(&graph.patches_near(DVec3::new(0.0, 7.0, 0.0), 1.0));

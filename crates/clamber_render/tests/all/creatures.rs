@@ -172,18 +172,18 @@ fn the_climber_stands_on_the_creature_and_its_triangle_lies_under_its_foot() {
 
 #[test]
 fn a_rigs_meshes_are_ready_for_the_renderer() {
-    let mut rig = clamber_gltf::load(clamber_scenes::giant::path()).unwrap();
-    let tinted = rig.visual[0].positions.len();
-    rig.visual[0].colors = vec![[0.5, 1.0, 0.0, 1.0]; tinted];
-    let sources: Vec<_> = clamber_render::visual_meshes(&rig).collect();
-    assert_eq!(sources.len(), rig.visual.len());
-    for (source, mesh) in sources.iter().zip(&rig.visual) {
+    let mut model = clamber_gltf::load(clamber_scenes::giant::path()).unwrap();
+    let tinted = model.visual[0].positions.len();
+    model.visual[0].colors = vec![[0.5, 1.0, 0.0, 1.0]; tinted];
+    let sources: Vec<_> = clamber_render::visual_meshes(&model).collect();
+    assert_eq!(sources.len(), model.visual.len());
+    for (source, mesh) in sources.iter().zip(&model.visual) {
         let source = source.source();
         assert_eq!(source.positions, mesh.positions);
         assert_eq!(source.skin.unwrap().ends, mesh.influence_ends);
         let mut triangles = source.triangles.iter();
         for primitive in &mesh.primitives {
-            let base = rig.materials[primitive.material.unwrap()].base_color;
+            let base = model.materials[primitive.material.unwrap()].base_color;
             for corners in &primitive.triangles {
                 assert_eq!(triangles.next(), Some(corners));
                 let vertex = corners[0] as usize;

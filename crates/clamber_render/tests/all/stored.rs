@@ -102,7 +102,7 @@ fn a_battle_looks_as_stored_and_pictures_with_mistakes_do_not() {
     };
     let mut renderer = Renderer::new(gpu, WIDTH, ROWS).unwrap();
     let creature = giant().unwrap();
-    let rig = giant::rig().unwrap();
+    let rig = giant::model().unwrap();
     let mut stage = |plain: &[SurfaceKind]| {
         let mut rig = rig.clone();
         for primitive in rig.visual.iter_mut().flat_map(|mesh| &mut mesh.primitives) {

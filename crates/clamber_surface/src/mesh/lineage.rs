@@ -3,6 +3,7 @@ use std::fmt;
 use glam::Vec3;
 
 use super::{ColliderMesh, TriangleId, VertexId};
+use crate::Fingerprint;
 use crate::rig::JointId;
 
 /// Identity of a mesh: a fingerprint of its positions, influences and triangles as built, and of every vertex and
@@ -83,7 +84,7 @@ impl Lineage {
         let words = words.chain(mesh.influences.words());
         let words = words.chain(mesh.triangles.iter().flatten().map(|corner| corner.0));
         Self {
-            fingerprints: vec![fold(0xcbf2_9ce4_8422_2325, words)],
+            fingerprints: vec![fold(0, words)],
             built: mesh.triangles.len(),
             added: Vec::new(),
         }
@@ -137,9 +138,8 @@ impl Lineage {
     }
 }
 
-/// The FNV-1a hash (Fowler, Noll, Vo; RFC 9923), applied word by word.
 fn fold(hash: u64, words: impl Iterator<Item = u32>) -> u64 {
-    words.fold(hash, |hash, word| {
-        (hash ^ u64::from(word)).wrapping_mul(0x0000_0100_0000_01b3)
-    })
+    let mut next = Fingerprint::new(hash);
+    words.for_each(|word| next.word(u64::from(word)));
+    next.value()
 }

@@ -14,6 +14,7 @@ mod influences;
 mod joint_balls;
 mod lineage;
 mod parts;
+mod rig;
 mod summary;
 mod tag;
 mod tags;
@@ -27,6 +28,7 @@ pub use error::{MeshError, PaletteError};
 pub(crate) use joint_balls::{JointBall, JointBalls};
 pub use lineage::MeshId;
 pub use parts::Part;
+pub use rig::Rig;
 #[cfg(test)]
 pub(crate) use summary::Summarizer;
 pub use tag::{SurfaceKind, SurfaceTag};

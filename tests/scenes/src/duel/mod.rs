@@ -6,9 +6,7 @@ mod record;
 use std::sync::Arc;
 
 use clamber_climber::{ClimberInput, StepRules};
-use clamber_colossus::{
-    Brain, BrainError, ColossusError, CreatureConfig, CreatureKind, CreatureParts,
-};
+use clamber_colossus::{Brain, BrainError, ColossusError, CreatureConfig, CreatureKind};
 use clamber_fight::actions::{BOW, STAB};
 use clamber_fight::{Arena, ArenaConfig, ArenaError, FighterConfig, Order, PlayerInput};
 use clamber_gltf::GltfError;
@@ -68,17 +66,10 @@ impl Duel {
     /// # Errors
     /// [`DuelError`] if its files are not there, or damaged.
     pub fn kind() -> Result<Arc<CreatureKind>, DuelError> {
-        let rig = clamber_gltf::load(giant::path())?;
-        let parts = CreatureParts {
-            skeleton: rig.skeleton,
-            clips: rig.clips,
-            mesh: rig.collider,
-            materials: rig.collider_materials,
-            weak_points: rig.weak_points,
-        };
+        let rig = clamber_gltf::load(giant::path())?.rig;
         let brain = std::fs::read_to_string(giant::brain_path()).map_err(DuelError::BrainFile)?;
         let brain = Brain::from_json(&brain, 1.0 / RATE as f64)?;
-        Ok(Arc::new(CreatureKind::new(parts, brain)?))
+        Ok(Arc::new(CreatureKind::new(&rig, brain)?))
     }
 
     /// One climber above the giant's back, and one before it.

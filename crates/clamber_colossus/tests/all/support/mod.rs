@@ -10,11 +10,9 @@ pub(crate) mod life;
 
 use std::sync::Arc;
 
-use clamber_colossus::{
-    Brain, ColossusError, Creature, CreatureConfig, CreatureKind, CreatureParts, Person,
-};
-use clamber_gltf::Rig;
+use clamber_colossus::{Brain, ColossusError, Creature, CreatureConfig, CreatureKind, Person};
 use clamber_surface::geometry::WorldCapsule;
+use clamber_surface::mesh::Rig;
 use clamber_surface::mesh::VertexId;
 use clamber_world::rapier3d::parry::utils::Array2;
 use clamber_world::rapier3d::prelude::{
@@ -55,32 +53,21 @@ pub(crate) fn kind(brain: &str) -> Arc<CreatureKind> {
 /// The giant with this brain, and with this tick length.
 pub(crate) fn kind_at(brain: &str, tick: f64) -> Arc<CreatureKind> {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/colossus.glb");
-    let parts = parts_of(clamber_gltf::load(path).unwrap());
+    let rig = clamber_gltf::load(path).unwrap().rig;
     let brain = Brain::from_json(brain, tick).unwrap();
-    Arc::new(CreatureKind::new(parts, brain).unwrap())
+    Arc::new(CreatureKind::new(&rig, brain).unwrap())
 }
 
 /// The giant with this brain; an error if the brain does not fit it.
 pub(crate) fn try_kind(brain: &str) -> Result<CreatureKind, ColossusError> {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/colossus.glb");
-    kind_of(clamber_gltf::load(path).unwrap(), brain)
-}
-
-fn parts_of(rig: Rig) -> CreatureParts {
-    CreatureParts {
-        skeleton: rig.skeleton,
-        clips: rig.clips,
-        mesh: rig.collider,
-        materials: rig.collider_materials,
-        weak_points: rig.weak_points,
-    }
+    kind_of(&clamber_gltf::load(path).unwrap().rig, brain)
 }
 
 /// A creature of an imported file with this brain; an error if the brain does not fit it.
-pub(crate) fn kind_of(rig: Rig, brain: &str) -> Result<CreatureKind, ColossusError> {
-    let parts = parts_of(rig);
+pub(crate) fn kind_of(rig: &Rig, brain: &str) -> Result<CreatureKind, ColossusError> {
     let brain = Brain::from_json(brain, TICK).unwrap();
-    CreatureKind::new(parts, brain)
+    CreatureKind::new(rig, brain)
 }
 
 pub(crate) fn creature(kind: &Arc<CreatureKind>, config: CreatureConfig) -> Creature {

@@ -10,13 +10,13 @@
 use std::sync::Arc;
 
 use clamber_climber::{ClimberInput, ClimberMode, StepRules};
-use clamber_colossus::{Brain, CreatureConfig, CreatureKind, CreatureParts};
+use clamber_colossus::{Brain, CreatureConfig, CreatureKind};
 use clamber_fight::{
     Arena, ArenaConfig, ArenaEvent, CreatureId, FighterConfig, FighterId, Order, SwordConfig,
 };
 use clamber_surface::geometry::Affine;
 use clamber_surface::mesh::{
-    BuildOptions, ColliderMesh, Influence, MeshSource, SurfaceKind, SurfaceTag,
+    BuildOptions, ColliderMesh, Influence, MeshSource, Rig, SurfaceKind, SurfaceTag,
 };
 use clamber_surface::rig::{
     Channel, Clip, Interpolation, Joint, JointId, Keyframes, Skeleton, Transform, WeakPoint,
@@ -120,13 +120,9 @@ impl Slab {
         let scales = channel(Keyframes::Scale(
             self.keys.iter().map(|key| key.2).collect(),
         ));
-        let parts = CreatureParts {
-            skeleton: Skeleton::new(vec![root]).unwrap(),
-            clips: vec![Clip::new("lie", vec![moves, scales])],
-            mesh: Arc::new(mesh),
-            materials: std::collections::BTreeMap::new(),
-            weak_points: self.weak_points.clone(),
-        };
+        let mut rig = Rig::new(Skeleton::new(vec![root]).unwrap(), Arc::new(mesh));
+        rig.clips = vec![Clip::new("lie", vec![moves, scales])];
+        rig.weak_points.clone_from(&self.weak_points);
         let plates = if self.plate {
             r#""plates": [{ "name": "shell", "user": 7, "stagger": 2, "count": 1 }]"#
         } else {
@@ -136,7 +132,7 @@ impl Slab {
             r#"{{ "body": {{ {plates} }}, "start": "lies", "states": {{ "lies": {{ "act": {{ "play": "lie" }} }} }} }}"#
         );
         let brain = Brain::from_json(&brain, 1.0 / self.rate).unwrap();
-        Arc::new(CreatureKind::new(parts, brain).unwrap())
+        Arc::new(CreatureKind::new(&rig, brain).unwrap())
     }
 
     /// An arena with the slab, and fighters at the given places.
@@ -231,13 +227,8 @@ impl Wall {
         });
         let mut heart = weak_point("heart", Vec3::ZERO, 100.0, 0);
         heart.radius = 3.0;
-        let parts = CreatureParts {
-            skeleton: Skeleton::new(all.collect()).unwrap(),
-            clips: Vec::new(),
-            mesh: Arc::new(mesh),
-            materials: std::collections::BTreeMap::new(),
-            weak_points: vec![heart],
-        };
+        let mut rig = Rig::new(Skeleton::new(all.collect()).unwrap(), Arc::new(mesh));
+        rig.weak_points = vec![heart];
         let plates = self.plate.map_or_else(String::new, |stagger| {
             format!(
                 r#""plates": [{{ "name": "shell", "user": 7, "stagger": {stagger}, "count": 1 }}]"#
@@ -247,7 +238,7 @@ impl Wall {
             r#"{{ "body": {{ {plates} }}, "start": "stands", "states": {{ "stands": {{}} }} }}"#
         );
         let brain = Brain::from_json(&brain, 1.0 / self.rate).unwrap();
-        Arc::new(CreatureKind::new(parts, brain).unwrap())
+        Arc::new(CreatureKind::new(&rig, brain).unwrap())
     }
 }
 
@@ -324,19 +315,14 @@ pub(crate) fn giant() -> Arc<CreatureKind> {
 /// The giant with a changed brain file.
 pub(crate) fn giant_with(change: impl Fn(&mut serde_json::Value)) -> Arc<CreatureKind> {
     let assets = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/");
-    let rig = clamber_gltf::load(format!("{assets}colossus.glb")).unwrap();
-    let parts = CreatureParts {
-        skeleton: rig.skeleton,
-        clips: rig.clips,
-        mesh: rig.collider,
-        materials: rig.collider_materials,
-        weak_points: rig.weak_points,
-    };
+    let rig = clamber_gltf::load(format!("{assets}colossus.glb"))
+        .unwrap()
+        .rig;
     let brain = std::fs::read_to_string(format!("{assets}colossus.brain.json")).unwrap();
     let mut brain = serde_json::from_str(&brain).unwrap();
     change(&mut brain);
     let brain = Brain::from_json(&brain.to_string(), 1.0 / 60.0).unwrap();
-    Arc::new(CreatureKind::new(parts, brain).unwrap())
+    Arc::new(CreatureKind::new(&rig, brain).unwrap())
 }
 
 /// A fight with many events. One fighter rides the giant, stabs it and hangs on. Another one runs about in front of the

@@ -9,9 +9,11 @@ use glam::DVec3;
 #[cfg(feature = "cache")]
 use super::Patch;
 use super::{ClimbGraph, Footing};
+use clamber_surface::mesh::Rig;
+
+use crate::NavigationError;
 use crate::clips::SLICE;
 use crate::progress::{Stage, Tell};
-use crate::{GraphSource, NavigationError};
 use play::{Moment, Theatre};
 
 /// A jump from a patch on which a climber stands to another patch. The graph's build has played it, at rest and in the
@@ -88,11 +90,11 @@ impl Leaps {
     /// Plays jumps, and keeps those that land where no short way leads.
     pub(super) fn find(
         graph: &ClimbGraph,
-        source: &GraphSource<'_>,
+        rig: &Rig,
         tell: &mut Tell<'_>,
     ) -> Result<Self, NavigationError> {
         let clips = graph.clips.clips.len();
-        let mut theatre = Theatre::new(graph, source)?;
+        let mut theatre = Theatre::new(graph, rig)?;
         // The clips are played after all cubes are searched, so both count as steps.
         let mut cubes = 0;
         let tries = find::tries(graph, theatre.at_rest()?, &mut |done, of| {

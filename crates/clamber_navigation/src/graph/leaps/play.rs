@@ -7,9 +7,11 @@ use clamber_world::{Obstacle, ObstacleId};
 use glam::DVec3;
 
 use super::{Aim, ClimbGraph, Footing, LONGEST};
+use clamber_surface::mesh::Rig;
+
+use crate::NavigationError;
 use crate::clips::TICK;
 use crate::graph::Spot;
-use crate::{GraphSource, NavigationError};
 
 /// A climber stands for this many ticks before it jumps, and has to be at rest for as many at the end.
 const SETTLES: u32 = 6;
@@ -55,7 +57,7 @@ impl Moment {
 /// The creature, with the memory that playing jumps needs.
 pub(super) struct Theatre<'a> {
     graph: &'a ClimbGraph,
-    source: &'a GraphSource<'a>,
+    rig: &'a Rig,
     surface: SkinnedSurface,
     rest: Pose,
     pose: Pose,
@@ -82,16 +84,13 @@ struct Jumper {
 const CREATURE: ObstacleId = ObstacleId(0);
 
 impl<'a> Theatre<'a> {
-    pub(super) fn new(
-        graph: &'a ClimbGraph,
-        source: &'a GraphSource<'a>,
-    ) -> Result<Self, NavigationError> {
-        let pose = source.skeleton.rest_pose();
+    pub(super) fn new(graph: &'a ClimbGraph, rig: &'a Rig) -> Result<Self, NavigationError> {
+        let pose = rig.skeleton.rest_pose();
         Ok(Self {
             graph,
-            source,
-            surface: SkinnedSurface::new(source.mesh.clone()),
-            palette: source.skeleton.palette(&pose)?,
+            rig,
+            surface: SkinnedSurface::new(rig.collider.clone()),
+            palette: rig.skeleton.palette(&pose)?,
             rest: pose.clone(),
             pose,
         })
@@ -105,7 +104,7 @@ impl<'a> Theatre<'a> {
 
     /// Length of a clip at its rate, seconds.
     pub(super) fn seconds(&self, clip: usize) -> f64 {
-        self.source.clips[clip].duration() / self.source.rate
+        self.rig.clips[clip].duration() / self.graph.config.clip_rate
     }
 
     /// Poses the skin at a time of a clip, or at rest for `None`. With `moves` the skin moves there from its last pose;
@@ -116,9 +115,9 @@ impl<'a> Theatre<'a> {
         seconds: f64,
         moves: bool,
     ) -> Result<(), NavigationError> {
-        let source = self.source;
+        let rig = self.rig;
         if let Some(index) = clip {
-            let clip = &source.clips[index];
+            let clip = &rig.clips[index];
             let playback = if self.graph.clips.clips[index].loops {
                 Playback::Loop
             } else {
@@ -126,16 +125,19 @@ impl<'a> Theatre<'a> {
             };
             // Clips do not move all joints.
             self.pose.clone_from(&self.rest);
-            clip.sample_into(seconds * source.rate, playback, &mut self.pose)?;
-            source
-                .skeleton
-                .palette_into(&self.pose, &mut self.palette)?;
+            clip.sample_into(
+                seconds * self.graph.config.clip_rate,
+                playback,
+                &mut self.pose,
+            )?;
+            rig.skeleton.palette_into(&self.pose, &mut self.palette)?;
         }
         if moves {
             self.surface
-                .advance(&self.palette, source.world_from_model)?;
+                .advance(&self.palette, self.graph.config.world_from_model)?;
         } else {
-            self.surface.place(&self.palette, source.world_from_model)?;
+            self.surface
+                .place(&self.palette, self.graph.config.world_from_model)?;
         }
         Ok(())
     }

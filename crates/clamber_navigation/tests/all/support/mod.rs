@@ -10,10 +10,10 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use clamber_climber::ClimberConfig;
-use clamber_navigation::{ClimbGraph, ClimbReport, GraphConfig, GraphSource};
+use clamber_navigation::{ClimbGraph, ClimbReport, GraphConfig};
 use clamber_surface::geometry::{Affine, Similarity};
 use clamber_surface::mesh::{
-    BuildOptions, ColliderMesh, Influence, MeshSource, SurfaceKind, SurfaceTag,
+    BuildOptions, ColliderMesh, Influence, MeshSource, Rig, SurfaceKind, SurfaceTag,
 };
 use clamber_surface::rig::{Clip, Joint, JointId, Skeleton, Transform, WeakPoint};
 use clamber_surface::surface::SkinnedSurface;
@@ -123,25 +123,15 @@ impl Body {
     /// The graph for a climber and its report, with the ground at height 0.
     pub(crate) fn report(&self, config: &GraphConfig) -> (ClimbGraph, ClimbReport) {
         let go_on = |_| ControlFlow::Continue(());
-        let (report, graph) = self
-            .with_source(|source| ClimbReport::new(source, config, go_on))
-            .unwrap();
+        let (report, graph) = ClimbReport::new(&self.rig(), config, go_on).unwrap();
         (graph, report)
     }
 
-    /// Calls a function with the body as a graph's source, with the ground at height 0.
-    pub(crate) fn with_source<T>(&self, make: impl FnOnce(&GraphSource<'_>) -> T) -> T {
-        let (mesh, skeleton) = (self.mesh(), skeleton());
-        make(&GraphSource {
-            skeleton: &skeleton,
-            mesh: &mesh,
-            clips: &[],
-            rate: 1.0,
-            plates: &[],
-            weak_points: &self.weak_points,
-            world_from_model: Similarity::IDENTITY,
-            ground: 0.0,
-        })
+    /// The body as a creature without clips.
+    pub(crate) fn rig(&self) -> Rig {
+        let mut rig = Rig::new(skeleton(), self.mesh());
+        rig.weak_points.clone_from(&self.weak_points);
+        rig
     }
 }
 
@@ -152,24 +142,19 @@ pub(crate) fn graph_of(
     clips: &[Clip],
     world_from_model: Similarity,
 ) -> Arc<ClimbGraph> {
-    let mesh = body.mesh();
     let skeleton = if body.second_joint.is_some() {
         two_joints()
     } else {
         skeleton()
     };
-    let source = GraphSource {
-        skeleton: &skeleton,
-        mesh: &mesh,
-        clips,
-        rate: 1.0,
-        plates: &[],
-        weak_points: &[],
+    let mut rig = Rig::new(skeleton, body.mesh());
+    rig.clips = clips.to_vec();
+    let config = GraphConfig {
         world_from_model,
-        ground: 0.0,
+        ..config.clone()
     };
     let go_on = |_| ControlFlow::Continue(());
-    Arc::new(ClimbGraph::build(&source, config, go_on).unwrap())
+    Arc::new(ClimbGraph::build(&rig, &config, go_on).unwrap())
 }
 
 pub(crate) fn skeleton() -> Skeleton {
