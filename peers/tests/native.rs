@@ -10,7 +10,7 @@
 
 use std::sync::Arc;
 
-use clamber_oracle::brute_force::{self, Triangles};
+use clamber_verify::brute_force::{self, Triangles};
 use clamber_peers::{Peer, Unsupported, all};
 use clamber_scenes::ball::ball;
 use clamber_surface::geometry::{Affine, Ray, Sphere, rotation_from_axis_angle};

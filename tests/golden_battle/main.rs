@@ -7,9 +7,9 @@ use std::collections::BTreeSet;
 
 use clamber::climber::ClimberMode;
 use clamber::rig::Palette;
-use clamber_oracle::golden::{GoldenRun, hold};
 use clamber_scenes::battle::{Battle, BattleOptions, CREATURE};
 use clamber_scenes::giant::giant;
+use clamber_verify::golden::{GoldenRun, hold};
 
 /// Hash of the ride. It changes with any bit of a result, and with rapier's version. Check that a change is intended,
 /// then store the new hash, and the file by `CLAMBER_BLESS=1`.

@@ -3,10 +3,8 @@
 use cargo_metadata::{DependencyKind, Metadata};
 
 /// The workspace crates that each crate may depend on. A crate that is missing here fails the check.
-const ALLOWED: [(&str, &[&str]); 21] = [
-    ("clamber_oracle", &[]),
-    // Only for its feature `oracle`.
-    ("clamber_surface", &["clamber_oracle"]),
+const ALLOWED: [(&str, &[&str]); 20] = [
+    ("clamber_surface", &[]),
     ("clamber_world", &["clamber_surface"]),
     ("clamber_mover", &["clamber_surface", "clamber_world"]),
     (
@@ -99,13 +97,8 @@ const ALLOWED: [(&str, &[&str]); 21] = [
         ],
     ),
     (
-        "clamber_fuzz",
-        &[
-            "clamber_surface",
-            "clamber_world",
-            "clamber_gltf",
-            "clamber_oracle",
-        ],
+        "clamber_verify",
+        &["clamber_surface", "clamber_world", "clamber_gltf"],
     ),
     (
         "clamber_cli",
@@ -117,7 +110,6 @@ const ALLOWED: [(&str, &[&str]); 21] = [
             "clamber_colossus",
             "clamber_gltf",
             "clamber_navigation",
-            "clamber_oracle",
             "clamber_record",
         ],
     ),
@@ -126,7 +118,7 @@ const ALLOWED: [(&str, &[&str]); 21] = [
     ("xtask", &[]),
 ];
 
-/// The workspace crates that tests and examples of a crate may use as well, besides `clamber_oracle`.
+/// The workspace crates that tests and examples of a crate may use as well, besides `clamber_verify`.
 const ALLOWED_FOR_TESTS: [(&str, &str); 23] = [
     ("bevy_clamber", "clamber_scenes"),
     ("clamber", "clamber_scenes"),
@@ -145,10 +137,10 @@ const ALLOWED_FOR_TESTS: [(&str, &str); 23] = [
     ("clamber_fight", "clamber_gltf"),
     ("clamber_navigation", "clamber_gltf"),
     ("clamber_recipes", "clamber"),
-    ("clamber_fuzz", "clamber_climber"),
-    ("clamber_fuzz", "clamber_colossus"),
-    ("clamber_fuzz", "clamber_fight"),
-    ("clamber_fuzz", "clamber_scenes"),
+    ("clamber_verify", "clamber_climber"),
+    ("clamber_verify", "clamber_colossus"),
+    ("clamber_verify", "clamber_fight"),
+    ("clamber_verify", "clamber_scenes"),
     ("clamber_record", "clamber_scenes"),
     ("clamber_render", "clamber_scenes"),
 ];
@@ -200,7 +192,7 @@ pub(crate) fn check(metadata: &Metadata) -> Result<(), String> {
             let inside = packages.iter().any(|other| other.name == to);
             let for_tests = dependency.kind == DependencyKind::Development;
             let fine = if inside {
-                let tests = to == "clamber_oracle" || ALLOWED_FOR_TESTS.contains(&(name, to));
+                let tests = to == "clamber_verify" || ALLOWED_FOR_TESTS.contains(&(name, to));
                 allowed.contains(&to) || for_tests && tests
             } else {
                 if to.starts_with("bevy") && to != REFLECTION && name != "bevy_clamber" {

@@ -12,7 +12,7 @@ use crate::test_run::{Packages, Profile, TestRun};
 /// Features that are off by default and that an example, a test or a bench needs, or that only add items. With
 /// `deterministic`, battles have the same hashes as with [`released`]. It costs no further build of rapier: with Bevy
 /// in the selection, glam is built again anyway.
-const FEATURES: [&str; 16] = [
+const FEATURES: [&str; 15] = [
     "bevy_clamber/clamber_gltf",
     "bevy_clamber/diagnostics",
     "bevy_clamber/fight",
@@ -28,11 +28,7 @@ const FEATURES: [&str; 16] = [
     "clamber_benches/record",
     "clamber_benches/render",
     "clamber_climber/serde",
-    "clamber_oracle/exact",
 ];
-
-/// The default member that has more tests with its feature. `cargo test` runs all tests of the other default members.
-const ORACLE: &str = "clamber_oracle";
 
 /// Packages whose golden runs are run in the release profile.
 const RELEASED: [&str; 3] = ["clamber", "clamber_climber", "clamber_surface"];
@@ -47,13 +43,13 @@ pub(crate) fn selection() -> TestRun {
     }
 }
 
-/// [`selection`] for tests of the packages that `cargo test` does not test in full. The libraries are built as in
+/// [`selection`] for tests of the packages that `cargo test` does not test. The libraries are built as in
 /// [`selection`].
 pub(crate) fn beyond_default(metadata: &Metadata) -> TestRun {
     let default = metadata.workspace_default_packages().into_iter();
     let names = default.map(|package| package.name.to_string());
     TestRun {
-        packages: Packages::AllBut(names.filter(|name| name != ORACLE).collect()),
+        packages: Packages::AllBut(names.collect()),
         ..selection()
     }
 }

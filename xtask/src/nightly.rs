@@ -58,8 +58,8 @@ const LONG: [&str; 6] = [
     "clamber_climber",
     "clamber_colossus",
     "clamber_fight",
-    "clamber_fuzz",
     "clamber_surface",
+    "clamber_verify",
 ];
 
 /// Runs the tests that other steps ignore, and all cases of tests that otherwise run a fifth of them. One test runs at

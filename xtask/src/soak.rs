@@ -1,4 +1,4 @@
-//! Runs the example `soak` of `clamber_fuzz` in the release profile.
+//! Runs the example `soak` of `clamber_verify` in the release profile.
 
 use crate::build::owned;
 use crate::run::cargo;
@@ -14,7 +14,7 @@ const GIVEN: [&str; 2] = ["--minutes", "--seed"];
 pub(crate) fn nightly() -> TestRun {
     TestRun {
         profile: Profile::Release,
-        packages: Packages::Named(owned(&["clamber_fuzz"])),
+        packages: Packages::Named(owned(&["clamber_verify"])),
         features: owned(&["clamber_surface/scalar"]),
         targets: vec![Targets::Example("soak".into())],
         given: |_| GIVEN.to_vec(),

@@ -1,12 +1,6 @@
 //! Slow references and single stages of larger calls, for measurements in this library's own tests and benches.
 //! These items are not covered by any promise of stability.
 
-#[cfg(any(test, feature = "oracle"))]
-mod answers;
-
-#[cfg(any(test, feature = "oracle"))]
-pub use answers::posed_triangles;
-
 pub use crate::query::brute_force::BruteForce;
 pub use crate::skin::reference::{error_bound, skin_vertex_reference};
 pub use crate::skin::whole::{skin_clusters, skin_scalar};

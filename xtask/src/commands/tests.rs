@@ -46,8 +46,8 @@ fn an_example_is_run_with_its_features_and_options() {
         "no feature `recrod`",
     );
     assert_wrong(
-        "cargo run -p clamber_fuz --example soak",
-        "no package `clamber_fuz`",
+        "cargo run -p clamber_verif --example soak",
+        "no package `clamber_verif`",
     );
 }
 
@@ -60,7 +60,7 @@ fn a_test_is_run_with_its_ignored_ones() {
         "ci: golden",
     );
     assert_step(
-        "cargo test -p clamber_fuzz --test stress -- --include-ignored",
+        "cargo test -p clamber_verify --test stress -- --include-ignored",
         "nightly: all cases",
     );
     assert_nobody("cargo test -p clamber_gltf --lib -- --ignored");

@@ -141,7 +141,7 @@ fn tells_of_a_package_whose_ignored_tests_are_no_longer_run() {
     let gaps = gaps_after(|tree| tree.plan.retain(|planned| planned.step != "all cases"));
     let has = |words: &str| gaps.iter().any(|gap| gap.contains(words));
     assert!(has("tests/giant_bounds.rs"), "{gaps:#?}");
-    assert!(has("the test `stress` of clamber_fuzz"), "{gaps:#?}");
+    assert!(has("the test `stress` of clamber_verify"), "{gaps:#?}");
 }
 
 #[test]

@@ -9,7 +9,7 @@ use bevy_ecs::system::RunSystemOnce;
 use bevy_math::{Dir3, Quat, Vec3};
 use bevy_shape::Ray3d;
 use bevy_transform::components::Transform;
-use clamber_oracle::brute_force::{self, Corners, Crossing, Triangles, segment_distance};
+use clamber_verify::brute_force::{self, Corners, Crossing, Triangles, segment_distance};
 use glam::DVec3;
 
 use super::common::posed;

@@ -5,8 +5,8 @@ use clap::Args;
 /// Reports on a creature's file and measures the creature in motion. Reports on a brain's file.
 ///
 /// Loads the file as the library does and prints the results of the import. Then it poses the creature at rest and in
-/// its clips, and compares skinning with exact arithmetic, every query with brute force, and bounds with the vertices
-/// that they must hold. Exits with 1 if a comparison fails, with 2 if the file cannot be loaded.
+/// its clips, and measures the distance between its collision mesh and its visual meshes. Exits with 2 if the file
+/// cannot be loaded.
 ///
 /// With --brain it reads a brain's file and prints its states, its transitions, and the ones that can never happen. It
 /// exits with 1 if there are any, and with 2 if the file is not valid. With --propose-brain it writes such a file for a
@@ -80,7 +80,7 @@ pub struct InspectOptions {
     #[arg(long, value_name = "SVG", requires = "humanoid")]
     pub draw: Option<PathBuf>,
 
-    /// Seed of the random places of the queries. Equal seeds give equal places.
+    /// Seed of the random vertices at which distances are measured. Equal seeds give equal vertices.
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
 }

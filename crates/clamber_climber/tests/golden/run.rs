@@ -10,7 +10,7 @@ use clamber_world::{Obstacle, ObstacleId};
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
-use clamber_oracle::golden::GoldenRun;
+use clamber_verify::golden::GoldenRun;
 
 use crate::bits::Bits;
 use crate::creature::{JOINTS, clip, ground, skeleton, tube};

@@ -1,5 +1,6 @@
 //! Queries of surfaces and bodies through the trait `Obstacle`, as a climber makes them.
 
+use clamber_verify::brute_force::{Triangles, distance, segment_distance};
 use clamber_world::rapier3d::prelude::ColliderBuilder;
 use clamber_world::{Contact, Obstacle, TargetMotion, WorldCapsule};
 use glam::DVec3;
@@ -32,45 +33,6 @@ fn triangle(corners: [DVec3; 3]) -> Shape {
     }
 }
 
-/// Minimum of a convex function on [0, 1].
-fn least(mut f: impl FnMut(f64) -> f64) -> f64 {
-    let (mut low, mut high) = (0.0, 1.0);
-    for _ in 0..200 {
-        let (a, b) = (low + (high - low) / 3.0, high - (high - low) / 3.0);
-        if f(a) < f(b) {
-            high = b;
-        } else {
-            low = a;
-        }
-    }
-    f((low + high) * 0.5)
-}
-
-fn to_segment(p: DVec3, a: DVec3, b: DVec3) -> f64 {
-    let share = (p - a).dot(b - a) / (b - a).length_squared().max(1e-300);
-    p.distance(a + (b - a) * share.clamp(0.0, 1.0))
-}
-
-/// Distance from a point to a triangle: to its plane within its prism, else to its edges.
-fn to_triangle(p: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
-    let edges = to_segment(p, a, b)
-        .min(to_segment(p, b, c))
-        .min(to_segment(p, c, a));
-    let normal = (b - a).cross(c - a);
-    let inside = [(a, b), (b, c), (c, a)].map(|(from, to)| (to - from).cross(p - from).dot(normal));
-    let plane = (p - a).dot(normal.normalize_or_zero()).abs();
-    if normal != DVec3::ZERO && inside.iter().all(|x| *x >= 0.0) {
-        plane.min(edges)
-    } else {
-        edges
-    }
-}
-
-/// Distance between a segment and a triangle, in f64.
-fn apart(ends: [DVec3; 2], corners: [DVec3; 3]) -> f64 {
-    least(|share| to_triangle(ends[0].lerp(ends[1], share), corners))
-}
-
 /// A point rounded to f32, as in the mesh and the query.
 fn rounded(p: DVec3) -> DVec3 {
     p.as_vec3().as_dvec3()
@@ -87,7 +49,7 @@ pub(crate) fn a_sliver_is_hit_exactly_where_it_is() {
         let aim = a + along * rng.f64() + point(&mut rng, 0.5);
         let from = rounded(aim + point(&mut rng, 3.0));
         let way = rounded((aim - from) * 2.0);
-        let truth = least_on_way(from, way, corners);
+        let truth = segment_distance([from, from + way], &corners);
         if (truth - 0.2).abs() < 1e-3 {
             continue;
         }
@@ -104,7 +66,7 @@ pub(crate) fn a_sliver_is_hit_exactly_where_it_is() {
             );
             if let Some(hit) = hit {
                 let at = from + way * hit.time;
-                let distance = to_triangle(at, corners);
+                let distance = distance(at, &corners);
                 let allowed = if hit.started_inside {
                     0.0..=0.2
                 } else {
@@ -123,11 +85,6 @@ pub(crate) fn a_sliver_is_hit_exactly_where_it_is() {
     assert!(hits > 100 && misses > 100, "{hits} hits, {misses} misses");
 }
 
-/// Least distance between a moving point and a triangle.
-fn least_on_way(from: DVec3, way: DVec3, corners: [DVec3; 3]) -> f64 {
-    least(|share| to_triangle(from + way * share, corners))
-}
-
 pub(crate) fn a_capsule_parallel_to_a_triangle_has_the_exact_distance() {
     let corners = [(-2.0, -2.0), (-2.0, 3.0), (4.0, 0.5)].map(|(x, z)| DVec3::new(x, 0.0, z));
     for &played in kinds() {
@@ -143,7 +100,7 @@ pub(crate) fn a_capsule_parallel_to_a_triangle_has_the_exact_distance() {
             let ends = [a, b].map(DVec3::from);
             let capsule = WorldCapsule { ends, radius: 0.3 };
             let found = overlaps(&stage, &capsule);
-            let truth = apart(ends, corners);
+            let truth = segment_distance(ends, &corners);
             assert_eq!(found.len(), 1, "{played:?}: {ends:?}, {truth} away");
             let off = found[0].distance - truth;
             within!(off.abs(), 1e-6, "{played:?}: {ends:?}: off by {off}");
@@ -218,7 +175,7 @@ pub(crate) fn a_core_on_a_feature_has_a_unit_separation_normal() {
     }
 }
 
-pub(crate) fn capsules_near_seams_and_edges_have_the_oracles_distance() {
+pub(crate) fn capsules_near_seams_and_edges_have_the_distance_of_brute_force() {
     let mut rng = fastrand::Rng::with_seed(37);
     let mut near = 0;
     for _ in 0..400 {
@@ -235,7 +192,7 @@ pub(crate) fn capsules_near_seams_and_edges_have_the_oracles_distance() {
         };
         let ends = [(); 2].map(|()| rounded(middle + point(&mut rng, 1.0)));
         let radius = 0.25;
-        let truth = apart(ends, [a, b, c]).min(apart(ends, [a, d, b]));
+        let truth = Triangles(vec![[a, b, c], [a, d, b]]).segment_distance(ends);
         if (truth - radius).abs() < 1e-5 {
             continue;
         }

@@ -247,7 +247,7 @@ scenarios! {
     37 "box3d SphereHullSeam, CapsuleHullSeam, EdgeAxisRandomOracle" Query
         "400 random pairs of triangles with a common edge, and capsules around it."
         "Contact if and only if an f64 search finds one, with its distance to 2e-6."
-        [queries::capsules_near_seams_and_edges_have_the_oracles_distance];
+        [queries::capsules_near_seams_and_edges_have_the_distance_of_brute_force];
     38 "parry ball_triangle_toi_infinite_loop_issue" Query
         "Motions of 6.9e-39, 5e-324, 1e-45 and 1e-20 m."
         "No hit, and the query terminates."

@@ -25,15 +25,6 @@ pub struct MeshId {
     fingerprint: u64,
 }
 
-#[cfg(any(test, feature = "oracle"))]
-impl MeshId {
-    /// A 64-bit hash of the id.
-    pub(crate) fn number(self) -> u64 {
-        // 2^64 divided by the golden ratio: an odd number with well spread bits.
-        self.fingerprint ^ self.added.wrapping_mul(0x9e37_79b9_7f4a_7c15)
-    }
-}
-
 impl fmt::Display for MeshId {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{:016x}", self.fingerprint)?;

@@ -44,6 +44,13 @@ impl<'a> BruteForce<'a> {
         &self.positions
     }
 
+    /// The posed corners of all triangles by ascending id, disabled and removed ones included, in model space.
+    pub fn posed_triangles(&self) -> Vec<[Vec3; 3]> {
+        let all = self.instance.mesh.triangles().iter();
+        all.map(|corners| corners.map(|v| self.positions[v.index()]))
+            .collect()
+    }
+
     /// Reference for [`ModelSpace::cast_ray`].
     pub fn cast_ray(&self, ray: &Ray, max_distance: f32) -> Option<SurfaceHit> {
         let sheared = ShearedRay::new(ray);

@@ -1,9 +1,11 @@
 //! For tests: every query of a surface, held against brute force or against another surface, bit for bit.
 
-use clamber_oracle::agreement::{Agreement, Aims, Answers, Question, extent};
+use clamber_verify::agreement::{Agreement, Aims, Answers, Question, extent};
 
 use super::SkinnedSurface;
-use crate::measure::{BruteForce, posed_triangles};
+use crate::measure::BruteForce;
+
+clamber_verify::answer_as_surface!(crate);
 
 /// Asks `rounds` times one question of every kind and aim; returns the number of rows that brute force found as well.
 pub(crate) fn assert_queries_agree(
@@ -21,7 +23,7 @@ pub(crate) fn questions(
     rng: &mut fastrand::Rng,
     rounds: usize,
 ) -> Vec<Question> {
-    let triangles = posed_triangles(surface.in_model());
+    let triangles = BruteForce::new(surface.in_model()).posed_triangles();
     let mut aims = Aims::new(&triangles, extent(&triangles), rng);
     let (mut all, mut round) = (Vec::new(), Vec::new());
     for _ in 0..rounds {

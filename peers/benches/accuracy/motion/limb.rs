@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use clamber_oracle::brute_force::Triangles;
+use clamber_verify::brute_force::Triangles;
 use clamber_surface::geometry::{Affine, rotation_from_axis_angle};
 use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshError, MeshSource};
 use clamber_surface::rig::{JointId, Palette};

@@ -6,7 +6,7 @@ use bevy_ecs::prelude::*;
 use bevy_mesh::skinning::{SkinnedMesh, SkinnedMeshInverseBindposes};
 use bevy_mesh::{Mesh, Mesh3d, VertexAttributeValues};
 use bevy_transform::components::Transform;
-use clamber_oracle::brute_force::Corners;
+use clamber_verify::brute_force::Corners;
 use glam::{DAffine3, DQuat, DVec3};
 
 /// An entity's transform in world space, from the `Transform`s of the entity and its ancestors.

@@ -81,7 +81,7 @@ fn an_entry_whose_computation_panics_can_be_requested_again() {
     assert_eq!((asked(&memo), asked_count(&memo)), (vec![], 0));
     assert!(ask(&memo, 7, 4));
     memo.forget_all();
-    assert_eq!(asked(&memo), vec![]);
+    assert_eq!(asked(&memo), Vec::<usize>::new());
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use clamber_verify::brute_force::distance;
 use glam::{DVec3, Vec3};
 
 use crate::geometry::widen;
@@ -37,28 +38,8 @@ fn slivers(rng: &mut fastrand::Rng, height: f32, center: Vec3) -> SkinnedSurface
     SkinnedSurface::new(Arc::new(mesh))
 }
 
-/// Distance from the origin to a triangle in f64: the distance to the plane if the foot falls inside, else to the
-/// nearest edge. Differences are taken before anything is multiplied.
-fn distance(corners: [DVec3; 3]) -> f64 {
-    let [a, b, c] = corners;
-    let edges = [(a, b), (b, c), (c, a)];
-    let to_edge = |(from, to): (DVec3, DVec3)| {
-        let along = to - from;
-        let t = (-from.dot(along) / along.length_squared()).clamp(0.0, 1.0);
-        (from + along * t).length()
-    };
-    let nearest = edges.map(to_edge).into_iter().fold(f64::INFINITY, f64::min);
-    let normal = (b - a).cross(c - a);
-    let inside = |(from, to): (DVec3, DVec3)| normal.dot((to - from).cross(-from)) >= 0.0;
-    if normal != DVec3::ZERO && edges.into_iter().all(inside) {
-        nearest.min(a.dot(normal).abs() / normal.length())
-    } else {
-        nearest
-    }
-}
-
 #[test]
-fn closest_points_agree_with_an_oracle_on_slivers_and_far_out() {
+fn closest_points_agree_with_brute_force_on_slivers_and_far_out() {
     let mut rng = fastrand::Rng::with_seed(92);
     let mut worst = 0.0f64;
     for height in [1e-1, 1e-3, 1e-5, 1e-7] {
@@ -80,7 +61,7 @@ fn closest_points_agree_with_an_oracle_on_slivers_and_far_out() {
                 };
                 let all = 0..surface.mesh().triangles().len();
                 let wanted = all
-                    .map(|id| distance(local(id)))
+                    .map(|id| distance(DVec3::ZERO, &local(id)))
                     .fold(f64::INFINITY, f64::min);
                 // The distance of the material point that the hit names, not of its rounded position.
                 let corners = local(hit.triangle.index());

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use clamber_oracle::agreement::Question;
+use clamber_verify::agreement::Question;
 use glam::Vec3;
 
 use crate::geometry::Ray;

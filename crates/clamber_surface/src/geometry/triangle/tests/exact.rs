@@ -1,6 +1,6 @@
 //! Points and segments against exact rational arithmetic.
 
-use clamber_oracle::exact::{
+use clamber_verify::exact::{
     Exact, Relaxed, between_triangle_and_segment, exact, from_triangle, length_sq, minus, number,
     plus,
 };
