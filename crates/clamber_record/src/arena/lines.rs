@@ -22,21 +22,21 @@ pub(super) struct Words<'a> {
 
 impl Words<'_> {
     /// The log lines of the last step.
-    pub(super) fn lines(&self, nanoseconds: u64) -> Vec<Log> {
+    pub(super) fn lines(&self) -> Vec<Log> {
         let events = self.arena.events().iter();
-        let events = events.filter_map(|event| self.line(nanoseconds, event));
+        let events = events.filter_map(|event| self.line(event));
         let orders = self.orders.iter().filter_map(|order| {
             let what = match order {
                 // A creature or fighter that joins has an event of its own.
                 Order::AddFighter { .. } | Order::AddCreature { .. } => return None,
                 order => format!("{order:?}"),
             };
-            Some(log(nanoseconds, Level::Debug, "order", what))
+            Some(log(Level::Debug, "order", what))
         });
         orders.chain(events).collect()
     }
 
-    fn line(&self, now: u64, event: &ArenaEvent) -> Option<Log> {
+    fn line(&self, event: &ArenaEvent) -> Option<Log> {
         let (level, who, what) = match event {
             ArenaEvent::Creature { creature, event } => {
                 let what = creature_line(self.arena.creature(*creature)?, event)?;
@@ -44,7 +44,7 @@ impl Words<'_> {
             }
             ArenaEvent::Climber { fighter, event } => {
                 let named = |obstacle| self.obstacle(*fighter, obstacle);
-                return Some(line(now, &self.fighter(*fighter), event, named));
+                return Some(line(&self.fighter(*fighter), event, named));
             }
             ArenaEvent::Hit {
                 by,
@@ -129,7 +129,7 @@ impl Words<'_> {
             // An event that is newer than this list.
             other => (Level::Info, "arena".to_owned(), format!("{other:?}")),
         };
-        Some(log(now, level, &who, what))
+        Some(log(level, &who, what))
     }
 
     fn creature(&self, creature: CreatureId) -> String {

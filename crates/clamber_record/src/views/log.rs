@@ -3,11 +3,8 @@ use clamber_world::ObstacleId;
 use foxglove::messages::Log;
 use foxglove::messages::log::Level;
 
-use super::timestamp;
-
 /// The log line of an event of a climber. `named` gives the names of obstacles.
 pub(crate) fn line(
-    nanoseconds: u64,
     climber: &str,
     event: &ClimberEvent,
     named: impl Fn(ObstacleId) -> String,
@@ -90,13 +87,13 @@ pub(crate) fn line(
         // An event that is newer than this list.
         other => (Level::Info, format!("{other:?}")),
     };
-    log(nanoseconds, level, climber, message)
+    log(level, climber, message)
 }
 
-/// A log line.
-pub(crate) fn log(nanoseconds: u64, level: Level, name: &str, message: String) -> Log {
+/// A log line. It gets its time when it is written.
+pub(crate) fn log(level: Level, name: &str, message: String) -> Log {
     Log {
-        timestamp: Some(timestamp(nanoseconds)),
+        timestamp: None,
         level: level as i32,
         message,
         name: name.to_owned(),
@@ -106,13 +103,13 @@ pub(crate) fn log(nanoseconds: u64, level: Level, name: &str, message: String) -
 }
 
 /// The log line that says that views of `what` are left out from here on.
-pub(crate) fn left_out(nanoseconds: u64, what: &str) -> Log {
+pub(crate) fn left_out(what: &str) -> Log {
     let what = format!("{what} are not drawn in this recording; a replay has them all");
-    log(nanoseconds, Level::Warning, "recorder", what)
+    log(Level::Warning, "recorder", what)
 }
 
 /// The log line that says that ticks were left out here; `None` for 0 ticks.
-pub(crate) fn gap_line(nanoseconds: u64, ticks: u64) -> Option<Log> {
+pub(crate) fn gap_line(ticks: u64) -> Option<Log> {
     let what = format!("{ticks} ticks are not recorded here: the disk was too slow");
-    (ticks > 0).then(|| log(nanoseconds, Level::Warning, "recorder", what))
+    (ticks > 0).then(|| log(Level::Warning, "recorder", what))
 }

@@ -3,7 +3,8 @@ use std::fmt;
 use clamber_climber::ClimberState;
 use thiserror::Error;
 
-use crate::{RecordError, RecordedTick};
+use super::RecordedTick;
+use crate::RecordError;
 
 /// The result of one replayed tick. A game's `step` returns it to [`replay`], which compares it with the recorded tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
