@@ -6,10 +6,8 @@ use clamber_climber::{
     Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, StepReport,
 };
 use clamber_surface::geometry::{Affine, Similarity};
-use clamber_surface::mesh::{
-    BuildOptions, ColliderMesh, Influence, MeshSource, SurfaceKind, SurfaceTag,
-};
-use clamber_surface::rig::{JointId, Palette};
+use clamber_surface::mesh::{BuildOptions, ColliderMesh, MeshSource, SurfaceKind, SurfaceTag};
+use clamber_surface::rig::Palette;
 use clamber_surface::surface::SkinnedSurface;
 use clamber_world::{Obstacle, ObstacleId};
 use glam::{DQuat, DVec3, Vec3};
@@ -70,17 +68,9 @@ pub(crate) fn cuboid_with(half: Vec3, tag: impl Fn(Vec3) -> SurfaceTag) -> Skinn
             }
         }
     }
-    let influence = Influence {
-        joint: JointId(0),
-        weight: 1.0,
-    };
     let source = MeshSource {
-        positions: &positions,
-        triangles: &triangles,
-        influences: &vec![influence; positions.len()],
         tags: &tags,
-        joint_count: 1,
-        ..MeshSource::default()
+        ..MeshSource::rigid(&positions, &triangles)
     };
     let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
     SkinnedSurface::new(Arc::new(mesh))

@@ -3,8 +3,7 @@
 use std::sync::Arc;
 
 use clamber_climber::{Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode};
-use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
-use clamber_surface::rig::JointId;
+use clamber_surface::mesh::{BuildOptions, ColliderMesh, MeshSource};
 use clamber_surface::surface::SkinnedSurface;
 use clamber_world::{Obstacle, ObstacleId};
 use glam::{DQuat, DVec3, Vec3};
@@ -78,17 +77,9 @@ fn sheets(each: &[(f32, clamber_surface::mesh::SurfaceTag)]) -> SkinnedSurface {
         triangles.extend([[a, a + 1, a + 2], [a, a + 2, a + 3]]);
         tags.extend([*tag, *tag]);
     }
-    let influence = Influence {
-        joint: JointId(0),
-        weight: 1.0,
-    };
     let source = MeshSource {
-        positions: &positions,
-        triangles: &triangles,
-        influences: &vec![influence; positions.len()],
         tags: &tags,
-        joint_count: 1,
-        ..MeshSource::default()
+        ..MeshSource::rigid(&positions, &triangles)
     };
     let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
     SkinnedSurface::new(Arc::new(mesh))
