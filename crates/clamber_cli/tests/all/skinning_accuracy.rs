@@ -1,0 +1,49 @@
+//! The skinning error against f64 stays within the stated bound, over all clips of real models.
+
+use clamber_cli::inspect::skinning_error_share;
+use clamber_scenes::{Creature, beast::beast, test_data};
+use clamber_surface::rig::Playback;
+use clamber_surface::skin::skin;
+
+/// Number of poses of each clip in which the error is measured.
+const POSES: u32 = 12;
+
+/// The largest error of any coordinate of any vertex over the poses of all clips, as a share of its bound, and the
+/// number of vertices that were compared.
+fn worst_share(creature: &Creature) -> (f64, usize) {
+    let rest = creature.skeleton.rest_pose();
+    let (mut worst, mut compared) = (0.0f64, 0);
+    for clip in &creature.clips {
+        for k in 0..POSES {
+            let time = clip.duration() * f64::from(k) / f64::from(POSES);
+            let pose = clip.sample(&rest, time, Playback::Loop).unwrap();
+            let palette = creature.skeleton.palette(&pose).unwrap();
+            let matrices = palette.matrices();
+            let skinned = skin(&creature.collider, matrices).unwrap();
+            let share = skinning_error_share(&creature.collider, matrices, &skinned);
+            let context = format!("{}, {}, {time} s", creature.name, clip.name);
+            assert!(share <= 1.0, "{context}: {share}");
+            worst = worst.max(share);
+            compared += skinned.len();
+        }
+    }
+    (worst, compared)
+}
+
+#[test]
+fn beast_stays_within_the_bound() {
+    let (worst, compared) = worst_share(&beast(3_000));
+    println!("beast: {worst:.3} of the bound, {compared} vertices");
+    assert!(compared > 50_000 && worst > 0.1);
+}
+
+#[test]
+fn five_models_stay_within_the_bound_over_all_clips() {
+    for creature in test_data::five_creatures("skinning accuracy").unwrap() {
+        let name = &creature.name;
+        assert!(!creature.clips.is_empty(), "{name}");
+        let (worst, compared) = worst_share(&creature);
+        println!("{name}: {worst:.3} of the bound, {compared} vertices");
+        assert!(worst > 0.05, "{name}: nothing was measured");
+    }
+}
