@@ -182,18 +182,7 @@ fn block(half: Vec3) -> SkinnedSurface {
         [4, 5, 7, 6],
     ];
     let triangles = faces.map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).concat();
-    let influence = Influence {
-        joint: JointId(0),
-        weight: 1.0,
-    };
-    let source = MeshSource {
-        positions: &positions,
-        triangles: &triangles,
-        influences: &[influence; 8],
-        tags: &[SurfaceTag::default(); 12],
-        joint_count: 1,
-        ..MeshSource::default()
-    };
+    let source = MeshSource::rigid(&positions, &triangles);
     let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
     SkinnedSurface::new(Arc::new(mesh))
 }

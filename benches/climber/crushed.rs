@@ -123,17 +123,6 @@ fn wall() -> Result<ColliderMesh, Box<dyn Error>> {
             }
         }
     }
-    let influence = Influence {
-        joint: JointId(0),
-        weight: 1.0,
-    };
-    let source = MeshSource {
-        positions: &positions,
-        triangles: &triangles,
-        influences: &vec![influence; positions.len()],
-        tags: &vec![SurfaceTag::default(); triangles.len()],
-        joint_count: 1,
-        ..MeshSource::default()
-    };
+    let source = MeshSource::rigid(&positions, &triangles);
     Ok(ColliderMesh::build(&source, &BuildOptions::default())?.0)
 }

@@ -8,7 +8,7 @@
 mod all;
 mod dash;
 mod modes;
-#[path = "../../crates/clamber_climber/tests/scenarios/stage/own.rs"]
+#[path = "../../crates/clamber_climber/tests/all/stage/own.rs"]
 mod own;
 mod scene;
 mod swim;

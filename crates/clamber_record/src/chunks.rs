@@ -1,33 +1,17 @@
 //! Gathers ticks in chunks, and writes them on a thread of its own while the game runs.
 
-use std::sync::mpsc::{
-    Receiver, Sender, SyncSender, TryRecvError, TrySendError, channel, sync_channel,
-};
+use std::sync::mpsc::{Receiver, SyncSender, TryRecvError, TrySendError, sync_channel};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
 use crate::RecordError;
+use crate::taken::Taken;
 use crate::views::TakenScenery;
 
-/// A tick on its way to the file.
-pub trait TakenTick {
-    /// True if a replay can start from this tick: it has a snapshot or a saved state.
-    fn is_saved(&self) -> bool;
-
-    /// Notes that `ticks` ticks before this one were left out.
-    fn follows_gap(&mut self, ticks: u64);
-
-    /// True if transforms are due in this tick.
-    fn is_due(&self) -> bool;
-
-    /// The meshes of this tick.
-    fn scenery(&mut self) -> &mut Vec<TakenScenery>;
-}
-
 /// Encodes ticks and writes them.
-pub(crate) trait WriteTicks<T, W>: Send + 'static {
+pub(crate) trait WriteTicks<D, W>: Send + 'static {
     /// Writes a chunk of ticks.
-    fn chunk(&mut self, ticks: &mut [T]) -> Result<(), RecordError>;
+    fn chunk(&mut self, ticks: Vec<Taken<D>>) -> Result<(), RecordError>;
 
     /// Notes that `ticks` ticks were left out at the end of the recording.
     fn ends_in_gap(&mut self, ticks: u64) -> Result<(), RecordError>;
@@ -37,7 +21,7 @@ pub(crate) trait WriteTicks<T, W>: Send + 'static {
 }
 
 /// Gathers copies of ticks in chunks and passes the chunks to the writing thread.
-pub(crate) struct Chunks<T: TakenTick, W> {
+pub(crate) struct Chunks<D, W> {
     /// Number of ticks in a chunk.
     size: usize,
     last: Option<u64>,
@@ -47,46 +31,38 @@ pub(crate) struct Chunks<T: TakenTick, W> {
     dropped: u64,
     /// Number of ticks left out since the last chunk that was passed to the thread.
     gap: u64,
-    /// Number of ticks so far with a snapshot or a saved state. Ticks are left out only once there are two.
-    saved: u32,
-    /// The first `gathered` elements are the ticks of the current chunk. The others are kept so that their memory is
-    /// reused.
-    chunk: Vec<T>,
-    gathered: usize,
+    /// Number of ticks so far with a saved state. Ticks are left out only once there are two.
+    saved: usize,
+    /// The ticks of the current chunk.
+    chunk: Vec<Taken<D>>,
     /// New meshes of ticks that were left out. The next recorded tick gets them.
     meshes: Vec<TakenScenery>,
     /// `None` once writing has ended.
-    thread: Option<WriterThread<T, W>>,
+    thread: Option<WriterThread<D, W>>,
 }
 
-struct WriterThread<T, W> {
-    chunks: SyncSender<Chunk<T>>,
-    /// Written chunks, sent back so that their memory is reused.
-    written: Receiver<Vec<T>>,
+struct WriterThread<D, W> {
+    chunks: SyncSender<Chunk<D>>,
     handle: JoinHandle<Result<W, RecordError>>,
 }
 
-/// Ticks, the number of them (from the front) that belong to the chunk, and the number of ticks left out at the end of
-/// the recording.
-type Chunk<T> = (Vec<T>, usize, u64);
+/// The ticks of a chunk, and the number of ticks left out at the end of the recording.
+type Chunk<D> = (Vec<Taken<D>>, u64);
 
-impl<T: TakenTick + Send + 'static, W: Send + 'static> Chunks<T, W> {
+impl<D: Send + 'static, W: Send + 'static> Chunks<D, W> {
     /// Starts the writing thread.
     pub(crate) fn start(
-        mut writing: impl WriteTicks<T, W>,
+        mut writing: impl WriteTicks<D, W>,
         (chunk_ticks, waits): (u32, bool),
     ) -> Result<Self, RecordError> {
         // One chunk is being gathered, up to `WAITING` wait in the channel, one is being written.
-        let (to_thread, chunks) = sync_channel::<Chunk<T>>(WAITING);
-        let (back, written): (Sender<Vec<T>>, _) = channel();
+        let (to_thread, chunks) = sync_channel::<Chunk<D>>(WAITING);
         let work = move || {
-            while let Some((mut chunk, count, lost)) = next(&chunks) {
-                writing.chunk(&mut chunk[..count])?;
+            while let Some((chunk, lost)) = next(&chunks) {
+                writing.chunk(chunk)?;
                 if lost > 0 {
                     writing.ends_in_gap(lost)?;
                 }
-                // An error means that the recorder takes no more chunks back. That is harmless.
-                let _ = back.send(chunk);
             }
             writing.finish()
         };
@@ -103,11 +79,9 @@ impl<T: TakenTick + Send + 'static, W: Send + 'static> Chunks<T, W> {
             gap: 0,
             saved: 0,
             chunk: Vec::new(),
-            gathered: 0,
             meshes: Vec::new(),
             thread: Some(WriterThread {
                 chunks: to_thread,
-                written,
                 handle,
             }),
         })
@@ -137,17 +111,17 @@ fn next<T>(chunks: &Receiver<T>) -> Option<T> {
 }
 
 /// Result of passing a chunk to the thread.
-enum Passed<T> {
+enum Passed<D> {
     On,
     /// The queue is full; these are the chunk's ticks.
-    Back(Vec<T>),
+    Back(Vec<Taken<D>>),
     /// The thread has ended with an error.
     Ended,
 }
 
-impl<T, W> WriterThread<T, W> {
+impl<D, W> WriterThread<D, W> {
     /// Passes a chunk to the thread. If the queue is full, waits for room or gives the chunk back, as `waits` says.
-    fn pass(&self, chunk: Chunk<T>, waits: bool) -> Passed<T> {
+    fn pass(&self, chunk: Chunk<D>, waits: bool) -> Passed<D> {
         match self.chunks.try_send(chunk) {
             Ok(()) => Passed::On,
             Err(TrySendError::Disconnected(_)) => Passed::Ended,
@@ -172,7 +146,7 @@ impl<T, W> WriterThread<T, W> {
     }
 }
 
-impl<T: TakenTick, W> Chunks<T, W> {
+impl<D, W> Chunks<D, W> {
     /// Number of ticks left out so far because the disk was too slow.
     pub(crate) fn dropped(&self) -> u64 {
         self.dropped
@@ -193,34 +167,26 @@ impl<T: TakenTick, W> Chunks<T, W> {
 
     /// True if a tick that is pushed now becomes the first one of its chunk.
     pub(crate) fn begins(&self) -> bool {
-        self.gathered == 0 || self.gathered >= self.size
+        self.chunk.is_empty() || self.chunk.len() >= self.size
     }
 
-    /// Adds a tick that `check` has accepted. `take` copies the tick over the old one that it is given, or returns a
-    /// new copy if it is given `None`.
-    pub(crate) fn push(
-        &mut self,
-        tick: u64,
-        take: impl FnOnce(Option<&mut T>) -> Option<T>,
-    ) -> Result<(), RecordError> {
-        if self.gathered >= self.size {
+    /// Adds a tick that `check` has accepted.
+    pub(crate) fn push(&mut self, taken: Taken<D>) -> Result<(), RecordError> {
+        if self.chunk.len() >= self.size {
             self.hand_over()?;
         }
-        let new = take(self.chunk.get_mut(self.gathered));
-        self.chunk.extend(new);
-        self.gathered += 1;
-        self.last = Some(tick);
+        self.last = Some(taken.tick);
+        self.chunk.push(taken);
         Ok(())
     }
 
     /// The tick added last.
-    pub(crate) fn last(&mut self) -> Result<&mut T, RecordError> {
+    pub(crate) fn last(&mut self) -> Result<&mut Taken<D>, RecordError> {
         if self.thread.is_none() {
             return Err(RecordError::Ended);
         }
         // A chunk is handed over only when another tick follows, so the last tick is still here.
-        let last = self.chunk[..self.gathered].last_mut();
-        last.ok_or(RecordError::NoTick {
+        self.chunk.last_mut().ok_or(RecordError::NoTick {
             asked: 0,
             ticks: None,
         })
@@ -243,51 +209,48 @@ impl<T: TakenTick, W> Chunks<T, W> {
             None => Err(RecordError::Ended),
         }
     }
-}
 
-impl<T: TakenTick, W> Chunks<T, W> {
     /// Passes the gathered ticks to the thread, or leaves them out. Returns `Some(false)` if the thread has ended with
     /// an error, and `None` if the thread was joined before.
     fn pass_on(&mut self, waits: bool) -> Option<bool> {
-        let thread = self.thread.as_ref()?;
-        let mut count = core::mem::take(&mut self.gathered);
-        let ticks = &mut self.chunk[..count];
-        let saved = ticks.iter().filter(|tick| tick.is_saved()).count();
-        self.saved = self.saved.saturating_add(saved as u32);
+        self.thread.as_ref()?;
+        let mut ticks = core::mem::take(&mut self.chunk);
+        self.saved += ticks.iter().filter(|tick| tick.is_saved()).count();
         if self.gap > 0 {
             // A gap ends only at a tick from which a replay can start.
-            let first = ticks.iter().position(TakenTick::is_saved).unwrap_or(count);
-            keep_meshes(&mut ticks[..first], &mut self.meshes);
-            ticks.rotate_left(first);
-            count -= first;
-            self.dropped += first as u64;
-            self.gap += first as u64;
-            if count > 0 {
-                self.chunk[0].follows_gap(self.gap);
-            } else if !waits {
-                return Some(true);
+            let first = ticks.iter().position(Taken::is_saved);
+            self.leave_out(ticks.drain(..first.unwrap_or(ticks.len())));
+            match ticks.first_mut() {
+                Some(first) => first.gap = self.gap,
+                None if !waits => return Some(true),
+                None => {}
             }
         }
-        if count > 0 {
-            self.chunk[0].scenery().splice(0..0, self.meshes.drain(..));
+        if let Some(first) = ticks.first_mut() {
+            first.scenery.splice(0..0, self.meshes.drain(..));
         }
         // An empty chunk tells the thread how many ticks are missing at the end.
-        let lost = if count == 0 { self.gap } else { 0 };
-        let next = thread.written.try_recv().unwrap_or_default();
-        let chunk = core::mem::replace(&mut self.chunk, next);
-        match thread.pass((chunk, count, lost), waits) {
+        let lost = if ticks.is_empty() { self.gap } else { 0 };
+        match self.thread.as_ref()?.pass((ticks, lost), waits) {
             Passed::On => {
                 self.gap = 0;
                 Some(true)
             }
-            Passed::Back(chunk) => {
-                self.dropped += count as u64;
-                self.gap += count as u64;
-                self.chunk = chunk;
-                keep_meshes(&mut self.chunk[..count], &mut self.meshes);
+            Passed::Back(ticks) => {
+                self.leave_out(ticks);
                 Some(true)
             }
             Passed::Ended => Some(false),
+        }
+    }
+
+    /// Leaves ticks out, and keeps their new meshes.
+    fn leave_out(&mut self, ticks: impl IntoIterator<Item = Taken<D>>) {
+        for tick in ticks {
+            self.dropped += 1;
+            self.gap += 1;
+            let new = tick.scenery.into_iter().filter(TakenScenery::has_shape);
+            self.meshes.extend(new);
         }
     }
 
@@ -301,15 +264,7 @@ impl<T: TakenTick, W> Chunks<T, W> {
     }
 }
 
-/// Takes the new meshes out of ticks that are left out.
-fn keep_meshes<T: TakenTick>(ticks: &mut [T], meshes: &mut Vec<TakenScenery>) {
-    for tick in ticks {
-        let taken = std::mem::take(tick.scenery());
-        meshes.extend(taken.into_iter().filter(TakenScenery::has_shape));
-    }
-}
-
-impl<T: TakenTick, W> Drop for Chunks<T, W> {
+impl<D, W> Drop for Chunks<D, W> {
     fn drop(&mut self) {
         // Errors are ignored: a drop cannot return them.
         self.pass_on(true);
@@ -322,44 +277,19 @@ impl<T: TakenTick, W> Drop for Chunks<T, W> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::taken::TakenState;
 
     /// Numbers of written ticks, each with the number of ticks left out before it.
     type Ticks = Vec<(u64, u64)>;
 
-    /// A tick that counts as saved if its number is a multiple of 5.
-    #[derive(Default)]
-    struct Tick {
-        number: u64,
-        gap: u64,
-        meshes: Vec<TakenScenery>,
-    }
-
-    impl TakenTick for Tick {
-        fn is_saved(&self) -> bool {
-            self.number.is_multiple_of(5)
-        }
-
-        fn follows_gap(&mut self, ticks: u64) {
-            self.gap = ticks;
-        }
-
-        fn is_due(&self) -> bool {
-            false
-        }
-
-        fn scenery(&mut self) -> &mut Vec<TakenScenery> {
-            &mut self.meshes
-        }
-    }
-
     /// Stores the ticks that it is given, and sleeps this long at each chunk.
     struct Slow(Ticks, Duration);
 
-    impl WriteTicks<Tick, Ticks> for Slow {
-        fn chunk(&mut self, ticks: &mut [Tick]) -> Result<(), RecordError> {
+    impl WriteTicks<(), Ticks> for Slow {
+        fn chunk(&mut self, ticks: Vec<Taken<()>>) -> Result<(), RecordError> {
             std::thread::sleep(self.1);
             self.0
-                .extend(ticks.iter().map(|tick| (tick.number, tick.gap)));
+                .extend(ticks.iter().map(|tick| (tick.tick, tick.gap)));
             Ok(())
         }
 
@@ -372,19 +302,14 @@ mod tests {
         }
     }
 
-    fn play(chunks: &mut Chunks<Tick, Ticks>, number: u64) {
-        let new = Tick {
-            number,
-            ..Tick::default()
-        };
-        let take = |known: Option<&mut Tick>| match known {
-            Some(known) => {
-                *known = new;
-                None
-            }
-            None => Some(new),
-        };
-        chunks.push(number, take).unwrap();
+    /// Adds a tick. It has a saved state if its number is a multiple of 5.
+    fn play(chunks: &mut Chunks<(), Ticks>, number: u64) {
+        let mut taken = Taken::new(number, (), false);
+        if number.is_multiple_of(5) {
+            let state = || Ok(Vec::new());
+            taken.saved.push(TakenState(Box::new(state)));
+        }
+        chunks.push(taken).unwrap();
     }
 
     #[test]

@@ -13,13 +13,11 @@ use mcap::MAGIC;
 use mcap::records::{Record, op};
 use prost::Message;
 
-use crate::messages::{ArenaSnapshot, Snapshot};
+use crate::messages::Saved;
 use crate::output::GAP;
 use crate::places::Places;
 use crate::source::{Bytes, CHUNK_HEADER, ChunkPlace, LARGEST, Place, Source, data_of, parse};
-use crate::{
-    ArenaInfo, Ending, RecordError, RecordedArenaTick, RecordedTick, RecordingInfo, topics,
-};
+use crate::{ArenaInfo, Ending, OfArena, OfClimber, RecordError, RecordingInfo, RecordingKind};
 
 /// Bytes of a record before its body: one for its kind and eight for its length, as MCAP defines them.
 const PREFIX: usize = 9;
@@ -41,23 +39,52 @@ pub(crate) const METADATA: u64 = 1 << 24;
 pub(crate) struct Contents {
     /// Metadata records by name. If several have the same name, the first one counts.
     pub(crate) metadata: BTreeMap<String, BTreeMap<String, String>>,
-    /// Places of a climber's ticks and snapshots.
-    pub(crate) climber: Places,
-    /// Places of an arena's ticks and saved states.
-    pub(crate) arena: Places,
+    /// Places of the ticks and saved states of a climber and of an arena: a recording has one of them.
+    pub(crate) places: [Places; 2],
     /// How the file ends.
     pub(crate) ending: Ending,
     pub(crate) source: Source,
 }
 
-/// Kinds of messages that are read back.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
-    Tick,
-    Snapshot,
-    Arena,
-    ArenaSnapshot,
+/// A topic whose messages are read back.
+#[derive(Clone, Copy)]
+struct Topic {
+    name: &'static str,
+    /// Index of the kind of recording that has it.
+    kind: usize,
+    /// True for saved states, false for ticks.
+    is_saved: bool,
+    /// Checks a message, and gives the number of its tick.
+    number: fn(&[u8]) -> Result<u64, String>,
 }
+
+/// The topics of a kind of recording.
+const fn topics<K: RecordingKind>() -> [Topic; 2] {
+    let (name, kind) = (K::TOPICS.tick, K::TOPICS.index);
+    [
+        Topic {
+            name,
+            kind,
+            is_saved: false,
+            number: |message| K::tick(message).map(|(number, _)| number),
+        },
+        Topic {
+            name: K::TOPICS.saved,
+            kind,
+            is_saved: true,
+            number: |message| {
+                let saved = Saved::decode(message).map_err(|error| error.to_string())?;
+                if K::TOPICS.is_text && core::str::from_utf8(&saved.state).is_err() {
+                    return Err("it is not a text".to_owned());
+                }
+                Ok(saved.tick)
+            },
+        },
+    ]
+}
+
+/// The topics of both kinds.
+const TOPICS: [[Topic; 2]; 2] = [topics::<OfClimber>(), topics::<OfArena>()];
 
 /// Why the walk stopped.
 enum Stop {
@@ -108,8 +135,7 @@ pub(crate) fn read(bytes: Bytes) -> Result<Contents, RecordError> {
     };
     Ok(Contents {
         metadata: found.metadata,
-        climber: found.climber,
-        arena: found.arena,
+        places: found.places,
         ending,
         source: Source::new(bytes, found.chunks),
     })
@@ -127,10 +153,9 @@ fn failed(source: std::io::Error) -> RecordError {
 struct Found {
     is_mcap: bool,
     metadata: BTreeMap<String, BTreeMap<String, String>>,
-    topics: BTreeMap<u16, Kind>,
+    topics: BTreeMap<u16, Topic>,
     chunks: Vec<ChunkPlace>,
-    climber: Places,
-    arena: Places,
+    places: [Places; 2],
 }
 
 /// Reads a file from front to end, and keeps a checksum of everything that was read.
@@ -287,15 +312,9 @@ impl Found {
             };
             match (opcode, parse_inner(opcode, &data[body.clone()])) {
                 (_, Some(Record::Channel(channel))) => {
-                    let kind = match channel.topic.as_str() {
-                        topics::TICK => Some(Kind::Tick),
-                        topics::SNAPSHOT => Some(Kind::Snapshot),
-                        topics::ARENA => Some(Kind::Arena),
-                        topics::ARENA_SNAPSHOT => Some(Kind::ArenaSnapshot),
-                        _ => None,
-                    };
-                    if let Some(kind) = kind {
-                        self.topics.insert(channel.id, kind);
+                    let mut topics = TOPICS.into_iter().flatten();
+                    if let Some(topic) = topics.find(|topic| topic.name == channel.topic) {
+                        self.topics.insert(channel.id, topic);
                     }
                 }
                 (
@@ -312,9 +331,9 @@ impl Found {
                         from: from as u32,
                         to: body.end as u32,
                     };
-                    if let Some(kind) = self.topics.get(&header.channel_id).copied() {
+                    if let Some(topic) = self.topics.get(&header.channel_id).copied() {
                         let at = place.at + CHUNK_HEADER + u64::from(within.from);
-                        self.message((kind, within), &message, at)
+                        self.message((topic, within), &message, at)
                             .map_err(|error| Stop::Damaged(at, error.to_string()))?;
                     }
                 }
@@ -328,36 +347,23 @@ impl Found {
         Ok(())
     }
 
-    /// Decodes a message, to check it, and stores its place. `at` is the message's offset in the file, for errors.
+    /// Checks a message, and stores its place. `at` is the message's offset in the file, for errors.
     fn message(
         &mut self,
-        (kind, place): (Kind, Place),
+        (topic, place): (Topic, Place),
         message: &[u8],
         at: u64,
     ) -> Result<(), RecordError> {
-        let broken =
-            |topic: &'static str, reason: String| RecordError::Message { at, topic, reason };
-        match kind {
-            Kind::Tick => {
-                let tick = RecordedTick::decode(message);
-                let tick = tick.map_err(|reason| broken(topics::TICK, reason))?;
-                self.climber.add_tick(tick.tick, place)
-            }
-            Kind::Snapshot => {
-                let saved = Snapshot::decode(message);
-                let saved = saved.map_err(|e| broken(topics::SNAPSHOT, e.to_string()))?;
-                self.climber.add_saved(saved.tick, place)
-            }
-            Kind::Arena => {
-                let tick = RecordedArenaTick::decode(message);
-                let tick = tick.map_err(|reason| broken(topics::ARENA, reason))?;
-                self.arena.add_tick(tick.tick, place)
-            }
-            Kind::ArenaSnapshot => {
-                let saved = ArenaSnapshot::decode(message);
-                let saved = saved.map_err(|e| broken(topics::ARENA_SNAPSHOT, e.to_string()))?;
-                self.arena.add_saved(saved.tick, place)
-            }
+        let number = (topic.number)(message).map_err(|reason| RecordError::Message {
+            at,
+            topic: topic.name,
+            reason,
+        })?;
+        let places = &mut self.places[topic.kind];
+        if topic.is_saved {
+            places.add_saved(number, place)
+        } else {
+            places.add_tick(number, place)
         }
     }
 }

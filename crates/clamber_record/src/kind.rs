@@ -3,11 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
-use crate::arena::{ArenaInfo, ArenaMemory, RecordedArenaTick, TakenArena};
-use crate::chunks::TakenTick;
-use crate::recorder::ClimberMemory;
-use crate::taken::Taken;
-use crate::{RecordError, RecordedTick, RecordingInfo, topics};
+use crate::RecordError;
 
 /// Marks a recording of one climber and its creature, in a scene that the game steps itself.
 #[derive(Clone, Copy, Debug)]
@@ -24,34 +20,43 @@ pub trait RecordingKind: Sealed {
     /// Data of one recorded tick.
     type Tick;
 
-    /// Name of the metadata record of this kind.
+    /// Copy of a tick's data on its way to the file.
     #[doc(hidden)]
-    const METADATA: &'static str;
-    /// Advice in the error for a recording of this kind that was opened as the other kind.
-    #[doc(hidden)]
-    const READ_WITH: &'static str;
-    /// Topic of the ticks.
-    #[doc(hidden)]
-    const TOPIC: &'static str;
-    /// True for recordings of an arena.
-    #[doc(hidden)]
-    const IS_ARENA: bool;
-    /// Copy of a tick on its way to the file.
-    #[doc(hidden)]
-    type Taken: TakenTick;
+    type Taken;
     /// Data that the recorder keeps from tick to tick.
     #[doc(hidden)]
     type Memory;
+    /// Names in the file.
+    #[doc(hidden)]
+    const TOPICS: Topics;
 
+    /// Reads the metadata.
     #[doc(hidden)]
     fn info(
         metadata: &BTreeMap<String, String>,
         settings: BTreeMap<String, String>,
     ) -> Result<Self::Info, RecordError>;
 
-    /// Decodes the message of a tick; `Err` says why it cannot be read.
+    /// Decodes the message of a tick, and returns it with its number; `Err` says why it cannot be read.
     #[doc(hidden)]
-    fn tick(message: &[u8]) -> Result<Self::Tick, String>;
+    fn tick(message: &[u8]) -> Result<(u64, Self::Tick), String>;
+}
+
+/// The names by which the file of a recording tells its kind, and the topics that are read back.
+#[derive(Clone, Copy, Debug)]
+pub struct Topics {
+    /// Name of the metadata record.
+    pub(crate) metadata: &'static str,
+    /// Advice in the error for a recording of this kind that was opened as the other kind.
+    pub(crate) read_with: &'static str,
+    /// Index of the kind: 0 for a climber, 1 for an arena.
+    pub(crate) index: usize,
+    /// Topic of the ticks.
+    pub(crate) tick: &'static str,
+    /// Topic of the saved states.
+    pub(crate) saved: &'static str,
+    /// True if the saved states are texts.
+    pub(crate) is_text: bool,
 }
 
 /// Keeps other crates from implementing [`RecordingKind`].
@@ -59,49 +64,3 @@ pub trait Sealed {}
 
 impl Sealed for OfClimber {}
 impl Sealed for OfArena {}
-
-impl RecordingKind for OfClimber {
-    type Info = RecordingInfo;
-    type Tick = RecordedTick;
-
-    const METADATA: &'static str = RecordingInfo::METADATA;
-    const READ_WITH: &'static str = "it is a recording of one climber; read it with Recording";
-    const TOPIC: &'static str = topics::TICK;
-    const IS_ARENA: bool = false;
-    type Taken = Taken;
-    type Memory = ClimberMemory;
-
-    fn info(
-        metadata: &BTreeMap<String, String>,
-        settings: BTreeMap<String, String>,
-    ) -> Result<RecordingInfo, RecordError> {
-        RecordingInfo::from_metadata(metadata, settings)
-    }
-
-    fn tick(message: &[u8]) -> Result<RecordedTick, String> {
-        RecordedTick::decode(message)
-    }
-}
-
-impl RecordingKind for OfArena {
-    type Info = ArenaInfo;
-    type Tick = RecordedArenaTick;
-
-    const METADATA: &'static str = ArenaInfo::METADATA;
-    const READ_WITH: &'static str = "it is a recording of an arena; read it with ArenaRecording";
-    const TOPIC: &'static str = topics::ARENA;
-    const IS_ARENA: bool = true;
-    type Taken = TakenArena;
-    type Memory = ArenaMemory;
-
-    fn info(
-        metadata: &BTreeMap<String, String>,
-        settings: BTreeMap<String, String>,
-    ) -> Result<ArenaInfo, RecordError> {
-        ArenaInfo::from_metadata(metadata, settings)
-    }
-
-    fn tick(message: &[u8]) -> Result<RecordedArenaTick, String> {
-        RecordedArenaTick::decode(message)
-    }
-}

@@ -3,10 +3,9 @@
 mod any;
 mod arena;
 mod chunks;
-mod config;
+mod climber;
 mod error;
 mod file;
-mod info;
 mod kind;
 mod messages;
 mod names;
@@ -14,7 +13,6 @@ mod output;
 mod places;
 mod recorder;
 mod recording;
-mod replay;
 mod source;
 mod taken;
 pub mod topics;
@@ -26,10 +24,12 @@ pub use arena::{
     ArenaDifference, ArenaInfo, ArenaRecorder, ArenaRecording, ArenaReplay, RecordedArenaTick,
 };
 pub use clamber_surface::surface::{creature_fingerprint, palette_fingerprint};
+pub use climber::{
+    Difference, FigureView, RecordedSnapshot, RecordedTick, Recorder, Recording, RecordingInfo,
+    ReplayError, Replayed, TickView, replay,
+};
 pub use error::RecordError;
-pub use info::RecordingInfo;
 pub use kind::{OfArena, OfClimber, RecordingKind};
-pub use recorder::{FigureView, RecordOptions, Recorder, RecorderOf, TickView};
-pub use recording::{Ending, RecordedSnapshot, RecordedTick, Recording, RecordingOf};
-pub use replay::{Difference, ReplayError, Replayed, replay};
+pub use recorder::{RecordOptions, RecorderOf};
+pub use recording::{Ending, RecordingOf};
 pub use views::SceneryView;

@@ -1,14 +1,12 @@
 //! Names of obstacles and of their parts, for the log.
 
-use std::sync::Arc;
-
 use clamber_climber::ClimberState;
 use clamber_surface::mesh::{ColliderMesh, TriangleId};
 use clamber_surface::rig::JointId;
 use clamber_world::ObstacleId;
 
 /// Names of obstacles, by id.
-pub(crate) type ObstacleNames = Arc<Vec<(ObstacleId, String)>>;
+pub(crate) type ObstacleNames = Vec<(ObstacleId, String)>;
 
 /// An obstacle, and the joint of its skin that a climber is on at the end of a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

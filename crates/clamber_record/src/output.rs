@@ -6,12 +6,14 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use foxglove::Encode;
+use foxglove::messages::Log;
 use mcap::records::{MessageHeader, Metadata};
 use mcap::write::NoSeek;
 use mcap::{WriteOptions, Writer};
 
 use crate::file::METADATA;
 use crate::source::LARGEST;
+use crate::views::timestamp;
 use crate::{RecordError, RecordingInfo};
 
 /// A channel: its number, and its topic for errors.
@@ -19,6 +21,12 @@ use crate::{RecordError, RecordingInfo};
 pub(crate) struct Channel {
     id: u16,
     topic: &'static str,
+}
+
+impl Channel {
+    pub(crate) fn topic(&self) -> &'static str {
+        self.topic
+    }
 }
 
 /// A chunk ends after the tick in which it becomes larger than this, bytes (64 MiB). Readers hold a whole chunk in
@@ -41,6 +49,7 @@ pub(crate) struct Output<W: Write> {
     is_open: Arc<AtomicBool>,
     tick_seconds: f64,
     sequence: u32,
+    /// Time of the tick that was begun last, nanoseconds since tick 0.
     now: u64,
     /// Bytes in the current chunk, with [`MORE`] for each message.
     chunk: u64,
@@ -148,34 +157,39 @@ impl<W: Write> Output<W> {
         Ok(Channel { id, topic })
     }
 
-    /// Begins a tick, and returns its time since tick 0, nanoseconds.
+    /// Begins a tick, and returns the time of its messages, nanoseconds since tick 0.
     pub(crate) fn begin(&mut self, tick: u64) -> u64 {
         self.sequence = self.sequence.wrapping_add(1);
-        self.now = time(tick, self.tick_seconds);
+        self.now = (tick as f64 * self.tick_seconds * 1e9).round() as u64;
         self.now
     }
 
-    /// The time of the tick that was begun last, nanoseconds since tick 0.
-    pub(crate) fn now(&self) -> u64 {
-        self.now
-    }
-
+    /// Sends a message that is not read back.
     pub(crate) fn send(
         &mut self,
         channel: Channel,
-        now: u64,
         message: &impl Encode,
     ) -> Result<(), RecordError> {
-        self.send_as(channel, now, |buffer| {
+        self.send_as(channel, |buffer| {
+            message.encode(buffer).map_err(|error| error.to_string())
+        })
+    }
+
+    /// Sends a message that is read back. prost encodes three times as fast as foxglove.
+    pub(crate) fn send_exact(
+        &mut self,
+        channel: Channel,
+        message: &impl prost::Message,
+    ) -> Result<(), RecordError> {
+        self.send_as(channel, |buffer| {
             message.encode(buffer).map_err(|error| error.to_string())
         })
     }
 
     /// Sends a message that `encode` appends to a buffer.
-    pub(crate) fn send_as(
+    fn send_as(
         &mut self,
         channel: Channel,
-        now: u64,
         encode: impl FnOnce(&mut Vec<u8>) -> Result<(), String>,
     ) -> Result<(), RecordError> {
         self.buffer.clear();
@@ -193,11 +207,17 @@ impl<W: Write> Output<W> {
         let header = MessageHeader {
             channel_id: channel.id,
             sequence: self.sequence,
-            log_time: now,
-            publish_time: now,
+            log_time: self.now,
+            publish_time: self.now,
         };
         let writer = self.writer.as_mut().ok_or(RecordError::Ended)?;
         Ok(writer.write_to_known_channel(&header, &self.buffer)?)
+    }
+
+    /// Sends a log line at the time of the tick that was begun last.
+    pub(crate) fn log(&mut self, channel: Channel, mut line: Log) -> Result<(), RecordError> {
+        line.timestamp = Some(timestamp(self.now));
+        self.send(channel, &line)
     }
 
     /// Ends the current chunk.
@@ -238,9 +258,4 @@ impl<W: Write> Output<W> {
         })?;
         Ok(out)
     }
-}
-
-/// The time of a tick since tick 0, nanoseconds.
-pub(crate) fn time(tick: u64, tick_seconds: f64) -> u64 {
-    (tick as f64 * tick_seconds * 1e9).round() as u64
 }

@@ -1,23 +1,13 @@
-use std::convert::Infallible;
-use std::fmt::Display;
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::Path;
-use std::sync::Arc;
 
-use clamber_climber::{ClimberInput, ClimberState, StepReport};
-use clamber_colossus::Creature;
-use clamber_surface::geometry::Similarity;
-use clamber_surface::rig::{Palette, Skeleton};
-use clamber_surface::surface::SkinnedSurface;
 use clamber_world::ObstacleId;
 
-use crate::chunks::{Chunks, TakenTick};
+use crate::chunks::{Chunks, WriteTicks};
 use crate::names::ObstacleNames;
-use crate::taken::{Taken, TakenSnapshot};
-use crate::views::{FigureJoints, SceneryNames, SceneryView, TakenBrain, TakenFigure};
-use crate::writing::Writing;
-use crate::{OfClimber, RecordError, RecordingInfo, RecordingKind};
+use crate::views::{SceneryNames, SceneryView};
+use crate::{RecordError, RecordingKind};
 
 /// Options of a recorder: how often views for people are recorded, and how large chunks are.
 ///
@@ -62,6 +52,11 @@ impl RecordOptions {
             ..Self::default()
         }
     }
+
+    /// True if messages that are written every so many ticks are due in a tick.
+    pub(crate) fn is_due(&self, every: u32, tick: u64) -> bool {
+        every > 0 && tick.is_multiple_of(u64::from(every))
+    }
 }
 
 impl Default for RecordOptions {
@@ -77,39 +72,6 @@ impl Default for RecordOptions {
     }
 }
 
-/// The data of one tick for [`Recorder::tick`], as it is at the end of the tick.
-#[derive(Clone, Copy, Debug)]
-pub struct TickView<'a> {
-    /// Number of the tick: any number for the first tick, then one more than the number of the tick before.
-    pub tick: u64,
-    /// The climber's input in this tick.
-    pub input: &'a ClimberInput,
-    /// The climber's state after its step.
-    pub state: &'a ClimberState,
-    /// The report of the climber's step.
-    pub report: &'a StepReport,
-    /// The creature's surface.
-    pub surface: &'a SkinnedSurface,
-    /// The palette that posed the surface.
-    pub palette: &'a Palette,
-    /// A hash of the rest of the scene, for a replay to compare; 0 if there is nothing else.
-    pub scene_fingerprint: u64,
-}
-
-/// A figure for [`Recorder::figure`], as it is drawn at the end of a tick, such as the climber's body.
-#[derive(Clone, Copy, Debug)]
-pub struct FigureView<'a> {
-    /// Name of the figure, for example `"hero"`. The frames of its joints are called `hero/hips` and so on. Choose a
-    /// name that no joint of the creature has.
-    pub name: &'a str,
-    /// Its skeleton: the same in every call with this name.
-    pub skeleton: &'a Skeleton,
-    /// The palette that poses it.
-    pub palette: &'a Palette,
-    /// Transform of the figure from model space to world space.
-    pub world_from_model: Similarity,
-}
-
 /// Writes a recording, chunk by chunk, on a thread of its own.
 ///
 /// `tick` only copies the tick. When a chunk is complete, the thread skins, encodes and writes its ticks in order,
@@ -120,7 +82,7 @@ pub struct FigureView<'a> {
 /// whenever writing stops. A recorder that is dropped without [`RecorderOf::finish`] finishes the file too, but
 /// ignores errors.
 ///
-/// [`Recorder`] records one climber, [`ArenaRecorder`](crate::ArenaRecorder) an arena.
+/// [`Recorder`](crate::Recorder) records one climber, [`ArenaRecorder`](crate::ArenaRecorder) an arena.
 pub struct RecorderOf<K: RecordingKind, W: Write> {
     pub(crate) options: RecordOptions,
     pub(crate) names: ObstacleNames,
@@ -129,23 +91,33 @@ pub struct RecorderOf<K: RecordingKind, W: Write> {
     pub(crate) chunks: Chunks<K::Taken, W>,
 }
 
-/// Writes a recording of one climber and its creature, as [`RecorderOf`] describes.
-pub type Recorder<W> = RecorderOf<OfClimber, W>;
-
-/// Data that a climber's recorder keeps from tick to tick: the figures that were recorded.
-#[derive(Debug, Default)]
-pub struct ClimberMemory {
-    figures: Vec<Arc<FigureJoints>>,
+impl<K: RecordingKind, W: Write + Send + 'static> RecorderOf<K, W>
+where
+    K::Taken: Send + 'static,
+{
+    /// Starts the thread that writes.
+    pub(crate) fn start(
+        writing: impl WriteTicks<K::Taken, W>,
+        memory: K::Memory,
+        options: RecordOptions,
+    ) -> Result<Self, RecordError> {
+        Ok(Self {
+            options,
+            names: ObstacleNames::new(),
+            scenery: SceneryNames::default(),
+            memory,
+            chunks: Chunks::start(writing, (options.chunk_ticks, options.waits))?,
+        })
+    }
 }
 
 impl<K: RecordingKind, W: Write> RecorderOf<K, W> {
     /// Names an obstacle in the log from the next tick on. In a recording of one climber, give the creature the name in
-    /// [`RecordingInfo::creature`]: then the log also names the part of the creature that the climber is on. In a
+    /// [`RecordingInfo::creature`](crate::RecordingInfo::creature): then the log also names the part of the creature that the climber is on. In a
     /// recording of an arena, creatures and fighters already have the names in [`ArenaInfo`](crate::ArenaInfo).
     pub fn name(&mut self, obstacle: ObstacleId, name: &str) {
-        let names = Arc::make_mut(&mut self.names);
-        names.retain(|(id, _)| *id != obstacle);
-        names.push((obstacle, name.to_owned()));
+        self.names.retain(|(id, _)| *id != obstacle);
+        self.names.push((obstacle, name.to_owned()));
     }
 
     /// True if transforms are due in the tick recorded last: see [`RecordOptions::transforms_every`]. In other ticks,
@@ -154,7 +126,7 @@ impl<K: RecordingKind, W: Write> RecorderOf<K, W> {
     /// # Errors
     /// [`RecordError::NoTick`] before the first tick; [`RecordError::Ended`] after writing failed.
     pub fn is_due(&mut self) -> Result<bool, RecordError> {
-        Ok(self.chunks.last()?.is_due())
+        Ok(self.chunks.last()?.is_due)
     }
 
     /// Records a mesh at the tick recorded last, for people to look at, such as the ground or a rock. The first call
@@ -165,8 +137,8 @@ impl<K: RecordingKind, W: Write> RecorderOf<K, W> {
     /// [`RecordError::NoTick`] before the first tick; [`RecordError::Ended`] after writing failed.
     pub fn scenery(&mut self, view: &SceneryView<'_>) -> Result<(), RecordError> {
         let last = self.chunks.last()?;
-        let taken = self.scenery.take(view, last.is_due());
-        last.scenery().extend(taken);
+        let taken = self.scenery.take(view, last.is_due);
+        last.scenery.extend(taken);
         Ok(())
     }
 
@@ -189,21 +161,6 @@ impl<K: RecordingKind, W: Write> RecorderOf<K, W> {
     }
 }
 
-impl Recorder<BufWriter<File>> {
-    /// A recorder that writes to a new file. An existing file at that path is overwritten.
-    ///
-    /// # Errors
-    /// [`RecordError::Io`] if the file cannot be created, and as [`Recorder::new`].
-    pub fn create(
-        path: impl AsRef<Path>,
-        info: &RecordingInfo,
-        skeleton: &Skeleton,
-        options: RecordOptions,
-    ) -> Result<Self, RecordError> {
-        Self::new(create(path.as_ref())?, info, skeleton, options)
-    }
-}
-
 /// Creates a file. An existing file at that path is overwritten.
 pub(crate) fn create(path: &Path) -> Result<BufWriter<File>, RecordError> {
     let file = File::create(path).map_err(|source| RecordError::Io {
@@ -211,137 +168,4 @@ pub(crate) fn create(path: &Path) -> Result<BufWriter<File>, RecordError> {
         source,
     })?;
     Ok(BufWriter::new(file))
-}
-
-impl<W: Write + Send + 'static> Recorder<W> {
-    /// A recorder that writes to `out`, which it owns.
-    ///
-    /// `info.version` is ignored: the file gets [`RecordingInfo::VERSION`].
-    ///
-    /// # Errors
-    /// [`RecordError::TickSeconds`] if `info.tick_seconds` is not positive or not finite, [`RecordError::Write`] if
-    /// `out` fails, [`RecordError::Io`] if the thread cannot be started.
-    pub fn new(
-        out: W,
-        info: &RecordingInfo,
-        skeleton: &Skeleton,
-        options: RecordOptions,
-    ) -> Result<Self, RecordError> {
-        let writing = Writing::new(out, info, skeleton, options.skin_points)?;
-        Ok(Self {
-            options,
-            names: ObstacleNames::default(),
-            scenery: SceneryNames::default(),
-            memory: ClimberMemory::default(),
-            chunks: Chunks::start(writing, (options.chunk_ticks, options.waits))?,
-        })
-    }
-}
-
-impl<W: Write> Recorder<W> {
-    /// Records a tick.
-    ///
-    /// The surface is only read: recording does not change [`SkinnedSurface::diagnostics`].
-    ///
-    /// # Errors
-    /// [`RecordError::Order`] unless the tick's number is one more than the last one's, and
-    /// [`RecordError::JointCount`] for a palette that does not fit the surface. Such a tick is not recorded, but
-    /// recording can go on. [`RecordError::Write`] or another error if an earlier chunk could not be written, and
-    /// [`RecordError::Ended`] at every call after that.
-    ///
-    /// # Panics
-    /// If `out` panicked while an earlier chunk was written: that panic is resumed here.
-    pub fn tick(&mut self, view: &TickView<'_>) -> Result<(), RecordError> {
-        self.chunks.check(view.tick)?;
-        let (mesh, palette) = (
-            view.surface.mesh().joint_count(),
-            view.palette.matrices().len(),
-        );
-        if mesh != palette {
-            return Err(RecordError::JointCount { mesh, palette });
-        }
-        let (options, names) = (&self.options, &self.names);
-        self.chunks.push(view.tick, |taken| match taken {
-            Some(taken) => {
-                taken.take(view, options, names);
-                None
-            }
-            None => Some(Taken::new(view, options, names)),
-        })
-    }
-
-    /// Records the joints of a figure at the tick recorded last, for people to look at: a replay does not compare them.
-    /// Nothing is recorded in ticks in which no transforms are due ([`RecordOptions::transforms_every`]).
-    /// # Errors
-    /// [`RecordError::FigureJoints`] if the palette, the skeleton and the skeleton of this name's first call differ in
-    /// their number of joints; [`RecordError::NoTick`] before the first tick; [`RecordError::Ended`] after writing
-    /// failed. Nothing is recorded then.
-    pub fn figure(&mut self, view: &FigureView<'_>) -> Result<(), RecordError> {
-        let is_due = self.chunks.last()?.transforms_due;
-        let figures = &mut self.memory.figures;
-        let known = figures.iter().find(|known| known.figure == view.name);
-        let (skeleton, palette) = (view.skeleton.joints().len(), view.palette.matrices().len());
-        if palette != skeleton || known.is_some_and(|known| known.len() != skeleton) {
-            return Err(RecordError::FigureJoints {
-                figure: view.name.to_owned(),
-                skeleton,
-                palette,
-            });
-        }
-        if !is_due {
-            return Ok(());
-        }
-        let joints = known.cloned().unwrap_or_else(|| {
-            let joints = Arc::new(FigureJoints::new(view.name, view.skeleton));
-            figures.push(Arc::clone(&joints));
-            joints
-        });
-        let figure = TakenFigure::new(joints, view.palette, view.world_from_model);
-        self.chunks.last()?.figures.push(figure);
-        Ok(())
-    }
-
-    /// Records the brain of the creature at the tick recorded last, for people to look at. State, moods and senses are
-    /// recorded at every change of state, and whenever transforms are due ([`RecordOptions::transforms_every`]). Events
-    /// and blows go to the log. A replay does not compare them.
-    ///
-    /// # Errors
-    /// [`RecordError::NoTick`] before the first tick; [`RecordError::Ended`] after writing failed.
-    pub fn brain(&mut self, creature: &Creature) -> Result<(), RecordError> {
-        let taken = self.chunks.last()?;
-        taken.brain = Some(TakenBrain::new(creature, taken.transforms_due));
-        Ok(())
-    }
-
-    /// Records a snapshot of the scene after the tick recorded last.
-    ///
-    /// `scene` is a text, in the caller's own format, from which the scene can resume after that tick. It can leave out
-    /// the climber's state, since every tick has it. [`Recording::snapshot`](crate::Recording::snapshot) reads both
-    /// back.
-    ///
-    /// # Errors
-    /// [`RecordError::NoTick`] before the first tick, [`RecordError::Ended`] after writing failed.
-    pub fn snapshot(&mut self, scene: &str) -> Result<(), RecordError> {
-        let scene = scene.to_owned();
-        self.snapshot_with(move || Ok::<_, Infallible>(scene))
-    }
-
-    /// Records a snapshot as [`Recorder::snapshot`] does, but the recorder's thread calls `scene` to make the text,
-    /// while the game runs. So `scene` has to own a copy of the data that it writes.
-    ///
-    /// If `scene` fails, the recording ends before its tick, as if the file could not be written: a later
-    /// [`Recorder::tick`], or [`Recorder::finish`], returns [`RecordError::Encode`] with the reason. If `scene` panics,
-    /// that panic is resumed there.
-    ///
-    /// # Errors
-    /// As [`Recorder::snapshot`].
-    pub fn snapshot_with<E: Display>(
-        &mut self,
-        scene: impl FnOnce() -> Result<String, E> + Send + 'static,
-    ) -> Result<(), RecordError> {
-        let text = move || scene().map_err(|error| error.to_string());
-        let taken = TakenSnapshot(Box::new(text));
-        self.chunks.last()?.snapshots.push(taken);
-        Ok(())
-    }
 }

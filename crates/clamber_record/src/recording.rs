@@ -3,12 +3,11 @@ use std::ops::RangeInclusive;
 use std::path::Path;
 
 use crate::file::{self, Contents};
-use crate::messages::{Snapshot, Tick};
+use crate::messages::Saved;
 use crate::output::{GAP, GAP_TICKS};
 use crate::places::Places;
 use crate::source::{Bytes, Place, Source};
-use crate::{OfArena, OfClimber, RecordError, RecordingInfo, RecordingKind, topics};
-use clamber_climber::{ClimberInput, ClimberState};
+use crate::{OfArena, OfClimber, RecordError, RecordingInfo, RecordingKind};
 
 /// How the file of a recording ends.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -38,48 +37,17 @@ impl fmt::Display for Ending {
     }
 }
 
-/// One tick as it was recorded.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct RecordedTick {
-    /// Number of the tick.
-    pub tick: u64,
-    /// The climber's input in this tick.
-    pub input: ClimberInput,
-    /// The climber's state at the end of the tick, bit for bit.
-    pub state: ClimberState,
-    /// [`ClimberState::fingerprint`] of that state.
-    pub state_fingerprint: u64,
-    /// [`palette_fingerprint`](crate::palette_fingerprint) of the creature's palette.
-    pub palette_fingerprint: u64,
-    /// The caller's hash of the rest of the scene; 0 if there is nothing else.
-    pub scene_fingerprint: u64,
-}
-
-/// A snapshot from which a scene can resume after a tick.
-#[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct RecordedSnapshot {
-    /// The tick, with the climber's state at its end.
-    pub tick: RecordedTick,
-    /// The text given to [`Recorder::snapshot`](crate::Recorder::snapshot).
-    pub scene: String,
-}
-
 /// A recording that was read: its metadata, and all ticks up to where the file ends or is damaged.
 ///
-/// [`Recording`] is a recording of one climber, [`ArenaRecording`](crate::ArenaRecording) a recording of an arena.
+/// [`Recording`](crate::Recording) is a recording of one climber, [`ArenaRecording`](crate::ArenaRecording) a recording of an arena.
 #[derive(Clone, Debug)]
 pub struct RecordingOf<K: RecordingKind> {
     info: K::Info,
-    pub(crate) source: Source,
-    pub(crate) places: Places,
+    source: Source,
+    places: Places,
     ending: Ending,
     lost_at_end: u64,
 }
-
-/// A recording of one climber and its creature, by a [`Recorder`](crate::Recorder).
-pub type Recording = RecordingOf<OfClimber>;
 
 impl<K: RecordingKind> RecordingOf<K> {
     /// Reads a recording from a file of any length. Only the places of the ticks and one chunk at a time are kept in
@@ -104,33 +72,24 @@ impl<K: RecordingKind> RecordingOf<K> {
     }
 
     pub(crate) fn from_contents(mut contents: Contents) -> Result<Self, RecordError> {
-        let others = [
-            (OfClimber::METADATA, OfClimber::READ_WITH),
-            (OfArena::METADATA, OfArena::READ_WITH),
-        ];
-        let other = others
-            .into_iter()
-            .filter(|(name, _)| *name != K::METADATA)
-            .find(|(name, _)| contents.metadata.contains_key(*name));
+        let kinds = [OfClimber::TOPICS, OfArena::TOPICS].into_iter();
+        let mut others = kinds.filter(|kind| kind.index != K::TOPICS.index);
+        let other = others.find(|kind| contents.metadata.contains_key(kind.metadata));
         let mut take = |name: &str| {
             contents.metadata.remove(name).ok_or_else(|| {
                 RecordError::NotARecording(match other {
-                    Some((_, read_with)) => read_with.to_owned(),
+                    Some(kind) => kind.read_with.to_owned(),
                     None => format!("it has no metadata named {name:?}; the {}", contents.ending),
                 })
             })
         };
         let gap = take(GAP).ok();
         let lost = gap.and_then(|gap| gap.get(GAP_TICKS)?.parse().ok());
-        let metadata = take(K::METADATA)?;
+        let metadata = take(K::TOPICS.metadata)?;
         let info = K::info(&metadata, take(RecordingInfo::SETTINGS)?)?;
         Ok(Self {
             info,
-            places: if K::IS_ARENA {
-                contents.arena
-            } else {
-                contents.climber
-            },
+            places: std::mem::take(&mut contents.places[K::TOPICS.index]),
             source: contents.source,
             ending: contents.ending,
             lost_at_end: lost.unwrap_or(0),
@@ -199,43 +158,21 @@ impl<K: RecordingKind> RecordingOf<K> {
     }
 
     fn decode(&self, place: &Place) -> Result<K::Tick, RecordError> {
-        self.source.read(place, K::TOPIC, K::tick)
+        let (_, tick) = self.source.read(place, K::TOPICS.tick, K::tick)?;
+        Ok(tick)
     }
-}
 
-impl Recording {
-    /// The last snapshot at or before a tick.
-    ///
-    /// # Errors
-    /// [`RecordError::NoTick`] if the recording has no such tick, [`RecordError::NoSnapshot`] if it has no such
-    /// snapshot.
-    pub fn snapshot(&self, tick: u64) -> Result<RecordedSnapshot, RecordError> {
+    /// The last saved state at or before a tick, and its tick. `make` makes the state of its bytes.
+    pub(crate) fn state<T>(
+        &self,
+        tick: u64,
+        make: impl FnOnce(Vec<u8>) -> Result<T, String>,
+    ) -> Result<(u64, T), RecordError> {
         let (at, place) = self.places.saved(tick)?;
-        let message: Snapshot = self.source.decode(place, topics::SNAPSHOT)?;
-        Ok(RecordedSnapshot {
-            tick: self.tick(at)?,
-            scene: message.scene,
-        })
-    }
-}
-
-impl RecordedTick {
-    /// Decodes the message of a tick; `Err` says why it cannot be read.
-    pub(crate) fn decode(message: &[u8]) -> Result<Self, String> {
-        let tick = <Tick as prost::Message>::decode(message);
-        let tick = tick.map_err(|error| error.to_string())?;
-        let state = tick.state.to_climber();
-        let state = state.map_err(|mode| format!("unknown climber mode {mode}"))?;
-        if state.fingerprint() != tick.state_fingerprint {
-            return Err("its state and fingerprint do not match".to_owned());
-        }
-        Ok(Self {
-            tick: tick.tick,
-            input: tick.input.into(),
-            state,
-            state_fingerprint: tick.state_fingerprint,
-            palette_fingerprint: tick.palette_fingerprint,
-            scene_fingerprint: tick.scene_fingerprint,
-        })
+        let decode = |message: &[u8]| {
+            let saved = <Saved as prost::Message>::decode(message);
+            make(saved.map_err(|error| error.to_string())?.state.into())
+        };
+        Ok((at, self.source.read(place, K::TOPICS.saved, decode)?))
     }
 }

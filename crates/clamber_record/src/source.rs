@@ -8,7 +8,6 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use mcap::parse_record;
 use mcap::records::{Record, op};
-use prost::Message;
 
 use crate::RecordError;
 
@@ -87,16 +86,6 @@ impl Source {
             chunks,
             last: Mutex::new(None),
         }))
-    }
-
-    /// Decodes the message at a place.
-    pub(crate) fn decode<M: Message + Default>(
-        &self,
-        place: &Place,
-        topic: &'static str,
-    ) -> Result<M, RecordError> {
-        let decode = |message: &[u8]| M::decode(message).map_err(|error| error.to_string());
-        self.read(place, topic, decode)
     }
 
     /// Passes the message at a place to `decode` and returns the result.

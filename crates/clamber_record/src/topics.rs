@@ -2,7 +2,7 @@
 
 /// Every tick: input, state, a summary of the step's report, and fingerprints (`tick.Tick`).
 pub const TICK: &str = "/tick";
-/// Snapshots of the scene, which the caller records, to resume from a tick (`snapshot.Snapshot`).
+/// Snapshots of the scene, which the caller records, to resume from a tick (`saved.Saved`).
 pub const SNAPSHOT: &str = "/snapshot";
 /// Transforms of creature, joints and climber (`foxglove.FrameTransforms`).
 pub const TRANSFORMS: &str = "/transforms";
@@ -21,7 +21,7 @@ pub const SKIN: &str = "/skin";
 pub const TOUCHED: &str = "/touched";
 /// Events of climber and creature (`foxglove.Log`).
 pub const LOG: &str = "/log";
-/// Every tick of an arena: inputs and fingerprints (`arena.ArenaTick`).
+/// Every tick of an arena: inputs and fingerprints (`arenatick.ArenaTick`).
 pub const ARENA: &str = "/arena";
-/// Saved states of an arena, to resume from (`arena.ArenaSnapshot`).
+/// Saved states of an arena, to resume from (`saved.Saved`).
 pub const ARENA_SNAPSHOT: &str = "/arena_snapshot";

@@ -9,8 +9,8 @@
 
 use clamber_surface::geometry::{Affine, Similarity};
 use clamber_surface::mesh::{
-    BuildOptions, ColliderMesh, Influence, IslandId, MeshSource, PartId, SurfaceKind, SurfaceTag,
-    TriangleId, VertexId,
+    BuildOptions, ColliderMesh, IslandId, MeshSource, PartId, SurfaceKind, SurfaceTag, TriangleId,
+    VertexId,
 };
 use clamber_surface::rig::{
     Joint, JointId, Palette, Playback, Pose, PoseMotion, PoseTrack, Skeleton, Transform,
@@ -82,16 +82,7 @@ fn ids_and_tags_round_trip() {
 #[test]
 fn a_saved_anchor_is_valid_on_a_mesh_rebuilt_and_edited_alike() {
     let made = || {
-        let source = MeshSource {
-            positions: &[Vec3::ZERO, Vec3::X, Vec3::Y],
-            triangles: &[[0, 1, 2]],
-            influences: &[Influence {
-                joint: JointId(0),
-                weight: 1.0,
-            }; 3],
-            joint_count: 1,
-            ..MeshSource::default()
-        };
+        let source = MeshSource::rigid(&[Vec3::ZERO, Vec3::X, Vec3::Y], &[[0, 1, 2]]);
         let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
         let mut surface = SkinnedSurface::new(mesh.into());
         let added = surface.edit(|edit| {

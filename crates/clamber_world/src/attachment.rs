@@ -23,17 +23,11 @@ const ROUNDING: f64 = 0.02;
 /// ```
 /// use clamber_world::{Attachment, Obstacle, ObstacleId};
 /// # use clamber_surface::geometry::{Affine, Similarity};
-/// # use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
-/// # use clamber_surface::rig::{JointId, Palette};
+/// # use clamber_surface::mesh::{BuildOptions, ColliderMesh, MeshSource};
+/// # use clamber_surface::rig::Palette;
 /// # use clamber_surface::surface::SkinnedSurface;
 /// # use glam::{DVec3, Vec3};
-/// # let source = MeshSource {
-/// #     positions: &[Vec3::ZERO, Vec3::X, Vec3::Y],
-/// #     triangles: &[[0, 1, 2]],
-/// #     influences: &[Influence { joint: JointId(0), weight: 1.0 }; 3],
-/// #     joint_count: 1,
-/// #     ..MeshSource::default()
-/// # };
+/// # let source = MeshSource::rigid(&[Vec3::ZERO, Vec3::X, Vec3::Y], &[[0, 1, 2]]);
 /// # let mut creature = SkinnedSurface::new(ColliderMesh::build(&source, &BuildOptions::default())?.0.into());
 /// # let rest = Palette::from_matrices([Affine::IDENTITY]);
 /// let id = ObstacleId(7);

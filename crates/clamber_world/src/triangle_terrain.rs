@@ -1,10 +1,8 @@
 use std::sync::Arc;
 
 use clamber_surface::geometry::{Affine, Similarity};
-use clamber_surface::mesh::{
-    BuildOptions, ColliderMesh, Influence, MeshError, MeshSource, SurfaceTag,
-};
-use clamber_surface::rig::{JointId, Palette};
+use clamber_surface::mesh::{BuildOptions, ColliderMesh, MeshError, MeshSource, SurfaceTag};
+use clamber_surface::rig::Palette;
 use clamber_surface::surface::{SkinnedSurface, SurfaceError};
 use glam::{DVec3, Vec3};
 use thiserror::Error;
@@ -59,17 +57,9 @@ impl TriangleTerrain {
         tags: &[SurfaceTag],
         origin: DVec3,
     ) -> Result<Self, TerrainError> {
-        let bone = Influence {
-            joint: JointId(0),
-            weight: 1.0,
-        };
         let source = MeshSource {
-            positions,
-            triangles,
-            influences: &vec![bone; positions.len()],
             tags,
-            joint_count: 1,
-            ..MeshSource::default()
+            ..MeshSource::rigid(positions, triangles)
         };
         let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default())?;
         let mut surface = SkinnedSurface::new(Arc::new(mesh));

@@ -8,8 +8,8 @@
 )]
 
 use clamber_surface::geometry::{Affine, Similarity};
-use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
-use clamber_surface::rig::{JointId, Palette};
+use clamber_surface::mesh::{BuildOptions, ColliderMesh, MeshSource};
+use clamber_surface::rig::Palette;
 use clamber_surface::surface::SkinnedSurface;
 use clamber_world::{
     Attachment, Continuity, Followed, MaterialPoint, Obstacle, ObstacleId, PointMotion,
@@ -60,17 +60,7 @@ fn motion(rng: &mut fastrand::Rng) -> PointMotion {
 
 /// The result of following an attachment on a triangle that moved by `by` metres along X.
 fn followed(by: f64) -> Followed {
-    let bone = Influence {
-        joint: JointId(0),
-        weight: 1.0,
-    };
-    let source = MeshSource {
-        positions: &[Vec3::ZERO, Vec3::X, Vec3::Y],
-        triangles: &[[0, 1, 2]],
-        influences: &[bone; 3],
-        joint_count: 1,
-        ..MeshSource::default()
-    };
+    let source = MeshSource::rigid(&[Vec3::ZERO, Vec3::X, Vec3::Y], &[[0, 1, 2]]);
     let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
     let mut skin = SkinnedSurface::new(mesh.into());
     let place = DVec3::new(0.2, 0.3, 0.4);

@@ -41,6 +41,8 @@ pub mod part_bounds;
 mod person;
 #[cfg(feature = "render")]
 pub mod picture;
+#[cfg(doctest)]
+mod recipes;
 pub mod resample;
 pub mod riders;
 pub mod rocks;

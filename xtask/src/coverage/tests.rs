@@ -108,7 +108,7 @@ fn tells_of_documentation() {
     let gaps = gaps_after(|tree| tree.plan.retain(|planned| planned.step != "tests"));
     let has = |words: &str| gaps.iter().any(|gap| gap.contains(words));
     assert!(
-        has("the documentation's tests of clamber_recipes"),
+        has("the documentation's tests of clamber_scenes"),
         "{gaps:#?}"
     );
 }

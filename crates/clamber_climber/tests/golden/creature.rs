@@ -90,17 +90,7 @@ pub(crate) fn ground() -> Arc<ColliderMesh> {
             triangles.push([a, a + side + 1, a + 1]);
         }
     }
-    let influence = Influence {
-        joint: JointId(0),
-        weight: 1.0,
-    };
-    build(&MeshSource {
-        positions: &positions,
-        triangles: &triangles,
-        influences: &vec![influence; positions.len()],
-        joint_count: 1,
-        ..MeshSource::default()
-    })
+    build(&MeshSource::rigid(&positions, &triangles))
 }
 
 fn build(source: &MeshSource<'_>) -> Arc<ColliderMesh> {

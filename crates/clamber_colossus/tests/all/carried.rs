@@ -6,8 +6,8 @@ use std::sync::Arc;
 
 use clamber_colossus::{Creature, CreatureKind, Noise, Surroundings};
 use clamber_surface::geometry::{Affine, Similarity, rotation_from_axis_angle};
-use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
-use clamber_surface::rig::{JointId, Palette};
+use clamber_surface::mesh::{BuildOptions, ColliderMesh, MeshSource};
+use clamber_surface::rig::Palette;
 use clamber_surface::surface::{SkinnedSurface, TargetMotion};
 use clamber_world::{
     Contact, HalfSpace, MaterialPoint, Obstacle, PointMotion, SweepContact, WorldCapsule,
@@ -176,17 +176,7 @@ fn on_a_deck_that_moves_it_lives_as_on_one_that_does_not() {
 
 /// A plate of two triangles on one joint.
 pub(crate) fn plate(corners: [Vec3; 4]) -> SkinnedSurface {
-    let bone = Influence {
-        joint: JointId(0),
-        weight: 1.0,
-    };
-    let source = MeshSource {
-        positions: &corners,
-        triangles: &[[0, 1, 2], [0, 2, 3]],
-        influences: &[bone; 4],
-        joint_count: 1,
-        ..MeshSource::default()
-    };
+    let source = MeshSource::rigid(&corners, &[[0, 1, 2], [0, 2, 3]]);
     let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
     SkinnedSurface::new(Arc::new(mesh))
 }

@@ -12,7 +12,7 @@ use clamber_colossus::{
 };
 use clamber_surface::geometry::Affine;
 use clamber_surface::mesh::{
-    BuildOptions, ColliderMesh, Influence, MeshSource, Rig, SurfaceKind, SurfaceTag, TriangleId,
+    BuildOptions, ColliderMesh, MeshSource, Rig, SurfaceKind, SurfaceTag, TriangleId,
 };
 use clamber_world::{MaterialPoint, Obstacle, ObstacleId};
 use glam::{DVec3, Vec3};
@@ -53,17 +53,9 @@ fn slab() -> Creature {
             }
         }
     }
-    let bone = Influence {
-        joint: JointId(0),
-        weight: 1.0,
-    };
     let source = MeshSource {
-        positions: &positions,
-        triangles: &triangles,
-        influences: &vec![bone; positions.len()],
         tags: &tags,
-        joint_count: 1,
-        ..MeshSource::default()
+        ..MeshSource::rigid(&positions, &triangles)
     };
     let mesh = ColliderMesh::build(&source, &BuildOptions::default())
         .unwrap()

@@ -9,8 +9,8 @@ use clamber_colossus::CreatureConfig;
 use clamber_fight::actions::{CUT, STAB};
 use clamber_fight::{Arena, ArenaConfig, FighterConfig};
 use clamber_surface::geometry::{Affine, Similarity};
-use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
-use clamber_surface::rig::{JointId, Palette};
+use clamber_surface::mesh::{BuildOptions, ColliderMesh, MeshSource};
+use clamber_surface::rig::Palette;
 use clamber_surface::surface::SkinnedSurface;
 use clamber_world::{Obstacle, ObstacleId, TriangleTerrain};
 use glam::{DVec3, Vec3};
@@ -32,17 +32,7 @@ impl Car {
                 std::mem::swap(b, c);
             }
         }
-        let bone = Influence {
-            joint: JointId(0),
-            weight: 1.0,
-        };
-        let source = MeshSource {
-            positions: &positions,
-            triangles: &triangles,
-            influences: &[bone; 8],
-            joint_count: 1,
-            ..MeshSource::default()
-        };
+        let source = MeshSource::rigid(&positions, &triangles);
         let mesh = ColliderMesh::build(&source, &BuildOptions::default());
         let mut surface = SkinnedSurface::new(Arc::new(mesh.unwrap().0));
         surface.place(&palette(), Similarity::IDENTITY).unwrap();

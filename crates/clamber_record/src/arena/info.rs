@@ -2,7 +2,7 @@ use std::collections::BTreeMap;
 
 use clamber_fight::Arena;
 
-use crate::info::{bad, parse, text};
+use crate::climber::{VERSION, common, hash, text, tick_seconds};
 use crate::views::RESERVED;
 use crate::{RecordError, RecordingInfo};
 
@@ -99,21 +99,15 @@ impl ArenaInfo {
     }
 
     pub(crate) fn to_metadata(&self) -> BTreeMap<String, String> {
-        let own = [
-            ("version".to_owned(), RecordingInfo::VERSION.to_owned()),
-            ("config".to_owned(), format!("{:016x}", self.config)),
-            (
-                "tick_seconds".to_owned(),
-                format!("{:?}", self.tick_seconds),
-            ),
-        ];
+        let own = ("config".to_owned(), format!("{:016x}", self.config));
         let names = |what: &'static str, names: &[String]| {
             let names = names.iter().enumerate();
             names
                 .map(|(number, name)| (format!("{what}.{number}"), name.clone()))
                 .collect::<Vec<_>>()
         };
-        own.into_iter()
+        let common = common(self.tick_seconds).into_iter().chain([own]);
+        common
             .chain(names("creature", &self.creatures))
             .chain(names("fighter", &self.fighters))
             .collect()
@@ -123,23 +117,17 @@ impl ArenaInfo {
         metadata: &BTreeMap<String, String>,
         settings: BTreeMap<String, String>,
     ) -> Result<Self, RecordError> {
-        let config = text(metadata, "config")?;
-        let tick_seconds = parse::<f64>(metadata, "tick_seconds")?;
-        if !(tick_seconds > 0.0 && tick_seconds.is_finite()) {
-            return Err(RecordError::TickSeconds(tick_seconds));
-        }
         let names = |what: &str| {
             let name = |number| metadata.get(&format!("{what}.{number}")).cloned();
             (0u32..).map_while(name).collect()
         };
         Ok(Self {
-            config: u64::from_str_radix(config, 16)
-                .map_err(|error| bad("config", config, &error.to_string()))?,
-            tick_seconds,
+            config: hash(metadata, "config")?,
+            tick_seconds: tick_seconds(metadata)?,
             creatures: names("creature"),
             fighters: names("fighter"),
             settings,
-            version: text(metadata, "version")?.clone(),
+            version: text(metadata, VERSION)?.clone(),
         })
     }
 }

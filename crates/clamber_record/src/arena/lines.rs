@@ -4,7 +4,7 @@ use clamber_fight::{Arena, ArenaEvent, CreatureId, FighterId, Order, Weapon, cre
 use clamber_surface::mesh::TriangleId;
 use clamber_world::ObstacleId;
 use foxglove::messages::Log;
-use foxglove::messages::log::Level;
+use foxglove::messages::log::Level::{Debug, Error, Info, Warning};
 
 use super::ArenaInfo;
 use crate::names::{ObstacleNames, Part, name_of};
@@ -22,29 +22,29 @@ pub(super) struct Words<'a> {
 
 impl Words<'_> {
     /// The log lines of the last step.
-    pub(super) fn lines(&self, nanoseconds: u64) -> Vec<Log> {
+    pub(super) fn lines(&self) -> Vec<Log> {
         let events = self.arena.events().iter();
-        let events = events.filter_map(|event| self.line(nanoseconds, event));
+        let events = events.filter_map(|event| self.line(event));
         let orders = self.orders.iter().filter_map(|order| {
             let what = match order {
                 // A creature or fighter that joins has an event of its own.
                 Order::AddFighter { .. } | Order::AddCreature { .. } => return None,
                 order => format!("{order:?}"),
             };
-            Some(log(nanoseconds, Level::Debug, "order", what))
+            Some(log(Debug, "order", what))
         });
         orders.chain(events).collect()
     }
 
-    fn line(&self, now: u64, event: &ArenaEvent) -> Option<Log> {
+    fn line(&self, event: &ArenaEvent) -> Option<Log> {
         let (level, who, what) = match event {
             ArenaEvent::Creature { creature, event } => {
                 let what = creature_line(self.arena.creature(*creature)?, event)?;
-                (Level::Info, self.creature(*creature), what)
+                (Info, self.creature(*creature), what)
             }
             ArenaEvent::Climber { fighter, event } => {
                 let named = |obstacle| self.obstacle(*fighter, obstacle);
-                return Some(line(now, &self.fighter(*fighter), event, named));
+                return Some(line(&self.fighter(*fighter), event, named));
             }
             ArenaEvent::Hit {
                 by,
@@ -62,7 +62,7 @@ impl Words<'_> {
                 };
                 let part = self.part(*creature, at.key);
                 let what = format!("hit {part} with {weapon}: damage {damage:.3}");
-                (Level::Info, self.fighter(*by), what)
+                (Info, self.fighter(*by), what)
             }
             ArenaEvent::Struck {
                 creature,
@@ -74,11 +74,11 @@ impl Words<'_> {
                 let whom = self.fighter(*fighter);
                 let speed = velocity.length();
                 let what = format!("struck {whom}: {speed:.1} m/s, damage {damage:.3}");
-                (Level::Warning, self.creature(*creature), what)
+                (Warning, self.creature(*creature), what)
             }
             ArenaEvent::Shot { by, projectile } => {
                 let what = format!("shot projectile {}", projectile.0);
-                (Level::Debug, self.fighter(*by), what)
+                (Debug, self.fighter(*by), what)
             }
             ArenaEvent::Stuck {
                 projectile,
@@ -87,49 +87,45 @@ impl Words<'_> {
             } => {
                 let (id, name) = (projectile.0, name_of(self.names, *obstacle));
                 let what = format!("projectile {id} sticks in {name}");
-                (Level::Debug, "arena".to_owned(), what)
+                (Debug, "arena".to_owned(), what)
             }
             ArenaEvent::CameLoose { projectile } => {
                 let what = format!("projectile {} came loose", projectile.0);
-                (Level::Debug, "arena".to_owned(), what)
+                (Debug, "arena".to_owned(), what)
             }
             ArenaEvent::BrokenOff { fighter } => {
                 let what = "broke off its attack".to_owned();
-                (Level::Warning, self.fighter(*fighter), what)
+                (Warning, self.fighter(*fighter), what)
             }
-            ArenaEvent::Died { fighter } => {
-                (Level::Error, self.fighter(*fighter), "died".to_owned())
+            ArenaEvent::Died { fighter } => (Error, self.fighter(*fighter), "died".to_owned()),
+            ArenaEvent::Rose { fighter } => {
+                (Info, self.fighter(*fighter), "lives again".to_owned())
             }
-            ArenaEvent::Rose { fighter } => (
-                Level::Info,
-                self.fighter(*fighter),
-                "lives again".to_owned(),
-            ),
             ArenaEvent::Killed { creature, by } => {
                 let by = by.map(|by| format!(" by {}", self.fighter(by)));
                 let what = format!("was killed{}", by.unwrap_or_default());
-                (Level::Error, self.creature(*creature), what)
+                (Error, self.creature(*creature), what)
             }
             ArenaEvent::CreatureJoined { creature } => {
-                (Level::Info, self.creature(*creature), "joined".to_owned())
+                (Info, self.creature(*creature), "joined".to_owned())
             }
             ArenaEvent::CreatureLeft { creature } => {
-                (Level::Info, self.creature(*creature), "left".to_owned())
+                (Info, self.creature(*creature), "left".to_owned())
             }
             ArenaEvent::FighterJoined { fighter } => {
-                (Level::Info, self.fighter(*fighter), "joined".to_owned())
+                (Info, self.fighter(*fighter), "joined".to_owned())
             }
             ArenaEvent::FighterLeft { fighter } => {
-                (Level::Info, self.fighter(*fighter), "left".to_owned())
+                (Info, self.fighter(*fighter), "left".to_owned())
             }
             ArenaEvent::Unheard { order } => {
                 let what = format!("order {order} was for somebody who is not there");
-                (Level::Warning, "arena".to_owned(), what)
+                (Warning, "arena".to_owned(), what)
             }
             // An event that is newer than this list.
-            other => (Level::Info, "arena".to_owned(), format!("{other:?}")),
+            other => (Info, "arena".to_owned(), format!("{other:?}")),
         };
-        Some(log(now, level, &who, what))
+        Some(log(level, &who, what))
     }
 
     fn creature(&self, creature: CreatureId) -> String {

@@ -10,12 +10,11 @@ use clamber_world::{Obstacle, ObstacleId};
 
 use super::ArenaInfo;
 use super::lines::Words;
-use super::taken::{Due, TakenArena};
-use super::writing::ArenaWriting;
-use crate::chunks::Chunks;
-use crate::names::ObstacleNames;
+use super::taken::{ArenaView, TakenArena};
+use super::writing::ArenaEncoder;
 use crate::recorder::create;
-use crate::views::{FigureJoints, SceneryNames};
+use crate::taken::{Taken, TakenState};
+use crate::views::FigureJoints;
 use crate::{OfArena, RecordError, RecordOptions, RecorderOf};
 
 /// Writes a recording of an arena.
@@ -69,19 +68,14 @@ impl<W: Write + Send + 'static> ArenaRecorder<W> {
         options: RecordOptions,
     ) -> Result<Self, RecordError> {
         info.check_names(arena)?;
-        let writing = ArenaWriting::new(out, info, options.skin_points)?;
-        let mut recorder = Self {
-            options,
-            names: ObstacleNames::default(),
-            memory: ArenaMemory {
-                info: info.clone(),
-                joints: BTreeMap::new(),
-                fighters: 0,
-                named: [0; 2],
-            },
-            scenery: SceneryNames::default(),
-            chunks: Chunks::start(writing, (options.chunk_ticks, options.waits))?,
+        let writing = ArenaEncoder::begin(out, info, options.skin_points)?;
+        let memory = ArenaMemory {
+            info: info.clone(),
+            joints: BTreeMap::new(),
+            fighters: 0,
+            named: [0; 2],
         };
+        let mut recorder = Self::start(writing, memory, options)?;
         recorder.take(arena, (&[], &[]), &[])?;
         Ok(recorder)
     }
@@ -151,10 +145,7 @@ impl<W: Write> ArenaRecorder<W> {
             let name = self.memory.info.fighter(id.0 as usize);
             (fighter_obstacle(id), name)
         });
-        let new: Vec<(ObstacleId, String)> = creatures.chain(fighters).collect();
-        if !new.is_empty() {
-            Arc::make_mut(&mut self.names).extend(new);
-        }
+        self.names.extend(creatures.chain(fighters));
         self.memory.named = next;
         for (id, creature) in arena.creatures() {
             let joints = || {
@@ -175,28 +166,23 @@ impl<W: Write> ArenaRecorder<W> {
         let tick = arena.tick();
         self.name_all(arena);
         self.memory.fighters = arena.fighters().len();
-        let is_due = |every: u32| every > 0 && tick.is_multiple_of(u64::from(every));
-        let due = Due {
-            views: is_due(self.options.transforms_every),
-            skin: is_due(self.options.skin_every),
-        };
-        let mut taken = TakenArena::new(arena, inputs, terrain, &self.memory.joints, due)?;
+        let is_due = self.options.is_due(self.options.transforms_every, tick);
+        let has_skin = self.options.is_due(self.options.skin_every, tick);
+        let mut data = TakenArena::new(arena, inputs)?;
+        let joints = &self.memory.joints;
+        data.view = is_due.then(|| ArenaView::new(arena, terrain, joints, has_skin));
+        let mut taken = Taken::new(tick, data, is_due);
         let words = Words {
             arena,
             orders: inputs.1,
             info: &self.memory.info,
             names: &self.names,
         };
-        taken.lines = words.lines(crate::output::time(tick, self.memory.info.tick_seconds));
+        taken.lines = words.lines();
         if self.chunks.begins() {
-            taken.saved = Some(arena.to_bytes()?);
+            let state = arena.to_bytes()?;
+            taken.saved.push(TakenState(Box::new(move || Ok(state))));
         }
-        self.chunks.push(tick, |place| match place {
-            Some(place) => {
-                *place = taken;
-                None
-            }
-            None => Some(taken),
-        })
+        self.chunks.push(taken)
     }
 }

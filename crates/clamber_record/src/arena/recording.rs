@@ -1,10 +1,14 @@
+use std::collections::BTreeMap;
+
 use clamber_climber::ClimberInput;
 use clamber_fight::{ArenaPart, CreatureId, FighterId, Order};
 
-use crate::messages::{ArenaSnapshot, ArenaTick};
-use crate::{OfArena, RecordError, RecordingOf, topics};
+use super::{ArenaInfo, ArenaMemory, TakenArena};
+use crate::kind::Topics;
+use crate::messages::{ArenaTick, Mirror};
+use crate::{OfArena, RecordError, RecordingKind, RecordingOf, topics};
 
-/// The largest message of a tick that is written and read, bytes (2 MiB): enough for 20,000 fighters. It bounds memory:
+/// The largest message of a tick that is written and read, bytes (2 MiB): enough for 18,000 fighters. It bounds memory:
 /// an input may take two bytes in a message, but more than a hundred in memory.
 pub(crate) const LARGEST_TICK: usize = 2 << 20;
 
@@ -25,31 +29,6 @@ pub struct RecordedArenaTick {
 }
 
 impl RecordedArenaTick {
-    /// Decodes the message of a tick; `Err` says why it cannot be read.
-    pub(crate) fn decode(message: &[u8]) -> Result<Self, String> {
-        if message.len() > LARGEST_TICK {
-            return Err("a tick of more than 2 MiB".to_owned());
-        }
-        let tick = <ArenaTick as prost::Message>::decode(message);
-        let tick = tick.map_err(|error| error.to_string())?;
-        let orders = match &tick.orders[..] {
-            [] => Vec::new(),
-            orders => Order::from_bytes(orders).map_err(|error| error.to_string())?,
-        };
-        let creatures = tick.creatures.iter().copied().map(CreatureId);
-        let fighters = tick.fighters.iter().copied().map(FighterId);
-        let parts = creatures.map(ArenaPart::Creature);
-        let parts = parts.chain(fighters.map(ArenaPart::Fighter));
-        let parts = parts.chain([ArenaPart::Rest]).zip(tick.parts);
-        Ok(Self {
-            tick: tick.tick,
-            inputs: tick.inputs.into_iter().map(Into::into).collect(),
-            orders,
-            fingerprint: tick.fingerprint,
-            parts: parts.collect(),
-        })
-    }
-
     /// The numbers of the fighters at its end. The inputs of the next step belong to them, in this order.
     pub fn fighters(&self) -> impl Iterator<Item = usize> + '_ {
         self.parts.iter().filter_map(|(part, _)| match part {
@@ -70,8 +49,55 @@ impl ArenaRecording {
     /// [`RecordError::NoTick`] if the recording has no such tick, [`RecordError::NoSnapshot`] if it has no such
     /// state.
     pub fn saved(&self, tick: u64) -> Result<(u64, Vec<u8>), RecordError> {
-        let (at, place) = self.places.saved(tick)?;
-        let message: ArenaSnapshot = self.source.decode(place, topics::ARENA_SNAPSHOT)?;
-        Ok((at, message.state.to_vec()))
+        self.state(tick, Ok)
+    }
+}
+
+impl RecordingKind for OfArena {
+    type Info = ArenaInfo;
+    type Tick = RecordedArenaTick;
+    type Taken = TakenArena;
+    type Memory = ArenaMemory;
+
+    const TOPICS: Topics = Topics {
+        metadata: ArenaInfo::METADATA,
+        read_with: "it is a recording of an arena; read it with ArenaRecording",
+        index: 1,
+        tick: topics::ARENA,
+        saved: topics::ARENA_SNAPSHOT,
+        is_text: false,
+    };
+
+    fn info(
+        metadata: &BTreeMap<String, String>,
+        settings: BTreeMap<String, String>,
+    ) -> Result<ArenaInfo, RecordError> {
+        ArenaInfo::from_metadata(metadata, settings)
+    }
+
+    fn tick(message: &[u8]) -> Result<(u64, RecordedArenaTick), String> {
+        if message.len() > LARGEST_TICK {
+            return Err("a tick of more than 2 MiB".to_owned());
+        }
+        let tick = <ArenaTick as prost::Message>::decode(message);
+        let tick = tick.map_err(|error| error.to_string())?;
+        let orders = match &tick.orders[..] {
+            [] => Vec::new(),
+            orders => Order::from_bytes(orders).map_err(|error| error.to_string())?,
+        };
+        let inputs = tick.inputs.iter().map(Mirror::own);
+        let creatures = tick.creatures.iter().copied().map(CreatureId);
+        let fighters = tick.fighters.iter().copied().map(FighterId);
+        let parts = creatures.map(ArenaPart::Creature);
+        let parts = parts.chain(fighters.map(ArenaPart::Fighter));
+        let parts = parts.chain([ArenaPart::Rest]).zip(tick.parts);
+        let recorded = RecordedArenaTick {
+            tick: tick.tick,
+            inputs: inputs.collect::<Result<_, _>>()?,
+            orders,
+            fingerprint: tick.fingerprint,
+            parts: parts.collect(),
+        };
+        Ok((tick.tick, recorded))
     }
 }

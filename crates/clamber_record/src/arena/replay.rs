@@ -5,7 +5,7 @@ use clamber_fight::{Arena, ArenaError, ArenaPart, Order};
 
 use super::{ArenaInfo, ArenaRecording, RecordedArenaTick};
 use crate::RecordError;
-use crate::replay::compare;
+use crate::climber::compare;
 
 /// A tick at which a replay differs from the recording.
 #[derive(Clone, Debug, PartialEq)]

@@ -9,28 +9,25 @@ use clamber_fight::{Arena, ArenaPart, Blade, CreatureId, FighterId, Order, Proje
 use clamber_surface::geometry::Affine;
 use clamber_surface::mesh::ColliderMesh;
 use clamber_world::{Obstacle, ObstacleId};
-use foxglove::messages::Log;
 
 use crate::RecordError;
-use crate::chunks::TakenTick;
-use crate::messages::{ArenaTick, Brain};
-use crate::views::{FigureJoints, TakenFigure, TakenScenery, brain};
+use crate::messages::{ArenaTick, Brain, Mirror};
+use crate::views::{FigureJoints, TakenFigure, brain};
 
 /// A copy of an arena's tick.
 #[derive(Debug)]
 pub struct TakenArena {
     pub(crate) message: ArenaTick,
-    pub(crate) lines: Vec<Log>,
-    /// True if views are due.
-    pub(crate) is_due: bool,
+    /// Creatures, fighters and projectiles; `None` if views are not due.
+    pub(crate) view: Option<ArenaView>,
+}
+
+/// Everything in an arena that viewers draw.
+#[derive(Debug)]
+pub(crate) struct ArenaView {
     pub(crate) creatures: Vec<TakenCreature>,
     pub(crate) fighters: Vec<TakenFighter>,
     pub(crate) projectiles: Vec<ProjectilePlace>,
-    pub(crate) scenery: Vec<TakenScenery>,
-    /// [`Arena::to_bytes`] in the first tick of a chunk, otherwise `None`.
-    pub(crate) saved: Option<Vec<u8>>,
-    /// Number of ticks left out before this one.
-    pub(crate) gap: u64,
 }
 
 #[derive(Debug)]
@@ -52,20 +49,11 @@ pub(crate) struct TakenFighter {
     pub(crate) blade: Option<Blade>,
 }
 
-/// Which views are due in a tick.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Due {
-    pub(super) views: bool,
-    pub(super) skin: bool,
-}
-
 impl TakenArena {
+    /// Copies a tick without its views.
     pub(super) fn new(
         arena: &Arena,
         (inputs, orders): (&[ClimberInput], &[Order]),
-        terrain: &[(ObstacleId, &dyn Obstacle)],
-        joints: &BTreeMap<CreatureId, Arc<FigureJoints>>,
-        due: Due,
     ) -> Result<Self, RecordError> {
         let parts = arena.part_fingerprints();
         let orders = match orders {
@@ -81,64 +69,46 @@ impl TakenArena {
                 _ => {}
             }
         }
-        let mut taken = Self {
+        Ok(Self {
             message: ArenaTick {
                 tick: arena.tick(),
-                inputs: inputs.iter().map(Into::into).collect(),
+                inputs: inputs.iter().map(Mirror::of).collect(),
                 fingerprint: arena.fingerprint(),
                 parts: parts.into_iter().map(|(_, part)| part).collect(),
                 creatures,
                 fighters,
                 orders: orders.into(),
             },
-            lines: Vec::new(),
-            is_due: due.views,
-            creatures: Vec::new(),
-            fighters: Vec::new(),
-            projectiles: Vec::new(),
-            scenery: Vec::new(),
-            saved: None,
-            gap: 0,
-        };
-        if due.views {
-            let creatures = arena.creatures().filter_map(|(id, creature)| {
-                let joints = joints.get(&id)?;
-                Some(TakenCreature::new((id, creature), joints, due.skin))
-            });
-            taken.creatures = creatures.collect();
-            let fighters = arena.fighters().iter();
-            taken.fighters = fighters
-                .map(|fighter| TakenFighter {
-                    id: fighter.id(),
-                    config: fighter.config().climber,
-                    state: *fighter.climber().state(),
-                    blade: fighter.blade(),
-                })
-                .collect();
-            let projectiles = arena.projectiles().iter();
-            taken.projectiles = projectiles
-                .filter_map(|projectile| arena.place(projectile, terrain))
-                .collect();
-        }
-        Ok(taken)
+            view: None,
+        })
     }
 }
 
-impl TakenTick for TakenArena {
-    fn is_saved(&self) -> bool {
-        self.saved.is_some()
-    }
-
-    fn follows_gap(&mut self, ticks: u64) {
-        self.gap = ticks;
-    }
-
-    fn is_due(&self) -> bool {
-        self.is_due
-    }
-
-    fn scenery(&mut self) -> &mut Vec<TakenScenery> {
-        &mut self.scenery
+impl ArenaView {
+    pub(super) fn new(
+        arena: &Arena,
+        terrain: &[(ObstacleId, &dyn Obstacle)],
+        joints: &BTreeMap<CreatureId, Arc<FigureJoints>>,
+        has_skin: bool,
+    ) -> Self {
+        let creatures = arena.creatures().filter_map(|(id, creature)| {
+            let joints = joints.get(&id)?;
+            Some(TakenCreature::new((id, creature), joints, has_skin))
+        });
+        let fighters = arena.fighters().iter().map(|fighter| TakenFighter {
+            id: fighter.id(),
+            config: fighter.config().climber,
+            state: *fighter.climber().state(),
+            blade: fighter.blade(),
+        });
+        let projectiles = arena.projectiles().iter();
+        Self {
+            creatures: creatures.collect(),
+            fighters: fighters.collect(),
+            projectiles: projectiles
+                .filter_map(|projectile| arena.place(projectile, terrain))
+                .collect(),
+        }
     }
 }
 

@@ -1,25 +1,23 @@
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::Write;
 
 use clamber_fight::{Blade, CreatureId, FighterId, ProjectilePlace};
-use clamber_surface::skin::skin_into;
 use foxglove::messages::{
-    ArrowPrimitive, FrameTransforms, Log, PointCloud, Pose, SceneEntity, SceneUpdate,
-    SpherePrimitive,
+    ArrowPrimitive, PointCloud, Pose, SceneEntity, SceneUpdate, SpherePrimitive,
 };
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 
 use super::ArenaInfo;
 use super::recording::LARGEST_TICK;
-use super::taken::{TakenArena, TakenCreature, TakenFighter};
-use crate::chunks::WriteTicks;
-use crate::messages::{ArenaSnapshot, ArenaTick, Brain};
-use crate::output::{Channel, Output};
+use super::taken::{ArenaView, TakenArena, TakenCreature, TakenFighter};
+use crate::messages::{ArenaTick, Brain};
+use crate::output::Channel;
 use crate::views::{
-    ATTACKS, PROJECTILES, Scene, Sceneries, Skin, color, deletion, entity, frame_of_climber,
-    from_z_to, gap_line, left_out, no_skin, rotation, vector, z_up,
+    ATTACKS, PROJECTILES, Scene, color, deletion, entity, frame_of_climber, from_z_to, left_out,
+    no_skin, rotation, vector, z_up,
 };
-use crate::{RecordError, RecordingInfo, topics};
+use crate::writing::{EncodeTick, Sheet, Writing};
+use crate::{OfArena, RecordError, RecordingKind, topics};
 
 /// Length of an arrow as it is drawn, metres.
 const ARROW: f64 = 0.8;
@@ -28,15 +26,9 @@ const ARROW: f64 = 0.8;
 /// 65,535 channels.
 const MOST_SEEN: usize = 10_000;
 
-/// Encodes ticks of an arena and writes them.
-pub(super) struct ArenaWriting<W: Write> {
-    output: Output<W>,
+/// Encodes ticks of an arena.
+pub(super) struct ArenaEncoder {
     tick: Channel,
-    snapshot: Channel,
-    transforms: Channel,
-    scene: Channel,
-    scenery: Channel,
-    log: Channel,
     /// Channels for brain and skin of each creature that was seen.
     creatures: BTreeMap<CreatureId, (Channel, Channel)>,
     /// Frame of each creature whose skin is drawn.
@@ -44,94 +36,46 @@ pub(super) struct ArenaWriting<W: Write> {
     /// Name of each fighter that was there in the last view, and the drawing of its body.
     fighters: BTreeMap<FighterId, (String, Scene)>,
     info: ArenaInfo,
-    skin: Skin,
-    meshes: Sceneries,
-    /// Posed positions of a creature's vertices, kept so that their memory is reused.
-    positions: Vec<Vec3>,
     /// True once the log has said that creatures are left out of the views.
     has_told: bool,
 }
 
-impl<W: Write> ArenaWriting<W> {
-    pub(super) fn new(out: W, info: &ArenaInfo, skin_points: usize) -> Result<Self, RecordError> {
-        let metadata = [
-            (ArenaInfo::METADATA, info.to_metadata()),
-            (RecordingInfo::SETTINGS, info.settings.clone()),
-        ];
-        let mut output = Output::new(out, info.tick_seconds, metadata)?;
-        Ok(Self {
-            tick: output.channel::<ArenaTick>(topics::ARENA)?,
-            snapshot: output.channel::<ArenaSnapshot>(topics::ARENA_SNAPSHOT)?,
-            transforms: output.channel::<FrameTransforms>(topics::TRANSFORMS)?,
-            scene: output.channel::<SceneUpdate>(topics::SCENE)?,
-            scenery: output.channel::<SceneUpdate>(topics::SCENERY)?,
-            log: output.channel::<Log>(topics::LOG)?,
-            output,
+impl ArenaEncoder {
+    pub(super) fn begin<W: Write>(
+        out: W,
+        info: &ArenaInfo,
+        skin_points: usize,
+    ) -> Result<Writing<Self, W>, RecordError> {
+        let metadata = (&OfArena::TOPICS, info.to_metadata(), info.settings.clone());
+        let mut sheet = Sheet::new(out, info.tick_seconds, metadata, skin_points)?;
+        let encoder = Self {
+            tick: sheet.output.channel::<ArenaTick>(topics::ARENA)?,
             creatures: BTreeMap::new(),
             drawn: BTreeMap::new(),
             fighters: BTreeMap::new(),
             info: info.clone(),
-            skin: Skin::new(skin_points),
-            meshes: Sceneries::default(),
-            positions: Vec::new(),
             has_told: false,
-        })
-    }
-
-    fn write(&mut self, taken: &mut TakenArena) -> Result<(), RecordError> {
-        let tick = taken.message.tick;
-        let now = self.output.begin(tick);
-        if let Some(line) = gap_line(now, taken.gap) {
-            self.output.send(self.log, now, &line)?;
-        }
-        let message = &taken.message;
-        self.output.send_as(self.tick, now, |buffer| {
-            message.write(buffer)?;
-            if buffer.len() > LARGEST_TICK {
-                return Err("a tick of more than 2 MiB, which no reader takes".to_owned());
-            }
-            Ok(())
-        })?;
-        if let Some(state) = taken.saved.take() {
-            let state = state.into();
-            let message = ArenaSnapshot { tick, state };
-            self.output.send(self.snapshot, now, &message)?;
-        }
-        for line in taken.lines.drain(..) {
-            self.output.send(self.log, now, &line)?;
-        }
-        if taken.is_due {
-            self.look(taken, now)?;
-        }
-        if let Some(frames) = self.meshes.frames(now, &taken.scenery) {
-            self.output.send(self.transforms, now, &frames)?;
-        }
-        if let Some(shapes) = self.meshes.shapes(now, taken.scenery.drain(..)) {
-            self.output.send(self.scenery, now, &shapes)?;
-        }
-        if let Some(line) = self.meshes.take_line(now) {
-            self.output.send(self.log, now, &line)?;
-        }
-        Ok(())
-    }
-
-    /// Writes the views.
-    fn look(&mut self, taken: &mut TakenArena, now: u64) -> Result<(), RecordError> {
-        let mut transforms = vec![z_up(now)];
-        for creature in &taken.creatures {
-            transforms.extend(creature.figure.message(now).transforms);
-        }
-        let mut entities: Vec<SceneEntity> = Vec::new();
-        // Fighters that have left are no longer drawn.
-        let is_here = |id: &FighterId| {
-            let found = taken
-                .fighters
-                .binary_search_by_key(id, |fighter| fighter.id);
-            found.is_ok()
         };
-        let gone = self.fighters.extract_if(.., |id, _| !is_here(id));
+        Ok(Writing::new(encoder, sheet))
+    }
+
+    /// Writes the transforms and the scene.
+    fn scene<W: Write>(
+        &mut self,
+        now: u64,
+        view: &ArenaView,
+        sheet: &mut Sheet<W>,
+    ) -> Result<(), RecordError> {
+        let mut transforms = vec![z_up(now)];
+        for creature in &view.creatures {
+            transforms.extend(creature.figure.frames(now));
+        }
+        // Fighters that have left are no longer drawn.
+        let here: BTreeSet<FighterId> = view.fighters.iter().map(|fighter| fighter.id).collect();
+        let gone = self.fighters.extract_if(.., |id, _| !here.contains(id));
         let deletions = gone.map(|(_, (name, _))| deletion(now, &name)).collect();
-        for fighter in &taken.fighters {
+        let mut entities = Vec::new();
+        for fighter in &view.fighters {
             let (name, scene) = self.fighters.entry(fighter.id).or_insert_with(|| {
                 let name = self.info.fighter(fighter.id.0 as usize);
                 (name, Scene::new(&fighter.config, self.info.tick_seconds))
@@ -139,104 +83,92 @@ impl<W: Write> ArenaWriting<W> {
             transforms.push(frame_of_climber(now, name, &fighter.state));
             entities.push(body(now, name, scene, fighter));
         }
-        self.output
-            .send(self.transforms, now, &FrameTransforms { transforms })?;
-        entities.push(arrows(now, &taken.projectiles));
-        entities.push(attacks(now, &taken.creatures));
+        sheet.transforms(transforms)?;
+        entities.push(arrows(now, &view.projectiles));
+        entities.push(attacks(now, &view.creatures));
         let scene = SceneUpdate {
             deletions,
             entities,
         };
-        self.output.send(self.scene, now, &scene)?;
-        let is_here = |id: &CreatureId| {
-            let found = taken
-                .creatures
-                .binary_search_by_key(id, |creature| creature.id);
-            found.is_ok()
-        };
-        for (id, frame) in self.drawn.extract_if(.., |id, _| !is_here(id)) {
+        sheet.output.send(sheet.scene, &scene)
+    }
+
+    /// Writes the brains and the skins.
+    fn creatures<W: Write>(
+        &mut self,
+        now: u64,
+        creatures: Vec<TakenCreature>,
+        sheet: &mut Sheet<W>,
+    ) -> Result<(), RecordError> {
+        let here: BTreeSet<CreatureId> = creatures.iter().map(|creature| creature.id).collect();
+        for (id, frame) in self.drawn.extract_if(.., |id, _| !here.contains(id)) {
             if let Some((_, skin)) = self.creatures.get(&id) {
-                self.output.send(*skin, now, &no_skin(now, &frame))?;
+                sheet.output.send(*skin, &no_skin(now, &frame))?;
             }
         }
-        for creature in taken.creatures.drain(..) {
-            if let Some(channels) = self.channels(creature.id, now)? {
-                self.creature(&creature, channels, now)?;
+        for creature in creatures {
+            let Some((brain, skin)) = self.channels(creature.id, sheet)? else {
+                continue;
+            };
+            sheet.output.send(brain, &creature.brain)?;
+            if let Some((mesh, matrices)) = &creature.skin {
+                let figure = &creature.figure;
+                let name = &figure.joints.figure;
+                let frame = (name.as_str(), figure.world_from_model.scale);
+                let points = sheet.skin(now, frame, (mesh, matrices))?;
+                self.drawn.insert(creature.id, name.clone());
+                sheet.output.send(skin, &points)?;
             }
         }
         Ok(())
     }
 
     /// The channels of a creature, which are added when it is seen first; `None` for creatures beyond [`MOST_SEEN`].
-    fn channels(
+    fn channels<W: Write>(
         &mut self,
         creature: CreatureId,
-        now: u64,
+        sheet: &mut Sheet<W>,
     ) -> Result<Option<(Channel, Channel)>, RecordError> {
         if let Some(known) = self.creatures.get(&creature) {
             return Ok(Some(*known));
         }
         if self.creatures.len() >= MOST_SEEN {
             if !std::mem::replace(&mut self.has_told, true) {
-                let line = left_out(now, "brain and skin of further creatures");
-                self.output.send(self.log, now, &line)?;
+                sheet.log(left_out("brain and skin of further creatures"))?;
             }
             return Ok(None);
         }
         let [brain, skin] =
             [topics::BRAIN, topics::SKIN].map(|topic| format!("{topic}/{}", creature.0));
-        let brain = self.output.channel_named::<Brain>(topics::BRAIN, &brain)?;
-        let skin = self
-            .output
-            .channel_named::<PointCloud>(topics::SKIN, &skin)?;
+        let output = &mut sheet.output;
+        let brain = output.channel_named::<Brain>(topics::BRAIN, &brain)?;
+        let skin = output.channel_named::<PointCloud>(topics::SKIN, &skin)?;
         self.creatures.insert(creature, (brain, skin));
         Ok(Some((brain, skin)))
     }
-
-    fn creature(
-        &mut self,
-        creature: &TakenCreature,
-        (brain, skin): (Channel, Channel),
-        now: u64,
-    ) -> Result<(), RecordError> {
-        self.output.send(brain, now, &creature.brain)?;
-        let Some((mesh, matrices)) = &creature.skin else {
-            return Ok(());
-        };
-        skin_into(mesh, matrices, &mut self.positions).map_err(|error| RecordError::Encode {
-            topic: topics::SKIN,
-            reason: error.to_string(),
-        })?;
-        let scale = creature.figure.world_from_model.scale;
-        let mut points = self.skin.message(now, mesh, &self.positions, scale);
-        let frame = &creature.figure.joints.figure;
-        points.frame_id.clone_from(frame);
-        self.drawn
-            .entry(creature.id)
-            .or_insert_with(|| frame.clone());
-        self.output.send(skin, now, &points)
-    }
 }
 
-impl<W: Write + Send + 'static> WriteTicks<TakenArena, W> for ArenaWriting<W> {
-    fn chunk(&mut self, ticks: &mut [TakenArena]) -> Result<(), RecordError> {
-        for taken in ticks {
-            self.write(taken)?;
-            self.output.flush_if_large()?;
-        }
-        self.output.flush()
-    }
+impl EncodeTick for ArenaEncoder {
+    type Data = TakenArena;
 
-    fn ends_in_gap(&mut self, ticks: u64) -> Result<(), RecordError> {
-        let now = self.output.now();
-        if let Some(line) = gap_line(now, ticks) {
-            self.output.send(self.log, now, &line)?;
+    fn tick<W: Write>(
+        &mut self,
+        now: u64,
+        data: TakenArena,
+        sheet: &mut Sheet<W>,
+    ) -> Result<(), RecordError> {
+        if prost::Message::encoded_len(&data.message) > LARGEST_TICK {
+            return Err(RecordError::Encode {
+                topic: topics::ARENA,
+                reason: "a tick of more than 2 MiB, which no reader takes".to_owned(),
+            });
         }
-        self.output.ends_in_gap(ticks)
-    }
-
-    fn finish(self) -> Result<W, RecordError> {
-        self.output.finish()
+        sheet.output.send_exact(self.tick, &data.message)?;
+        if let Some(view) = data.view {
+            self.scene(now, &view, sheet)?;
+            self.creatures(now, view.creatures, sheet)?;
+        }
+        Ok(())
     }
 }
 

@@ -1,8 +1,9 @@
 use super::*;
 use clamber_climber::{
-    Climber, ClimberConfig, FlyingMemory, HangingMemory, HoldingMemory, LedgeHangingMemory,
-    StandingMemory, TumblingMemory,
+    Blow, Climber, ClimberConfig, ClimberInput, ClimberMode, ClimberState, FlyingMemory,
+    HangingMemory, HoldingMemory, LedgeHangingMemory, StandingMemory, Support, TumblingMemory,
 };
+use clamber_world::{Attachment, MaterialPoint, ObstacleId, SurfaceKind, SurfaceTag};
 use prost::Message;
 
 /// A state and an input in which every field has a different value.
@@ -100,14 +101,12 @@ fn everything() -> (ClimberState, ClimberInput) {
 /// Writes a state and an input, and reads them back.
 fn read_back(state: &ClimberState, input: &ClimberInput) -> (ClimberState, ClimberInput) {
     let message = Tick {
-        input: input.into(),
-        state: state.into(),
+        input: Mirror::of(input),
+        state: Mirror::of(state),
         ..Tick::default()
     };
-    let mut buffer = Vec::new();
-    message.write(&mut buffer).unwrap();
-    let read = Tick::decode(&buffer[..]).unwrap();
-    (read.state.to_climber().unwrap(), read.input.into())
+    let read = Tick::decode(&message.encode_to_vec()[..]).unwrap();
+    (read.state.own().unwrap(), read.input.own().unwrap())
 }
 
 /// A state and an input as text. Texts differ if any bit differs: the text of a negative zero has its sign.
@@ -216,7 +215,7 @@ fn every_number_reads_back_bit_for_bit_negative_zeros_and_denormals_too() {
 #[test]
 fn an_unknown_mode_is_refused_with_its_number() {
     let climber = Climber::new(ClimberConfig::default(), DVec3::ZERO).unwrap();
-    let mut message = State::from(climber.state());
+    let mut message = State::of(climber.state());
     message.mode = 7;
-    assert_eq!(message.to_climber(), Err(7));
+    assert_eq!(message.own(), Err("unknown climber mode 7".to_owned()));
 }

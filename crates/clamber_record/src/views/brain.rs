@@ -7,40 +7,17 @@ use foxglove::messages::log::Level;
 use super::log;
 use crate::messages::{Brain, Named};
 
-/// A creature's brain in a tick.
-#[derive(Debug)]
-pub(crate) struct TakenBrain {
-    /// The brain; `None` if it is not due.
-    pub(crate) brain: Option<Brain>,
-    lines: Vec<String>,
-}
-
-impl TakenBrain {
-    /// Copies the brain if it is due or its state has changed, and makes log lines of its events and blows.
-    pub(crate) fn new(creature: &Creature, is_due: bool) -> Self {
-        let events = &creature.report().events;
-        let entered = |event: &CreatureEvent| matches!(event, CreatureEvent::Entered { .. });
-        let is_due = is_due || events.iter().any(entered);
-        let blows = creature.report().blows.iter().map(|blow| {
-            let by = name(creature, blow.state);
-            format!("struck person {} with {by}", blow.person)
-        });
-        Self {
-            brain: is_due.then(|| brain(creature)),
-            lines: events
-                .iter()
-                .filter_map(|event| line(creature, event))
-                .chain(blows)
-                .collect(),
-        }
-    }
-
-    /// The log lines of events and blows.
-    pub(crate) fn log(&self, nanoseconds: u64, name: &str) -> impl Iterator<Item = Log> {
-        self.lines
-            .iter()
-            .map(move |message| log(nanoseconds, Level::Info, name, message.clone()))
-    }
+/// Log lines of the events and blows of a creature that the log calls `name`.
+pub(crate) fn brain_lines(creature: &Creature, name: &str) -> Vec<Log> {
+    let report = creature.report();
+    let events = report.events.iter();
+    let events = events.filter_map(|event| line(creature, event));
+    let blows = report.blows.iter().map(|blow| {
+        let by = path(creature, blow.state);
+        format!("struck person {} with {by}", blow.person)
+    });
+    let lines = events.chain(blows);
+    lines.map(|text| log(Level::Info, name, text)).collect()
 }
 
 /// The brain of a creature, as a message.
@@ -73,7 +50,7 @@ pub(crate) fn brain(creature: &Creature) -> Brain {
     }
 }
 
-fn name(creature: &Creature, state: clamber_colossus::brain::StateId) -> &str {
+fn path(creature: &Creature, state: clamber_colossus::brain::StateId) -> &str {
     creature.kind().brain().path(state)
 }
 
@@ -81,7 +58,7 @@ fn name(creature: &Creature, state: clamber_colossus::brain::StateId) -> &str {
 pub(crate) fn line(creature: &Creature, event: &CreatureEvent) -> Option<String> {
     Some(match event {
         CreatureEvent::Entered { from, to } => {
-            format!("{} to {}", name(creature, *from), name(creature, *to))
+            format!("{} to {}", path(creature, *from), path(creature, *to))
         }
         CreatureEvent::Hurt {
             weak_point,
@@ -109,12 +86,12 @@ pub(crate) fn line(creature: &Creature, event: &CreatureEvent) -> Option<String>
         }
         CreatureEvent::Threw { state, place, .. } => {
             let [x, y, z] = place.to_array();
-            let by = name(creature, *state);
+            let by = path(creature, *state);
             format!("threw something with {by}, from {x:.1}, {y:.1}, {z:.1}")
         }
         CreatureEvent::Burst { state, place, .. } => {
             let [x, y, z] = place.to_array();
-            let by = name(creature, *state);
+            let by = path(creature, *state);
             format!("what it threw with {by} ended at {x:.1}, {y:.1}, {z:.1}")
         }
         CreatureEvent::Wave {
@@ -123,7 +100,7 @@ pub(crate) fn line(creature: &Creature, event: &CreatureEvent) -> Option<String>
             radius,
         } => {
             let [x, y, z] = place.to_array();
-            let by = name(creature, *state);
+            let by = path(creature, *state);
             format!("sent out a wave of {radius:.1} m with {by}, from {x:.1}, {y:.1}, {z:.1}")
         }
         CreatureEvent::Marker { .. } | CreatureEvent::Plant { .. } => return None,

@@ -2,10 +2,10 @@ use std::sync::Arc;
 
 use clamber_surface::geometry::Similarity;
 use clamber_surface::rig::{JointId, Palette, Skeleton};
-use foxglove::messages::{FrameTransform, FrameTransforms};
+use foxglove::messages::FrameTransform;
 use glam::{DAffine3, DQuat, DVec3};
 
-use super::{WORLD, place, rotation, upright, vector};
+use super::{WORLD, frame, upright};
 
 /// Names and parents of a figure's joints.
 #[derive(Debug)]
@@ -61,22 +61,11 @@ impl TakenFigure {
 
     /// The transforms of the figure and of its joints, each relative to its parent, so that viewers draw lines between
     /// joints. In metres and without scale.
-    pub(crate) fn message(&self, nanoseconds: u64) -> FrameTransforms {
-        let now = super::timestamp(nanoseconds);
-        let frame = |parent: &str, child: &str, translation: DVec3, turn: DQuat| {
-            let mut frame = FrameTransform {
-                timestamp: None,
-                parent_frame_id: parent.to_owned(),
-                child_frame_id: child.to_owned(),
-                translation: Some(vector(DVec3::ZERO)),
-                rotation: Some(rotation(DQuat::IDENTITY)),
-            };
-            place(&mut frame, now, translation, turn);
-            frame
-        };
+    pub(crate) fn frames(&self, nanoseconds: u64) -> Vec<FrameTransform> {
         let root = &self.world_from_model;
         let figure = &self.joints.figure;
-        let mut transforms = vec![frame(WORLD, figure, root.translation, root.rotation)];
+        let at = (root.translation, root.rotation);
+        let mut transforms = vec![frame(nanoseconds, (WORLD, figure), at)];
         let placed = self.model_from_joint.iter();
         let places: Vec<(DVec3, DQuat)> = placed
             .map(|joint| (joint.translation * root.scale, upright(&joint.matrix3)))
@@ -88,8 +77,9 @@ impl TakenFigure {
             });
             let (above, (from, back)) = above.unwrap_or((figure, (DVec3::ZERO, DQuat::IDENTITY)));
             let back = back.inverse();
-            transforms.push(frame(above, name, back * (*at - from), back * *turn));
+            let at = (back * (*at - from), back * *turn);
+            transforms.push(frame(nanoseconds, (above, name), at));
         }
-        FrameTransforms { transforms }
+        transforms
     }
 }

@@ -8,18 +8,18 @@ mod scene;
 mod scenery;
 mod skin;
 
-pub(crate) use brain::{TakenBrain, brain, line as creature_line};
+pub(crate) use brain::{brain, brain_lines, line as creature_line};
 pub(crate) use figure::{FigureJoints, TakenFigure};
-pub(crate) use frames::{Frames, frame_of_climber, z_up};
+pub(crate) use frames::{frame, frame_of_climber, z_up};
 pub(crate) use log::{gap_line, left_out, line, log};
 pub(crate) use scene::{Scene, from_z_to};
 pub use scenery::SceneryView;
 pub(crate) use scenery::{Sceneries, SceneryNames, TakenScenery};
-pub(crate) use skin::{Skin, no_skin};
+pub(crate) use skin::{no_skin, skin};
 
 use foxglove::messages::{
-    Color, FrameTransform, Pose, Quaternion, SceneEntity, SceneEntityDeletion, Timestamp, Vector3,
-    scene_entity_deletion,
+    Color, Point3, Pose, Quaternion, SceneEntity, SceneEntityDeletion, Timestamp,
+    TriangleListPrimitive, Vector3, scene_entity_deletion,
 };
 use glam::{DMat3, DQuat, DVec3};
 
@@ -35,10 +35,10 @@ pub(crate) const PROJECTILES: &str = "projectiles";
 pub(crate) const ATTACKS: &str = "attacks";
 
 /// Name of the creature's frame: model space times its scale, in metres, rotated and translated into the world.
-const CREATURE: &str = "creature";
+pub(crate) const CREATURE: &str = "creature";
 
 /// Name of the climber's frame: its centre, with +Z along its heading.
-const CLIMBER: &str = "climber";
+pub(crate) const CLIMBER: &str = "climber";
 
 /// Name of the frame with Z up, for viewers that expect Z up.
 const Z_UP: &str = "z_up";
@@ -77,11 +77,23 @@ pub(crate) fn color(r: f64, g: f64, b: f64, a: f64) -> Color {
     Color { r, g, b, a }
 }
 
-/// Sets a transform.
-fn place(frame: &mut FrameTransform, now: Timestamp, translation: DVec3, turn: DQuat) {
-    frame.timestamp = Some(now);
-    frame.translation = Some(vector(translation));
-    frame.rotation = Some(rotation(turn));
+fn point(p: DVec3) -> Point3 {
+    Point3 {
+        x: p.x,
+        y: p.y,
+        z: p.z,
+    }
+}
+
+/// Triangles of one colour, each with the indices of three points.
+fn triangle_list(points: Vec<Point3>, indices: Vec<u32>, color: Color) -> TriangleListPrimitive {
+    TriangleListPrimitive {
+        pose: Some(pose(DVec3::ZERO)),
+        points,
+        color: Some(color),
+        colors: Vec::new(),
+        indices,
+    }
 }
 
 /// A rotation from a linear map's first two columns, without scale, shear and mirroring: x keeps its direction.

@@ -1,13 +1,13 @@
 use clamber_climber::{ClimberConfig, ClimberMode, ClimberState};
 use clamber_surface::mesh::{ColliderMesh, TriangleId, VertexId};
 use foxglove::messages::{
-    Color, CylinderPrimitive, Point3, Pose, SceneEntity, SceneUpdate, SpherePrimitive,
+    Color, CylinderPrimitive, Pose, SceneEntity, SceneUpdate, SpherePrimitive,
     TriangleListPrimitive,
 };
 use glam::{DQuat, DVec3, Vec3};
 
-use super::{CREATURE, WORLD, color, pose, rotation, timestamp, vector};
-use crate::taken::{Taken, TakenSkin};
+use super::{CLIMBER, CREATURE, color, entity, point, pose, rotation, triangle_list, vector};
+use crate::climber::{ClimberTick, TakenSkin};
 
 /// Marks a vertex that is not among the points. No point has this index.
 const NOWHERE: u32 = u32::MAX;
@@ -38,20 +38,18 @@ impl Scene {
     pub(crate) fn message(
         &mut self,
         nanoseconds: u64,
-        taken: &Taken,
+        taken: &ClimberTick,
         skin: &TakenSkin,
         positions: &[Vec3],
     ) -> SceneUpdate {
         let (state, scale) = (&taken.state, taken.world_from_model.scale);
         let mesh = &*skin.mesh;
-        let entity = |id: &str, frame: &str| SceneEntity {
-            timestamp: Some(timestamp(nanoseconds)),
-            frame_id: frame.to_owned(),
-            id: id.to_owned(),
-            frame_locked: true,
-            ..SceneEntity::default()
+        let on_creature = |id: &str| {
+            let mut entity = entity(nanoseconds, id);
+            entity.frame_id = CREATURE.to_owned();
+            entity
         };
-        let mut touched = entity("touched", CREATURE);
+        let mut touched = on_creature("touched");
         if let Some(triangles) = &skin.triangles {
             // The triangles are shown until the next view of the skin, which moves on.
             let shown = self.tick_seconds * f64::from(skin.every);
@@ -61,7 +59,7 @@ impl Scene {
             touched.triangles = vec![self.list(mesh, scale, positions, triangles, tint)];
         }
 
-        let mut support = entity("support", CREATURE);
+        let mut support = on_creature("support");
         // The key of a support on another obstacle has another meaning, and may equal a triangle's index by chance. So
         // the triangle is drawn only if the contact lies on it.
         let key = state.support.map(|support| support.attachment.material.key);
@@ -70,7 +68,7 @@ impl Scene {
         let tint = color(0.9, 0.1, 0.1, 1.0);
         support.triangles = vec![self.list(mesh, scale, positions, triangle, tint)];
 
-        let mut climber = entity("climber", WORLD);
+        let mut climber = entity(nanoseconds, CLIMBER);
         self.body(state, &mut climber);
         SceneUpdate {
             deletions: Vec::new(),
@@ -130,12 +128,7 @@ impl Scene {
                 if *place == NOWHERE {
                     *place = points.len() as u32;
                     used.push(*corner);
-                    let p = p.as_dvec3() * scale;
-                    points.push(Point3 {
-                        x: p.x,
-                        y: p.y,
-                        z: p.z,
-                    });
+                    points.push(point(p.as_dvec3() * scale));
                 }
                 indices.push(*place);
             }
@@ -143,13 +136,7 @@ impl Scene {
         for vertex in used {
             self.places[vertex.index()] = NOWHERE;
         }
-        TriangleListPrimitive {
-            pose: Some(pose(DVec3::ZERO)),
-            points,
-            color: Some(tint),
-            colors: Vec::new(),
-            indices,
-        }
+        triangle_list(points, indices, tint)
     }
 }
 
@@ -179,7 +166,7 @@ pub(crate) fn from_z_to(to: DVec3) -> DQuat {
 }
 
 /// True if the climber's support names a triangle of the surface, and the contact lies near that triangle.
-fn contact_is_on(taken: &Taken, mesh: &ColliderMesh, positions: &[Vec3]) -> bool {
+fn contact_is_on(taken: &ClimberTick, mesh: &ColliderMesh, positions: &[Vec3]) -> bool {
     let named = || {
         let support = taken.state.support?;
         let triangle = usize::try_from(support.attachment.material.key).ok()?;

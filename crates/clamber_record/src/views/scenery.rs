@@ -4,12 +4,10 @@ use std::collections::HashSet;
 use std::sync::Arc;
 
 use clamber_surface::geometry::Similarity;
-use foxglove::messages::{
-    FrameTransform, FrameTransforms, Log, Point3, SceneEntity, SceneUpdate, TriangleListPrimitive,
-};
+use foxglove::messages::{FrameTransform, Log, Point3, SceneEntity, SceneUpdate};
 use glam::{DQuat, DVec3, Vec3};
 
-use super::{WORLD, color, left_out, place, pose, rotation, timestamp, vector};
+use super::{WORLD, color, entity, frame, left_out, point, triangle_list};
 
 /// A mesh in the world for a recorder, for people to look at: at rest or moving, such as the ground or a rock.
 #[derive(Clone, Copy, Debug)]
@@ -36,7 +34,7 @@ struct Shape {
 
 /// A mesh in a tick.
 #[derive(Debug)]
-pub struct TakenScenery {
+pub(crate) struct TakenScenery {
     name: Arc<str>,
     position: DVec3,
     rotation: DQuat,
@@ -78,14 +76,7 @@ impl SceneryNames {
 
 impl Shape {
     fn new(view: &SceneryView<'_>) -> Self {
-        let point = |p: &Vec3| {
-            let p = p.as_dvec3() * view.world_from_own.scale;
-            Point3 {
-                x: p.x,
-                y: p.y,
-                z: p.z,
-            }
-        };
+        let point = |p: &Vec3| point(p.as_dvec3() * view.world_from_own.scale);
         let count = view.points.len() as u32;
         let sound = |corners: &&[u32; 3]| corners.iter().all(|corner| *corner < count);
         Self {
@@ -125,44 +116,26 @@ pub(crate) struct Sceneries {
 const MOST: usize = 64 << 20;
 
 impl Sceneries {
-    /// The transforms of these meshes; `None` if `taken` is empty.
-    pub(crate) fn frames(
-        &self,
-        nanoseconds: u64,
-        taken: &[TakenScenery],
-    ) -> Option<FrameTransforms> {
-        let frame = |one: &TakenScenery| {
-            let mut frame = FrameTransform {
-                timestamp: None,
-                parent_frame_id: WORLD.to_owned(),
-                child_frame_id: one.name.to_string(),
-                translation: Some(vector(DVec3::ZERO)),
-                rotation: Some(rotation(DQuat::IDENTITY)),
-            };
-            place(
-                &mut frame,
-                timestamp(nanoseconds),
-                one.position,
-                one.rotation,
-            );
-            frame
+    /// The transforms of these meshes.
+    pub(crate) fn frames(&self, nanoseconds: u64, taken: &[TakenScenery]) -> Vec<FrameTransform> {
+        let placed = |one: &TakenScenery| {
+            let names = (WORLD, &*one.name);
+            frame(nanoseconds, names, (one.position, one.rotation))
         };
-        (!taken.is_empty()).then(|| FrameTransforms {
-            transforms: taken.iter().map(frame).collect(),
-        })
+        taken.iter().map(placed).collect()
     }
 
     /// The log line that says that meshes were left out; `Some` only once.
-    pub(crate) fn take_line(&mut self, nanoseconds: u64) -> Option<Log> {
+    pub(crate) fn take_line(&mut self) -> Option<Log> {
         let tells = self.is_full && !std::mem::replace(&mut self.has_told, self.is_full);
-        tells.then(|| left_out(nanoseconds, "further meshes"))
+        tells.then(|| left_out("further meshes"))
     }
 
     /// A message with all meshes; `None` if no new one was added.
     pub(crate) fn shapes(
         &mut self,
         nanoseconds: u64,
-        taken: impl Iterator<Item = TakenScenery>,
+        taken: Vec<TakenScenery>,
     ) -> Option<SceneUpdate> {
         let before = self.entities.len();
         for one in taken {
@@ -177,20 +150,11 @@ impl Sceneries {
             }
             self.bytes += bytes;
             let [r, g, b] = shape.color.map(f64::from);
-            self.entities.push(SceneEntity {
-                timestamp: Some(timestamp(nanoseconds)),
-                frame_id: one.name.to_string(),
-                id: one.name.to_string(),
-                frame_locked: true,
-                triangles: vec![TriangleListPrimitive {
-                    pose: Some(pose(DVec3::ZERO)),
-                    points: shape.points,
-                    color: Some(color(r, g, b, 1.0)),
-                    colors: Vec::new(),
-                    indices: shape.indices,
-                }],
-                ..SceneEntity::default()
-            });
+            let mut entity = entity(nanoseconds, &one.name);
+            entity.frame_id = one.name.to_string();
+            let tint = color(r, g, b, 1.0);
+            entity.triangles = vec![triangle_list(shape.points, shape.indices, tint)];
+            self.entities.push(entity);
         }
         (self.entities.len() > before).then(|| SceneUpdate {
             deletions: Vec::new(),

@@ -3,43 +3,30 @@ use foxglove::messages::packed_element_field::NumericType;
 use foxglove::messages::{PackedElementField, PointCloud};
 use glam::{DVec3, Vec3};
 
-use super::{CREATURE, pose, timestamp};
+use super::{pose, timestamp};
 
 /// Bytes of a point: three f32.
 const STRIDE: usize = 12;
 
-/// The view of the skin: posed vertices, in the creature's frame, metres.
-pub(crate) struct Skin {
+/// The view of a skin: at most `at_most` posed vertices (0 means 1), picked at even steps, in the creature's frame,
+/// metres. `positions` are the posed positions of all vertices of the mesh, in model space, and `scale` is the
+/// creature's.
+pub(crate) fn skin(
+    nanoseconds: u64,
+    (frame, scale): (&str, f64),
+    (mesh, positions): (&ColliderMesh, &[Vec3]),
     at_most: usize,
-}
-
-impl Skin {
-    /// A view of at most `at_most` points (0 means 1), picked at even steps from the vertices.
-    pub(crate) fn new(at_most: usize) -> Self {
-        Self {
-            at_most: at_most.max(1),
-        }
-    }
-
-    /// The message of a tick. `positions` are the posed positions of all vertices of the mesh, in model space.
-    pub(crate) fn message(
-        &self,
-        nanoseconds: u64,
-        mesh: &ColliderMesh,
-        positions: &[Vec3],
-        scale: f64,
-    ) -> PointCloud {
-        let step = positions.len().div_ceil(self.at_most).max(1);
-        let mut data = Vec::with_capacity(positions.len() / step * STRIDE + STRIDE);
-        for (vertex, position) in positions.iter().enumerate().step_by(step) {
-            if mesh.has_vertex(VertexId(vertex as u32)) {
-                for x in (*position * scale as f32).to_array() {
-                    data.extend_from_slice(&x.to_le_bytes());
-                }
+) -> PointCloud {
+    let step = positions.len().div_ceil(at_most.max(1)).max(1);
+    let mut data = Vec::with_capacity(positions.len() / step * STRIDE + STRIDE);
+    for (vertex, position) in positions.iter().enumerate().step_by(step) {
+        if mesh.has_vertex(VertexId(vertex as u32)) {
+            for x in (*position * scale as f32).to_array() {
+                data.extend_from_slice(&x.to_le_bytes());
             }
         }
-        cloud(nanoseconds, CREATURE, data)
     }
+    cloud(nanoseconds, frame, data)
 }
 
 /// A cloud without points, which replaces the one that was drawn in `frame`.

@@ -6,9 +6,7 @@
 )]
 
 use std::collections::BTreeMap;
-use std::io::Write;
 use std::path::Path;
-use std::process::Command;
 use std::sync::{Arc, OnceLock};
 
 use clamber_climber::{Blow, ClimberInput, StepRules};
@@ -28,10 +26,11 @@ use foxglove::Decode;
 use foxglove::messages::{PointCloud, SceneUpdate};
 use glam::{DVec3, Vec3};
 
+use crate::python::run_python;
+use crate::stage::{GROUND, terrain};
+
 /// Length of the recordings, ticks: five seconds, for several chunks.
 const TICKS: u64 = 300;
-/// The ground's obstacle id.
-const GROUND: ObstacleId = ObstacleId(7);
 
 fn kind() -> &'static Arc<CreatureKind> {
     static KIND: OnceLock<Arc<CreatureKind>> = OnceLock::new();
@@ -64,8 +63,7 @@ fn inputs(tick: u64) -> Vec<ClimberInput> {
 }
 
 fn step(arena: &mut Arena, inputs: &[ClimberInput], orders: &[Order]) -> Result<(), ArenaError> {
-    let ground = HalfSpace::below(0.0);
-    let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &ground)];
+    let terrain = terrain();
     let rules = StepRules::default();
     arena.step_with(inputs, orders, &terrain, &rules).map(drop)
 }
@@ -83,8 +81,7 @@ fn file() -> &'static [u8] {
         recorder.name(GROUND, "ground");
         let corners = [(-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)];
         let points = corners.map(|(x, z)| Vec3::new(x, 0.0, z) * 50.0);
-        let ground = HalfSpace::below(0.0);
-        let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &ground)];
+        let terrain = terrain();
         for tick in 0..TICKS {
             recorder
                 .scenery(&SceneryView {
@@ -277,32 +274,14 @@ fn the_views_name_and_hold_everybody() {
 
 #[test]
 fn the_python_reader_reads_a_cut_file_to_its_last_chunk() {
-    let python = std::env::var("PYTHON").unwrap_or_else(|_| "python3".to_owned());
-    let probe = Command::new(&python)
-        .args(["-c", "import mcap.stream_reader, mcap_protobuf.decoder"])
-        .output();
-    if !probe.is_ok_and(|output| output.status.success()) {
-        let line = format!(
-            "SKIPPED the_python_reader_reads_a_cut_file_to_its_last_chunk: {python} has no packages mcap and \
-             mcap-protobuf-support\n"
-        );
-        let _ = std::io::stderr().write_all(line.as_bytes());
-        return;
-    }
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("cut.mcap");
-    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/python/cut.py");
     for share in [0.3, 0.55, 0.9] {
         let cut = &file()[..(file().len() as f64 * share) as usize];
         std::fs::write(&path, cut).unwrap();
         let ours = ArenaRecording::from_bytes(cut.to_vec()).unwrap();
-        let output = Command::new(&python)
-            .arg(&script)
-            .arg(&path)
-            .output()
-            .unwrap();
-        let said = String::from_utf8_lossy(&output.stderr);
-        assert!(output.status.success(), "{said}");
-        let last = String::from_utf8_lossy(&output.stdout);
+        let Some(last) = run_python("cut.py", &path) else {
+            return;
+        };
         assert_eq!(last.trim().parse().ok(), ours.last(), "{share}: {last}");
     }
 }
@@ -538,8 +517,7 @@ fn what_attacks_have_let_out_is_drawn() {
     let options = RecordOptions::waiting();
     let info = ArenaInfo::of(&arena);
     let mut recorder = ArenaRecorder::new(Vec::new(), &info, &arena, options).unwrap();
-    let ground = HalfSpace::below(0.0);
-    let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &ground)];
+    let terrain = terrain();
     let inputs = [ClimberInput::IDLE];
     // Balls (shots and waves): place and radius. Beams: start and length.
     let drawn = |arena: &Arena| {

@@ -6,12 +6,14 @@
     reason = "a test's helpers may fail like the test"
 )]
 
-use std::sync::{Arc, Mutex, OnceLock};
+use std::sync::OnceLock;
 use std::time::Duration;
 
 use clamber_record::{Ending, RecordError, RecordOptions, Recording};
 use clamber_scenes::battle::{Battle, BattleOptions, BattleRecorder};
 use clamber_scenes::giant::giant;
+
+use crate::stage::Disk;
 
 /// Length of the recording, ticks: three seconds, for several chunks.
 const TICKS: u64 = 180;
@@ -57,12 +59,6 @@ fn check(bytes: Vec<u8>, what: &str) -> Option<(usize, Ending)> {
         let _ = recording.snapshot(from);
     }
     Some((recording.len(), recording.ending().clone()))
-}
-
-#[test]
-fn a_whole_file_is_whole() {
-    let (ticks, ending) = check(file().to_vec(), "whole").unwrap();
-    assert_eq!((ticks as u64, ending), (TICKS + 1, Ending::Whole));
 }
 
 #[test]
@@ -240,25 +236,6 @@ fn a_run_that_is_killed_leaves_its_whole_chunks() {
     assert_eq!(recording.len(), 120);
 }
 
-/// A shared buffer, each write to which takes `pause`.
-#[derive(Clone, Default)]
-struct Shared {
-    bytes: Arc<Mutex<Vec<u8>>>,
-    pause: Duration,
-}
-
-impl std::io::Write for Shared {
-    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
-        std::thread::sleep(self.pause);
-        self.bytes.lock().unwrap().extend_from_slice(bytes);
-        Ok(bytes.len())
-    }
-
-    fn flush(&mut self) -> std::io::Result<()> {
-        Ok(())
-    }
-}
-
 /// Records a battle of 70 ticks in chunks of `chunk_ticks`, and passes the recorder to `end`.
 fn record_into<W: std::io::Write + Send + 'static>(
     out: W,
@@ -284,26 +261,18 @@ fn record_into<W: std::io::Write + Send + 'static>(
 #[test]
 fn a_slow_disk_a_drop_and_a_panic_lose_nothing() {
     for chunk_ticks in [2, 60] {
-        let whole = Shared::default();
+        let whole = Disk::default();
         record_into(whole.clone(), chunk_ticks, |recorder| {
             recorder.finish().unwrap();
         });
-        let whole = whole.bytes.lock().unwrap().clone();
+        let whole = whole.bytes();
         assert_eq!(Recording::from_bytes(whole.clone()).unwrap().len(), 70);
-        let slow = Shared {
-            pause: Duration::from_micros(300),
-            ..Shared::default()
-        };
+        let [slow, dropped] = [0; 2].map(|_| Disk::slow(Duration::from_micros(300)));
         record_into(slow.clone(), chunk_ticks, |recorder| {
             recorder.finish().unwrap();
         });
-        let dropped = slow.clone();
-        let dropped = Shared {
-            bytes: Arc::default(),
-            ..dropped
-        };
         record_into(dropped.clone(), chunk_ticks, drop);
-        let unwound = Shared::default();
+        let unwound = Disk::default();
         let panicked = std::panic::catch_unwind(|| {
             record_into(unwound.clone(), chunk_ticks, |_recorder| {
                 panic!("on purpose")
@@ -311,7 +280,7 @@ fn a_slow_disk_a_drop_and_a_panic_lose_nothing() {
         });
         assert!(panicked.is_err());
         for other in [slow, dropped, unwound] {
-            assert!(*other.bytes.lock().unwrap() == whole, "{chunk_ticks}");
+            assert!(other.bytes() == whole, "{chunk_ticks}");
         }
     }
 }

@@ -7,8 +7,8 @@
 )]
 
 use std::io::{Read, Seek, SeekFrom, Write};
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, OnceLock};
+use std::sync::OnceLock;
+use std::time::Duration;
 
 use clamber_climber::ClimberInput;
 use clamber_fight::{Arena, ArenaConfig, FighterConfig};
@@ -19,8 +19,9 @@ use clamber_record::{
 use clamber_scenes::battle::{self, Battle, BattleOptions, BattleRecorder};
 use clamber_scenes::giant::giant;
 use clamber_surface::geometry::Similarity;
-use clamber_world::{HalfSpace, Obstacle, ObstacleId};
 use glam::{DVec3, Vec3};
+
+use crate::stage::{Disk, terrain};
 
 /// Length of the recording, ticks.
 const TICKS: u64 = 200;
@@ -54,8 +55,7 @@ pub(crate) fn file() -> &'static [u8] {
         let info = ArenaInfo::of(&arena);
         let options = RecordOptions::waiting();
         let mut recorder = ArenaRecorder::new(Vec::new(), &info, &arena, options).unwrap();
-        let ground = HalfSpace::below(0.0);
-        let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(0), &ground)];
+        let terrain = terrain();
         for tick in 0..TICKS {
             arena.step(&inputs(tick), &terrain).unwrap();
             recorder.tick(&arena, &inputs(tick), &[], &terrain).unwrap();
@@ -139,8 +139,7 @@ fn rewritten(how: &str, has_checksum: bool) -> Vec<u8> {
 fn replays(recording: &ArenaRecording, what: &str) {
     assert_eq!(*recording.ending(), Ending::Whole, "{what}");
     assert_eq!(recording.len() as u64, TICKS + 1, "{what}");
-    let ground = HalfSpace::below(0.0);
-    let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(0), &ground)];
+    let terrain = terrain();
     // Backwards, so that chunks are read again.
     for from in [TICKS, 130, 61, 0] {
         let replay = recording.replay(&mut arena(), Some(from), |arena, inputs, _| {
@@ -241,37 +240,19 @@ fn a_file_of_any_length_is_read() {
     std::fs::remove_file(&path).unwrap();
 }
 
-/// A file on a slow disk: each write of more than 1,000 bytes takes this long.
-struct Slow(Vec<u8>, std::time::Duration);
-
-impl Write for Slow {
-    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
-        if bytes.len() > 1000 {
-            std::thread::sleep(self.1);
-        }
-        self.0.extend_from_slice(bytes);
-        Ok(bytes.len())
-    }
-
-    fn flush(&mut self) -> std::io::Result<()> {
-        Ok(())
-    }
-}
-
 /// On a slow disk the game is not held up, ticks that are lost are counted and logged, and a replay works from any
 /// recorded tick.
 #[test]
 fn a_slow_disk_leaves_gaps_and_never_holds_up_the_game() {
     /// Length of the run, ticks: 100 chunks of 20, more than the disk can take in that time.
     const TICKS: u64 = 2000;
-    let ground = HalfSpace::below(0.0);
-    let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(0), &ground)];
+    let terrain = terrain();
     let mut arena = arena();
     let options = RecordOptions {
         chunk_ticks: 20,
         ..RecordOptions::default()
     };
-    let disk = Slow(Vec::new(), std::time::Duration::from_millis(30));
+    let disk = Disk::slow(Duration::from_millis(30));
     let info = ArenaInfo::of(&arena);
     let mut recorder = ArenaRecorder::new(disk, &info, &arena, options).unwrap();
     let mut waits = 0;
@@ -282,7 +263,7 @@ fn a_slow_disk_leaves_gaps_and_never_holds_up_the_game() {
         waits += u32::from(began.elapsed().as_millis() >= 25);
     }
     let dropped = recorder.dropped();
-    let file = recorder.finish().unwrap().0;
+    let file = recorder.finish().unwrap().bytes();
     // A game that waits would do so for most of its 100 chunks. A busy machine may hold it up a few times.
     assert!(waits < 20, "{waits} waits");
     let recording = ArenaRecording::from_bytes(file.clone()).unwrap();
@@ -316,14 +297,13 @@ fn a_slow_disk_leaves_gaps_and_never_holds_up_the_game() {
 fn what_appears_in_a_gap_is_drawn() {
     /// Length of the run, ticks: 60 chunks of 20, more than the disk can take in that time.
     const TICKS: u64 = 1200;
-    let ground = HalfSpace::below(0.0);
-    let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(0), &ground)];
+    let terrain = terrain();
     let mut arena = arena();
     let options = RecordOptions {
         chunk_ticks: 20,
         ..RecordOptions::default()
     };
-    let disk = Slow(Vec::new(), std::time::Duration::from_millis(30));
+    let disk = Disk::slow(Duration::from_millis(30));
     let info = ArenaInfo::of(&arena);
     let mut recorder = ArenaRecorder::new(disk, &info, &arena, options).unwrap();
     let points = [Vec3::ZERO, Vec3::X, Vec3::Z];
@@ -344,7 +324,7 @@ fn what_appears_in_a_gap_is_drawn() {
         }
     }
     assert!(recorder.dropped() > 100, "{}", recorder.dropped());
-    let file = recorder.finish().unwrap().0;
+    let file = recorder.finish().unwrap().bytes();
     let all = mcap::MessageStream::new(&file).unwrap().map(Result::unwrap);
     let last = all
         .filter(|message| message.channel.topic == "/scenery")
@@ -363,8 +343,7 @@ fn what_appears_in_a_gap_is_drawn() {
 /// Every recording can be read: chunks end before they are too large, and metadata that are too large are refused.
 #[test]
 fn what_is_recorded_is_never_too_large_to_be_read() {
-    let ground = HalfSpace::below(0.0);
-    let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(0), &ground)];
+    let terrain = terrain();
     let mut arena = arena();
     let mut info = ArenaInfo::of(&arena);
     let options = RecordOptions {
@@ -410,7 +389,7 @@ fn a_climbers_recording_with_gaps_is_replayed_run_by_run() {
     let creature = giant().unwrap();
     let options = BattleOptions::ride(0, 1);
     let mut battle = Battle::new(&creature, &options).unwrap();
-    let disk = Slow(Vec::new(), std::time::Duration::from_millis(60));
+    let disk = Disk::slow(Duration::from_millis(60));
     let how = RecordOptions {
         chunk_ticks: 20,
         ..RecordOptions::default()
@@ -421,7 +400,7 @@ fn a_climbers_recording_with_gaps_is_replayed_run_by_run() {
         battle.step(options.input_at(tick)).unwrap();
         recorder.tick(&battle).unwrap();
     }
-    let file = recorder.finish().unwrap().0;
+    let file = recorder.finish().unwrap().bytes();
     let recording = Recording::from_bytes(file).unwrap();
     let runs: Vec<_> = recording.runs().collect();
     assert!(runs.len() > 1, "{runs:?}");
@@ -447,24 +426,6 @@ fn a_climbers_recording_with_gaps_is_replayed_run_by_run() {
     );
 }
 
-/// A disk whose writes wait while the flag is set.
-#[derive(Clone, Default)]
-struct Stalled(Arc<(AtomicBool, Mutex<Vec<u8>>)>);
-
-impl Write for Stalled {
-    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
-        while self.0.0.load(Ordering::Relaxed) {
-            std::thread::sleep(std::time::Duration::from_millis(1));
-        }
-        self.0.1.lock().unwrap().extend_from_slice(bytes);
-        Ok(bytes.len())
-    }
-
-    fn flush(&mut self) -> std::io::Result<()> {
-        Ok(())
-    }
-}
-
 /// A recording with snapshots only before its disk stalls ends at the stall, and reports how many ticks are missing at
 /// the end.
 #[test]
@@ -485,7 +446,7 @@ fn what_is_lost_at_the_end_is_told() {
             chunk_ticks: 10,
             ..RecordOptions::default()
         };
-        let disk = Stalled::default();
+        let disk = Disk::default();
         let mut recorder = Recorder::new(disk.clone(), &info, &creature.skeleton, how).unwrap();
         for tick in 0..=600 {
             if tick > 0 {
@@ -506,16 +467,15 @@ fn what_is_lost_at_the_end_is_told() {
                 recorder.snapshot("here").unwrap();
             }
             if tick == 60 || tick == 400 {
-                disk.0.0.store(stalls && tick == 60, Ordering::Relaxed);
+                disk.stalls(stalls && tick == 60);
             }
             if !stalls {
                 // The pause lets the recorder keep up on a busy machine.
-                std::thread::sleep(std::time::Duration::from_millis(2));
+                std::thread::sleep(Duration::from_millis(2));
             }
         }
         drop(recorder.finish().unwrap());
-        let bytes = disk.0.1.lock().unwrap().clone();
-        let recording = Recording::from_bytes(bytes).unwrap();
+        let recording = Recording::from_bytes(disk.bytes()).unwrap();
         assert_eq!(*recording.ending(), Ending::Whole);
         let last = recording.last().unwrap();
         assert_eq!(last + recording.lost_at_end(), 600);

@@ -20,6 +20,8 @@ use foxglove::messages::FrameTransforms;
 use glam::{DQuat, DVec3};
 use prost::Message;
 
+use crate::stage::Disk;
+
 /// Records `ticks` ticks of a ride with its hero drawn at `scale`. Returns the file, and for each tick the places of
 /// the hero's joints in the world.
 fn record(ticks: u64, scale: f64) -> (Vec<u8>, Vec<Vec<DVec3>>) {
@@ -202,7 +204,7 @@ fn a_recording_that_fails_ends_before_the_tick_that_fails() {
     let options = BattleOptions::ride(0, 1);
     for panics in [false, true] {
         let mut battle = Battle::new(&creature, &options).unwrap();
-        let out = Shared::default();
+        let out = Disk::default();
         let how = RecordOptions {
             chunk_ticks: 1000,
             ..RecordOptions::waiting()
@@ -225,26 +227,10 @@ fn a_recording_that_fails_ends_before_the_tick_that_fails() {
         let finish = std::panic::AssertUnwindSafe(|| recorder.finish().map(drop));
         let ended = std::panic::catch_unwind(finish);
         assert!(matches!(ended, Err(_) | Ok(Err(_))));
-        let bytes = out.0.lock().unwrap().clone();
-        let recording = Recording::from_bytes(bytes).unwrap();
+        let recording = Recording::from_bytes(out.bytes()).unwrap();
         assert_eq!(*recording.ending(), Ending::Early, "panics: {panics}");
         // A panic loses the whole chunk.
         let last = if panics { None } else { Some(29) };
         assert_eq!(recording.last(), last, "panics: {panics}");
-    }
-}
-
-/// Bytes that outlive the recorder.
-#[derive(Clone, Default)]
-struct Shared(std::sync::Arc<std::sync::Mutex<Vec<u8>>>);
-
-impl std::io::Write for Shared {
-    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
-        self.0.lock().unwrap().extend_from_slice(bytes);
-        Ok(bytes.len())
-    }
-
-    fn flush(&mut self) -> std::io::Result<()> {
-        Ok(())
     }
 }

@@ -13,10 +13,10 @@ use clamber_record::{
     topics,
 };
 use clamber_surface::geometry::Similarity;
-use clamber_world::{HalfSpace, Obstacle, ObstacleId};
 use glam::{DVec3, Vec3};
 
 use crate::elsewhere::{CHUNK, DATA_END, arena, compressed, file, inputs, records, written};
+use crate::stage::terrain;
 
 /// Kind of MCAP's channel record.
 const CHANNEL: u8 = 0x04;
@@ -81,13 +81,6 @@ fn is_on(record: &(u8, Vec<u8>), channel: [u8; 2]) -> bool {
     record.0 == MESSAGE && record.1[..2] == channel
 }
 
-#[test]
-fn chunks_that_are_written_again_are_read() {
-    let recording = with_chunks(|_| ());
-    assert_eq!(*recording.ending(), Ending::Whole);
-    assert_eq!(recording.len(), 201);
-}
-
 /// Two bytes of a tick's message can take more than a hundred bytes in memory, and next to none in a compressed file.
 /// So messages that are larger than a tick can be are refused.
 #[test]
@@ -146,8 +139,7 @@ fn changed_messages_are_read_or_refused() {
         for tick in recording.ticks_from(0) {
             let _ = tick.unwrap();
         }
-        let ground = HalfSpace::below(0.0);
-        let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(0), &ground)];
+        let terrain = terrain();
         // A state that can be restored can be stepped.
         let _ = recording.replay(&mut arena(), None, |arena, inputs, orders| {
             let rules = clamber_climber::StepRules::default();
@@ -162,8 +154,7 @@ fn changed_messages_are_read_or_refused() {
 /// fails if there is no saved state.
 #[test]
 fn a_gap_that_somebody_made_is_a_gap() {
-    let ground = HalfSpace::below(0.0);
-    let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(0), &ground)];
+    let terrain = terrain();
     let play = |recording: &ArenaRecording| {
         recording.replay(&mut arena(), None, |arena, inputs, _| {
             arena.step(inputs, &terrain).map(drop)
@@ -198,8 +189,7 @@ fn who_joins_without_an_order_is_told() {
     let info = ArenaInfo::of(&arena);
     let mut recorder = ArenaRecorder::new(Vec::new(), &info, &arena, options).unwrap();
     arena.add_fighter(FighterConfig::hero(), DVec3::Y).unwrap();
-    let ground = HalfSpace::below(0.0);
-    let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(0), &ground)];
+    let terrain = terrain();
     let inputs = [ClimberInput::IDLE];
     arena.step(&inputs, &terrain).unwrap();
     let error = recorder.tick(&arena, &inputs, &[], &terrain).unwrap_err();
@@ -216,8 +206,7 @@ fn meshes_without_end_do_not_end_the_recording() {
         ..RecordOptions::waiting()
     };
     let mut recorder = ArenaRecorder::new(std::io::sink(), &info, &arena, options).unwrap();
-    let ground = HalfSpace::below(0.0);
-    let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(0), &ground)];
+    let terrain = terrain();
     // Each mesh takes 20 MB, so that all of them together are larger than a chunk may be.
     let points = vec![Vec3::ONE; 800_000];
     for tick in 0..30 {

@@ -7,3 +7,4 @@ mod elsewhere;
 mod figure;
 mod hostile;
 mod python;
+mod stage;

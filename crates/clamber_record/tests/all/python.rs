@@ -1,5 +1,10 @@
 //! Checks a recording with a third-party reader in Python, if that is installed.
 
+#![expect(
+    clippy::unwrap_used,
+    reason = "a test's helpers may fail like the test"
+)]
+
 use std::io::Write;
 use std::path::Path;
 use std::process::Command;
@@ -9,21 +14,32 @@ use clamber_scenes::battle::{Battle, BattleOptions, BattleRecorder};
 use clamber_scenes::giant::giant;
 use clamber_scenes::hero::Hero;
 
-#[test]
-fn python_decodes_a_recording() {
+/// Runs a script of `tests/python` on a file and returns what it prints. `None`, with a note, if the third-party reader
+/// is not installed.
+pub(crate) fn run_python(script: &str, file: &Path) -> Option<String> {
     let python = std::env::var("PYTHON").unwrap_or_else(|_| "python3".to_owned());
-    let probe = Command::new(&python)
-        .args(["-c", "import mcap.reader, mcap_protobuf.decoder"])
-        .output();
+    let imports = "import mcap.reader, mcap.stream_reader, mcap_protobuf.decoder";
+    let probe = Command::new(&python).args(["-c", imports]).output();
     if !probe.is_ok_and(|output| output.status.success()) {
         // Written directly, since the output of `eprintln` is not shown for tests that pass.
         let line = format!(
-            "SKIPPED python_decodes_a_recording: {python} has no packages mcap and \
-             mcap-protobuf-support; install them, or set PYTHON to another interpreter\n"
+            "SKIPPED {script}: {python} has no packages mcap and mcap-protobuf-support; install them, or set PYTHON to \
+             another interpreter\n"
         );
         let _ = std::io::stderr().write_all(line.as_bytes());
-        return;
+        return None;
     }
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/python");
+    let mut command = Command::new(&python);
+    let output = command.arg(folder.join(script)).arg(file).output();
+    let output = output.unwrap();
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{said}");
+    Some(String::from_utf8(output.stdout).unwrap())
+}
+
+#[test]
+fn python_decodes_a_recording() {
     let creature = giant().unwrap();
     let options = BattleOptions::ride(4, 1);
     let mut battle = Battle::new(&creature, &options).unwrap();
@@ -37,12 +53,5 @@ fn python_decodes_a_recording() {
     }
     let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join("python.mcap");
     std::fs::write(&file, recorder.finish().unwrap()).unwrap();
-    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/python/check.py");
-    let output = Command::new(&python)
-        .arg(script)
-        .arg(&file)
-        .output()
-        .unwrap();
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{said}");
+    run_python("check.py", &file);
 }

@@ -14,7 +14,7 @@ from mcap_protobuf.decoder import DecoderFactory
 
 WANTED = {
     "/tick": "tick.Tick",
-    "/snapshot": "snapshot.Snapshot",
+    "/snapshot": "saved.Saved",
     "/transforms": "foxglove.FrameTransforms",
     "/figure": "foxglove.FrameTransforms",
     "/scene": "foxglove.SceneUpdate",
@@ -40,9 +40,11 @@ def check_tick(message, count):
         check(all(abs(x) < 1e6 for x in (v.x, v.y, v.z)), f"tick {count}: {name} {v}")
     supported = message.state.mode in SUPPORTED
     check(supported == message.state.HasField("support"), f"tick {count}: mode and support")
-    for name in ("stamina", "hit_points", "pull_up"):
+    for name in ("stamina", "hit_points"):
         share = getattr(message.state, name)
         check(0 <= share <= 1, f"tick {count}: {name} {share}")
+    pull_up = message.state.ledge_hanging.pull_up
+    check(0 <= pull_up <= 1, f"tick {count}: pull_up {pull_up}")
     heading = message.state.heading
     length = heading.x**2 + heading.y**2 + heading.z**2
     check(abs(length - 1) < 1e-9, f"tick {count}: heading of length^2 {length}")

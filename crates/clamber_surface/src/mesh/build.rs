@@ -25,7 +25,8 @@ pub struct MeshSource<'a> {
     pub positions: &'a [Vec3],
     /// The three corners of each triangle, as indices into `positions`; counter-clockwise seen from outside.
     pub triangles: &'a [[u32; 3]],
-    /// Influences of all vertices, one vertex after the other. A vertex can have any number of them.
+    /// Influences of all vertices, one vertex after the other. A vertex can have any number of them. A single influence
+    /// without `influence_ends` is that of every vertex.
     pub influences: &'a [Influence],
     /// For each vertex, the index in `influences` after its last one. Empty if all vertices have the same number of
     /// influences; pad them with zero weights.
@@ -38,6 +39,34 @@ pub struct MeshSource<'a> {
     pub rest_spaces: &'a [u32],
     /// Number of joints of the skeleton.
     pub joint_count: usize,
+}
+
+impl<'a> MeshSource<'a> {
+    /// A rigid mesh: joint 0, the only joint, moves every vertex.
+    ///
+    /// ```
+    /// use clamber_surface::mesh::{BuildOptions, ColliderMesh, MeshSource, VertexId};
+    /// use clamber_surface::rig::JointId;
+    /// use glam::Vec3;
+    ///
+    /// let source = MeshSource::rigid(&[Vec3::ZERO, Vec3::X, Vec3::Y], &[[0, 1, 2]]);
+    /// let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default())?;
+    /// assert!(mesh.influences(VertexId(2)).eq([(JointId(0), 1.0)]));
+    /// # Ok::<(), clamber_surface::mesh::MeshError>(())
+    /// ```
+    pub fn rigid(positions: &'a [Vec3], triangles: &'a [[u32; 3]]) -> Self {
+        const WHOLE: Influence = Influence {
+            joint: JointId(0),
+            weight: 1.0,
+        };
+        Self {
+            positions,
+            triangles,
+            influences: &[WHOLE],
+            joint_count: 1,
+            ..Self::default()
+        }
+    }
 }
 
 /// Treatment of vertices that coincide at rest but have different influences.
@@ -109,18 +138,10 @@ impl ColliderMesh {
     /// that moves it most.
     ///
     /// ```
-    /// use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
-    /// use clamber_surface::rig::JointId;
+    /// use clamber_surface::mesh::{BuildOptions, ColliderMesh, MeshSource};
     /// use glam::Vec3;
     ///
-    /// let influences = [Influence { joint: JointId(0), weight: 1.0 }; 3];
-    /// let source = MeshSource {
-    ///     positions: &[Vec3::ZERO, Vec3::X, Vec3::Y],
-    ///     triangles: &[[0, 1, 2], [2, 0, 1]],
-    ///     influences: &influences,
-    ///     joint_count: 1,
-    ///     ..MeshSource::default()
-    /// };
+    /// let source = MeshSource::rigid(&[Vec3::ZERO, Vec3::X, Vec3::Y], &[[0, 1, 2], [2, 0, 1]]);
     /// let (mesh, report) = ColliderMesh::build(&source, &BuildOptions::default())?;
     /// assert_eq!(mesh.triangles().len(), 1);
     /// assert_eq!(report.duplicate_triangles, 1);
@@ -251,7 +272,8 @@ fn validate(source: &MeshSource<'_>) -> Result<(), MeshError> {
     let influences = source.influences.len();
     let ends = source.influence_ends;
     let divided = if ends.is_empty() {
-        vertices > 0 && influences > 0 && influences.is_multiple_of(vertices)
+        let shared = influences == 1;
+        vertices > 0 && influences > 0 && (shared || influences.is_multiple_of(vertices))
     } else {
         let last = ends.last().is_some_and(|end| *end as usize == influences);
         ends.len() == vertices && ends.is_sorted() && last
@@ -311,9 +333,13 @@ impl<'a> MeshSource<'a> {
     fn influences_by_vertex(&self) -> impl Iterator<Item = &'a [Influence]> + use<'a> {
         let (influences, ends) = (self.influences, self.influence_ends);
         let vertices = self.positions.len();
+        let shared = ends.is_empty() && influences.len() == 1;
         let each = influences.len() / vertices.max(1);
         let end = move |v: usize| ends.get(v).map_or((v + 1) * each, |end| *end as usize);
         (0..vertices).map(move |v| {
+            if shared {
+                return influences;
+            }
             let start = if v == 0 { 0 } else { end(v - 1) };
             &influences[start..end(v)]
         })

@@ -127,18 +127,10 @@ impl ColliderMesh {
     /// included, with the tag that it has. Ids and points of either mesh are valid on both.
     ///
     /// ```
-    /// use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource, SurfaceKind, SurfaceTag};
-    /// use clamber_surface::rig::JointId;
+    /// use clamber_surface::mesh::{BuildOptions, ColliderMesh, MeshSource, SurfaceKind, SurfaceTag};
     /// use glam::Vec3;
     ///
-    /// let influences = [Influence { joint: JointId(0), weight: 1.0 }; 3];
-    /// let source = MeshSource {
-    ///     positions: &[Vec3::ZERO, Vec3::X, Vec3::Y],
-    ///     triangles: &[[0, 1, 2]],
-    ///     influences: &influences,
-    ///     joint_count: 1,
-    ///     ..MeshSource::default()
-    /// };
+    /// let source = MeshSource::rigid(&[Vec3::ZERO, Vec3::X, Vec3::Y], &[[0, 1, 2]]);
     /// let (skin, _) = ColliderMesh::build(&source, &BuildOptions::default())?;
     /// let fur = skin.with_tags(|_, tag| SurfaceTag { kind: SurfaceKind::Fur, ..tag });
     /// assert_eq!(fur.tags()[0].kind, SurfaceKind::Fur);

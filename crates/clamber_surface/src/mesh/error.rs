@@ -27,8 +27,8 @@ pub enum MeshError {
     /// The influences cannot be assigned to the vertices.
     ///
     /// Without [`influence_ends`](crate::mesh::MeshSource::influence_ends): there are no influences or no vertices,
-    /// or the number of influences is not a multiple of the number of vertices. With it: there is not one end per
-    /// vertex, the ends are not in ascending order, or the last end is not the number of influences.
+    /// or the number of influences is neither 1 nor a multiple of the number of vertices. With it: there is not one end
+    /// per vertex, the ends are not in ascending order, or the last end is not the number of influences.
     #[error(
         "{influences} influences do not fit {vertices} vertices: every vertex needs the same number, or \
          `influence_ends` needs one end per vertex, in ascending order"

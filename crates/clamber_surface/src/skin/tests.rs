@@ -1,8 +1,7 @@
 use super::*;
 use crate::SimdLevel;
 use crate::measure::{skin_clusters, skin_scalar};
-use crate::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
-use crate::rig::JointId;
+use crate::mesh::{BuildOptions, ColliderMesh, MeshSource};
 use crate::surface::SkinnedSurface;
 use crate::testing::{bend, tube};
 use glam::{DVec3, Vec3};
@@ -51,16 +50,7 @@ fn skin_clusters_writes_one_cluster_after_the_other() {
 #[test]
 fn vertices_without_triangles_are_skinned_as_well() {
     let corners = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::new(3.0, 4.0, 5.0)];
-    let source = MeshSource {
-        positions: &corners,
-        triangles: &[[0, 1, 2]],
-        influences: &[Influence {
-            joint: JointId(0),
-            weight: 1.0,
-        }; 4],
-        joint_count: 1,
-        ..MeshSource::default()
-    };
+    let source = MeshSource::rigid(&corners, &[[0, 1, 2]]);
     let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
     let palette = bend(1, DVec3::Z, 0.0);
     assert_eq!(skin(&mesh, palette.matrices()).unwrap(), corners);

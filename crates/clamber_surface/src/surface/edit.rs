@@ -72,13 +72,7 @@ impl SkinnedSurface {
     /// # use clamber_surface::surface::{SkinnedSurface, SurfaceError};
     /// # use glam::Vec3;
     /// # let bone = Influence { joint: JointId(0), weight: 1.0 };
-    /// # let source = MeshSource {
-    /// #     positions: &[Vec3::ZERO, Vec3::X, Vec3::Y],
-    /// #     triangles: &[[0, 1, 2]],
-    /// #     influences: &[bone; 3],
-    /// #     joint_count: 1,
-    /// #     ..MeshSource::default()
-    /// # };
+    /// # let source = MeshSource::rigid(&[Vec3::ZERO, Vec3::X, Vec3::Y], &[[0, 1, 2]]);
     /// # let mesh = ColliderMesh::build(&source, &BuildOptions::default())?.0;
     /// # let mut surface = SkinnedSurface::new(Arc::new(mesh));
     /// let scab = surface.edit(|edit| {

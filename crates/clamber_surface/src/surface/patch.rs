@@ -15,17 +15,11 @@ use crate::query::MovingTriangle;
 /// ```
 /// # use std::sync::Arc;
 /// # use clamber_surface::geometry::{Affine, Similarity};
-/// # use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource, TriangleId};
-/// # use clamber_surface::rig::{JointId, Palette};
+/// # use clamber_surface::mesh::{BuildOptions, ColliderMesh, MeshSource, TriangleId};
+/// # use clamber_surface::rig::Palette;
 /// # use clamber_surface::surface::{Patch, PatchChange, SkinnedSurface};
 /// # use glam::Vec3;
-/// # let source = MeshSource {
-/// #     positions: &[Vec3::ZERO, Vec3::X, Vec3::Y],
-/// #     triangles: &[[0, 1, 2]],
-/// #     influences: &[Influence { joint: JointId(0), weight: 1.0 }; 3],
-/// #     joint_count: 1,
-/// #     ..MeshSource::default()
-/// # };
+/// # let source = MeshSource::rigid(&[Vec3::ZERO, Vec3::X, Vec3::Y], &[[0, 1, 2]]);
 /// # let mesh = ColliderMesh::build(&source, &BuildOptions::default())?.0;
 /// let mut surface = SkinnedSurface::new(Arc::new(mesh));
 /// let mut patch = Patch::default();

@@ -19,19 +19,13 @@ use crate::skin::skin_checked;
 /// ```
 /// use std::sync::Arc;
 /// use clamber_surface::geometry::{Affine, Ray, Similarity};
-/// use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
-/// use clamber_surface::rig::{JointId, Palette};
+/// use clamber_surface::mesh::{BuildOptions, ColliderMesh, MeshSource};
+/// use clamber_surface::rig::Palette;
 /// use clamber_surface::surface::SkinnedSurface;
 /// use glam::Vec3;
 ///
 /// let (mesh, _) = ColliderMesh::build(
-///     &MeshSource {
-///         positions: &[Vec3::ZERO, Vec3::X, Vec3::Y],
-///         triangles: &[[0, 1, 2]],
-///         influences: &[Influence { joint: JointId(0), weight: 1.0 }; 3],
-///         joint_count: 1,
-///         ..MeshSource::default()
-///     },
+///     &MeshSource::rigid(&[Vec3::ZERO, Vec3::X, Vec3::Y], &[[0, 1, 2]]),
 ///     &BuildOptions::default(),
 /// )?;
 /// let mut surface = SkinnedSurface::new(Arc::new(mesh));

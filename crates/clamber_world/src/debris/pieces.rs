@@ -59,19 +59,13 @@ use crate::ObstacleId;
 /// ```
 /// # use std::sync::Arc;
 /// # use clamber_surface::geometry::Similarity;
-/// # use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
-/// # use clamber_surface::rig::JointId;
+/// # use clamber_surface::mesh::{BuildOptions, ColliderMesh, MeshSource};
 /// # use clamber_surface::surface::{SkinnedSurface, SurfaceError};
 /// # use glam::Vec3;
 /// use clamber_world::rapier3d::prelude::*;
 /// use clamber_world::{Debris, DebrisConfig, ObstacleId};
-/// # let source = MeshSource {
-/// #     positions: &[Vec3::ZERO, Vec3::X, Vec3::Z].map(|p| p * 9.0 - Vec3::new(3.0, 0.0, 3.0)),
-/// #     triangles: &[[0, 2, 1]],
-/// #     influences: &[Influence { joint: JointId(0), weight: 1.0 }; 3],
-/// #     joint_count: 1,
-/// #     ..MeshSource::default()
-/// # };
+/// # let positions = [Vec3::ZERO, Vec3::X, Vec3::Z].map(|p| p * 9.0 - Vec3::new(3.0, 0.0, 3.0));
+/// # let source = MeshSource::rigid(&positions, &[[0, 2, 1]]);
 /// # let mesh = ColliderMesh::build(&source, &BuildOptions::default())?.0;
 /// # let mut surface = SkinnedSurface::new(Arc::new(mesh));
 /// # let palette = clamber_surface::rig::Palette::from_matrices([clamber_surface::geometry::Affine::IDENTITY]);

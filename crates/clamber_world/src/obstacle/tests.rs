@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use clamber_surface::geometry::{Affine, Similarity};
-use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
-use clamber_surface::rig::{JointId, Palette};
+use clamber_surface::mesh::{BuildOptions, ColliderMesh, MeshSource};
+use clamber_surface::rig::Palette;
 use clamber_surface::surface::SkinnedSurface;
 use glam::Vec3;
 
@@ -45,17 +45,7 @@ fn rubble() -> (SkinnedSurface, DVec3) {
     let mut rng = fastrand::Rng::with_seed(22);
     let positions: Vec<Vec3> = (0..240).map(|_| random(&mut rng).as_vec3() * 2.0).collect();
     let triangles: Vec<[u32; 3]> = (0..80).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-    let influence = Influence {
-        joint: JointId(0),
-        weight: 1.0,
-    };
-    let source = MeshSource {
-        positions: &positions,
-        triangles: &triangles,
-        influences: &vec![influence; positions.len()],
-        joint_count: 1,
-        ..MeshSource::default()
-    };
+    let source = MeshSource::rigid(&positions, &triangles);
     let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
     let mut skin = SkinnedSurface::new(Arc::new(mesh));
     let place = DVec3::new(60.0, 0.0, -80.0);

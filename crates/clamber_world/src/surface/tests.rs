@@ -1,8 +1,8 @@
 use std::sync::Arc;
 
 use clamber_surface::geometry::{Affine, Similarity, rotation_from_axis_angle};
-use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource, TriangleId};
-use clamber_surface::rig::{JointId, Palette};
+use clamber_surface::mesh::{BuildOptions, ColliderMesh, MeshSource, TriangleId};
+use clamber_surface::rig::Palette;
 use clamber_surface::surface::{CastOptions, SkinnedSurface};
 use glam::{DVec3, Vec3};
 
@@ -11,17 +11,7 @@ use crate::{MaterialPoint, Obstacle, TargetMotion, WorldCapsule};
 /// A level square of side 2 around the model's origin, on one joint.
 fn square() -> SkinnedSurface {
     let positions = [(-1., -1.), (-1., 1.), (1., 1.), (1., -1.)].map(|(x, z)| Vec3::new(x, 0., z));
-    let influence = Influence {
-        joint: JointId(0),
-        weight: 1.0,
-    };
-    let source = MeshSource {
-        positions: &positions,
-        triangles: &[[0, 1, 2], [0, 2, 3]],
-        influences: &[influence; 4],
-        joint_count: 1,
-        ..MeshSource::default()
-    };
+    let source = MeshSource::rigid(&positions, &[[0, 1, 2], [0, 2, 3]]);
     let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
     SkinnedSurface::new(Arc::new(mesh))
 }

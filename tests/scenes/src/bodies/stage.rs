@@ -5,10 +5,8 @@ use clamber_climber::{
     Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberState, StepRules,
 };
 use clamber_surface::geometry::{Affine, Similarity};
-use clamber_surface::mesh::{
-    BuildOptions, ColliderMesh, Influence, MeshSource, SurfaceKind, SurfaceTag,
-};
-use clamber_surface::rig::{Clip, JointId, Palette, Playback, Pose, Skeleton};
+use clamber_surface::mesh::{BuildOptions, ColliderMesh, MeshSource, SurfaceKind, SurfaceTag};
+use clamber_surface::rig::{Clip, Palette, Playback, Pose, Skeleton};
 use clamber_surface::surface::SkinnedSurface;
 use clamber_world::{Obstacle, ObstacleId};
 use glam::DVec3;
@@ -39,17 +37,9 @@ impl Thing {
     ) -> Result<Self, Box<dyn Error>> {
         let mesh = solid.mesh();
         let positions: Vec<_> = mesh.positions.iter().map(|p| p.as_vec3()).collect();
-        let whole = Influence {
-            joint: JointId(0),
-            weight: 1.0,
-        };
         let source = MeshSource {
-            positions: &positions,
-            triangles: &mesh.triangles,
-            influences: &vec![whole; positions.len()],
-            joint_count: 1,
             tags: &vec![SurfaceTag::new(kind); mesh.triangles.len()],
-            ..MeshSource::default()
+            ..MeshSource::rigid(&positions, &mesh.triangles)
         };
         Ok(Self {
             mesh: Arc::new(ColliderMesh::build(&source, &BuildOptions::default())?.0),

@@ -9,8 +9,8 @@ mod walking;
 use std::sync::Arc;
 
 use clamber_surface::geometry::{Affine, Similarity};
-use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
-use clamber_surface::rig::{JointId, Palette};
+use clamber_surface::mesh::{BuildOptions, ColliderMesh, MeshSource};
+use clamber_surface::rig::Palette;
 use clamber_surface::surface::SkinnedSurface;
 use clamber_world::{Obstacle, ObstacleId};
 use glam::{DAffine3, DVec3, Vec3};
@@ -37,17 +37,7 @@ fn patch(corners: &[(f32, f32, f32)], triangles: &[[u32; 3]]) -> SkinnedSurface 
         .iter()
         .map(|&(x, y, z)| Vec3::new(x, y, z))
         .collect();
-    let influence = Influence {
-        joint: JointId(0),
-        weight: 1.0,
-    };
-    let source = MeshSource {
-        positions: &positions,
-        triangles,
-        influences: &vec![influence; positions.len()],
-        joint_count: 1,
-        ..MeshSource::default()
-    };
+    let source = MeshSource::rigid(&positions, triangles);
     let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
     SkinnedSurface::new(Arc::new(mesh))
 }

@@ -89,17 +89,9 @@ impl Slab {
                 }
             }
         }
-        let bone = Influence {
-            joint: JointId(0),
-            weight: 1.0,
-        };
         let source = MeshSource {
-            positions: &positions,
-            triangles: &triangles,
-            influences: &vec![bone; positions.len()],
             tags: &tags,
-            joint_count: 1,
-            ..MeshSource::default()
+            ..MeshSource::rigid(&positions, &triangles)
         };
         let mesh = ColliderMesh::build(&source, &BuildOptions::default())
             .unwrap()

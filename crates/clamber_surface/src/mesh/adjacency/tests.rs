@@ -4,24 +4,13 @@ use std::sync::Arc;
 use glam::Vec3;
 
 use super::*;
-use crate::mesh::{BuildOptions, Influence, MeshSource, SurfaceTag, VertexId};
-use crate::rig::JointId;
+use crate::mesh::{BuildOptions, MeshSource, SurfaceTag, VertexId};
 use crate::surface::SkinnedSurface;
 
 /// An influence with all weight on joint 0.
-const BONE: Influence = Influence {
-    joint: JointId(0),
-    weight: 1.0,
-};
 
 fn mesh(positions: &[Vec3], triangles: &[[u32; 3]]) -> ColliderMesh {
-    let source = MeshSource {
-        positions,
-        triangles,
-        influences: &vec![BONE; positions.len()],
-        joint_count: 1,
-        ..MeshSource::default()
-    };
+    let source = MeshSource::rigid(positions, triangles);
     ColliderMesh::build(&source, &BuildOptions::default())
         .unwrap()
         .0

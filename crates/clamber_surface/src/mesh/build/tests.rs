@@ -184,6 +184,26 @@ fn weights_that_do_not_add_up_to_one_are_measured_and_normalised() {
 }
 
 #[test]
+fn one_influence_is_that_of_every_vertex() {
+    let positions = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
+    let triangles = [[0, 1, 2], [0, 3, 1]];
+    let rigid = MeshSource::rigid(&positions, &triangles);
+    let each = MeshSource {
+        influences: &[influence(0, 1.0); 4],
+        ..rigid
+    };
+    let build = |source| ColliderMesh::build(source, &BuildOptions::default()).unwrap();
+    let ((rigid, report), each) = (build(&rigid), build(&each));
+    assert_eq!((rigid.id(), &report), (each.0.id(), &each.1));
+    assert_eq!(report.max_influences, 1);
+    let none = ColliderMesh::build(&MeshSource::rigid(&[], &[]), &BuildOptions::default());
+    assert!(
+        matches!(none, Err(MeshError::InfluenceCount { .. })),
+        "{none:?}"
+    );
+}
+
+#[test]
 fn each_kind_of_bad_input_has_its_error() {
     let refused = |change: &dyn Fn(&mut Square)| {
         let mut given = square();

@@ -6,8 +6,7 @@ use clamber_verify::brute_force::distance;
 use glam::{DVec3, Vec3};
 
 use crate::geometry::widen;
-use crate::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
-use crate::rig::JointId;
+use crate::mesh::{BuildOptions, ColliderMesh, MeshSource};
 use crate::surface::SkinnedSurface;
 use crate::testing::{direction, point};
 
@@ -23,17 +22,7 @@ fn slivers(rng: &mut fastrand::Rng, height: f32, center: Vec3) -> SkinnedSurface
     }
     let count = positions.len() as u32;
     let triangles: Vec<[u32; 3]> = (0..count).step_by(3).map(|t| [t, t + 1, t + 2]).collect();
-    let one = Influence {
-        joint: JointId(0),
-        weight: 1.0,
-    };
-    let source = MeshSource {
-        positions: &positions,
-        triangles: &triangles,
-        influences: &vec![one; positions.len()],
-        joint_count: 1,
-        ..MeshSource::default()
-    };
+    let source = MeshSource::rigid(&positions, &triangles);
     let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
     SkinnedSurface::new(Arc::new(mesh))
 }

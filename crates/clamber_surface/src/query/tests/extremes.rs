@@ -7,8 +7,8 @@ use glam::Vec3;
 use super::places::{Place, assert_agree};
 use crate::geometry::{Affine, Capsule, Similarity};
 use crate::measure::BruteForce;
-use crate::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
-use crate::rig::{JointId, Palette};
+use crate::mesh::{BuildOptions, ColliderMesh, MeshSource};
+use crate::rig::Palette;
 use crate::surface::SkinnedSurface;
 use crate::testing::{ball, bend, capsule, direction, point, tube};
 
@@ -33,19 +33,9 @@ fn scaled(scale: f32) -> SkinnedSurface {
 /// A triangle soup of one joint at rest.
 fn soup(corners: &[[Vec3; 3]]) -> SkinnedSurface {
     let positions: Vec<Vec3> = corners.iter().flatten().copied().collect();
-    let one = Influence {
-        joint: JointId(0),
-        weight: 1.0,
-    };
     let count = corners.len() as u32;
     let triangles: Vec<[u32; 3]> = (0..count).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
-    let source = MeshSource {
-        positions: &positions,
-        triangles: &triangles,
-        influences: &vec![one; positions.len()],
-        joint_count: 1,
-        ..MeshSource::default()
-    };
+    let source = MeshSource::rigid(&positions, &triangles);
     let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
     SkinnedSurface::new(Arc::new(mesh))
 }

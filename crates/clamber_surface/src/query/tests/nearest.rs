@@ -9,25 +9,14 @@ use glam::Vec3;
 use crate::geometry::Ray;
 use crate::geometry::triangle::ShearedRay;
 use crate::measure::BruteForce;
-use crate::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource, TriangleId};
-use crate::rig::JointId;
+use crate::mesh::{BuildOptions, ColliderMesh, MeshSource, TriangleId};
 use crate::surface::SkinnedSurface;
 use crate::surface::agreement::assert_same_answers;
 use crate::testing::{direction, point};
 
 /// Triangles of one joint at rest.
 fn still(positions: &[Vec3], triangles: &[[u32; 3]]) -> Option<SkinnedSurface> {
-    let one = Influence {
-        joint: JointId(0),
-        weight: 1.0,
-    };
-    let source = MeshSource {
-        positions,
-        triangles,
-        influences: &vec![one; positions.len()],
-        joint_count: 1,
-        ..MeshSource::default()
-    };
+    let source = MeshSource::rigid(positions, triangles);
     let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).ok()?;
     Some(SkinnedSurface::new(Arc::new(mesh)))
 }

@@ -4,8 +4,7 @@ use std::sync::Arc;
 
 use clamber_surface::geometry::Similarity;
 use clamber_surface::measure::winding_number;
-use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
-use clamber_surface::rig::JointId;
+use clamber_surface::mesh::{BuildOptions, ColliderMesh, MeshSource};
 use clamber_surface::surface::SkinnedSurface;
 use glam::{DVec3, Vec3};
 use rapier3d::prelude::*;
@@ -46,17 +45,7 @@ fn boxes(corners: &[[Vec3; 2]]) -> SkinnedSurface {
 }
 
 fn creature(positions: &[Vec3], triangles: &[[u32; 3]]) -> SkinnedSurface {
-    let one = Influence {
-        joint: JointId(0),
-        weight: 1.0,
-    };
-    let source = MeshSource {
-        positions,
-        triangles,
-        influences: &vec![one; positions.len()],
-        joint_count: 1,
-        ..MeshSource::default()
-    };
+    let source = MeshSource::rigid(positions, triangles);
     let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
     SkinnedSurface::new(Arc::new(mesh))
 }

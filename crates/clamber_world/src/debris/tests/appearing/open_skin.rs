@@ -3,8 +3,7 @@
 use std::sync::Arc;
 
 use clamber_surface::geometry::Similarity;
-use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
-use clamber_surface::rig::JointId;
+use clamber_surface::mesh::{BuildOptions, ColliderMesh, MeshSource};
 use clamber_surface::surface::SkinnedSurface;
 use glam::{DVec3, Vec3};
 use rapier3d::prelude::*;
@@ -25,17 +24,7 @@ fn sheet(cells: u32, over: bool, bend: impl Fn(f32, f32) -> Vec3) -> SkinnedSurf
             triangles.extend(both.map(|[p, q, r]| if over { [p, r, q] } else { [p, q, r] }));
         }
     }
-    let one = Influence {
-        joint: JointId(0),
-        weight: 1.0,
-    };
-    let source = MeshSource {
-        positions: &positions,
-        triangles: &triangles,
-        influences: &vec![one; positions.len()],
-        joint_count: 1,
-        ..MeshSource::default()
-    };
+    let source = MeshSource::rigid(&positions, &triangles);
     let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
     SkinnedSurface::new(Arc::new(mesh))
 }

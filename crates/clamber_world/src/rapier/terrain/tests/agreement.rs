@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use clamber_surface::geometry::{Affine, Similarity, rotation_from_axis_angle};
-use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
-use clamber_surface::rig::{JointId, Palette};
+use clamber_surface::mesh::{BuildOptions, ColliderMesh, MeshSource};
+use clamber_surface::rig::Palette;
 use clamber_surface::surface::SkinnedSurface;
 use glam::{DQuat, Vec3};
 
@@ -49,17 +49,7 @@ impl Both {
     /// A surface and a body that move over a tick from the first place to the second, relative to the origin.
     fn new(rng: &mut fastrand::Rng, origin: DVec3, places: [Pose; 2]) -> Self {
         let (positions, triangles) = patch(rng);
-        let influence = Influence {
-            joint: JointId(0),
-            weight: 1.0,
-        };
-        let source = MeshSource {
-            positions: &positions,
-            triangles: &triangles,
-            influences: &vec![influence; positions.len()],
-            joint_count: 1,
-            ..MeshSource::default()
-        };
+        let source = MeshSource::rigid(&positions, &triangles);
         let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
         let mut surface = SkinnedSurface::new(Arc::new(mesh));
         let palette = Palette::from_matrices([Affine::IDENTITY]);

@@ -1,0 +1,130 @@
+//! Blows on a climber that stands or holds on, without tumbling.
+
+use clamber_climber::ClimberMode;
+use clamber_climber::{Blow, Climber, ClimberConfig, ClimberError, ClimberEvent, ClimberInput};
+use glam::{DVec3, Vec3};
+
+use crate::defects::common::{tick, v};
+use crate::scene::{FUR, HOLD, STONE, cuboid};
+use crate::stage::{IDLE, Played, Run, Shape, Stage};
+
+fn blow(velocity: DVec3) -> Option<Blow> {
+    Some(Blow {
+        velocity,
+        damage: 0.1,
+        by: None,
+    })
+}
+
+fn without_tumble() -> ClimberConfig {
+    ClimberConfig {
+        tumble: None,
+        ..ClimberConfig::colossus_climber()
+    }
+}
+
+#[test]
+fn a_blow_moves_a_climber_on_its_feet() {
+    let mut last = 0.0;
+    for hz in [30.0, 60.0, 240.0] {
+        for speed in [0.5, 1.0, 2.0, 2.9, 3.1, 3.2, 10.0, 50.0] {
+            let stage =
+                Stage::at(Played::Root, 1.0 / hz, DVec3::ZERO).with_still(&Shape::floor(100.0));
+            let mut run = Run::new(stage, without_tumble(), DVec3::ZERO).settle();
+            let input = ClimberInput {
+                blow: blow(v(speed, 0.0, 0.0)),
+                ..IDLE
+            };
+            let report = run.step(&input);
+            let hurt = |event: &&ClimberEvent| matches!(event, ClimberEvent::Hurt { .. });
+            let told = format!("{speed} m/s at {hz} Hz: {:?}", report.events);
+            assert_eq!(report.events.iter().filter(hurt).count(), 1, "{told}");
+            run.steps((5.0 * hz) as u32, &IDLE);
+            let moved = run.position().x;
+            // Friction alone brakes the climber to rest: feet do not stop a climber that slides.
+            let expected = speed * speed / (2.0 * run.config().ground.friction);
+            let slack = 0.02 * expected + speed / hz;
+            assert!(
+                (moved - expected).abs() <= slack,
+                "{told}: {moved} m of {expected} m"
+            );
+            assert_eq!(run.mode(), ClimberMode::Standing, "{told}");
+            if speed == 50.0 {
+                last = moved;
+            }
+        }
+    }
+    assert!(last > 50.0, "{last}");
+}
+
+#[test]
+fn a_blow_moves_a_climber_on_its_hold() {
+    let fur = cuboid(Vec3::new(4.0, 3.0, 3.0), FUR);
+    let stone = cuboid(Vec3::new(4.0, 3.0, 3.0), STONE);
+    for speed in [2.9, 3.1, 50.0] {
+        for (direction, aside) in [(DVec3::X, true), (DVec3::Z, false)] {
+            let mut climber = Climber::new(without_tumble(), v(0.0, 1.0, 3.5)).unwrap();
+            for _ in 0..30 {
+                tick(&mut climber, &[&fur], &HOLD);
+            }
+            assert_eq!(climber.state().mode, ClimberMode::Holding);
+            let from = climber.state().position;
+            let input = ClimberInput {
+                blow: blow(direction * speed),
+                ..HOLD
+            };
+            let mut farthest = 0.0f64;
+            let mut events = Vec::new();
+            for k in 0..30 {
+                let input = if k == 0 { &input } else { &HOLD };
+                events.extend(tick(&mut climber, &[&fur], input).events);
+                farthest = farthest.max((climber.state().position - from).dot(direction));
+            }
+            let told = format!("{speed} m/s along {direction}: {farthest} m, {events:?}");
+            assert!(farthest > if aside { 0.1 } else { 0.05 }, "{told}");
+            let knocked = |event: &ClimberEvent| matches!(event, ClimberEvent::KnockedOff { .. });
+            // A blow faster than a jump off a hold takes the climber off its hold.
+            assert_eq!(events.iter().any(knocked), speed > 4.0, "{told}");
+        }
+        // Only the fast blow takes the climber off a ledge.
+        let mut climber = Climber::new(without_tumble(), v(0.3, 2.75, 3.5)).unwrap();
+        let toward = ClimberInput {
+            walk: -DVec3::Z * 0.1,
+            ..HOLD
+        };
+        for _ in 0..60 {
+            tick(&mut climber, &[&stone], &toward);
+        }
+        assert_eq!(climber.state().mode, ClimberMode::LedgeHanging);
+        let input = ClimberInput {
+            blow: blow(DVec3::Z * speed),
+            ..HOLD
+        };
+        let report = tick(&mut climber, &[&stone], &input);
+        let hangs = climber.state().mode == ClimberMode::LedgeHanging;
+        assert_eq!(hangs, speed < 4.0, "{speed}: {:?}", report.events);
+    }
+}
+
+#[test]
+fn damage_outside_0_to_1_is_refused() {
+    for damage in [7.0, -1.0, 1.0 + 1e-9, -f64::MIN_POSITIVE] {
+        let mut climber = Climber::new(ClimberConfig::colossus_climber(), DVec3::ZERO).unwrap();
+        let before = *climber.state();
+        let input = ClimberInput {
+            blow: Some(Blow {
+                velocity: DVec3::X,
+                damage,
+                by: None,
+            }),
+            ..IDLE
+        };
+        let expected = ClimberError::OutOfRange {
+            name: "blow.damage",
+            range: "from 0 to 1",
+            found: damage,
+        };
+        assert_eq!(climber.step(&input, &[], 0.1), Err(expected), "{damage}");
+        assert_eq!(climber.state(), &before, "{damage}");
+    }
+}

@@ -1,0 +1,66 @@
+//! Ground to stand on, and disks to write to.
+
+#![expect(
+    clippy::unwrap_used,
+    reason = "a test's helpers may fail like the test"
+)]
+
+use std::io::Write;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, LazyLock, Mutex};
+use std::time::Duration;
+
+use clamber_world::{HalfSpace, Obstacle, ObstacleId};
+
+/// The ground's obstacle id.
+pub(crate) const GROUND: ObstacleId = ObstacleId(7);
+
+/// The ground at a height of 0.
+pub(crate) fn terrain() -> [(ObstacleId, &'static dyn Obstacle); 1] {
+    static LEVEL: LazyLock<HalfSpace> = LazyLock::new(|| HalfSpace::below(0.0));
+    [(GROUND, &*LEVEL)]
+}
+
+/// A file on a disk, whose bytes outlive the recorder.
+#[derive(Clone, Default)]
+pub(crate) struct Disk {
+    bytes: Arc<Mutex<Vec<u8>>>,
+    /// Duration of each write of more than 1,000 bytes.
+    pause: Duration,
+    /// While it is true, writes wait.
+    stalls: Arc<AtomicBool>,
+}
+
+impl Disk {
+    pub(crate) fn slow(pause: Duration) -> Self {
+        Self {
+            pause,
+            ..Self::default()
+        }
+    }
+
+    pub(crate) fn stalls(&self, stalls: bool) {
+        self.stalls.store(stalls, Ordering::Relaxed);
+    }
+
+    pub(crate) fn bytes(&self) -> Vec<u8> {
+        self.bytes.lock().unwrap().clone()
+    }
+}
+
+impl Write for Disk {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        while self.stalls.load(Ordering::Relaxed) {
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        if bytes.len() > 1000 {
+            std::thread::sleep(self.pause);
+        }
+        self.bytes.lock().unwrap().extend_from_slice(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        Ok(())
+    }
+}
