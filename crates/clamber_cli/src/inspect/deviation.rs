@@ -108,13 +108,13 @@ fn distance(surface: &SkinnedSurface, place: Vec3) -> Result<f64, SurfaceError> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use clamber_scenes::beast::beast;
+    use clamber_scenes::giant::giant;
 
     #[test]
     fn a_moved_vertex_and_nan_exceed_the_bound() {
-        let beast = beast(500);
-        let palette = beast.skeleton.palette(&beast.skeleton.rest_pose()).unwrap();
-        let mesh = &beast.collider;
+        let giant = giant().unwrap();
+        let palette = giant.skeleton.palette(&giant.skeleton.rest_pose()).unwrap();
+        let mesh = &giant.collider;
         let mut positions = clamber_surface::skin::skin(mesh, palette.matrices()).unwrap();
         let share = |p: &[Vec3]| skinning_error_share(mesh, palette.matrices(), p);
         assert!((0.01..1.0).contains(&share(&positions)));
