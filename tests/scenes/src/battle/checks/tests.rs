@@ -8,7 +8,7 @@ use glam::DVec3;
 use super::super::bot::Intent;
 use super::super::{Battle, BattleOptions};
 use super::*;
-use crate::giant::giant_of;
+use crate::giant::giant;
 
 const HEIGHT: f64 = 20.0;
 
@@ -50,7 +50,7 @@ impl<'a> Scene<'a> {
 }
 
 fn stood<R>(test: impl FnOnce(&mut Scene<'_>, ClimberState) -> R) -> R {
-    let creature = giant_of(3_000).unwrap();
+    let creature = giant().unwrap();
     let options = BattleOptions {
         height: Some(HEIGHT),
         ..BattleOptions::ride(0, 1)
