@@ -84,7 +84,7 @@ impl Thing {
     }
 }
 
-/// What the player sees before a tick.
+/// The player's view before a tick.
 pub struct Moment<'a> {
     /// Seconds since the start.
     pub time: f64,
@@ -92,7 +92,7 @@ pub struct Moment<'a> {
     pub state: &'a ClimberState,
 }
 
-/// What there is, who climbs, and what the player does.
+/// The ground and creatures, the climber, and the player's input.
 pub struct Scene {
     /// Its name.
     pub name: String,
@@ -143,9 +143,9 @@ pub(super) fn floor() -> Result<Thing, Box<dyn Error>> {
     Thing::solid(&Solid::floor(60.0), SurfaceKind::Stone, still)
 }
 
-/// A direction if it is time for it, or else none.
-pub(super) fn when(is_time: bool, direction: DVec3) -> DVec3 {
-    if is_time { direction } else { DVec3::ZERO }
+/// The direction if the condition holds, or else zero.
+pub(super) fn when(condition: bool, direction: DVec3) -> DVec3 {
+    if condition { direction } else { DVec3::ZERO }
 }
 
 pub(super) fn walking(walk: DVec3) -> ClimberInput {

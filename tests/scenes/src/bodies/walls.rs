@@ -1,4 +1,4 @@
-//! Walls and ledges to hold, and what else happens to a climber.
+//! Walls and ledges to hold, falls, blows and ceilings.
 
 use std::error::Error;
 

@@ -1,3 +1,5 @@
+//! A bot climbs a creature by its graph.
+
 use std::error::Error;
 use std::sync::Arc;
 
@@ -160,8 +162,8 @@ pub fn climb_by(
     Ok(climbed)
 }
 
-/// What the graph says of a climb; the way to the highest patch that can be reached, and the patch where it begins
-/// best; `None` if no patch can be reached.
+/// The graph's figures for a climb to the highest reachable patch, the goal there, and the entry with the shortest way;
+/// no goal if no patch is reachable.
 fn asked(graph: &ClimbGraph, ground: f64, area: f64) -> (Climbed, Option<(Goal, usize)>) {
     let strength = 1.0 - BotConfig::default().reserve;
     let reached = graph.reachable_with(strength);
@@ -196,7 +198,7 @@ fn asked(graph: &ClimbGraph, ground: f64, area: f64) -> (Climbed, Option<(Goal, 
     (climbed, Some((goal, first)))
 }
 
-/// A climber on the ground, at some distance from an entry.
+/// A climber on the ground, as near to an entry as it has room.
 fn standing(
     stage: &Stage<'_>,
     config: ClimberConfig,
@@ -218,7 +220,7 @@ fn standing(
     Ok(Climber::new(config, feet + DVec3::Y * (1.1 * radius))?)
 }
 
-/// Steps the climber; gives how often it lost its hold.
+/// Steps the climber; returns how often it lost its hold.
 fn step(
     stage: &Stage<'_>,
     climber: &mut Climber,

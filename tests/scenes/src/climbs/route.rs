@@ -1,3 +1,5 @@
+//! Ways over a creature: the shortest ones along its edges at rest (Dijkstra 1959).
+
 use clamber_surface::mesh::VertexId;
 use glam::Vec3;
 use pathfinding::directed::dijkstra::dijkstra;

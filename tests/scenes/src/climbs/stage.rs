@@ -1,3 +1,5 @@
+//! A creature that moves while it is climbed.
+
 use std::error::Error;
 use std::f64::consts::TAU;
 
