@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test")]
 
 use clamber::climber::ClimberConfig;
-use clamber_scenes::climbs::{Climbed, ClimbsOptions, climb_by};
+use clamber_scenes::climbs::{ClimbOptions, Climbed, climb_by};
 use clamber_scenes::giant;
 
 /// Largest ratio of the bot's time to the least time.
@@ -12,8 +12,8 @@ const MOST: f64 = 1.3;
 /// Climbs a giant with a climber, both scaled by `size`. Times scale with √size.
 fn climb(size: f64, height: f64, rate: f64) -> Climbed {
     let root = size.sqrt();
-    let usual = ClimbsOptions::default();
-    let options = ClimbsOptions {
+    let usual = ClimbOptions::default();
+    let options = ClimbOptions {
         height: height * size,
         rate: rate / root,
         seconds: usual.seconds * root,

@@ -5,10 +5,11 @@
     reason = "a test's helpers may fail like the test"
 )]
 
+use std::collections::HashMap;
+
 use clamber::gltf::{LoadOptions, Model, load, load_with};
 use clamber::mesh::VertexId;
 use clamber::prelude::*;
-use clamber_scenes::closed::{Flaws, flaws, volume};
 use clamber_scenes::giant;
 use glam::{DVec3, Vec3};
 
@@ -26,6 +27,43 @@ fn positions_of(surface: &SkinnedSurface) -> Vec<Vec3> {
     let mut positions = Vec::new();
     surface.skin_all(&mut positions);
     positions
+}
+
+/// Defects that keep a mesh from being a closed manifold.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Flaws {
+    /// Edges whose triangles do not pair off in opposite directions: 0 for a closed mesh.
+    open_edges: usize,
+    /// Edges with more than two triangles: 0 for a manifold.
+    crowded_edges: usize,
+}
+
+/// Counts the flaws of a mesh.
+fn flaws(mesh: &ColliderMesh) -> Flaws {
+    let mut shared: HashMap<[u32; 2], (u32, i32)> = HashMap::new();
+    for corners in mesh.triangles() {
+        for k in 0..3 {
+            let (a, b) = (corners[k].0, corners[(k + 1) % 3].0);
+            let edge = shared.entry([a.min(b), a.max(b)]).or_default();
+            edge.0 += 1;
+            edge.1 += if a < b { 1 } else { -1 };
+        }
+    }
+    Flaws {
+        open_edges: shared.values().filter(|edge| edge.1 != 0).count(),
+        crowded_edges: shared.values().filter(|edge| edge.0 > 2).count(),
+    }
+}
+
+/// The volume that a closed mesh encloses at rest, in cubic units of mesh space. Negative if its triangles face
+/// inwards.
+fn volume(mesh: &ColliderMesh) -> f64 {
+    let corner = |v: VertexId| mesh.positions()[v.index()].as_dvec3();
+    let six_volumes = mesh.triangles().iter().map(|t| {
+        let [a, b, c] = t.map(corner);
+        a.dot(b.cross(c))
+    });
+    six_volumes.sum::<f64>() / 6.0
 }
 
 #[test]

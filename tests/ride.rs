@@ -9,7 +9,7 @@ use clamber_scenes::battle::bot::Intent;
 use clamber_scenes::battle::{
     Battle, BattleOptions, Recording, RidesOptions, ride_all, rides_table, run,
 };
-use clamber_scenes::beast::beast;
+use clamber_scenes::giant::giant;
 use clamber_scenes::{Creature, test_data};
 
 /// Stands without input for some seconds; returns the recorded ticks.
@@ -39,22 +39,22 @@ fn assert_stood_fast(recording: &Recording, what: &str) {
 
 #[test]
 fn a_minute_without_input_moves_the_contact_by_less_than_a_tenth_of_a_millimetre() {
-    let creature = beast(6_000);
+    let creature = giant().unwrap();
     for seed in [1, 2, 3] {
         assert_stood_fast(
             &stand(&creature, 20.0, seed, 60),
-            &format!("beast, seed {seed}"),
+            &format!("giant, seed {seed}"),
         );
     }
 }
 
 #[test]
 fn standing_is_as_exact_on_creatures_of_any_height() {
-    let creature = beast(3_000);
+    let creature = giant().unwrap();
     for height in [10.0, 40.0, 100.0] {
         assert_stood_fast(
             &stand(&creature, height, 4, 20),
-            &format!("beast, {height} m"),
+            &format!("giant, {height} m"),
         );
     }
 }

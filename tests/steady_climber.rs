@@ -12,8 +12,8 @@ use allocation_counter::measure;
 use clamber::climber::{ClimberGroup, GripConfig};
 use clamber::prelude::*;
 use clamber::world::rapier3d::prelude::{ColliderBuilder, PhysicsWorld, RigidBodyBuilder, Vector};
+use clamber_scenes::climbs::{Motion as Walks, RATE, Stage, Ways, long_climber};
 use clamber_scenes::giant;
-use clamber_scenes::tour::{self, Motion as Walks, RATE, Stage, Ways};
 use glam::{DVec3, Vec3};
 
 /// Length of a tick, seconds.
@@ -98,9 +98,8 @@ fn climbing_up_and_across_the_walking_giant_allocates_nothing() {
     ];
     for (told, way) in ways {
         let mut stage = Stage::new(&creature, (20.0, 1.0), Walks::Walk).unwrap();
-        stage.place(0.0).unwrap();
         let (foot, normal) = stage.vertex(route.waypoints[route.waypoints.len() / 2]);
-        let mut climber = Climber::new(tour::config(), foot + normal * 0.45).unwrap();
+        let mut climber = Climber::new(long_climber(), foot + normal * 0.45).unwrap();
         let mut ticks = Ticks::default();
         for tick in 1..=600 {
             stage.advance(f64::from(tick) * DT).unwrap();
@@ -122,7 +121,6 @@ fn standing_and_walking_on_the_giant_allocates_nothing() {
     let creature = giant::giant().unwrap();
     for walk in [DVec3::ZERO, DVec3::Z * 0.1] {
         let mut stage = Stage::new(&creature, (20.0, 1.0), Walks::Idle).unwrap();
-        stage.place(0.0).unwrap();
         let (middle, radius) = stage.surface().bounding_ball().unwrap();
         let top = middle + DVec3::Y * radius;
         let below = stage.surface().cast_ray(top, -DVec3::Y, 2.0 * radius);
@@ -148,9 +146,8 @@ fn hanging_from_the_giant_allocates_nothing() {
     let creature = giant::giant().unwrap();
     let route = Ways::new(&creature).unwrap().climb(16).unwrap();
     let mut stage = Stage::new(&creature, (20.0, 1.0), Walks::Walk).unwrap();
-    stage.place(0.0).unwrap();
     let (point, normal) = stage.vertex(route.waypoints[route.waypoints.len() / 2]);
-    let mut config = tour::config();
+    let mut config = long_climber();
     // The climber hangs from every hold.
     config.grip = config.grip.map(|grip| GripConfig {
         max_overhang: 0.0,

@@ -17,7 +17,7 @@ use clamber::climber::ClimberMode;
 use clamber::geometry::Similarity;
 use clamber::rig::{Playback, Pose};
 use clamber_scenes::bodies::{Scene, Stage};
-use clamber_scenes::measure::{Cells, Plot, Series, measure_folder, quantile};
+use clamber_scenes::measure::{Cells, quantile};
 use glam::{DAffine3, DVec3};
 
 /// Length of a tick and of a frame, seconds.
@@ -65,13 +65,12 @@ pub(crate) fn compare(
     cells: &mut Cells,
 ) -> Result<(), Box<dyn Error>> {
     let names = ["hard IK", "soft IK", "clamber's body"];
-    let mut points: [[Vec<(f64, f64)>; 2]; 3] = Default::default();
     for climb in climbs {
         let (frames, ours) = watch(climb, figure, most)?;
         let hard = alone(&frames, figure, 1.0)?;
         let soft = alone(&frames, figure, 0.97)?;
-        for (index, mut shown) in [hard, soft, ours].into_iter().enumerate() {
-            let name = format!("{}, {}", climb.name, names[index]);
+        for (method, mut shown) in names.iter().zip([hard, soft, ours]) {
+            let name = format!("{}, {method}", climb.name);
             let micros = quantile(&mut shown.micros, 0.5);
             cells.value(&format!("{name}: us a frame"), micros);
             for (part, errors) in ["hands", "feet"].iter().zip(&mut shown.errors) {
@@ -85,29 +84,12 @@ pub(crate) fn compare(
                         error,
                     );
                 }
-                // A logarithmic axis has no place for an error of 0.
-                let error = (quantile(errors, 0.99) * 1e3).max(0.01);
-                points[index][usize::from(*part == "feet")].push((micros, error));
             }
             let rate = quantile(&mut shown.rates, 0.999);
             cells.value(&format!("{name}: elbows and knees, 99.9 %, rad/s"), rate);
         }
     }
-    let series = names.iter().zip(points).flat_map(|(name, points)| {
-        let parts = ["hands", "feet"].iter().zip(points);
-        parts.map(move |(part, points)| Series {
-            name: format!("{name}, {part}"),
-            points,
-            joined: false,
-        })
-    });
-    let plot = Plot {
-        title: "Hands and feet off their holds, beside the cost of a frame".to_owned(),
-        x: "microseconds a frame, median".to_owned(),
-        y: "millimetres off, 99th percentile; 0.01 stands for less".to_owned(),
-        series: series.collect(),
-    };
-    plot.write_svg(&measure_folder().join("body.svg"))
+    Ok(())
 }
 
 /// Plays a climb with the body; returns its frames and the body's measurements.

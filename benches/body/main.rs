@@ -8,8 +8,7 @@
 //! Then the same climbs run with inverse kinematics alone: the model is fixed to the climber, and its limbs reach for
 //! the same places, either as far as the bones do (hard) or with a soft limit. See [`compare`].
 //!
-//! Prints a table and writes it to `target/measure/body.csv`: name, value, bound, holds. Plots errors over costs to
-//! `target/measure/body.svg`.
+//! Prints a table and writes it to `target/measure/body.csv`: name, value, bound, holds.
 //!
 //! Run it with `cargo bench -p clamber_benches --bench body`; briefly with `-- --test`.
 

@@ -10,7 +10,7 @@ use clamber::world::rapier3d::parry::query::DefaultQueryDispatcher;
 use clamber::world::rapier3d::parry::shape::Ball;
 use clamber::world::rapier3d::pipeline::{QueryFilter, QueryPipeline};
 use clamber::world::rapier3d::prelude::{ColliderBuilder, PhysicsWorld};
-use clamber_scenes::tour::RATE;
+use clamber_scenes::climbs::RATE;
 use rayon::prelude::*;
 
 /// Length of a tick, seconds.

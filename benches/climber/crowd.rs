@@ -8,9 +8,9 @@ use std::time::Instant;
 use clamber::prelude::*;
 use clamber::rig::Pose;
 use clamber::world::rapier3d::prelude::PhysicsWorld;
+use clamber_scenes::climbs::{RATE, long_climber};
 use clamber_scenes::giant::giant_of;
 use clamber_scenes::measure::{Bound, Cells, quantile};
-use clamber_scenes::tour::{self, RATE};
 use clamber_scenes::{Creature, valley};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -198,7 +198,7 @@ fn beside(
     }
     world.detect_collisions(&(), &());
     let mut rng = fastrand::Rng::with_seed(10);
-    let speed = tour::config().ground.walk_speed;
+    let speed = long_climber().ground.walk_speed;
     let mut all = Vec::with_capacity(count);
     while all.len() < count {
         let surface = &giants[all.len() * giants.len() / count].surface;
@@ -260,7 +260,7 @@ fn seated(giants: &[Giant], count: usize) -> Result<Vec<Rider>, Box<dyn Error>> 
         let direction = DVec3::new(rng.f64() - 0.5, rng.f64() - 0.5, rng.f64() - 0.5);
         if part == Part::Climbs || steep > LEVEL {
             riders.push(Rider {
-                climber: Climber::new(tour::config(), DVec3::Y * 1e4)?,
+                climber: Climber::new(long_climber(), DVec3::Y * 1e4)?,
                 part,
                 giant,
                 seat,

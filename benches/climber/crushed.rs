@@ -8,8 +8,8 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use clamber::prelude::*;
+use clamber_scenes::climbs::RATE;
 use clamber_scenes::measure::{Bound, Cells, quantile};
-use clamber_scenes::tour::RATE;
 use glam::{DQuat, DVec3, Vec3};
 
 /// Length of a tick, seconds.

@@ -8,8 +8,8 @@ use std::time::Instant;
 
 use clamber::prelude::*;
 use clamber::world::HalfSpace;
+use clamber_scenes::climbs::RATE;
 use clamber_scenes::measure::{Cells, quantile};
-use clamber_scenes::tour::RATE;
 use glam::DVec3;
 
 /// Length of a tick, seconds.

@@ -29,9 +29,9 @@ use std::time::Instant;
 use clamber::prelude::*;
 use clamber::world::rapier3d::math::Vector;
 use clamber::world::rapier3d::prelude::PhysicsWorld;
+use clamber_scenes::climbs::{Motion as Walks, RATE, Stage, Ways, long_climber};
 use clamber_scenes::giant;
 use clamber_scenes::measure::{Bound, Cells, is_brief, quantile};
-use clamber_scenes::tour::{self, Motion as Walks, RATE, Stage, Ways};
 use glam::DVec3;
 
 use characters::{Character, queries, still_mesh};
@@ -63,7 +63,6 @@ fn run(brief: bool) -> Result<(), Box<dyn Error>> {
     let ticks = if brief { 30 } else { 1_800 };
     let creature = giant::giant()?;
     let mut stage = Stage::new(&creature, HEIGHT, Walks::Walk)?;
-    stage.place(0.0)?;
     let mut still = Still::new(&stage)?;
     let mut times: [Vec<f64>; 4] = Default::default();
     let grips_all = |query: &ContactQuery<'_>| query.usual().with_grip(true);
@@ -85,7 +84,7 @@ fn run(brief: bool) -> Result<(), Box<dyn Error>> {
     let route = ways.climb(16).ok_or("found no way up the giant")?;
     stage.place(0.0)?;
     let (foot, normal) = stage.vertex(route.waypoints[0]);
-    let mut climbs = Climber::new(tour::config(), foot + normal * 0.45)?;
+    let mut climbs = Climber::new(long_climber(), foot + normal * 0.45)?;
     let (mut next, mut made, mut climbed) = (0, 0.0, 0);
     for tick in 1..=ticks {
         if next >= route.waypoints.len() {

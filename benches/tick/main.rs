@@ -18,11 +18,11 @@ use std::time::Duration;
 use clamber::geometry::{Capsule, Ray};
 use clamber::prelude::*;
 use clamber_scenes::giant::giant_of;
-use clamber_scenes::measure::{Bound, Caches, Cells, Stream, is_brief, median_us};
+use clamber_scenes::measure::{Bound, Cells, is_brief, median_us};
 use clamber_scenes::riders::Workload;
 use contender::{Contender, Eager, Lazy, Parry};
 use glam::Vec3;
-use timing::{Lap, race};
+use timing::{Caches, Lap, Stream, race};
 
 /// Sizes of a run of the bench.
 struct Effort {

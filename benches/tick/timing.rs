@@ -3,10 +3,41 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use clamber_scenes::measure::{Caches, Stream, quantile};
+use clamber_scenes::measure::quantile;
 use clamber_scenes::riders::Tick;
 
 use crate::contender::Contender;
+
+/// Bytes streamed between cold ticks, in place of the rest of a game: more than the caches hold.
+const STREAM: usize = 64 << 20;
+
+/// Whether a tick finds its data in the processor's caches.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Caches {
+    /// The caches hold the data of the tick before.
+    Warm,
+    /// The caches hold other data: see [`Stream`].
+    Cold,
+}
+
+/// Memory to stream before a cold tick.
+pub(crate) struct Stream(Vec<u64>);
+
+impl Default for Stream {
+    fn default() -> Self {
+        Self(vec![1; STREAM / 8])
+    }
+}
+
+impl Stream {
+    /// Reads and writes all of the memory, which evicts other data from the caches.
+    fn run(&mut self) {
+        for number in &mut self.0 {
+            *number = number.wrapping_mul(3);
+        }
+        black_box(&self.0);
+    }
+}
 
 /// Times all contenders on all ticks, with warm or cold caches.
 pub(crate) fn race(

@@ -149,10 +149,6 @@ enum CameraKind {
 enum OverlayKind {
     /// The skeleton.
     Joints,
-    /// Capsules around the parts.
-    Capsules,
-    /// Spheres around the parts.
-    Spheres,
     /// Clusters of the skin: orange if they were skinned in this tick, else blue.
     Clusters,
     /// The triangle under the climber, and the climber's path.

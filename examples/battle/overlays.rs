@@ -5,14 +5,13 @@ use std::sync::Arc;
 
 use clamber::geometry::Ray;
 use clamber::glam::{DVec3, Vec3};
-use clamber::mesh::{Part, PartId, VertexId};
+use clamber::mesh::{Part, VertexId};
 use clamber::prelude::*;
-use clamber::render::{Camera, Color, Image, Overlay, TextSize};
+use clamber::render::{Camera, Image, Overlay, TextSize};
 use clamber::rig::JointId;
 use clamber::world::rapier3d::prelude::*;
 use clamber_colossus::Sense;
 use clamber_scenes::battle::{Battle, CREATURE, TICK};
-use clamber_scenes::part_bounds::{JointMaps, PartBounds};
 
 use crate::colors::{MAGENTA, ORANGE, SKY_BLUE, VERMILION, WHITE, YELLOW, opaque, seen_through};
 use crate::{OverlayKind, plans};
@@ -107,7 +106,6 @@ impl Overlays {
         for kind in &self.kinds {
             match kind {
                 OverlayKind::Joints => joints(&mut over, battle, eye, THROUGH * self.height),
-                OverlayKind::Capsules | OverlayKind::Spheres => bounds(&mut over, battle, *kind),
                 OverlayKind::Clusters => clusters(&mut over, battle, eye, self.nearer),
                 OverlayKind::Contact => contact(&mut over, battle, &self.way),
                 OverlayKind::Anchors => self.anchors(&mut over, battle, eye),
@@ -298,30 +296,6 @@ fn joints(over: &mut Overlay, battle: &Battle<'_>, eye: DVec3, by: f64) {
             over.line(parent, place, 3.0, [1.0, 0.75, 0.1, 0.9]);
         }
         dot(over, place, eye, 1.0, VERMILION);
-    }
-}
-
-fn bounds(over: &mut Overlay, battle: &Battle<'_>, kind: OverlayKind) {
-    /// Colour of the bounds: linear red, green, blue and opacity.
-    const COLOR: Color = [0.2, 0.8, 1.0, 0.5];
-    let mesh = battle.surface().mesh();
-    let root = battle.surface().world_from_model();
-    if kind == OverlayKind::Spheres {
-        for (_, sphere) in battle.surface().in_model().part_spheres() {
-            let center = root.transform_point_f32(sphere.center);
-            over.sphere(center, f64::from(sphere.radius) * root.scale, 1.0, COLOR);
-        }
-    }
-    if kind == OverlayKind::Capsules {
-        let bounds = PartBounds::new(mesh);
-        let mut maps = JointMaps::default();
-        maps.update(battle.palette());
-        let parts = (0..bounds.part_count() as u32).map(PartId);
-        for node in parts.filter_map(|part| bounds.node(part)) {
-            let capsule = node.capsule(&maps);
-            let [a, b] = [capsule.a, capsule.b].map(|end| root.transform_point_f32(end));
-            over.capsule(a, b, f64::from(capsule.radius) * root.scale, 1.0, COLOR);
-        }
     }
 }
 

@@ -7,6 +7,7 @@
 //! C++. The benches `peers` and `accuracy` compare them. README.md says how to run the benches, and which calls of each
 //! library are used.
 
+mod ball;
 mod heap;
 #[cfg(any(feature = "bullet", feature = "embree", feature = "fcl"))]
 mod native;
@@ -16,13 +17,16 @@ mod parry;
 mod peer;
 #[cfg(feature = "physx")]
 mod physx;
+mod plot;
 mod push_out;
 mod skin;
 mod thesis;
 mod triangle;
 
+pub use ball::ball;
 pub use heap::taken_from_heap;
 pub use peer::{Answer, Entry, Make, Nearest, Peer, RayHit, Unsupported};
+pub use plot::{Plot, Series};
 pub use push_out::mean_push_out;
 
 /// All peers that are compiled in; clamber's come first.

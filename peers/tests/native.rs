@@ -10,9 +10,8 @@
 
 use std::sync::Arc;
 
+use clamber_peers::{Peer, Unsupported, all, ball};
 use clamber_verify::brute_force::{self, Triangles};
-use clamber_peers::{Peer, Unsupported, all};
-use clamber_scenes::ball::ball;
 use clamber_surface::geometry::{Affine, Ray, Sphere, rotation_from_axis_angle};
 use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
 use clamber_surface::rig::{JointId, Palette};

@@ -39,7 +39,6 @@ const ARGUMENTS: [(&str, &[&str]); 9] = [
     ),
     ("climbs", &["--height", "40", "assets/colossus.glb"]),
     ("duel", &["--joins", "10", "--record", DUEL]),
-    ("life", &["--minutes", "10"]),
     // `duel` records this file.
     ("replay", &[DUEL, "--from", "60"]),
     (
@@ -54,6 +53,7 @@ const ARGUMENTS: [(&str, &[&str]); 9] = [
     ),
     ("seeds", &["target/fuzz-seeds"]),
     ("soak", &["--minutes", "0.2", "--out", "target/soak-brief"]),
+    ("soak", &["--case", "life", "--minutes", "10"]),
 ];
 
 /// Recording of `duel`, which `replay` reads.

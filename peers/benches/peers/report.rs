@@ -2,7 +2,8 @@
 
 use std::error::Error;
 
-use clamber_scenes::measure::{Bound, Cells, Plot, Series, Table, measure_folder};
+use clamber_peers::{Plot, Series};
+use clamber_scenes::measure::{Bound, Cells, Table, measure_folder};
 use clamber_surface::mesh::ColliderMesh;
 
 use crate::race::{Entrant, Lap};

@@ -5,7 +5,8 @@
     reason = "a test's helpers may fail like the test"
 )]
 
-use clamber_scenes::{Creature, beast::beast, test_data};
+use clamber_scenes::giant::giant;
+use clamber_scenes::{Creature, test_data};
 use clamber_surface::rig::Playback;
 use clamber_surface::skin::skin;
 use clamber_verify::posed::skinning_error_share;
@@ -38,9 +39,9 @@ fn worst_share(creature: &Creature) -> (f64, usize) {
 
 #[test]
 fn a_moved_vertex_and_nan_exceed_the_bound() {
-    let beast = beast(500);
-    let palette = beast.skeleton.palette(&beast.skeleton.rest_pose()).unwrap();
-    let mesh = &beast.collider;
+    let giant = giant().unwrap();
+    let palette = giant.skeleton.palette(&giant.skeleton.rest_pose()).unwrap();
+    let mesh = &giant.collider;
     let mut positions = skin(mesh, palette.matrices()).unwrap();
     let share = |p: &[Vec3]| skinning_error_share(mesh, palette.matrices(), p);
     assert!((0.01..1.0).contains(&share(&positions)));
@@ -51,9 +52,9 @@ fn a_moved_vertex_and_nan_exceed_the_bound() {
 }
 
 #[test]
-fn beast_stays_within_the_bound() {
-    let (worst, compared) = worst_share(&beast(3_000));
-    println!("beast: {worst:.3} of the bound, {compared} vertices");
+fn the_giant_stays_within_the_bound() {
+    let (worst, compared) = worst_share(&giant().unwrap());
+    println!("giant: {worst:.3} of the bound, {compared} vertices");
     assert!(compared > 50_000 && worst > 0.1);
 }
 

@@ -8,7 +8,8 @@ use std::error::Error;
 use std::sync::Arc;
 use std::time::Instant;
 
-use clamber_scenes::measure::{Plot, Series, Table, measure_folder, quantile};
+use clamber_peers::{Plot, Series};
+use clamber_scenes::measure::{Table, measure_folder, quantile};
 use clamber_surface::mesh::ColliderMesh;
 use climbers::{GROUND, Stance};
 use glam::DVec3;

@@ -2,7 +2,8 @@
 
 use std::error::Error;
 
-use clamber_scenes::measure::{Bound, Cells, Plot, Series, Table, measure_folder, quantile};
+use clamber_peers::{Plot, Series};
+use clamber_scenes::measure::{Bound, Cells, Table, measure_folder, quantile};
 
 use super::{KINDS, Kind};
 

@@ -4,7 +4,7 @@ use std::error::Error;
 use std::sync::Arc;
 
 use clamber_verify::brute_force::{Corners, Triangles};
-use clamber_scenes::ball::ball;
+use clamber_peers::ball;
 use clamber_scenes::giant::giant;
 use clamber_surface::geometry::{Affine, Ray, Sphere, rotation_from_axis_angle};
 use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};

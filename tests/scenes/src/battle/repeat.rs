@@ -65,7 +65,7 @@ mod tests {
 
     use super::super::TICK;
     use super::*;
-    use crate::beast::beast;
+    use crate::giant::giant_of;
 
     /// The longest step of a clip's time in one tick, over a minute.
     fn longest_step(repeat: Repeat, duration: f64) -> f64 {
@@ -102,11 +102,12 @@ mod tests {
 
     #[test]
     fn clips_of_a_creature_are_measured() {
-        let creature = beast(1_000);
+        let creature = giant_of(1_000).unwrap();
         let (low, high) = creature.bounds(&creature.skeleton.rest_pose()).unwrap();
         let height = f64::from(high.y - low.y);
         let probe = SeamProbe::new(&creature.skeleton, &creature.collider, height);
-        for clip in &creature.clips {
+        let loops = |clip: &&Clip| ["idle", "walk", "shake"].contains(&clip.name.as_str());
+        for clip in creature.clips.iter().filter(loops) {
             let seam = probe.measure(clip).unwrap();
             assert_eq!(Repeat::of(seam), Repeat::Loop, "{}: {seam:?}", clip.name);
         }

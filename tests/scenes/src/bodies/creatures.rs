@@ -3,7 +3,6 @@
 use std::error::Error;
 
 use clamber_climber::{ClimberConfig, ClimberInput};
-use clamber_surface::geometry::Similarity;
 use clamber_surface::surface::SkinnedSurface;
 use clamber_world::Obstacle;
 use glam::DVec3;
@@ -38,13 +37,8 @@ pub fn mount(
         .clip_like(&[mount.clip])
         .ok_or("the creature has no such clip")?;
     let rest = creature.skeleton.rest_pose();
-    let (low, high) = creature.bounds(&rest)?;
-    let scale = HEIGHT / f64::from(high.y - low.y);
-    let place = Similarity {
-        scale,
-        translation: DVec3::Y * (-f64::from(low.y) * scale),
-        ..Similarity::IDENTITY
-    };
+    let (mut place, ground) = creature.standing(HEIGHT)?;
+    place.translation -= DVec3::Y * ground;
     let collider = creature.collider.clone();
     let mut surface = SkinnedSurface::new(collider.clone());
     let pose = clip.sample(&rest, 0.0, clamber_surface::rig::Playback::Loop)?;
@@ -63,8 +57,8 @@ pub fn mount(
         }
     }
     let (_, start) = found.ok_or("nothing to hold at this height")?;
-    // Froude: as slow as a creature of this size.
-    let rate = 1.0 / (scale * f64::from(high.y - low.y) / 2.0).sqrt().max(1.0);
+    // Clips are made for creatures of 2 m; by Froude's law larger ones are slower.
+    let rate = 1.0 / (HEIGHT / 2.0).sqrt();
     let animation = (creature.skeleton.clone(), clip.clone());
     Ok((
         Thing::creature(collider, animation, rate, move |_| place),

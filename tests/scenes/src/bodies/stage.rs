@@ -74,7 +74,7 @@ impl Thing {
     }
 }
 
-/// What the player sees before a tick.
+/// The player's view before a tick.
 pub struct Moment<'a> {
     /// Seconds since the start.
     pub time: f64,
@@ -82,7 +82,7 @@ pub struct Moment<'a> {
     pub state: &'a ClimberState,
 }
 
-/// What there is, who climbs, and what the player does.
+/// The ground and creatures, the climber, and the player's input.
 pub struct Scene {
     /// Its name.
     pub name: String,
@@ -98,6 +98,51 @@ pub struct Scene {
     pub grips_all: bool,
     /// What the player does.
     pub input: Box<dyn Fn(&Moment<'_>) -> ClimberInput>,
+}
+
+impl Scene {
+    /// A scene of a climber without stamina that can grip fur alone.
+    pub(super) fn new(
+        name: impl Into<String>,
+        seconds: f64,
+        start: DVec3,
+        things: Vec<Thing>,
+        input: impl Fn(&Moment<'_>) -> ClimberInput + 'static,
+    ) -> Self {
+        let mut config = ClimberConfig::colossus_climber();
+        config.stamina = None;
+        config.body.height = 0.9;
+        Self {
+            name: name.into(),
+            seconds,
+            config,
+            start,
+            things,
+            grips_all: false,
+            input: Box::new(input),
+        }
+    }
+}
+
+pub(super) fn still(_: f64) -> Similarity {
+    Similarity::IDENTITY
+}
+
+/// A floor of stone.
+pub(super) fn floor() -> Result<Thing, Box<dyn Error>> {
+    Thing::solid(&Solid::floor(60.0), SurfaceKind::Stone, still)
+}
+
+/// The direction if the condition holds, or else zero.
+pub(super) fn when(condition: bool, direction: DVec3) -> DVec3 {
+    if condition { direction } else { DVec3::ZERO }
+}
+
+pub(super) fn walking(walk: DVec3) -> ClimberInput {
+    ClimberInput {
+        walk,
+        ..ClimberInput::IDLE
+    }
 }
 
 /// A scene that is played.
@@ -141,9 +186,8 @@ impl<'s> Stage<'s> {
 
     /// What there is, for bodies.
     pub fn obstacles(&self) -> Vec<(ObstacleId, &dyn Obstacle)> {
-        let surfaces = self.surfaces.iter().enumerate();
-        surfaces
-            .map(|(index, surface)| (ObstacleId(index as u64), surface as &dyn Obstacle))
+        let ids = (0..).map(ObstacleId);
+        ids.zip(self.surfaces.iter().map(|surface| surface as &dyn Obstacle))
             .collect()
     }
 
@@ -168,12 +212,9 @@ impl<'s> Stage<'s> {
         for (thing, surface) in self.scene.things.iter().zip(&mut self.surfaces) {
             surface.advance(&thing.palette(self.time)?, (thing.motion)(self.time))?;
         }
-        let obstacles: Vec<(ObstacleId, &dyn Obstacle)> = self
-            .surfaces
-            .iter()
-            .enumerate()
-            .map(|(index, surface)| (ObstacleId(index as u64), surface as &dyn Obstacle))
-            .collect();
+        let ids = (0..).map(ObstacleId);
+        let obstacles = ids.zip(self.surfaces.iter().map(|surface| surface as &dyn Obstacle));
+        let obstacles: Vec<(ObstacleId, &dyn Obstacle)> = obstacles.collect();
         let rules = if self.scene.grips_all {
             StepRules::by(&|query| query.usual().with_grip(true))
         } else {

@@ -1,71 +1,66 @@
-//! Walls and ledges to hold, and what else happens to a climber.
+//! Walls and ledges to hold, falls, blows and ceilings.
 
 use std::error::Error;
 
-use clamber_climber::{Blow, ClimberConfig, ClimberInput, ClimberMode};
+use clamber_climber::{Blow, ClimberInput, ClimberMode};
 use clamber_surface::geometry::Similarity;
 use clamber_surface::mesh::SurfaceKind;
 use glam::DVec3;
 
-use super::stage::{Moment, Scene, Thing};
+use super::stage::{Moment, Scene, Thing, floor, still, walking, when};
 use crate::controllers::{Solid, shifted};
 
-fn still(_: f64) -> Similarity {
-    Similarity::IDENTITY
+type Made<T> = Result<T, Box<dyn Error>>;
+
+/// Start of a climber that is in the air before a wall.
+const BEFORE: DVec3 = DVec3::new(0.0, 2.0, -0.41);
+
+/// Start of a climber that stands on the ground.
+const STANDING: DVec3 = DVec3::new(0.0, 0.42, 0.0);
+
+fn block(
+    kind: SurfaceKind,
+    [low, high]: [[f64; 3]; 2],
+    motion: impl Fn(f64) -> Similarity + 'static,
+) -> Made<Thing> {
+    let [low, high] = [low, high].map(DVec3::from_array);
+    Thing::solid(&Solid::Block { low, high }, kind, motion)
 }
 
-fn climber() -> ClimberConfig {
-    let mut config = ClimberConfig::colossus_climber();
-    config.stamina = None;
-    config.body.height = 0.9;
-    config
+fn stone(corners: [[f64; 3]; 2]) -> Made<Thing> {
+    block(SurfaceKind::Stone, corners, still)
 }
 
-/// A wall with its face at z = 0, which the climber is in front of at z < 0.
-fn block(low: DVec3, high: DVec3) -> Solid {
-    Solid::Block { low, high }
+/// A wall of fur with its face at z = 0; the climber is at z < 0.
+fn fur(low: f64, motion: impl Fn(f64) -> Similarity + 'static) -> Made<Thing> {
+    block(
+        SurfaceKind::Fur,
+        [[-50.0, low, 0.0], [50.0, 60.0, 8.0]],
+        motion,
+    )
 }
 
-fn floor() -> Result<Thing, Box<dyn Error>> {
-    Thing::solid(&Solid::floor(60.0), SurfaceKind::Stone, still)
-}
-
-fn furred() -> Result<Thing, Box<dyn Error>> {
-    let wall = block(DVec3::new(-50.0, -40.0, 0.0), DVec3::new(50.0, 60.0, 8.0));
-    Thing::solid(&wall, SurfaceKind::Fur, still)
+fn holding(walk: DVec3, climb: DVec3) -> ClimberInput {
+    ClimberInput {
+        grip: true,
+        walk,
+        climb,
+        ..ClimberInput::IDLE
+    }
 }
 
 /// Climbs a wall of fur: `way` is in world space, its length the share of 1.5 m/s; +Y is up, -X to the right.
-///
-/// # Errors
-/// None.
-pub fn wall(way: DVec3) -> Result<Scene, Box<dyn Error>> {
-    Ok(Scene {
-        name: format!("wall at {:.2} m/s", 1.5 * way.length()),
-        seconds: 6.0,
-        config: climber(),
-        start: DVec3::new(0.0, 2.0, -0.41),
-        things: vec![furred()?],
-        grips_all: false,
-        input: Box::new(move |moment| ClimberInput {
-            grip: true,
-            walk: if moment.time < 0.2 {
-                DVec3::Z
-            } else {
-                DVec3::ZERO
-            },
-            climb: if moment.time > 1.0 { way } else { DVec3::ZERO },
-            ..ClimberInput::IDLE
-        }),
-    })
+pub fn wall(way: DVec3) -> Made<Scene> {
+    let name = format!("wall at {:.2} m/s", 1.5 * way.length());
+    let things = vec![fur(-40.0, still)?];
+    Ok(Scene::new(name, 6.0, BEFORE, things, move |moment| {
+        let walk = when(moment.time < 0.2, DVec3::Z);
+        holding(walk, when(moment.time > 1.0, way))
+    }))
 }
 
-/// Hangs from fur that shakes sideways with so many hertz and metres.
-///
-/// # Errors
-/// None.
-pub fn hang(hertz: f64, size: f64) -> Result<Scene, Box<dyn Error>> {
-    let wall = block(DVec3::new(-50.0, -40.0, 0.0), DVec3::new(50.0, 60.0, 8.0));
+/// Hangs from fur that shakes sideways with this frequency, hertz, and amplitude, metres.
+pub fn hang(hertz: f64, size: f64) -> Made<Scene> {
     let motion = move |time: f64| {
         let time = (time - 1.0).max(0.0);
         // Not at once.
@@ -73,244 +68,129 @@ pub fn hang(hertz: f64, size: f64) -> Result<Scene, Box<dyn Error>> {
         let angle = core::f64::consts::TAU * hertz * time;
         shifted(DVec3::X * (size * grown * grown * libm::sin(angle)))
     };
-    Ok(Scene {
-        name: format!("hang at {hertz} Hz"),
-        seconds: 8.0,
-        config: climber(),
-        start: DVec3::new(0.0, 2.0, -0.41),
-        things: vec![Thing::solid(&wall, SurfaceKind::Fur, motion)?],
-        grips_all: false,
-        input: Box::new(|_| ClimberInput {
-            grip: true,
-            ..ClimberInput::IDLE
-        }),
-    })
+    let name = format!("hang at {hertz} Hz");
+    let things = vec![fur(-40.0, motion)?];
+    Ok(Scene::new(name, 8.0, BEFORE, things, |_| {
+        holding(DVec3::ZERO, DVec3::ZERO)
+    }))
 }
 
 /// Towards the ledge, until it is caught.
 fn towards(moment: &Moment<'_>) -> DVec3 {
-    if moment.state.mode == ClimberMode::Falling {
-        DVec3::Z
-    } else {
-        DVec3::ZERO
-    }
+    when(moment.state.mode == ClimberMode::Falling, DVec3::Z)
 }
 
-fn cliff() -> Result<Thing, Box<dyn Error>> {
-    let cliff = block(DVec3::new(-50.0, -2.0, 0.0), DVec3::new(50.0, 3.0, 8.0));
-    Thing::solid(&cliff, SurfaceKind::Stone, still)
+/// A scene before a ledge 3 m above the ground.
+fn at_a_ledge(name: &str, input: impl Fn(&Moment<'_>) -> ClimberInput + 'static) -> Made<Scene> {
+    let things = vec![floor()?, stone([[-50.0, -2.0, 0.0], [50.0, 3.0, 8.0]])?];
+    let start = DVec3::new(0.0, 2.2, -0.42);
+    Ok(Scene::new(name, 5.0, start, things, input))
 }
 
 /// Jumps at a ledge 3 m above the ground, hangs, and moves along it to the right after a second and a half.
-///
-/// # Errors
-/// None.
-pub fn ledge() -> Result<Scene, Box<dyn Error>> {
-    Ok(Scene {
-        name: "ledge".into(),
-        seconds: 5.0,
-        config: climber(),
-        start: DVec3::new(0.0, 2.2, -0.42),
-        things: vec![floor()?, cliff()?],
-        grips_all: false,
-        input: Box::new(|moment| ClimberInput {
-            grip: true,
-            walk: towards(moment),
-            climb: if moment.time > 1.5 {
-                DVec3::NEG_X
-            } else {
-                DVec3::ZERO
-            },
-            ..ClimberInput::IDLE
-        }),
+pub fn ledge() -> Made<Scene> {
+    at_a_ledge("ledge", |moment| {
+        holding(towards(moment), when(moment.time > 1.5, DVec3::NEG_X))
     })
 }
 
 /// Hangs from a ledge, and pulls itself up.
-///
-/// # Errors
-/// None.
-pub fn mantle() -> Result<Scene, Box<dyn Error>> {
-    let mut scene = ledge()?;
-    scene.name = "mantle".into();
-    scene.input = Box::new(|moment| ClimberInput {
-        grip: true,
-        walk: if moment.time > 1.5 && moment.state.mode == ClimberMode::LedgeHanging {
-            DVec3::Z
-        } else {
-            towards(moment)
-        },
-        ..ClimberInput::IDLE
-    });
-    Ok(scene)
-}
-
-/// Stands, jumps after half a second, and falls from another 3 m.
-///
-/// # Errors
-/// None.
-pub fn fall() -> Result<Scene, Box<dyn Error>> {
-    let top = block(DVec3::new(-3.0, 2.0, -3.0), DVec3::new(3.0, 3.0, 1.0));
-    Ok(Scene {
-        name: "jump and fall".into(),
-        seconds: 3.5,
-        config: climber(),
-        start: DVec3::new(0.0, 3.42, 0.0),
-        things: vec![floor()?, Thing::solid(&top, SurfaceKind::Stone, still)?],
-        grips_all: false,
-        input: Box::new(|moment| ClimberInput {
-            walk: if moment.time > 0.4 && moment.time < 1.4 {
-                DVec3::Z
-            } else {
-                DVec3::ZERO
-            },
-            jump: (0.5..0.52).contains(&moment.time),
-            ..ClimberInput::IDLE
-        }),
-    })
-}
-
-/// Steps off a wall of half a metre.
-///
-/// # Errors
-/// None.
-pub fn step_off() -> Result<Scene, Box<dyn Error>> {
-    let top = block(DVec3::new(-3.0, -1.0, -3.0), DVec3::new(3.0, 0.45, 0.6));
-    Ok(Scene {
-        name: "steps off".into(),
-        seconds: 3.0,
-        config: climber(),
-        start: DVec3::new(0.0, 0.86, 0.0),
-        things: vec![floor()?, Thing::solid(&top, SurfaceKind::Stone, still)?],
-        grips_all: false,
-        input: Box::new(|moment| ClimberInput {
-            walk: if moment.time > 0.4 && moment.time < 1.4 {
-                DVec3::Z * 0.5
-            } else {
-                DVec3::ZERO
-            },
-            ..ClimberInput::IDLE
-        }),
-    })
-}
-
-/// Stands before a wall of fur, grips it, climbs, shakes, holds again, lets go and lands.
-///
-/// # Errors
-/// None.
-pub fn all_holds() -> Result<Scene, Box<dyn Error>> {
-    let wall = block(DVec3::new(-50.0, -4.0, 0.0), DVec3::new(50.0, 60.0, 8.0));
-    let motion = |time: f64| {
-        let shakes = ((time - 3.0) / 0.4).clamp(0.0, 1.0) * ((5.0 - time) / 0.4).clamp(0.0, 1.0);
-        shifted(DVec3::X * (0.2 * shakes * libm::sin(12.0 * (time - 3.0))))
-    };
-    Ok(Scene {
-        name: "all holds".into(),
-        seconds: 9.0,
-        config: climber(),
-        start: DVec3::new(0.0, 0.42, -0.5),
-        things: vec![floor()?, Thing::solid(&wall, SurfaceKind::Fur, motion)?],
-        grips_all: false,
-        input: Box::new(|moment| ClimberInput {
-            grip: moment.time > 0.8 && moment.time < 7.5,
-            walk: if moment.time < 1.0 && moment.time > 0.6 {
-                DVec3::Z
-            } else {
-                DVec3::ZERO
-            },
-            climb: match moment.time {
-                1.0..1.6 => DVec3::Y,
-                6.2..6.6 => DVec3::NEG_Y,
-                _ => DVec3::ZERO,
-            },
-            ..ClimberInput::IDLE
-        }),
+pub fn mantle() -> Made<Scene> {
+    at_a_ledge("mantle", |moment| {
+        let hangs = moment.state.mode == ClimberMode::LedgeHanging;
+        let pulls = when(moment.time > 1.5 && hangs, DVec3::Z);
+        holding(towards(moment) + pulls, DVec3::ZERO)
     })
 }
 
 /// Hangs from a ledge, lets go, falls and lands.
-///
-/// # Errors
-/// None.
-pub fn drop_off() -> Result<Scene, Box<dyn Error>> {
-    let mut scene = ledge()?;
-    scene.name = "drops off a ledge".into();
-    scene.input = Box::new(|moment| ClimberInput {
+pub fn drop_off() -> Made<Scene> {
+    at_a_ledge("drops off a ledge", |moment| ClimberInput {
         grip: moment.time < 1.5,
-        walk: if moment.time < 1.5 {
-            towards(moment)
-        } else {
-            DVec3::ZERO
-        },
-        ..ClimberInput::IDLE
-    });
-    Ok(scene)
+        ..walking(when(moment.time < 1.5, towards(moment)))
+    })
+}
+
+/// Stands, jumps after half a second, and falls from another 3 m.
+pub fn fall() -> Made<Scene> {
+    let things = vec![floor()?, stone([[-3.0, 2.0, -3.0], [3.0, 3.0, 1.0]])?];
+    let start = DVec3::new(0.0, 3.42, 0.0);
+    Ok(Scene::new("jump and fall", 3.5, start, things, |moment| {
+        ClimberInput {
+            jump: (0.5..0.52).contains(&moment.time),
+            ..walking(when(moment.time > 0.4 && moment.time < 1.4, DVec3::Z))
+        }
+    }))
+}
+
+/// Steps off a wall of half a metre.
+pub fn step_off() -> Made<Scene> {
+    let things = vec![floor()?, stone([[-3.0, -1.0, -3.0], [3.0, 0.45, 0.6]])?];
+    let start = DVec3::new(0.0, 0.86, 0.0);
+    Ok(Scene::new("steps off", 3.0, start, things, |moment| {
+        let walks = moment.time > 0.4 && moment.time < 1.4;
+        walking(when(walks, DVec3::Z * 0.5))
+    }))
+}
+
+/// Stands before a wall of fur, grips it, climbs, shakes, holds again, lets go and lands.
+pub fn all_holds() -> Made<Scene> {
+    let motion = |time: f64| {
+        let shakes = ((time - 3.0) / 0.4).clamp(0.0, 1.0) * ((5.0 - time) / 0.4).clamp(0.0, 1.0);
+        shifted(DVec3::X * (0.2 * shakes * libm::sin(12.0 * (time - 3.0))))
+    };
+    let things = vec![floor()?, fur(-4.0, motion)?];
+    let start = STANDING - DVec3::Z * 0.5;
+    Ok(Scene::new("all holds", 9.0, start, things, |moment| {
+        let walk = when(moment.time < 1.0 && moment.time > 0.6, DVec3::Z);
+        let climb = match moment.time {
+            1.0..1.6 => DVec3::Y,
+            6.2..6.6 => DVec3::NEG_Y,
+            _ => DVec3::ZERO,
+        };
+        ClimberInput {
+            grip: moment.time > 0.8 && moment.time < 7.5,
+            ..holding(walk, climb)
+        }
+    }))
 }
 
 /// Stands, and is knocked over; tumbles, lies and gets up.
-///
-/// # Errors
-/// None.
-pub fn knock() -> Result<Scene, Box<dyn Error>> {
-    Ok(Scene {
-        name: "knocked over".into(),
-        seconds: 5.0,
-        config: climber(),
-        start: DVec3::new(0.0, 0.42, 0.0),
-        things: vec![floor()?],
-        grips_all: false,
-        input: Box::new(|moment| ClimberInput {
+pub fn knock() -> Made<Scene> {
+    let things = vec![floor()?];
+    Ok(Scene::new(
+        "knocked over",
+        5.0,
+        STANDING,
+        things,
+        |moment| ClimberInput {
             blow: (0.499..0.512).contains(&moment.time).then_some(Blow {
                 velocity: DVec3::new(1.0, 3.0, -5.0),
                 damage: 0.1,
                 by: None,
             }),
             ..ClimberInput::IDLE
-        }),
-    })
+        },
+    ))
 }
 
-/// Walks under a ceiling of 1.2 m.
-///
-/// # Errors
-/// None.
-pub fn crouch() -> Result<Scene, Box<dyn Error>> {
-    let ceiling = block(DVec3::new(-3.0, -3.0, 0.0), DVec3::new(3.0, 3.0, 12.0));
-    // Comes down on whoever stands below it.
+/// A ceiling that comes down to this height of its middle on a climber that stands, metres.
+fn below_a_ceiling(name: &str, low: f64) -> Made<Scene> {
     let motion =
-        |time: f64| shifted(DVec3::Y * (4.2 + (1.6 - 0.8 * time).max(0.0)) - DVec3::Z * 6.0);
-    Ok(Scene {
-        name: "crouched under a ceiling".into(),
-        seconds: 4.0,
-        config: climber(),
-        start: DVec3::new(0.0, 0.42, 0.0),
-        things: vec![
-            floor()?,
-            Thing::solid(&ceiling, SurfaceKind::Stone, motion)?,
-        ],
-        grips_all: false,
-        input: Box::new(|_| ClimberInput::IDLE),
-    })
+        move |time: f64| shifted(DVec3::Y * (low + (1.6 - 0.8 * time).max(0.0)) - DVec3::Z * 6.0);
+    let corners = [[-3.0, -3.0, 0.0], [3.0, 3.0, 12.0]];
+    let things = vec![floor()?, block(SurfaceKind::Stone, corners, motion)?];
+    Ok(Scene::new(name, 4.0, STANDING, things, |_| {
+        ClimberInput::IDLE
+    }))
+}
+
+/// Crouches under a ceiling of 1.2 m, which comes down.
+pub fn crouch() -> Made<Scene> {
+    below_a_ceiling("crouched under a ceiling", 4.2)
 }
 
 /// Is pressed to the ground.
-///
-/// # Errors
-/// None.
-pub fn squeeze() -> Result<Scene, Box<dyn Error>> {
-    let ceiling = block(DVec3::new(-3.0, -3.0, 0.0), DVec3::new(3.0, 3.0, 12.0));
-    let motion =
-        |time: f64| shifted(DVec3::Y * (3.6 + (1.6 - 0.8 * time).max(0.0)) - DVec3::Z * 6.0);
-    Ok(Scene {
-        name: "crushed".into(),
-        seconds: 4.0,
-        config: climber(),
-        start: DVec3::new(0.0, 0.42, 0.0),
-        things: vec![
-            floor()?,
-            Thing::solid(&ceiling, SurfaceKind::Stone, motion)?,
-        ],
-        grips_all: false,
-        input: Box::new(|_| ClimberInput::IDLE),
-    })
+pub fn squeeze() -> Made<Scene> {
+    below_a_ceiling("crushed", 3.6)
 }

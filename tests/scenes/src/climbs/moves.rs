@@ -1,17 +1,18 @@
-//! What a model does while a bot climbs it: it idles and walks by turns.
+//! The clips that a creature plays while it is climbed.
+
+use std::error::Error;
 
 use clamber_animation::SeamProbe;
 use clamber_navigation::{ClimbGraph, Forecast};
-use clamber_surface::rig::{Playback, Pose};
+use clamber_surface::rig::{Playback, Pose, RigError};
 
-use super::ClimbError;
 use crate::Creature;
 use crate::battle::Repeat;
 
-/// Seconds of each of its clips.
+/// Time for which each clip plays, seconds.
 const TURN: f64 = 30.0;
 
-/// The forecast's steps, seconds: the slices of a graph.
+/// Length of the forecast's steps, seconds: the slices of a graph.
 const AHEAD: f64 = 0.5;
 
 /// Seconds in which one clip fades into another for a creature of a human's height, metres; larger ones take longer, by
@@ -19,94 +20,77 @@ const AHEAD: f64 = 0.5;
 const FADE: f64 = 0.35;
 const HUMAN: f64 = 1.8;
 
-/// Words in the names of clips of somebody who waits, and of somebody who goes.
+/// Words in the names of clips of a creature that waits, and of one that goes.
 const WAITS: [&str; 3] = ["idle", "survey", "standing"];
 const GOES: [&str; 4] = ["walk", "swimming_normal", "swim", "run"];
 
-/// Words in the names of clips that are no way to live: they are played by no model that has others.
-const ACTS: [&str; 34] = [
-    "death",
-    "die",
-    "dying",
-    "dead",
-    "attack",
-    "headbutt",
-    "bite",
-    "punch",
-    "kick",
-    "slash",
-    "swordslash",
-    "sword",
-    "shoot",
-    "gun",
-    "jump",
-    "walkjump",
-    "hit",
-    "hitrecieve",
-    "hitreact",
-    "react",
-    "dance",
-    "fall",
-    "falling",
-    "wave",
-    "eat",
-    "eating",
-    "sit",
-    "sitting",
-    "emote",
-    "flip",
-    "cast",
-    "dodge",
-    "roll",
-    "dashing",
-];
+/// Words in the names of clips that show a single act. Only a creature without other clips plays them.
+const ACTS: &str = "death die dying dead attack headbutt bite punch kick slash swordslash sword shoot gun jump walkjump \
+                    hit hitrecieve hitreact react dance fall falling wave eat eating sit sitting emote flip cast dodge \
+                    roll dashing";
 
-/// A clip, and how it goes on after its end.
-#[derive(Clone, Copy, Debug)]
-struct Played {
-    clip: usize,
-    repeat: Repeat,
-}
-
-/// Clips by turns.
-#[derive(Clone, Debug)]
+/// Clips that are played by turns, each as it repeats; at rest if there are none.
 pub(super) struct Moves {
-    played: Vec<Played>,
-    /// How fast they are played: slower for a model that is larger than its file says, by Froude's law.
+    played: Vec<(usize, Repeat)>,
+    /// Seconds of a clip per second.
     pub(super) rate: f64,
     /// How long a clip fades into another, seconds.
     fade: f64,
 }
 
 impl Moves {
-    /// A model's idling and walking; what else loops if it has neither.
-    pub(super) fn new(creature: &Creature, height: f64) -> Result<Self, ClimbError> {
-        let (place, _) = creature.standing(height)?;
-        let own = height / place.scale;
-        let probe = SeamProbe::new(&creature.skeleton, &creature.collider, own);
+    pub(super) fn none() -> Self {
+        Self {
+            played: Vec::new(),
+            rate: 1.0,
+            fade: 0.0,
+        }
+    }
+
+    /// The first clip with one of these words in its name, or else the first clip, in a loop.
+    pub(super) fn one(creature: &Creature, words: &[&str], rate: f64) -> Self {
+        let clip = creature.clip_like(words).or(creature.clips.first());
+        let index = clip.and_then(|clip| creature.clips.iter().position(|c| c.name == clip.name));
+        Self {
+            played: index
+                .map(|index| (index, Repeat::Loop))
+                .into_iter()
+                .collect(),
+            rate,
+            ..Self::none()
+        }
+    }
+
+    /// A creature's idling and walking by turns, or its first clip that lives if it has neither. They play slower for a
+    /// creature that is higher than `own`, its height in its file, by Froude's law.
+    pub(super) fn by_turns(
+        creature: &Creature,
+        own: f64,
+        height: f64,
+    ) -> Result<Self, Box<dyn Error>> {
         let all = || 0..creature.clips.len();
         let name = |clip: usize| creature.clips[clip].name.to_lowercase();
         let lives = |clip: &usize| {
             let name = name(*clip);
             let mut words = name.split(|letter: char| !letter.is_alphabetic());
-            !words.any(|word| ACTS.contains(&word))
+            !words.any(|word| ACTS.split(' ').any(|act| act == word))
         };
-        // Of several the first of the shortest name: others say what it does meanwhile.
-        let plainest = |word: &str| {
+        // The shortest name of several is the plainest: longer ones say what the creature does meanwhile.
+        let plainest = |word: &&str| {
             let named = all()
                 .filter(lives)
                 .filter(|clip| name(*clip).contains(word));
             named.min_by_key(|clip| name(*clip).len())
         };
-        let first = |words: &[&str]| words.iter().find_map(|word| plainest(word));
+        let first = |words: &[&str]| words.iter().find_map(plainest);
         let mut clips: Vec<usize> = [&WAITS[..], &GOES].into_iter().filter_map(first).collect();
-        let mut played = Vec::new();
         if clips.is_empty() {
             clips.extend(all().find(lives).or(all().next()));
         }
+        let probe = SeamProbe::new(&creature.skeleton, &creature.collider, own);
+        let mut played = Vec::new();
         for clip in clips {
-            let repeat = Repeat::of(probe.measure(&creature.clips[clip])?);
-            played.push(Played { clip, repeat });
+            played.push((clip, Repeat::of(probe.measure(&creature.clips[clip])?)));
         }
         Ok(Self {
             played,
@@ -115,70 +99,63 @@ impl Moves {
         })
     }
 
-    /// Poses the model at a time.
-    pub(super) fn pose(
-        &self,
-        creature: &Creature,
-        seconds: f64,
-        pose: &mut Pose,
-    ) -> Result<(), ClimbError> {
+    /// The pose at a time, seconds.
+    pub(super) fn pose(&self, creature: &Creature, seconds: f64) -> Result<Pose, RigError> {
+        let mut pose = creature.skeleton.rest_pose();
         let Some((played, since)) = self.at(seconds) else {
-            return Ok(());
+            return Ok(pose);
         };
-        self.sample(creature, played, since, pose)?;
+        self.sample(creature, played, since, &mut pose)?;
         let faded = since / self.fade;
-        if self.played.len() > 1 && seconds > since && faded < 1.0 {
-            let Some((before, _)) = self.at(seconds - TURN) else {
-                return Ok(());
-            };
+        if self.played.len() > 1
+            && seconds > since
+            && faded < 1.0
+            && let Some((before, _)) = self.at(seconds - TURN)
+        {
             let mut other = creature.skeleton.rest_pose();
             self.sample(creature, before, TURN + since, &mut other)?;
             let share = faded * faded * (3.0 - 2.0 * faded);
             pose.blend_in(&other, 1.0 - share)?;
         }
-        Ok(())
+        Ok(pose)
     }
 
     fn sample(
         &self,
         creature: &Creature,
-        played: Played,
+        (clip, repeat): (usize, Repeat),
         since: f64,
         pose: &mut Pose,
-    ) -> Result<(), ClimbError> {
-        let clip = &creature.clips[played.clip];
-        let time = played.repeat.time(since * self.rate, clip.duration());
-        clip.sample_into(time, Playback::Clamp, pose)?;
-        Ok(())
+    ) -> Result<(), RigError> {
+        let clip = &creature.clips[clip];
+        let time = repeat.time(since * self.rate, clip.duration());
+        clip.sample_into(time, Playback::Clamp, pose)
     }
 
-    /// The clip of a time, and since when it plays.
-    fn at(&self, seconds: f64) -> Option<(Played, f64)> {
+    /// The clip that plays at a time, and for how long it has played, seconds. A single clip goes on without an end.
+    fn at(&self, seconds: f64) -> Option<((usize, Repeat), f64)> {
         let turns = self.played.len();
-        let turn = (seconds / TURN).floor();
-        let index = turn.rem_euclid(turns.max(1) as f64) as usize;
-        // A single clip goes on without an end.
-        let since = if turns > 1 {
-            seconds - turn * TURN
+        let turn = if turns > 1 {
+            (seconds / TURN).floor()
         } else {
-            seconds
+            0.0
         };
-        Some((*self.played.get(index)?, since))
+        let index = turn.rem_euclid(turns.max(1) as f64) as usize;
+        Some((*self.played.get(index)?, seconds - turn * TURN))
     }
 
-    /// What is to come from a time on.
+    /// The clips of the next two turns.
     pub(super) fn forecast(
         &self,
         creature: &Creature,
         graph: &ClimbGraph,
         seconds: f64,
     ) -> Forecast {
-        let steps = (2.0 * TURN / AHEAD) as u32;
         let mut forecast = Forecast::still();
-        for step in 0..steps {
-            if let Some((played, since)) = self.at(seconds + f64::from(step) * AHEAD) {
-                let clip = &creature.clips[played.clip];
-                let time = played.repeat.time(since * self.rate, clip.duration());
+        for step in 0..(2.0 * TURN / AHEAD) as u32 {
+            if let Some(((clip, repeat), since)) = self.at(seconds + f64::from(step) * AHEAD) {
+                let clip = &creature.clips[clip];
+                let time = repeat.time(since * self.rate, clip.duration());
                 forecast = forecast.then(graph, &clip.name, time, AHEAD);
             }
         }

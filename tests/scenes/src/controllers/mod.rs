@@ -5,18 +5,16 @@
 //! for each tick, and an error in metres with its bound ([`Scene`]). [`play`] steps any [`Controller`] through one: it
 //! comes to rest for a second, then everything moves.
 //!
-//! Who plays them: the bench `controllers` of `clamber_peers`, with clamber's climber, rapier's and Jolt's controllers.
+//! The bench `controllers` of `clamber_peers` plays them with clamber's climber, rapier's and Jolt's controllers.
 
 mod ground;
 mod platforms;
 mod play;
-mod scene;
 mod set;
 mod solid;
 mod walls;
 
-pub use play::{Controller, Outcome, play};
-pub use scene::{Scene, Seen, all};
+pub use play::{Controller, Outcome, Scene, Seen, all, play};
 pub use set::{
     HEIGHT, IDLE, Input, Motion, PADDING, Piece, RADIUS, SNAP, STEP, Set, TICK, radians, shifted,
     turned,

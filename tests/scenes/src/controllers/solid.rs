@@ -91,7 +91,7 @@ impl Solid {
 }
 
 impl Mesh {
-    fn block(low: DVec3, high: DVec3) -> Self {
+    pub(crate) fn block(low: DVec3, high: DVec3) -> Self {
         let corner = |k: u32| {
             let pick = |bit: u32, axis: usize| {
                 if k & bit == 0 { low[axis] } else { high[axis] }
@@ -116,7 +116,7 @@ impl Mesh {
     }
 
     /// Adds a quadrilateral between two lines along X, 2 m to both sides. It faces up, or towards -Z.
-    fn strip(&mut self, from: DVec3, to: DVec3) {
+    pub(crate) fn strip(&mut self, from: DVec3, to: DVec3) {
         let first = self.positions.len() as u32;
         let side = DVec3::X * 2.0;
         self.positions

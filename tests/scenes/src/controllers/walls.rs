@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use super::scene::Scene;
-use super::set::{IDLE, Input, PADDING, RADIUS, Set, shifted};
+use super::play::Scene;
+use super::set::{PADDING, RADIUS, Set, shifted};
 use super::solid::Solid;
 
 /// A wall pushes an idle character. Error: its depth in the wall beyond the padding, or its distance off the floor or
@@ -16,21 +16,16 @@ fn pushed(name: &'static str, speed: f64, ticks: u32) -> Scene {
     let set = Set::new(DVec3::ZERO)
         .with_still(Solid::floor(80.0))
         .with(wall, move |time| shifted(DVec3::X * (speed * time)));
+    let scene = Scene::new(21, name, ticks, set, move |seen| {
+        seen.most(|time, p| {
+            let depth = RADIUS - PADDING - (p.x + 1.0 - speed * time);
+            let off = DVec3::new(0.0, p.y - seen.start.y, p.z);
+            depth.max(off.length())
+        })
+    });
     Scene {
-        number: 21,
-        name,
         asked: 5e-2,
-        ticks,
-        always_stands: true,
-        set,
-        input: Box::new(|_| IDLE),
-        error: Box::new(move |seen| {
-            seen.most(|time, p| {
-                let depth = RADIUS - PADDING - (p.x + 1.0 - speed * time);
-                let off = DVec3::new(0.0, p.y - seen.start.y, p.z);
-                depth.max(off.length())
-            })
-        }),
+        ..scene
     }
 }
 
@@ -45,46 +40,25 @@ fn shoved() -> Scene {
     let set = Set::new(DVec3::ZERO)
         .with_still(Solid::floor(20.0))
         .with(wall, move |time| shifted(DVec3::X * way(time)));
-    Scene {
-        number: 26,
-        name: "a minute: a wall that comes and goes",
-        asked: 1e-3,
-        ticks: 3600,
-        always_stands: true,
-        set,
-        input: Box::new(|_| IDLE),
-        error: Box::new(move |seen| {
-            seen.most(|time, p| {
-                let depth = RADIUS - PADDING - (p.x + 1.0 - way(time));
-                let flung = p.x - (2.0 + RADIUS);
-                let off = DVec3::new(0.0, p.y - seen.start.y, p.z);
-                depth.max(flung).max(off.length())
-            })
-        }),
-    }
+    let name = "a minute: a wall that comes and goes";
+    Scene::new(26, name, 3600, set, move |seen| {
+        seen.most(|time, p| {
+            let depth = RADIUS - PADDING - (p.x + 1.0 - way(time));
+            let flung = p.x - (2.0 + RADIUS);
+            let off = DVec3::new(0.0, p.y - seen.start.y, p.z);
+            depth.max(flung).max(off.length())
+        })
+    })
 }
 
-/// A walk into a wall at an angle. Error: distance from a walk along the wall at the same speed.
-fn alongside(name: &'static str, number: u32, asked: f64, wall: Vec<Solid>, walk: DVec3) -> Scene {
-    let seconds = 1.0;
-    let mut set = Set::new(DVec3::ZERO).with_still(Solid::floor(20.0));
-    for solid in wall {
-        set = set.with_still(solid);
-    }
-    set.speed = walk.length();
-    Scene {
-        number,
-        name,
-        asked,
-        ticks: 60,
-        always_stands: true,
-        set,
-        input: Box::new(move |_| Input { walk, ..IDLE }),
-        error: Box::new(move |seen| {
-            let level = DVec3::X * (walk.x * seconds);
-            (seen.end() - seen.start).distance(level)
-        }),
-    }
+/// A walk of a second into a wall at an angle. Error: distance from a walk along the wall at the same speed.
+fn alongside(number: u32, name: &'static str, wall: Vec<Solid>, walk: DVec3) -> Scene {
+    let set = Set::new(DVec3::ZERO).with_still(Solid::floor(20.0));
+    let set = wall.into_iter().fold(set, Set::with_still);
+    let scene = Scene::new(number, name, 60, set, move |seen| {
+        (seen.end() - seen.start).distance(DVec3::X * walk.x)
+    });
+    scene.walking(walk)
 }
 
 pub(super) fn scenes() -> Vec<Scene> {
@@ -99,23 +73,20 @@ pub(super) fn scenes() -> Vec<Scene> {
             high: DVec3::new(x + 0.2, 2.0, -RADIUS),
         }
     });
+    let (name, walk) = ("a walk along a wall, into it", DVec3::new(5.0, 0.0, -1.0));
+    let along = alongside(5, name, vec![smooth], walk);
+    let (name, walk) = (
+        "a walk along 30 pillars, into them",
+        DVec3::new(2.0, 0.0, -1.0),
+    );
     vec![
         pushed("a wall pushes at 2 m/s", 2.0, 240),
         pushed("a wall pushes at 30 m/s", 30.0, 120),
         shoved(),
-        alongside(
-            "a walk along a wall, into it",
-            5,
-            1e-2,
-            vec![smooth],
-            DVec3::new(5.0, 0.0, -1.0),
-        ),
-        alongside(
-            "a walk along 30 pillars, into them",
-            28,
-            1e-3,
-            pillars.collect(),
-            DVec3::new(2.0, 0.0, -1.0),
-        ),
+        Scene {
+            asked: 1e-2,
+            ..along
+        },
+        alongside(28, name, pillars.collect(), walk),
     ]
 }

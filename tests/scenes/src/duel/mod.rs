@@ -3,53 +3,23 @@
 #[cfg(feature = "record")]
 mod record;
 
+use std::error::Error;
 use std::sync::Arc;
 
 use clamber_climber::{ClimberInput, StepRules};
-use clamber_colossus::{Brain, BrainError, ColossusError, CreatureConfig, CreatureKind};
+use clamber_colossus::{Brain, CreatureConfig, CreatureKind};
 use clamber_fight::actions::{BOW, STAB};
 use clamber_fight::{Arena, ArenaConfig, ArenaError, FighterConfig, Order, PlayerInput};
-use clamber_gltf::GltfError;
 use clamber_world::{HalfSpace, Obstacle, ObstacleId};
 use glam::DVec3;
-use thiserror::Error;
 
 #[cfg(feature = "record")]
 pub use record::{is_duel, record, replay};
 
-use crate::giant;
+use crate::{Creature, giant};
 
 /// Ticks a second.
 pub const RATE: u64 = 60;
-
-/// Why there is no fight.
-#[derive(Debug, Error)]
-#[non_exhaustive]
-pub enum DuelError {
-    /// The giant's file cannot be read.
-    #[error(transparent)]
-    Giant(#[from] GltfError),
-    /// Its brain cannot be read.
-    #[error("the giant's brain: {0}")]
-    BrainFile(std::io::Error),
-    /// It is no brain.
-    #[error(transparent)]
-    Brain(#[from] BrainError),
-    /// Its brain does not fit it.
-    #[error(transparent)]
-    Colossus(#[from] ColossusError),
-    /// The arena refuses something.
-    #[error(transparent)]
-    Arena(#[from] ArenaError),
-    /// The recording cannot be written or read.
-    #[cfg(feature = "record")]
-    #[error(transparent)]
-    Record(#[from] clamber_record::RecordError),
-    /// The recording is of something else.
-    #[cfg(feature = "record")]
-    #[error("this is a recording of another scene than a duel")]
-    OtherScene,
-}
 
 /// An arena, and the ground below it.
 #[derive(Clone, Debug)]
@@ -64,19 +34,18 @@ impl Duel {
     /// The giant.
     ///
     /// # Errors
-    /// [`DuelError`] if its files are not there, or damaged.
-    pub fn kind() -> Result<Arc<CreatureKind>, DuelError> {
-        let rig = clamber_gltf::load(giant::path())?.rig;
-        let brain = std::fs::read_to_string(giant::brain_path()).map_err(DuelError::BrainFile)?;
+    /// If its files are missing or damaged.
+    pub fn kind() -> Result<Arc<CreatureKind>, Box<dyn Error>> {
+        let brain = std::fs::read_to_string(giant::brain_path())?;
         let brain = Brain::from_json(&brain, 1.0 / RATE as f64)?;
-        Ok(Arc::new(CreatureKind::new(&rig, brain)?))
+        Ok(Arc::new(Creature::load(&giant::path())?.with_brain(brain)?))
     }
 
     /// One climber above the giant's back, and one before it.
     ///
     /// # Errors
-    /// [`DuelError::Arena`], which does not happen.
-    pub fn new(kind: &Arc<CreatureKind>) -> Result<Self, DuelError> {
+    /// None.
+    pub fn new(kind: &Arc<CreatureKind>) -> Result<Self, ArenaError> {
         let mut arena = Arena::new(ArenaConfig::default())?;
         arena.add_creature(Arc::clone(kind), CreatureConfig::default())?;
         for place in [DVec3::new(0.0, 36.0, -1.0), DVec3::new(3.0, 1.0, 25.0)] {
@@ -89,8 +58,8 @@ impl Duel {
     /// An arena that knows the giant, and nobody in it yet: for a late joiner, who gets its state from the others.
     ///
     /// # Errors
-    /// [`DuelError::Arena`], which does not happen.
-    pub fn empty(kind: &Arc<CreatureKind>) -> Result<Self, DuelError> {
+    /// None.
+    pub fn empty(kind: &Arc<CreatureKind>) -> Result<Self, ArenaError> {
         let mut arena = Arena::new(ArenaConfig::default())?;
         arena.add_kind(Arc::clone(kind))?;
         let ground = HalfSpace::below(0.0);

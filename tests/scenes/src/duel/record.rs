@@ -1,5 +1,6 @@
 //! A duel as a recording, and its replay.
 
+use std::error::Error;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -13,7 +14,7 @@ use clamber_surface::geometry::Similarity;
 use clamber_world::{Obstacle, ObstacleId};
 use glam::Vec3;
 
-use super::{Duel, DuelError, GROUND};
+use super::{Duel, GROUND};
 
 /// Names of the players.
 const PLAYERS: [&str; 2] = ["rider", "archer"];
@@ -27,12 +28,12 @@ const DRAWN: f32 = 100.0;
 /// A peer of a rollback session calls it at the end: only then all of its inputs are certain.
 ///
 /// # Errors
-/// [`DuelError`].
+/// If the arena refuses an input or an order, or the file cannot be written or read.
 pub fn record(
     kind: &Arc<CreatureKind>,
     steps: impl IntoIterator<Item = (Vec<ClimberInput>, Vec<Order>)>,
     path: &Path,
-) -> Result<u64, DuelError> {
+) -> Result<u64, Box<dyn Error>> {
     let Duel { mut arena, ground } = Duel::new(kind)?;
     let mut info = ArenaInfo::of(&arena);
     info.creatures = vec!["giant".to_owned()];
@@ -69,10 +70,13 @@ pub fn is_duel(recording: &ArenaRecording) -> bool {
 /// Fights a recorded duel again, from the last saved state at or before a tick, or from the first tick.
 ///
 /// # Errors
-/// [`DuelError`].
-pub fn replay(recording: &ArenaRecording, from: Option<u64>) -> Result<ArenaReplay, DuelError> {
+/// If the arena refuses an input or an order, or the file cannot be written or read.
+pub fn replay(
+    recording: &ArenaRecording,
+    from: Option<u64>,
+) -> Result<ArenaReplay, Box<dyn Error>> {
     if !is_duel(recording) {
-        return Err(DuelError::OtherScene);
+        return Err("this is a recording of another scene than a duel".into());
     }
     let Duel { mut arena, ground } = Duel::new(&Duel::kind()?)?;
     Ok(recording.replay(&mut arena, from, |arena, inputs, orders| {

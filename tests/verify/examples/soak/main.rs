@@ -6,6 +6,7 @@
 mod arena;
 mod fight;
 mod findings;
+mod life;
 mod plan;
 mod report;
 mod task;
@@ -28,7 +29,7 @@ use task::Task;
 #[derive(Debug, Parser)]
 #[command(name = "soak", version)]
 struct Options {
-    /// Time to run.
+    /// Time to run; of the task `life`, the length of the life.
     #[arg(long, value_name = "MINUTES", default_value_t = 0.1)]
     #[arg(value_parser = positive, allow_negative_numbers = true)]
     minutes: f64,
@@ -38,7 +39,8 @@ struct Options {
     seed: u64,
 
     /// Run only this task, by its name in a report, and let it panic: stress/CASE, battle/SEED, arena/SEED,
-    /// queries/SEED, palettes/SEED, builder/SEED or import/SEED.
+    /// queries/SEED, palettes/SEED, builder/SEED or import/SEED; or life/SEED, which runs only so. The seed is 1 if it
+    /// is left out.
     #[arg(long, value_name = "TASK")]
     case: Option<Task>,
 
@@ -66,7 +68,7 @@ fn main() -> ExitCode {
     };
     let mut report = Report::new(options.seed);
     if let Some(task) = options.case {
-        let checks = task.run(&giant, &mut report.times);
+        let checks = task.run(&giant, options.minutes, &mut report.times);
         println!("{task}: {checks} checks, all hold");
         return ExitCode::SUCCESS;
     }
@@ -81,7 +83,7 @@ fn main() -> ExitCode {
         }
         bar.set_position(elapsed.as_secs());
         bar.set_message(format!("{} findings  {task}", report.findings()));
-        let came = findings::caught(|| task.run(&giant, &mut report.times));
+        let came = findings::caught(|| task.run(&giant, options.minutes, &mut report.times));
         report.note(task, came);
     }
     bar.finish_and_clear();

@@ -9,6 +9,7 @@ use clamber_verify::targets::{builder, import, palettes, queries, square};
 
 use crate::arena::arena;
 use crate::fight::fight;
+use crate::life::life;
 
 /// A task of a soak. It runs the same way every time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,6 +22,8 @@ pub(crate) enum Task {
     Battle(u64),
     /// An arena with its seed: creatures and fighters of any size at any place.
     Arena(u64),
+    /// The giant's life, with its seed.
+    Life(u64),
 }
 
 /// A fuzz target of `clamber_verify`.
@@ -54,15 +57,18 @@ impl Task {
             Self::Fuzz(target, _) => target.name(),
             Self::Battle(_) => "battle",
             Self::Arena(_) => "arena",
+            Self::Life(_) => "life",
         }
     }
 
-    /// Runs the task; returns the number of checks. Panics if a check fails.
-    pub(crate) fn run(&self, giant: &Creature, times: &mut Times) -> usize {
+    /// Runs the task; returns the number of checks. Panics if a check fails. Only a life takes its length from
+    /// `minutes`.
+    pub(crate) fn run(&self, giant: &Creature, minutes: f64, times: &mut Times) -> usize {
         match self {
             Self::Stress(case) => run(case, Some(times)).checks(),
             Self::Battle(seed) => fight(giant, *seed),
             Self::Arena(seed) => arena(giant, *seed),
+            Self::Life(seed) => life(giant, *seed, minutes),
             Self::Fuzz(target, seed) => {
                 let bytes = random_bytes(*target, *seed);
                 match target {
@@ -112,7 +118,7 @@ impl fmt::Display for Task {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Stress(case) => write!(f, "stress/{case}"),
-            Self::Fuzz(_, seed) | Self::Battle(seed) | Self::Arena(seed) => {
+            Self::Fuzz(_, seed) | Self::Battle(seed) | Self::Arena(seed) | Self::Life(seed) => {
                 write!(f, "{}/{seed}", self.kind())
             }
         }
@@ -125,9 +131,11 @@ impl FromStr for Task {
     fn from_str(text: &str) -> Result<Self, String> {
         let kinds = || {
             let targets = Target::ALL.map(Target::name).join("/SEED, ");
-            format!("{text:?} is none of stress/CASE, battle/SEED, arena/SEED, {targets}/SEED")
+            format!(
+                "{text:?} is none of stress/CASE, battle/SEED, arena/SEED, life/SEED, {targets}/SEED"
+            )
         };
-        let (kind, rest) = text.split_once('/').ok_or_else(kinds)?;
+        let (kind, rest) = text.split_once('/').unwrap_or((text, "1"));
         if kind == "stress" {
             return Ok(Self::Stress(rest.parse()?));
         }
@@ -139,6 +147,9 @@ impl FromStr for Task {
         }
         if kind == "arena" {
             return Ok(Self::Arena(seed));
+        }
+        if kind == "life" {
+            return Ok(Self::Life(seed));
         }
         let target = Target::ALL.into_iter().find(|target| target.name() == kind);
         Ok(Self::Fuzz(target.ok_or_else(kinds)?, seed))

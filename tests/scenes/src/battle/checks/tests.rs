@@ -8,11 +8,11 @@ use glam::DVec3;
 use super::super::bot::Intent;
 use super::super::{Battle, BattleOptions};
 use super::*;
-use crate::beast::beast;
+use crate::giant::giant;
 
 const HEIGHT: f64 = 20.0;
 
-/// A rider that has stood on a beast for a while, and a watch that has recorded its point there.
+/// A rider that has stood on the giant for a while, and a watch that has recorded its point there.
 struct Scene<'a> {
     battle: &'a Battle<'a>,
     watch: Watch,
@@ -50,7 +50,7 @@ impl<'a> Scene<'a> {
 }
 
 fn stood<R>(test: impl FnOnce(&mut Scene<'_>, ClimberState) -> R) -> R {
-    let creature = beast(3_000);
+    let creature = giant().unwrap();
     let options = BattleOptions {
         height: Some(HEIGHT),
         ..BattleOptions::ride(0, 1)

@@ -4,10 +4,10 @@ use clamber_world::rapier3d::prelude::Vector;
 
 use super::super::checks::{FALLS, ROCKS_INSIDE};
 use super::*;
-use crate::beast::beast;
+use crate::giant::giant_of;
 
 fn with_battle<R>(rocks: u32, test: impl FnOnce(&mut Battle<'_>) -> R) -> R {
-    let creature = beast(1_000);
+    let creature = giant_of(1_000).unwrap();
     let options = BattleOptions {
         height: Some(20.0),
         ..BattleOptions::ride(rocks, 1)
@@ -68,7 +68,7 @@ fn a_rock_under_the_ground_is_a_fault_and_counts_once() {
 #[test]
 fn a_rider_out_of_the_valley_is_dropped_again_with_the_velocity_of_the_creature_as_a_whole() {
     with_battle(0, |battle| {
-        // The beast walks by now.
+        // The giant walks by now.
         for _ in 0..600 {
             battle.step(Intent::Stand).unwrap();
         }

@@ -1,14 +1,16 @@
+//! Rocks on a shaking giant: they fall on it, ride, roll off, and lie in the valley.
+
+use std::error::Error;
 use std::sync::Arc;
 
 use clamber_surface::geometry::Similarity;
-use clamber_surface::rig::{Clip, Palette, Playback, Pose, RigError};
+use clamber_surface::rig::{Clip, Palette, Playback, Pose};
 use clamber_surface::surface::SkinnedSurface;
 use clamber_world::rapier3d::prelude::*;
 use clamber_world::{Debris, DebrisConfig, DebrisReport, ObstacleId};
 use glam::DVec3;
 
-use super::RocksError;
-use crate::{Creature, CreatureError, valley};
+use crate::{Creature, valley};
 
 /// Length of a tick, seconds.
 pub const TICK: f64 = 1.0 / 60.0;
@@ -45,8 +47,8 @@ impl<'a> Rocks<'a> {
     /// determines their sizes and places.
     ///
     /// # Errors
-    /// [`RocksError`].
-    pub fn new(creature: &'a Creature, count: usize, seed: u64) -> Result<Self, RocksError> {
+    /// If the creature cannot be posed, or a rock cannot collide with its skin.
+    pub fn new(creature: &'a Creature, count: usize, seed: u64) -> Result<Self, Box<dyn Error>> {
         let rest = creature.skeleton.rest_pose();
         let (low, high) = creature.bounds(&rest)?;
         let ground = valley::height(0.0, 0.0) - f64::from(low.y);
@@ -74,10 +76,7 @@ impl<'a> Rocks<'a> {
             time: 0.0,
         };
         scene.advance_pose()?;
-        scene
-            .surface
-            .place(&scene.palette, root)
-            .map_err(CreatureError::from)?;
+        scene.surface.place(&scene.palette, root)?;
         Ok(scene)
     }
 
@@ -95,19 +94,18 @@ impl<'a> Rocks<'a> {
     /// Poses the creature for the next tick. Call it once before each [`Rocks::step`].
     ///
     /// # Errors
-    /// [`RocksError::Creature`].
-    pub fn pose(&mut self) -> Result<(), RocksError> {
+    /// If the creature cannot be posed.
+    pub fn pose(&mut self) -> Result<(), Box<dyn Error>> {
         self.time += TICK;
         self.advance_pose()?;
-        let advanced = self.surface.advance(&self.palette, self.root);
-        Ok(advanced.map_err(CreatureError::from)?)
+        Ok(self.surface.advance(&self.palette, self.root)?)
     }
 
     /// Adds the skin near the rocks to the physics world, steps the world, and keeps the rocks out of the skin.
     ///
     /// # Errors
-    /// [`RocksError::Debris`].
-    pub fn step(&mut self) -> Result<DebrisReport, RocksError> {
+    /// If the skin cannot be added to the physics world.
+    pub fn step(&mut self) -> Result<DebrisReport, Box<dyn Error>> {
         self.bring_skin()?;
         self.step_world();
         self.keep_out()
@@ -116,8 +114,8 @@ impl<'a> Rocks<'a> {
     /// The first part of [`Rocks::step`]: adds the skin near the rocks to the physics world.
     ///
     /// # Errors
-    /// [`RocksError::Debris`].
-    pub fn bring_skin(&mut self) -> Result<(), RocksError> {
+    /// If the skin cannot be added to the physics world.
+    pub fn bring_skin(&mut self) -> Result<(), Box<dyn Error>> {
         let (bodies, colliders) = (&mut self.world.bodies, &mut self.world.colliders);
         let surfaces = [(CREATURE, &self.surface)];
         Ok(self
@@ -128,8 +126,8 @@ impl<'a> Rocks<'a> {
     /// The last part of [`Rocks::step`]: puts rocks that got into the skin back in front of it.
     ///
     /// # Errors
-    /// [`RocksError::Debris`].
-    pub fn keep_out(&mut self) -> Result<DebrisReport, RocksError> {
+    /// If the skin cannot be added to the physics world.
+    pub fn keep_out(&mut self) -> Result<DebrisReport, Box<dyn Error>> {
         let world = &mut self.world;
         let (broad_phase, narrow_phase) = (&world.broad_phase, &world.narrow_phase);
         let surfaces = [(CREATURE, &self.surface)];
@@ -153,26 +151,22 @@ impl<'a> Rocks<'a> {
         &self.rocks
     }
 
-    fn advance_pose(&mut self) -> Result<(), RocksError> {
-        let failed = |error: RigError| RocksError::Creature(error.into());
+    fn advance_pose(&mut self) -> Result<(), Box<dyn Error>> {
         for (clip, pose) in [
             (self.clips[1], &mut self.pose),
             (self.clips[0], &mut self.fading),
         ] {
             pose.clone_from(&self.rest);
             if let Some(clip) = clip {
-                clip.sample_into(self.time, Playback::Loop, pose)
-                    .map_err(failed)?;
+                clip.sample_into(self.time, Playback::Loop, pose)?;
             }
         }
         // Smoothstep, so that the fade begins and ends without a jerk.
         let share = ((self.time - self.began) / FADE).clamp(0.0, 1.0);
         let share = share * share * (3.0 - 2.0 * share);
-        self.pose.blend_in(&self.fading, share).map_err(failed)?;
+        self.pose.blend_in(&self.fading, share)?;
         let skeleton = &self.creature.skeleton;
-        skeleton
-            .palette_into(&self.pose, &mut self.palette)
-            .map_err(failed)
+        Ok(skeleton.palette_into(&self.pose, &mut self.palette)?)
     }
 }
 

@@ -5,41 +5,39 @@
 
 use std::fmt;
 
-use clamber_surface::surface::SkinnedSurface;
-use clamber_world::Obstacle;
-use clamber_world::rapier3d::prelude::*;
+use clamber::prelude::*;
+use clamber::world::rapier3d::prelude::*;
+use clamber_scenes::rocks::Rocks;
+use clamber_scenes::{solid_angle, valley};
 use glam::DVec3;
-
-use super::Rocks;
-use crate::{solid_angle, valley};
 
 /// Where the rocks are, and what happened to them.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Outcome {
+pub(crate) struct Outcome {
     /// Number of rocks.
-    pub rocks: usize,
+    pub(crate) rocks: usize,
     /// Rocks that lie on the giant, or on other rocks there.
-    pub on_giant: usize,
+    pub(crate) on_giant: usize,
     /// Rocks that lie in the valley.
-    pub on_ground: usize,
+    pub(crate) on_ground: usize,
     /// How often a rock's centre was found inside the giant or under the ground.
-    pub tunnelled: usize,
+    pub(crate) tunnelled: usize,
     /// The largest depth of a settled rock in the skin, metres.
-    pub deepest: f64,
+    pub(crate) deepest: f64,
     /// `DebrisReport::put_back`, summed over all ticks.
-    pub put_back: u32,
+    pub(crate) put_back: u32,
     /// `DebrisReport::caught`, summed over all ticks.
-    pub caught: u32,
+    pub(crate) caught: u32,
 }
 
 impl Outcome {
     /// True if the last [`Outcome::settle`] found every rock on the giant or in the valley, none in the air.
-    pub fn all_lie(&self) -> bool {
+    pub(crate) fn all_lie(&self) -> bool {
         self.on_giant + self.on_ground == self.rocks
     }
 
     /// Counts the rocks that are inside the giant or under the ground now.
-    pub fn look(&mut self, scene: &Rocks<'_>) {
+    pub(crate) fn look(&mut self, scene: &Rocks<'_>) {
         let mut positions = Vec::new();
         scene.surface.skin_all(&mut positions);
         let root = scene.surface.world_from_model();
@@ -56,7 +54,7 @@ impl Outcome {
     }
 
     /// Notes where the settled rocks lie, and the largest depth of one in the skin.
-    pub fn settle(&mut self, scene: &Rocks<'_>) {
+    pub(crate) fn settle(&mut self, scene: &Rocks<'_>) {
         self.rocks = scene.rocks().len();
         (self.on_giant, self.on_ground) = (0, 0);
         for rock in scene.rocks() {
@@ -97,7 +95,7 @@ const SPREAD: u32 = 10;
 /// The larger of two depths: of the body's support points that are inside the mesh, the distance to the nearest
 /// triangle; of the mesh's vertices that are inside the body, the distance to the body's surface. Reads the body's
 /// first collider.
-pub fn depth(surface: &SkinnedSurface, world: &PhysicsWorld, body: RigidBodyHandle) -> f64 {
+fn depth(surface: &SkinnedSurface, world: &PhysicsWorld, body: RigidBodyHandle) -> f64 {
     let (root, mesh) = (surface.world_from_model(), surface.mesh());
     let body = &world.bodies[body];
     let collider = &world.colliders[body.colliders()[0]];

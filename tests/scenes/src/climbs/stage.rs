@@ -1,16 +1,25 @@
+//! A creature that moves while it is climbed.
+
+use std::error::Error;
 use std::f64::consts::TAU;
 
+use clamber_navigation::{ClimbGraph, Forecast};
 use clamber_surface::geometry::Similarity;
 use clamber_surface::mesh::VertexId;
-use clamber_surface::rig::{Clip, Palette, Playback};
+use clamber_surface::rig::Palette;
 use clamber_surface::surface::SkinnedSurface;
 use glam::DVec3;
 
+use super::moves::Moves;
 use crate::{Creature, CreatureError};
 
 /// How a creature moves while it is climbed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Motion {
+    /// It stays at rest.
+    Still,
+    /// It idles and walks by turns.
+    Turns,
     /// It plays its idle clip, or else its first clip.
     Idle,
     /// It plays its walk, on the spot unless the clip itself moves the root.
@@ -25,41 +34,50 @@ pub struct Stage<'a> {
     surface: SkinnedSurface,
     /// The corners of one triangle at each vertex.
     triangle_at: Vec<Option<[VertexId; 3]>>,
-    scale: f64,
-    tempo: f64,
-    motion: Motion,
+    place: Similarity,
+    /// Height of the ground, metres.
+    pub(super) ground: f64,
+    pub(super) moves: Moves,
+    sways: bool,
 }
 
 impl<'a> Stage<'a> {
-    /// A creature whose rest pose is `height` metres high, and whose clips are played at `tempo` times their speed.
-    /// Giants move slower than the creatures that clips are made for, by the square root of their size.
+    /// A creature whose rest pose is `height` metres high, in its first pose. `tempo` is the rate at which
+    /// [`Motion::Idle`], [`Motion::Walk`] and [`Motion::Shake`] play their clip. Giants move slower than the creatures
+    /// that clips are made for, by the square root of their size.
     ///
     /// # Errors
-    /// [`CreatureError`] if the rest pose does not fit the collider.
+    /// If the creature cannot be posed, or its clips cannot be measured.
     pub fn new(
         creature: &'a Creature,
         (height, tempo): (f64, f64),
         motion: Motion,
-    ) -> Result<Self, CreatureError> {
-        let pose = creature.skeleton.rest_pose();
-        let palette = creature.skeleton.palette(&pose)?;
-        let rest = clamber_surface::skin::skin(&creature.collider, palette.matrices())?;
-        let low = rest.iter().map(|p| p.y).fold(f32::INFINITY, f32::min);
-        let high = rest.iter().map(|p| p.y).fold(f32::NEG_INFINITY, f32::max);
-        let mut triangle_at = vec![None; rest.len()];
+    ) -> Result<Self, Box<dyn Error>> {
+        let (place, ground) = creature.standing(height)?;
+        let mut triangle_at = vec![None; creature.collider.positions().len()];
         for corners in creature.collider.triangles() {
             for vertex in corners {
                 triangle_at[vertex.index()] = Some(*corners);
             }
         }
-        Ok(Self {
+        let mut stage = Self {
             creature,
             surface: SkinnedSurface::new(creature.collider.clone()),
             triangle_at,
-            scale: height / f64::from(high - low),
-            tempo,
-            motion,
-        })
+            place,
+            ground,
+            moves: match motion {
+                Motion::Still => Moves::none(),
+                Motion::Turns => Moves::by_turns(creature, height / place.scale, height)?,
+                Motion::Walk => Moves::one(creature, &["walk", "run", "idle"], tempo),
+                Motion::Idle | Motion::Shake => {
+                    Moves::one(creature, &["idle", "breathe", "survey"], tempo)
+                }
+            },
+            sways: motion == Motion::Shake,
+        };
+        stage.place(0.0)?;
+        Ok(stage)
     }
 
     /// Puts the creature into its pose at a time, seconds, without motion.
@@ -80,31 +98,18 @@ impl<'a> Stage<'a> {
         Ok(self.surface.advance(&palette, root)?)
     }
 
-    fn pose(&self, time: f64) -> Result<(Palette, Similarity), CreatureError> {
-        let words: &[&str] = match self.motion {
-            Motion::Walk => &["walk", "run", "idle"],
-            Motion::Idle | Motion::Shake => &["idle", "breathe", "survey"],
-        };
-        let clip: Option<&Clip> = self
-            .creature
-            .clip_like(words)
-            .or_else(|| self.creature.clips.first());
-        let rest = self.creature.skeleton.rest_pose();
-        let pose = match clip {
-            Some(clip) => clip.sample(&rest, time * self.tempo, Playback::Loop)?,
-            None => rest,
-        };
-        let sway = if self.motion == Motion::Shake {
-            DVec3::new(0.05, 0.02, 0.03) * libm::sin(1.2 * TAU * time)
-        } else {
-            DVec3::ZERO
-        };
-        let root = Similarity {
-            scale: self.scale,
-            translation: sway,
-            ..Similarity::IDENTITY
-        };
+    pub(super) fn pose(&self, time: f64) -> Result<(Palette, Similarity), CreatureError> {
+        let pose = self.moves.pose(self.creature, time)?;
+        let mut root = self.place;
+        if self.sways {
+            root.translation += DVec3::new(0.05, 0.02, 0.03) * libm::sin(1.2 * TAU * time);
+        }
         Ok((self.creature.skeleton.palette(&pose)?, root))
+    }
+
+    /// The clips that the creature is about to play from a time on, seconds.
+    pub(super) fn forecast(&self, graph: &ClimbGraph, time: f64) -> Forecast {
+        self.moves.forecast(self.creature, graph, time)
     }
 
     /// The creature's skin.

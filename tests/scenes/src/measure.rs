@@ -1,0 +1,269 @@
+//! Tools that benches share: tables, bounds, quantiles and times.
+
+use std::error::Error;
+use std::fmt;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+/// True if a bench should run briefly, by criterion's rule: always, unless `--bench` is passed, as `cargo bench`
+/// does, and `--test` is not.
+pub fn is_brief() -> bool {
+    let passed = |flag: &str| std::env::args().any(|argument| argument == flag);
+    !passed("--bench") || passed("--test")
+}
+
+/// The smallest of `values` that at least the share `part` (0 to 1) of them does not exceed; NaN without
+/// values. Sorts `values`.
+pub fn quantile(values: &mut [f64], part: f64) -> f64 {
+    values.sort_by(f64::total_cmp);
+    let index = (values.len() as f64 * part).ceil() as usize;
+    let last = values.len().checked_sub(1);
+    last.map_or(f64::NAN, |last| values[index.saturating_sub(1).min(last)])
+}
+
+/// The median time of `run`, microseconds, over as many runs as fit into `budget`, at least three. One run
+/// before them is not counted.
+pub fn median_us(budget: Duration, mut run: impl FnMut()) -> f64 {
+    run();
+    let begin = Instant::now();
+    let mut times = Vec::new();
+    while times.len() < 3 || begin.elapsed() < budget {
+        let start = Instant::now();
+        run();
+        times.push(start.elapsed().as_secs_f64() * 1e6);
+    }
+    quantile(&mut times, 0.5)
+}
+
+/// A bench fails if a number misses its bound by more than this factor, unless it runs briefly. Noise does not reach it,
+/// but what costs ten times as much as it did does.
+const FAR: f64 = 4.0;
+
+/// The bound that a measured number should keep.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Bound {
+    /// The number should be at least this.
+    Least(f64),
+    /// The number should be at most this.
+    Most(f64),
+    /// No bound: the number is only reported.
+    None,
+}
+
+impl Bound {
+    fn holds(self, value: f64) -> &'static str {
+        match self {
+            Self::Least(bound) if value >= bound => "yes",
+            Self::Most(bound) if value <= bound => "yes",
+            Self::None => "",
+            _ => "NO",
+        }
+    }
+
+    /// True if a number misses the bound by more than [`FAR`].
+    fn is_far_missed(self, value: f64) -> bool {
+        match self {
+            Self::Least(bound) => value * FAR < bound,
+            Self::Most(bound) => value > bound * FAR,
+            Self::None => false,
+        }
+    }
+
+    fn text(self) -> String {
+        match self {
+            Self::Least(bound) => format!(">= {bound}"),
+            Self::Most(bound) => format!("<= {bound}"),
+            Self::None => String::new(),
+        }
+    }
+}
+
+/// The results of a bench, one row per number: its name, its value, its bound, and whether the bound holds.
+#[derive(Clone, Debug)]
+pub struct Cells {
+    table: Table,
+    /// Names of the rows whose bound is missed by far.
+    far_missed: Vec<String>,
+}
+
+impl Default for Cells {
+    /// No rows.
+    fn default() -> Self {
+        Self {
+            table: Table::new(&["name", "value", "bound", "holds"]),
+            far_missed: Vec::new(),
+        }
+    }
+}
+
+impl Cells {
+    /// Appends a row and prints it.
+    pub fn push(&mut self, name: &str, value: f64, bound: Bound) {
+        let digits = if value.abs() < 10.0 { 3 } else { 1 };
+        let row = [
+            name.to_owned(),
+            format!("{value:.digits$}"),
+            bound.text(),
+            bound.holds(value).to_owned(),
+        ];
+        println!("{}: {} {} {}", row[0], row[1], row[2], row[3]);
+        if bound.is_far_missed(value) {
+            self.far_missed.push(name.to_owned());
+        }
+        self.table.push(row.to_vec());
+    }
+
+    /// Appends a row without a bound and prints it.
+    pub fn value(&mut self, name: &str, value: f64) {
+        self.push(name, value, Bound::None);
+    }
+
+    /// Prints all rows, and writes them to `BENCH.csv` in [`measure_folder`]; a brief run writes
+    /// `BENCH_brief.csv`. A bound that is missed by less than four times, or in a brief run,
+    /// is no error.
+    ///
+    /// # Errors
+    /// If a number misses its bound by more than that, or the file cannot be written.
+    pub fn finish(self, bench: &str, brief: bool) -> Result<(), Box<dyn Error>> {
+        println!("\n{}", self.table);
+        let suffix = if brief { "_brief" } else { "" };
+        let path = measure_folder().join(format!("{bench}{suffix}.csv"));
+        self.table.write_csv(&path)?;
+        println!("written to {}", path.display());
+        if brief || self.far_missed.is_empty() {
+            return Ok(());
+        }
+        let names = self.far_missed.join("; ");
+        Err(format!("bounds are missed by more than {FAR} times: {names}").into())
+    }
+}
+
+/// The folder for the results of benches: `measure` in cargo's target folder.
+pub fn measure_folder() -> PathBuf {
+    let target = std::env::var_os("CARGO_TARGET_DIR").map(PathBuf::from);
+    let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2);
+    let target = target.or_else(|| Some(workspace?.join("target")));
+    target.unwrap_or_default().join("measure")
+}
+
+/// Rows of text under named columns, to be printed as Markdown and written as CSV.
+#[derive(Clone, Debug)]
+pub struct Table {
+    columns: Vec<&'static str>,
+    rows: Vec<Vec<String>>,
+}
+
+impl Table {
+    /// A table without rows.
+    pub fn new(columns: &[&'static str]) -> Self {
+        Self {
+            columns: columns.to_vec(),
+            rows: Vec::new(),
+        }
+    }
+
+    /// Appends a row.
+    ///
+    /// # Panics
+    /// If the number of cells is not the number of columns.
+    pub fn push(&mut self, row: Vec<String>) {
+        assert_eq!(row.len(), self.columns.len(), "{row:?}");
+        self.rows.push(row);
+    }
+
+    /// Writes the table as CSV, and creates the folder if needed.
+    ///
+    /// # Errors
+    /// If the file or its folder cannot be written.
+    pub fn write_csv(&self, path: &Path) -> io::Result<()> {
+        if let Some(folder) = path.parent() {
+            std::fs::create_dir_all(folder)?;
+        }
+        let header = self.columns.iter().map(|c| quoted(c)).collect();
+        let rows = self
+            .rows
+            .iter()
+            .map(|row| row.iter().map(|c| quoted(c)).collect());
+        let lines = std::iter::once(header).chain(rows);
+        let text: String = lines
+            .map(|line: Vec<String>| line.join(",") + "\n")
+            .collect();
+        std::fs::write(path, text)
+    }
+}
+
+/// A cell as a CSV field, quoted if needed (RFC 4180).
+fn quoted(cell: &str) -> String {
+    if cell.contains([',', '"', '\n', '\r']) {
+        format!("\"{}\"", cell.replace('"', "\"\""))
+    } else {
+        cell.to_owned()
+    }
+}
+
+impl fmt::Display for Table {
+    /// Writes the table as Markdown with aligned columns.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let width = |column: usize| {
+            let cells = self.rows.iter().map(|row| row[column].chars().count());
+            cells.fold(self.columns[column].chars().count(), usize::max)
+        };
+        let widths: Vec<usize> = (0..self.columns.len()).map(width).collect();
+        let line = |f: &mut fmt::Formatter<'_>, cells: &[&str]| {
+            for (cell, width) in cells.iter().zip(&widths) {
+                write!(f, "| {cell:<width$} ")?;
+            }
+            writeln!(f, "|")
+        };
+        line(f, &self.columns)?;
+        writeln!(f, "|{}", "---|".repeat(self.columns.len()))?;
+        for row in &self.rows {
+            line(f, &row.iter().map(String::as_str).collect::<Vec<_>>())?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quantiles_of_few_values() {
+        let mut values = [4.0, 1.0, 3.0, 2.0];
+        assert_eq!(quantile(&mut values, 0.5), 2.0);
+        assert_eq!(quantile(&mut values, 0.95), 4.0);
+        assert_eq!(quantile(&mut values, 0.0), 1.0);
+        assert!(quantile(&mut [], 0.5).is_nan());
+    }
+
+    #[test]
+    fn bounds_are_missed_by_far_on_their_side() {
+        let cases = [
+            (Bound::Most(4.0), [3.0, 5.0, 15.9], [16.1, f64::INFINITY]),
+            (Bound::Least(4.0), [5.0, 3.0, 1.1], [0.9, 0.0]),
+        ];
+        for (bound, near, far) in cases {
+            assert!(near.iter().all(|value| !bound.is_far_missed(*value)));
+            assert!(far.iter().all(|value| bound.is_far_missed(*value)));
+        }
+        assert!(!Bound::None.is_far_missed(f64::INFINITY));
+    }
+
+    #[test]
+    fn prints_markdown_and_writes_csv() {
+        let mut table = Table::new(&["name", "us"]);
+        table.push(vec!["a, \"b\"".into(), "1.5".into()]);
+        assert_eq!(
+            table.to_string(),
+            "| name   | us  |\n|---|---|\n| a, \"b\" | 1.5 |\n"
+        );
+        let folder = std::env::temp_dir().join(format!("clamber-table-{}", std::process::id()));
+        let path = folder.join("table.csv");
+        table.write_csv(&path).unwrap();
+        let written = std::fs::read_to_string(&path).unwrap();
+        std::fs::remove_dir_all(&folder).unwrap();
+        assert_eq!(written, "name,us\n\"a, \"\"b\"\"\",1.5\n");
+    }
+}
