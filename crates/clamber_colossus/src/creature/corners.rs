@@ -4,10 +4,11 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 use pathfinding::directed::astar::astar;
+use serde::{Deserialize, Serialize};
 
-use super::state::Wide;
 use super::way::Way;
 use super::{Creature, Surroundings};
+use crate::feet::Carried;
 use crate::kind::{Extent, Extents};
 
 /// Width of the grid's cells, as a share of the creature's height.
@@ -63,10 +64,72 @@ const ACROSS: u32 = 14;
 /// the creature's height. With more, the ways lead to different storeys, and there is no diagonal step.
 const SAME_STOREY: i32 = 100;
 
+/// Most corners of a way in a restored state.
+const MOST_CORNERS: usize = 512;
+
+/// The corners of a way, and when the creature searches for them again.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Corners {
+    /// Corners on the way to the goal, the next one first; empty if the way is straight.
+    places: Vec<DVec3>,
+    /// Ticks until the next search for corners.
+    ticks_left: u32,
+    /// Number of searches in a row that found no way.
+    failed: u32,
+}
+
+impl Corners {
+    /// The next corner; `None` if the way is straight.
+    pub(super) fn next(&self) -> Option<DVec3> {
+        self.places.first().copied()
+    }
+
+    /// True if the last search found no way.
+    pub(super) fn has_failed(&self) -> bool {
+        self.failed != 0
+    }
+
+    /// No corners, with the same time until the next search.
+    pub(super) fn forgotten(&self) -> Self {
+        Self {
+            places: Vec::new(),
+            ..*self
+        }
+    }
+
+    /// Removes the next corner.
+    pub(super) fn skip(&mut self) {
+        self.places.remove(0);
+    }
+
+    /// Makes a search due now.
+    pub(super) fn search_now(&mut self) {
+        self.ticks_left = 0;
+    }
+
+    /// Counts a tick of the time until the next search.
+    pub(super) fn wait(&mut self) {
+        self.ticks_left = self.ticks_left.saturating_sub(1);
+    }
+
+    /// Moves the corners with the ground that carries the creature.
+    pub(super) fn be_carried(&mut self, carried: &Carried) {
+        for place in &mut self.places {
+            *place = carried.level_place(*place);
+        }
+    }
+
+    /// True if all numbers are within the range that a creature reaches.
+    pub(super) fn is_within(&self, most: f64) -> bool {
+        let mut numbers = self.places.iter().flat_map(|corner| corner.to_array());
+        self.places.len() <= MOST_CORNERS && numbers.all(|number| number.abs() <= most)
+    }
+}
+
 impl Creature {
     /// Searches for the corners of the way to the goal, if a search is due.
     pub(super) fn find_corners(&mut self, around: &Surroundings<'_>, way: &Way) {
-        if self.state.walked.ticks_left > 0 {
+        if self.state.walked.corners.ticks_left > 0 {
             return;
         }
         let kind = std::sync::Arc::clone(&self.kind);
@@ -81,7 +144,7 @@ impl Creature {
             near: 0.0,
         };
         let mut found = None;
-        if self.state.walked.wide == Wide::Looks {
+        if self.state.walked.retreats.looks_for_wide_way() {
             let stout = on_spot.stout().and(&slim);
             let wide = Width {
                 stout: Some(&stout),
@@ -90,38 +153,38 @@ impl Creature {
             };
             found = self.corners(around, &wide, way);
             if found.is_none() {
-                self.state.walked.wide = Wide::Failed;
+                self.state.walked.retreats.fail_wide_way();
             }
         }
         let found = found.or_else(|| self.corners(around, &narrow, way));
-        let walked = &mut self.state.walked;
-        walked.failed = match found {
+        let corners = &mut self.state.walked.corners;
+        corners.failed = match found {
             Some(_) => 0,
-            None => walked.failed.saturating_add(1),
+            None => corners.failed.saturating_add(1),
         };
         // Wait longer after each failure: a failed search is expensive, since it has tried all cells that it can reach.
-        walked.corners = found.unwrap_or_default();
-        let seconds = match (walked.failed, walked.corners.is_empty()) {
+        corners.places = found.unwrap_or_default();
+        let seconds = match (corners.failed, corners.places.is_empty()) {
             (0, true) => FAR,
             (0, false) => ANEW,
             (failed, _) => AGAIN * f64::from(1u32 << (failed - 1).min(3)),
         };
-        self.state.walked.ticks_left = self.ticks_of(seconds);
+        self.state.walked.corners.ticks_left = self.ticks_of(seconds);
     }
 
     /// Removes the next corners that the creature has reached.
     pub(super) fn pass_corners(&mut self) {
         let passed = PASSED * self.size.height;
-        let position = self.state.position;
+        let position = self.state.position();
         let is_there = |corner: &DVec3| (*corner - position).with_y(0.0).length() < passed;
-        let corners = &mut self.state.walked.corners;
+        let corners = &mut self.state.walked.corners.places;
         let count = corners.iter().take_while(|corner| is_there(corner)).count();
         corners.drain(..count);
     }
 
     /// Brings the next search forward because of an obstacle ahead, unless the last search found no way.
     pub(super) fn doubt_corners(&mut self) {
-        if self.state.walked.failed == 0 {
+        if !self.state.walked.corners.has_failed() {
             self.look_soon();
         }
     }
@@ -129,8 +192,8 @@ impl Creature {
     /// Brings the next search forward to `ANEW` from now, if it is not due sooner.
     pub(super) fn look_soon(&mut self) {
         let soon = self.ticks_of(ANEW);
-        let walked = &mut self.state.walked;
-        walked.ticks_left = walked.ticks_left.min(soon);
+        let corners = &mut self.state.walked.corners;
+        corners.ticks_left = corners.ticks_left.min(soon);
     }
 
     /// Converts seconds for a creature of `GIANT` height to ticks of this one.
@@ -146,7 +209,7 @@ impl Creature {
         width: &Width<'_>,
         way: &Way,
     ) -> Option<Vec<DVec3>> {
-        let start = self.state.position;
+        let start = self.state.position();
         let end = |from: DVec3| {
             let to = (way.goal - from).with_y(0.0);
             let left = (to.length() - way.within).clamp(0.0, FARTHEST * self.size.height);
@@ -156,7 +219,7 @@ impl Creature {
             return Some(Vec::new());
         }
         // The known corners are kept as long as the way along them is free.
-        let known = &self.state.walked.corners;
+        let known = &self.state.walked.corners.places;
         if let Some(last) = known.last() {
             let from = core::iter::once(start).chain(known.iter().copied());
             let to = known.iter().copied().chain([end(*last)]);
@@ -220,7 +283,7 @@ impl Creature {
         let is_far = |from: DVec3| (place - from).with_y(0.0).length() > width.near;
         let stout = width
             .stout
-            .filter(|_| is_far(self.state.position) && is_far(width.goal));
+            .filter(|_| is_far(self.state.position()) && is_far(width.goal));
         stout.unwrap_or(width.slim)
     }
 }
@@ -290,7 +353,10 @@ impl Grid<'_> {
         known.tried += 1;
         let [x, z] = SIDES[side];
         let to = self.place([at[0] + x, at[1] + z, 0]);
-        let (home, is_sent) = (self.creature.state.home, self.creature.sent_to().is_some());
+        let (home, is_sent) = (
+            self.creature.state.territory.home(),
+            self.creature.sent_to().is_some(),
+        );
         let far = |place: DVec3| (place - home).with_y(0.0).length();
         // A creature that was sent may leave its arena.
         let is_inside = is_sent || far(to) <= self.creature.config.arena.max(far(self.start));

@@ -8,8 +8,8 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use super::Creature;
+use super::clips::Playing;
 use super::legs::PutLeg;
-use super::state::Playing;
 use crate::feet::Carried;
 
 /// Largest vertical acceleration of the hips, metres a second squared. Riders feel it in addition to the acceleration
@@ -149,11 +149,11 @@ impl Creature {
         let scale = world.scale;
         let length = legs.iter().map(|leg| leg.reach).fold(0.0, f64::max) * scale;
         let before = self.state.hips.drop;
-        let steep = SLOPE_DROP * self.state.steepness * length;
+        let steep = SLOPE_DROP * self.state.motion.steepness() * length;
         let needed = (legs.iter().map(drop_of).fold(0.0, f64::max) * scale).max(steep);
         // The hips rise slowly, so that they do not bob with each step. They do not rise at all unless the creature
         // walks or turns: a clip that made the legs too short once does so again in each round.
-        let moves = matches!(self.state.playing, Playing::Walk | Playing::Turn(_));
+        let moves = matches!(self.state.clips.playing(), Playing::Walk | Playing::Turn(_));
         let rises = if moves {
             RISES * self.size.pace.max(1e-3)
         } else {
@@ -178,7 +178,7 @@ impl Creature {
             }
         }
         to += shift;
-        if self.state.ticks <= 1 {
+        if self.state.clock.is_first() {
             // The creature was just placed.
             self.state.hips.offset = to;
         }

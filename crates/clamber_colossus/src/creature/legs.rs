@@ -7,8 +7,8 @@ use clamber_world::Obstacle;
 use glam::{DQuat, DVec3};
 
 use super::Creature;
+use super::clips::Playing;
 use super::report::CreatureEvent;
-use super::state::Playing;
 use crate::feet::{Foot, FootGoal, Ground, MOST_ASIDE, MOST_UP, SHARES, Sole};
 use crate::kind::{Contacts, Leg, rotation_of};
 
@@ -117,7 +117,7 @@ impl Creature {
                 wall: WALL * leg.length * world.scale,
             };
             let foot = &mut self.state.feet[index];
-            if self.state.ticks <= 1 && goal.stands {
+            if self.state.clock.is_first() && goal.stands {
                 foot.place(&goal, &sole);
             }
             if foot.step(&goal, &sole, dt) {
@@ -212,12 +212,12 @@ impl Creature {
     ) -> FootGoal {
         let leg = &self.kind.legs()[index];
         let scale = world.scale;
-        let layer = self.state.animator.layers().first();
+        let layer = self.state.animator().layers().first();
         let (time, speed) = layer.map_or((0.0, 0.0), |layer| {
-            (layer.time, layer.speed * self.state.animator.rate())
+            (layer.time, layer.speed * self.state.animator().rate())
         });
         let contacts = self.contacts(index);
-        let is_idle = self.state.playing == Playing::Idle;
+        let is_idle = self.state.clips.playing() == Playing::Idle;
         let stands = is_idle || contacts.is_none_or(|contacts| contacts.stands(time));
         let stands_for = match contacts {
             Some(contacts) if !is_idle => contacts.stands_for(time) / speed.max(1e-3),
@@ -236,54 +236,48 @@ impl Creature {
             clip
         } else {
             // The creature moves on until the foot lands.
-            at + forward * (self.state.speed * lands_in)
+            at + forward * (self.state.speed() * lands_in)
         };
-        let is_walk = self.state.playing == Playing::Walk;
+        let is_aimed = aims == Some(index);
         let aside = match landing {
-            _ if aims == Some(index) => self.state.aim,
-            Some((_, place)) if is_walk => forward * (place.z * scale * (self.stride() - 1.0)),
+            _ if is_aimed => self.state.striking.aim(),
+            Some((_, place)) if self.state.clips.playing() == Playing::Walk => {
+                forward * (place.z * scale * (self.stride() - 1.0))
+            }
             _ => DVec3::ZERO,
         };
-        let aside = if stands {
-            aside
-        } else {
-            aside + self.past_others(index, forward)
-        };
-        // The clip of a strike or a fall may lift a standing foot faster than `MOST_UP` allows.
-        let most_up = match self.state.playing {
-            Playing::Act(_) => BLOW,
-            _ => MOST_UP,
-        };
-        // A blow is intended: the limit for corrections does not apply.
-        let most_aside = if aims == Some(index) {
-            BLOW
-        } else {
-            MOST_ASIDE
-        };
+        let past = (!stands).then(|| self.past_others(index, forward));
+        let aside = past.map_or(aside, |past| aside + past);
         let ahead = SHARES.map(|share| {
-            let Some((contacts, (wait, _))) = contacts.zip(landing) else {
-                return clip.y;
-            };
-            let ball = contacts.ball((time + wait * share).rem_euclid(contacts.duration()));
-            world.transform_point(ball).y
+            let place = contacts.zip(landing).map(|(contacts, (wait, _))| {
+                let time = (time + wait * share).rem_euclid(contacts.duration());
+                world.transform_point(contacts.ball(time))
+            });
+            place.unwrap_or(clip).y
         });
         FootGoal {
             clip,
             settled,
             ahead,
             aside,
-            most_aside,
-            most_up,
+            // A blow is intended: the limit for corrections does not apply.
+            most_aside: if is_aimed { BLOW } else { MOST_ASIDE },
+            // The clip of a strike or a fall may lift a standing foot faster than `MOST_UP` allows.
+            most_up: if matches!(self.state.clips.playing(), Playing::Act(_)) {
+                BLOW
+            } else {
+                MOST_UP
+            },
             stands,
             stands_for,
             lands_in,
-            lands_at: lands_at.with_y(self.state.position.y + leg.sole.ball_height * scale),
-            heading: self.state.yaw + heading,
+            lands_at: lands_at.with_y(self.state.position().y + leg.sole.ball_height * scale),
+            heading: self.state.yaw() + heading,
             ball_height: leg.sole.ball_height * scale,
             leg: leg.length * scale,
             may_step: others_stand && self.state.hips.has_shifted(),
-            looks: (self.state.ticks + index as u64).is_multiple_of(LOOKS),
-            is_gait: matches!(self.state.playing, Playing::Walk | Playing::Turn(_)),
+            looks: (self.state.ticks() + index as u64).is_multiple_of(LOOKS),
+            is_gait: matches!(self.state.clips.playing(), Playing::Walk | Playing::Turn(_)),
             is_lifted: !is_idle && contacts.is_some_and(|contacts| contacts.lifts_after(time)),
         }
     }
@@ -337,7 +331,7 @@ impl Creature {
 
     fn contacts(&self, leg: usize) -> Option<&Contacts> {
         let gait = self.kind.gait();
-        match self.state.playing {
+        match self.state.clips.playing() {
             Playing::Walk => gait?.walk_contacts.get(leg),
             Playing::Turn(side) => gait?.turn_contacts[usize::from(side.min(1))].get(leg),
             Playing::Idle => gait?.idle_contacts.get(leg),
@@ -347,11 +341,11 @@ impl Creature {
 
     /// The leg that aims, until its strike is over.
     fn aimed_leg(&self) -> Option<usize> {
-        let Playing::Act(state) = self.state.playing else {
+        let Playing::Act(state) = self.state.clips.playing() else {
             return None;
         };
         let strike = self.kind.act(state).strike.as_ref()?;
-        let time = self.state.animator.layers().first()?.time;
+        let time = self.state.animator().layers().first()?.time;
         strike.leg.filter(|_| time < strike.active[1])
     }
 

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use clamber_animation::Spring;
 
 use super::arrive::{arrive, pull, unhurried};
-use super::{Carried, Footing, Sole};
+use super::{Carried, FootGoal, Footing, SHARES, Sole};
 use crate::angle::nearest_turn;
 
 /// Whether a foot stands, or how it moves.
@@ -80,45 +80,6 @@ pub(crate) struct Foot {
     is_stretched: bool,
 }
 
-/// The goal of a foot in a tick, in world space.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct FootGoal {
-    /// Position of the ball in the clip.
-    pub(crate) clip: DVec3,
-    /// Position of the ball in the clip once the clip has faded in.
-    pub(crate) settled: DVec3,
-    /// True if the foot stands in the clip.
-    pub(crate) stands: bool,
-    /// Seconds for which the foot still stands in the clip.
-    pub(crate) stands_for: f64,
-    /// Seconds until the foot next stands in the clip.
-    pub(crate) lands_in: f64,
-    /// Position of the ball in the clip at that time, for ground at the height of the creature's origin.
-    pub(crate) lands_at: DVec3,
-    /// Horizontal vector from `lands_at` to the place where the foot is to land.
-    pub(crate) aside: DVec3,
-    /// Largest horizontal acceleration of the offset, metres a second squared.
-    pub(crate) most_aside: f64,
-    /// Largest vertical acceleration of the offset in a swing, metres a second squared.
-    pub(crate) most_up: f64,
-    /// Height of the ball in the clip at [`SHARES`] of the time until it lands.
-    pub(crate) ahead: [f64; 3],
-    /// Yaw of the foot in the clip, radians.
-    pub(crate) heading: f64,
-    /// Height of the ball of a standing foot above the ground, metres.
-    pub(crate) ball_height: f64,
-    /// Length of the leg, metres.
-    pub(crate) leg: f64,
-    /// True if the foot may take a step of its own.
-    pub(crate) may_step: bool,
-    /// True if the foot checks in this tick whether its ground is still there.
-    pub(crate) looks: bool,
-    /// True if the clip walks or turns, so that it has steps of its own.
-    pub(crate) is_gait: bool,
-    /// True if the clip lifts the foot before it ends.
-    pub(crate) is_lifted: bool,
-}
-
 /// Distance from its place in the clip beyond which a standing foot takes a step, as a share of the leg's length.
 const STEPS_BEYOND: f64 = 0.12;
 
@@ -128,9 +89,6 @@ const STEPS_TURNED: f64 = 0.45;
 /// Distance to its place in the clip up to which a foot takes no step although its leg is stretched, as a share of the
 /// leg's length. The hips come down instead.
 const NO_STEP: f64 = 0.02;
-
-/// Shortest duration of a step that is not in a clip, as a multiple of `sqrt(leg / g)`.
-pub(crate) const STEP_TIME: f64 = 1.5;
 
 /// Least height of a step that is not in a clip, as a share of the leg's length.
 const STEP_HEIGHT: f64 = 0.04;
@@ -144,9 +102,6 @@ pub(crate) const MOST_ASIDE: f64 = 3.4;
 
 /// Largest angular acceleration of a foot's yaw, radians a second squared.
 const MOST_TURN: f64 = 3.0;
-
-/// Shares of a swing at which the ground on its way is checked.
-pub(crate) const SHARES: [f64; 3] = [0.25, 0.5, 0.75];
 
 /// Shortest time in which an offset reaches its target, seconds.
 const LEAST: f64 = 0.15;
@@ -167,9 +122,6 @@ const LEFT_BEHIND: f64 = 0.3;
 /// Distance from its place in the clip beyond which a foot is left behind, as a share of the leg's length.
 const LATE: f64 = 0.06;
 
-/// A swinging foot does not come down if its clip stands for less than this, as a share of the duration of a step.
-const TOO_SHORT: f64 = 0.2;
-
 /// Distance from its landing place within which a foot has come down, as a share of the leg's length.
 const ARRIVED: f64 = 0.01;
 
@@ -184,9 +136,6 @@ const SETTLES: f64 = 0.08;
 
 /// Half time in which a lifted foot loses its hold, as a share of the duration of a step.
 const LETS_GO: f64 = 0.25;
-
-/// Gravitational acceleration, metres a second squared. It sets the duration of steps.
-pub(crate) const GRAVITY: f64 = 9.81;
 
 impl Foot {
     /// A foot at its place in the clip.
@@ -626,18 +575,6 @@ impl Foot {
     fn lean(&mut self, normal: DVec3, time: f64, dt: f64) {
         let share = 1.0 - libm::exp(-dt / time.max(1e-3));
         self.normal = (self.normal + (normal - self.normal) * share).normalize_or(DVec3::Y);
-    }
-}
-
-impl FootGoal {
-    /// True if the clip lifts the foot so soon that the foot need not come down before.
-    fn is_lifted_soon(&self) -> bool {
-        self.is_gait && self.stands_for < TOO_SHORT * self.step_time()
-    }
-
-    /// Shortest duration of a step that is not in the clip, seconds.
-    fn step_time(&self) -> f64 {
-        STEP_TIME * (self.leg / GRAVITY).sqrt()
     }
 }
 

@@ -7,10 +7,12 @@
 
 mod arrive;
 mod foot;
+mod goal;
 mod ground;
 mod sole;
 
-pub(crate) use foot::{Foot, FootGoal, GRAVITY, MOST_ASIDE, MOST_UP, SHARES, STEP_TIME};
+pub(crate) use foot::{Foot, MOST_ASIDE, MOST_UP};
+pub(crate) use goal::{FootGoal, GRAVITY, SHARES, STEP_TIME};
 pub(crate) use ground::Ground;
 pub(crate) use sole::{Footing, Sole};
 

@@ -86,23 +86,7 @@ impl SoleShape {
         if !low.is_finite() {
             (low, high) = (DVec3::ZERO, DVec3::ZERO);
         }
-        let half = (0..skin.positions.len()).filter(|index| {
-            let height = f64::from(skin.positions[*index].y);
-            shares[*index] > RIGID[2] && height < least + FOOT * leg
-        });
-        let half: Vec<VertexId> = half.map(|index| VertexId(index as u32)).collect();
-        let low_half = half.iter().map(|vertex| vertex.index());
-        let low_half =
-            low_half.filter(|index| f64::from(skin.positions[*index].y) < least + THICK * leg);
-        let (all, alone) = low_half.fold((0.0, 0.0), |(all, alone), index| {
-            (
-                all + 1.0,
-                alone + f64::from(u8::from(shares[index] > RIGID[0])),
-            )
-        });
-        let is_blended = alone < MOST * all;
-        let ours = half.into_iter().filter(|_| is_blended);
-        let blended = BlendedSole::new(skeleton, mesh, ours);
+        let blended = blended_sole((skeleton, mesh, skin), &shares, least, leg);
         let triangles: Vec<[DVec3; 3]> = (mesh.triangles().iter())
             .filter_map(|triangle| {
                 let corners = triangle.map(|vertex| places[vertex.0 as usize].filter(is_low));
@@ -137,6 +121,33 @@ impl SoleShape {
         let way = self.corners[3] - self.corners[0];
         [way.x, way.z]
     }
+}
+
+/// The low vertices of a foot, if many of the lowest also follow the shin ([`MOST`]). `shares` has the foot's weight in
+/// each vertex, `least` the height of the lowest skin, `leg` the leg's length.
+fn blended_sole(
+    (skeleton, mesh, skin): (&Skeleton, &ColliderMesh, &RestSkin),
+    shares: &[f32],
+    least: f64,
+    leg: f64,
+) -> BlendedSole {
+    let half = (0..skin.positions.len()).filter(|index| {
+        let height = f64::from(skin.positions[*index].y);
+        shares[*index] > RIGID[2] && height < least + FOOT * leg
+    });
+    let half: Vec<VertexId> = half.map(|index| VertexId(index as u32)).collect();
+    let low_half = half.iter().map(|vertex| vertex.index());
+    let low_half =
+        low_half.filter(|index| f64::from(skin.positions[*index].y) < least + THICK * leg);
+    let (all, alone) = low_half.fold((0.0, 0.0), |(all, alone), index| {
+        (
+            all + 1.0,
+            alone + f64::from(u8::from(shares[index] > RIGID[0])),
+        )
+    });
+    let is_blended = alone < MOST * all;
+    let ours = half.into_iter().filter(|_| is_blended);
+    BlendedSole::new(skeleton, mesh, ours)
 }
 
 /// The vertices of a sole, and points of its triangles on a grid over X and Z. Where triangles overlap, the point is on

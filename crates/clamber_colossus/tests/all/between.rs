@@ -163,7 +163,7 @@ fn who_attacks_has_ended_its_turn() {
             let mut state: Value = serde_json::to_value(life.one.state()).unwrap();
             let stomps = life.one.kind().brain().find("stomps").unwrap();
             state["brain"]["current"] = serde_json::to_value(stomps).unwrap();
-            state["acting"] = Value::Null;
+            state["acting"]["state"] = Value::Null;
             life.one
                 .restore(serde_json::from_value(state).unwrap())
                 .unwrap();

@@ -61,7 +61,7 @@ impl Creature {
         });
         let people = if file.strikes() { around.people } else { &[] };
         for person in people {
-            if self.state.struck.contains(&person.id) {
+            if self.state.striking.struck().contains(&person.id) {
                 continue;
             }
             let touched = line.touch(person, around);

@@ -143,13 +143,13 @@ impl Ranged {
 impl Creature {
     /// Sets the target of the shot or beam of an attack that begins: the visible prey, or else a place ahead.
     pub(super) fn mark_prey(&mut self) {
-        let seen = self.state.prey.filter(|_| self.state.unseen == 0);
-        let mark = seen.map_or_else(|| self.ground_ahead(), |(_, place)| place);
+        let seen = self.state.perceived.visible_prey();
+        let mark = seen.unwrap_or_else(|| self.ground_ahead());
         self.state.ranged.mark = reachable(mark);
     }
 
     fn ground_ahead(&self) -> DVec3 {
-        self.state.position + self.state.heading() * self.size.height
+        self.state.position() + self.state.heading() * self.size.height
     }
 
     /// Advances all waves and shots by a tick, whether their attacks still last or not.
@@ -208,8 +208,7 @@ impl Creature {
         } else {
             self.state.ranged.beam = None;
         }
-        let layer = self.state.animator.layers().first();
-        let time = layer.map_or(0.0, |layer| layer.time);
+        let time = self.state.clips.time();
         if let Some(wave) = &attack.wave
             && time >= strike.impact
             && !self.state.ranged.is_out.wave
@@ -232,8 +231,8 @@ impl Creature {
             AttackPhase::Active => attack.beam.is_some(),
             AttackPhase::Recovery => false,
         };
-        let prey = self.state.prey.filter(|_| self.state.unseen == 0);
-        if let (true, Some((_, place))) = (still_aims, prey) {
+        let prey = self.state.perceived.visible_prey();
+        if let (true, Some(place)) = (still_aims, prey) {
             let way = place - self.state.ranged.mark;
             let mark = self.state.ranged.mark + way.clamp_length_max(attack.follows * dt);
             self.state.ranged.mark = reachable(mark);

@@ -89,7 +89,7 @@ impl Creature {
             attack: self.state.ranged.attack,
             place: moved_off(ground, DVec3::Y, lift(file), around),
             reach: 0.0,
-            struck: self.state.struck.clone(),
+            struck: self.state.striking.struck().to_vec(),
         };
         self.begin_wave(wave, file, around, dt);
     }
@@ -193,7 +193,7 @@ impl Creature {
             let direction = away.map_or(DVec3::Y, |away| (away + DVec3::Y) * FRAC_1_SQRT_2);
             wave.struck.push(person.id);
             if wave.of == WaveOf::Limb && wave.attack == self.state.ranged.attack {
-                self.state.struck.push(person.id);
+                self.state.striking.mark_struck(person.id);
             }
             self.report.blows.push(Blow {
                 person: person.id,

@@ -4,7 +4,7 @@ use clamber_surface::geometry::WorldCapsule;
 use glam::DVec3;
 
 use super::{Among, MARGIN, Room, STEPS_OVER, STRAIGHT_FROM};
-use crate::creature::state::NO_GROUND;
+use crate::creature::ground::NO_GROUND;
 use crate::kind::{BANDS, Band, EDGES};
 
 /// Additional distance from other creatures, as a share of the creature's height, because their skin moves while they

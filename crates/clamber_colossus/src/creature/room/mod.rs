@@ -15,8 +15,6 @@ use clamber_surface::surface::TargetMotion;
 use clamber_world::{Obstacle, SweepContact};
 use glam::DVec3;
 
-use super::ground::GROUND_SPACING;
-use super::state::NO_GROUND;
 use super::{Creature, Surroundings};
 use crate::feet::Ground;
 use crate::kind::{Band, EDGES, Extent};
@@ -75,7 +73,7 @@ impl Creature {
         Room {
             around,
             extent,
-            origin: self.state.position,
+            origin: self.state.position(),
             forward,
             left: DVec3::new(forward.z, 0.0, -forward.x),
             scale: self.size.scale,
@@ -89,13 +87,8 @@ impl Creature {
         let heading = self.state.heading();
         let left = DVec3::new(heading.z, 0.0, -heading.x);
         let most = libm::tan(self.config.most_slope).min(1.0);
-        let rise = |[from, to]: [usize; 2], steps: f64| {
-            let [from, to] = [from, to].map(|index| self.state.ground[index]);
-            let known = from < NO_GROUND && to < NO_GROUND;
-            let rise = (to - from) / (steps * GROUND_SPACING * self.size.height);
-            if known { rise.clamp(-most, most) } else { 0.0 }
-        };
-        heading * rise([0, 6], 6.0) + left * rise([8, 7], 2.0)
+        let [ahead, aside] = self.state.on_ground.slopes(self.size.height, most);
+        heading * ahead + left * aside
     }
 }
 

@@ -17,13 +17,13 @@ impl Creature {
         around: &Surroundings<'_>,
     ) -> bool {
         let world = self.state.world_from_model(self.size.scale);
-        let low = self.state.position.y + STEPS_OVER * self.size.height;
+        let low = self.state.position().y + STEPS_OVER * self.size.height;
         for Swept { radius, aims, way } in &strike.swept {
             let count = way.len().max(2) as f64 - 1.0;
             let places = way.iter().enumerate().map(|(index, place)| {
                 // A limb that aims goes gradually to its target.
                 let share = if *aims { index as f64 / count } else { 0.0 };
-                let place = world.transform_point(*place) + self.state.aim * share;
+                let place = world.transform_point(*place) + self.state.striking.aim() * share;
                 place.with_y(place.y.max(low + radius * self.size.scale))
             });
             let places: Vec<DVec3> = places.collect();
