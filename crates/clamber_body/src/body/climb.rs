@@ -114,6 +114,26 @@ pub(crate) struct Climb {
     still: f64,
 }
 
+/// The cycle of the limbs' steps at the speed of a frame.
+struct Cycle {
+    /// Speed of a body of reference size, metres a second.
+    speed: f64,
+    /// True if a hand and the opposite foot move together.
+    is_fast: bool,
+    /// True if the climber is still.
+    is_still: bool,
+    /// Distance that a body of reference size climbs in a cycle, metres.
+    length: f64,
+    /// The clock before this frame.
+    was: f64,
+    /// Duration of a step, seconds.
+    time: f64,
+    /// Direction of the climb.
+    way: DVec3,
+    /// Vector from a limb's goal to the place where it takes hold.
+    ahead: DVec3,
+}
+
 /// Input of the schedule in one frame.
 pub(crate) struct Schedule<'a, 'c> {
     pub(crate) context: &'a Context<'c>,
@@ -133,16 +153,25 @@ pub(crate) struct Schedule<'a, 'c> {
 }
 
 impl Climb {
+    /// Advances all limbs by a frame: holds move with their material, the clock goes on, limbs whose turn has come wait
+    /// for their step, and those that may move start it.
     pub(crate) fn step(
         &mut self,
         schedule: &Schedule<'_, '_>,
         limbs: &mut [LimbMemory; 4],
         plants: &mut Vec<Plant>,
     ) {
-        let context = schedule.context;
         for extremity in Extremity::ALL {
             schedule.follow(extremity, &mut limbs[extremity.index()], plants);
         }
+        let cycle = self.advance(schedule);
+        self.ask(schedule, &cycle, limbs);
+        schedule.start_waiting(&cycle, limbs);
+    }
+
+    /// Advances the clock by a frame.
+    fn advance(&mut self, schedule: &Schedule<'_, '_>) -> Cycle {
+        let context = schedule.context;
         let size = context.size();
         // Speed of a body of reference size: speeds grow with the square root of the size.
         let speed = schedule.motion.length() / size.sqrt();
@@ -164,7 +193,6 @@ impl Climb {
         if !is_still {
             self.clock += speed * context.dt / (length * size.sqrt());
         }
-        let offsets = if is_fast { PAIRS } else { ALONE };
         let cycle = length / speed.max(SLOW);
         let time = if is_still {
             STILL
@@ -181,7 +209,23 @@ impl Climb {
         // When a hand or foot lands, its hold is half of the stance's travel ahead of the goal, so that the stance is
         // centred on the goal.
         let swung = schedule.motion.length() * time;
-        let ahead = way * (swung + 0.5 * (length * size - swung).max(0.0));
+        Cycle {
+            speed,
+            is_fast,
+            is_still,
+            length,
+            was,
+            time,
+            way,
+            ahead: way * (swung + 0.5 * (length * size - swung).max(0.0)),
+        }
+    }
+
+    /// Lets the limbs wait for a step whose turn has come, or that are out of place.
+    fn ask(&self, schedule: &Schedule<'_, '_>, cycle: &Cycle, limbs: &mut [LimbMemory; 4]) {
+        let size = schedule.context.size();
+        let Cycle { length, was, .. } = *cycle;
+        let offsets = if cycle.is_fast { PAIRS } else { ALONE };
         for (index, limb) in limbs.iter_mut().enumerate() {
             let Some(goal) = schedule.goals[index] else {
                 limb.waits = false;
@@ -192,46 +236,50 @@ impl Climb {
                 continue;
             };
             let away = goal.point - hold.point();
-            let behind = away.dot(way);
+            let behind = away.dot(cycle.way);
             let turn = (self.clock - offsets[index]).floor() > (was - offsets[index]).floor();
             let is_due = turn && behind > 0.85 * length * size;
-            let lags = !is_still && behind > 0.85 * length * size;
+            let lags = !cycle.is_still && behind > 0.85 * length * size;
             let is_untidy = self.still > RESTS && away.length() > TIDY * size;
             let is_far = !schedule.hangs && schedule.stretch(index, hold) > FAR;
             if is_due && !limb.waits {
                 // The limb's turn came within this frame.
                 let past = (self.clock - offsets[index]).rem_euclid(1.0);
-                limb.late = past * length * size.sqrt() / speed;
+                limb.late = past * length * size.sqrt() / cycle.speed;
             }
             limb.waits |= is_due || lags || is_untidy || is_far;
         }
+    }
+}
+
+impl Schedule<'_, '_> {
+    /// Starts the steps of waiting limbs that may move, the most stretched limb first.
+    fn start_waiting(&self, cycle: &Cycle, limbs: &mut [LimbMemory; 4]) {
+        let Cycle { is_fast, time, .. } = *cycle;
         let mut order = [0, 1, 2, 3];
         let stretch = |index: usize| {
             limbs[index]
                 .hold()
-                .map_or(f64::INFINITY, |hold| schedule.stretch(index, hold))
+                .map_or(f64::INFINITY, |hold| self.stretch(index, hold))
         };
         let stretches = [stretch(0), stretch(1), stretch(2), stretch(3)];
         order.sort_by(|a, b| stretches[*b].total_cmp(&stretches[*a]));
         for index in order {
-            let enters = schedule.since < ENTERS || context.is_fresh;
+            let enters = self.since < ENTERS || self.context.is_fresh;
             let is_urgent = stretches[index] > URGENT && stretches[index].is_finite();
-            if limbs[index].waits && (enters || schedule.may_move(index, is_fast, is_urgent, limbs))
-            {
-                let goal = if enters { DVec3::ZERO } else { ahead };
+            if limbs[index].waits && (enters || self.may_move(index, is_fast, is_urgent, limbs)) {
+                let goal = if enters { DVec3::ZERO } else { cycle.ahead };
                 let time = if is_urgent { time.min(HURRIES) } else { time };
                 let swings = match (enters, Extremity::ALL[index].is_hand()) {
                     (false, _) => time,
                     (true, true) => CATCH,
                     (true, false) => FOLLOW,
                 };
-                schedule.start(index, goal, swings, limbs);
+                self.start(index, goal, swings, limbs);
             }
         }
     }
-}
 
-impl Schedule<'_, '_> {
     /// Moves a hold with its material. Ends a step that is done. Lets go of lost holds, and of limbs without a goal.
     fn follow(&self, extremity: Extremity, limb: &mut LimbMemory, plants: &mut Vec<Plant>) {
         let context = self.context;

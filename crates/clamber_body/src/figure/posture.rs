@@ -1,7 +1,7 @@
 //! Measures from the clips, once, where hands and feet touch walls and ledges.
 
 use clamber_animation::{AnimationError, AnimationSet, joint_in_model};
-use clamber_surface::rig::{Playback, Pose, Skeleton};
+use clamber_surface::rig::{Clip, Playback, Pose, Skeleton};
 use glam::DVec3;
 
 use super::{BodyClip, Clips, LimbShape};
@@ -67,21 +67,13 @@ impl Postures {
     ) -> Result<Self, AnimationError> {
         let (ahead, leg) = (humanoid.facing, limbs[2].length);
         let left = DVec3::Y.cross(ahead);
-        let sampled = |clip: BodyClip| -> Result<([DVec3; 4], DVec3), AnimationError> {
-            let clip = set.clip(clips.get(clip))?;
-            let mut pose = Pose {
-                transforms: set.rest().transforms.clone(),
-            };
-            clip.sample_into(0.0, Playback::Clamp, &mut pose)?;
-            let touch = |index: usize| {
-                let place = limbs[index].place(skeleton, &pose, scale)?;
-                // Feet touch walls with their balls.
-                Some(place.point(limbs[index].ball))
-            };
-            let hips = joint_in_model(skeleton, &pose, humanoid.hips);
-            let hips = hips.map_or(DVec3::Y * (HIPS * leg), |hips| hips.translation * scale);
-            let touches = core::array::from_fn(|index| touch(index).unwrap_or_default());
-            Ok((touches, hips))
+        let sampled = |clip: BodyClip| {
+            sampled(
+                skeleton,
+                humanoid,
+                set.clip(clips.get(clip))?,
+                (set, limbs, scale),
+            )
         };
         let at = |aside: f64, up: f64, far: f64| (left * aside + DVec3::Y * up + ahead * far) * leg;
         let (_, hips) = sampled(BodyClip::Idle)?;
@@ -141,4 +133,26 @@ impl Postures {
         }
         Ok(postures)
     }
+}
+
+/// Places of hands and feet at a clip's beginning, and the hips. Feet touch walls with their balls.
+fn sampled(
+    skeleton: &Skeleton,
+    humanoid: &Humanoid,
+    clip: &Clip,
+    (set, limbs, scale): (&AnimationSet, &[LimbShape; 4], f64),
+) -> Result<([DVec3; 4], DVec3), AnimationError> {
+    let mut pose = Pose {
+        transforms: set.rest().transforms.clone(),
+    };
+    clip.sample_into(0.0, Playback::Clamp, &mut pose)?;
+    let touch = |index: usize| {
+        let place = limbs[index].place(skeleton, &pose, scale)?;
+        Some(place.point(limbs[index].ball))
+    };
+    let leg = limbs[2].length;
+    let hips = joint_in_model(skeleton, &pose, humanoid.hips);
+    let hips = hips.map_or(DVec3::Y * (HIPS * leg), |hips| hips.translation * scale);
+    let touches = core::array::from_fn(|index| touch(index).unwrap_or_default());
+    Ok((touches, hips))
 }

@@ -174,7 +174,7 @@ impl Creature {
         } else if way.is_some() {
             self.state.clips.go_on();
         }
-        if !matches!(playing, Playing::Act(_)) && !(sleeps && playing == Playing::Idle) {
+        if !(matches!(playing, Playing::Act(_)) || sleeps && playing == Playing::Idle) {
             self.state.clips.set_speed(clip_speed);
         }
         let stands = self.state.speed() == 0.0 && !self.is_turning();

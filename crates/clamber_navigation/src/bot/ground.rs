@@ -339,34 +339,31 @@ impl Approach {
         Some(known.get(&plan.steps.first()?.patch)?.0)
     }
 
+    /// Seconds until the bot arrives at an entry. `None` for an entry that is too high, did not work, or is gone, as on
+    /// a plate that broke.
+    fn comes(&self, graph: &ClimbGraph, view: &View<'_>, entry: usize) -> Option<f64> {
+        let is_avoided = self.avoided.iter().any(|(other, _)| *other == entry);
+        let patch = graph.entries()[entry].patch;
+        if is_avoided || !graph.is_there(patch, view.surface) {
+            return None;
+        }
+        let (state, climber) = (view.climber.state(), view.climber.config());
+        let feet = state.position.dot(climber.up()) - climber.body.radius;
+        let place = view.spot(&graph.patches()[patch]).point;
+        if place.dot(climber.up()) - feet > highest_entry(graph.config()) {
+            return None;
+        }
+        let way = place - state.position;
+        let way = (way - climber.up() * way.dot(climber.up())).length();
+        Some(way / climber.ground.walk_speed.max(1e-3))
+    }
+
     /// Chooses the entry by which the bot gets to the goal first.
     fn choose(&mut self, graph: &ClimbGraph, config: &BotConfig, view: &View<'_>) {
         let seconds = view.seconds;
         self.chosen = seconds;
         self.avoided.retain(|(_, until)| *until > seconds);
-        let (state, climber) = (view.climber.state(), view.climber.config());
-        let feet = state.position.dot(climber.up()) - climber.body.radius;
-        let highest = highest_entry(graph.config());
-        let footings = [Footing::Stands, Footing::Holds];
-        let place = |entry: usize| {
-            view.spot(&graph.patches()[graph.entries()[entry].patch])
-                .point
-        };
-        // Seconds until the bot arrives at an entry. `None` for an entry that is too high, did not work, or is gone, as
-        // on a plate that broke.
-        let comes = |entry: usize| {
-            let is_avoided = self.avoided.iter().any(|(other, _)| *other == entry);
-            if is_avoided || !graph.is_there(graph.entries()[entry].patch, view.surface) {
-                return None;
-            }
-            let place = place(entry);
-            if place.dot(climber.up()) - feet > highest {
-                return None;
-            }
-            let way = place - state.position;
-            let way = (way - climber.up() * way.dot(climber.up())).length();
-            Some(way / climber.ground.walk_speed.max(1e-3))
-        };
+        let comes = |entry: usize| self.comes(graph, view, entry);
         self.lasts = false;
         if !view.forecast.is_still()
             && view.danger == Danger::None
@@ -390,6 +387,7 @@ impl Approach {
             }
         }
         let (strength, most) = (strength(config, view), Self::shake(config, view));
+        let footings = [Footing::Stands, Footing::Holds];
         // The cost of an entry: whether the bot tires on the way to the goal, then the seconds to the goal. If it
         // tires, it gets as far as its stamina lasts.
         let cost = |entry: usize| {
