@@ -31,11 +31,11 @@ pub struct GraphSource<'a> {
 }
 
 /// Allowed rates of clips, as a share of the file's rate.
-const RATES: std::ops::RangeInclusive<f64> = 1e-4..=1e4;
+const RATE_RANGE: std::ops::RangeInclusive<f64> = 1e-4..=1e4;
 
 impl GraphSource<'_> {
     pub(crate) fn check(&self) -> Result<(), NavigationError> {
-        if !RATES.contains(&self.rate) {
+        if !RATE_RANGE.contains(&self.rate) {
             return Err(NavigationError::OutOfRange {
                 name: "rate",
                 range: "from 0.0001 to 10,000",

@@ -11,7 +11,7 @@ use crate::brain::{Act, StateId};
 use crate::error::ColossusError;
 
 /// Share of the walking speed below which the creature has come to a stand, so that an act of another kind can begin.
-const STANDS: f64 = 0.12;
+const STANDING_SPEED_SHARE: f64 = 0.12;
 
 /// What a creature does: an errand of the game, or else the act of a state of its brain.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -97,7 +97,7 @@ impl Creature {
         let act = kind.brain().act(state);
         let walks = matches!(act, Some(Act::Walk(_)));
         let speed = kind.gait().map_or(0.0, |gait| self.full_speed(gait));
-        let is_moving = self.state.speed().abs() > STANDS * speed;
+        let is_moving = self.state.speed().abs() > STANDING_SPEED_SHARE * speed;
         // An attack aims once, and would strike elsewhere if the creature turned on.
         let turns = matches!(act, Some(Act::Attack(_))) && self.is_turning();
         if !walks && !self.state.acting.halts && (is_moving || turns) {

@@ -12,28 +12,28 @@ use crate::feet::{Carried, GRAVITY, STEP_TIME};
 use crate::kind::{Extent, Gait};
 
 /// Longest retreat, in heights of the creature.
-const MOST: f64 = 6.0;
+const LONGEST_RETREAT: f64 = 6.0;
 
 /// Free room behind the creature below which it does not begin to retreat, in heights.
-const LEAST: f64 = 0.02;
+const LEAST_ROOM_BEHIND: f64 = 0.02;
 
 /// Length of a retreat, in heights, from which on it ends if the creature can turn. An obstacle behind the creature
 /// ends it sooner.
-const ENOUGH: f64 = 0.2;
+const ENOUGH_RETREAT: f64 = 0.2;
 
 /// Length that is added to a retreat once a turn is free, in heights. A turn that is only just free may still be
 /// blocked in one of its steps.
-const MORE: f64 = 0.1;
+const EXTRA_RETREAT: f64 = 0.1;
 
 /// Distance behind the creature that is checked for obstacles during a retreat, in heights.
-const SEES: f64 = 1.0;
+const SIGHT_BEHIND: f64 = 1.0;
 
 /// Angle that may be missing from a free turn, radians.
-const LEFT: f64 = 0.01;
+const TURN_TOLERANCE: f64 = 0.01;
 
 /// Distance from the place where the creature got stuck, in heights. Stops and retreats within it count as stops and
 /// retreats at the same place.
-const HERE: f64 = 1.0;
+const SAME_PLACE_DISTANCE: f64 = 1.0;
 
 /// Stops at one place after which the next one blocks the creature.
 const MOST_STOPS: u8 = 6;
@@ -43,10 +43,10 @@ const MOST_RETREATS: u8 = 2;
 
 /// How far the body moves away from a standing foot in a retreat before that foot steps, as a share of the leg's
 /// length.
-const BY_STEP: f64 = 0.3;
+const RETREAT_BY_STEP: f64 = 0.3;
 
 /// Highest speed of a retreat, as a share of the walking speed.
-const SLOW: f64 = 0.35;
+const RETREAT_SPEED_SHARE: f64 = 0.35;
 
 /// How a creature has tried to get out of dead ends.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -149,9 +149,9 @@ impl Creature {
         let rounds = legs.len().div_ceil(at_once(legs.len())) as f64;
         let by_steps = legs.iter().map(|leg| {
             let length = leg.length * self.size.scale;
-            BY_STEP * length / (rounds * STEP_TIME * (length / GRAVITY).sqrt())
+            RETREAT_BY_STEP * length / (rounds * STEP_TIME * (length / GRAVITY).sqrt())
         });
-        by_steps.fold(SLOW * self.full_speed(gait), f64::min)
+        by_steps.fold(RETREAT_SPEED_SHARE * self.full_speed(gait), f64::min)
     }
 
     /// Reacts to an obstacle on the way at which the creature has stopped.
@@ -181,7 +181,10 @@ impl Creature {
     /// Takes this place as the one where the creature got stuck, and resets the counts of stops and retreats, unless
     /// they already count for a place near here.
     fn get_stuck(&mut self) {
-        let (place, here) = (self.state.position(), HERE * self.size.height);
+        let (place, here) = (
+            self.state.position(),
+            SAME_PLACE_DISTANCE * self.size.height,
+        );
         let retreats = &mut self.state.walked.retreats;
         let is_first = retreats.stops == 0 && retreats.count == 0;
         if is_first || retreats.stuck_at.distance(place) > here {
@@ -198,7 +201,7 @@ impl Creature {
         aside: f64,
     ) -> bool {
         let (room, slope) = (self.room(around, on_spot), self.slope());
-        let is_free = |far: f64| room.turn(far, slope).abs() >= far.abs() - LEFT;
+        let is_free = |far: f64| room.turn(far, slope).abs() >= far.abs() - TURN_TOLERANCE;
         if is_free(aside) {
             return true;
         }
@@ -216,7 +219,7 @@ impl Creature {
     /// Begins a retreat, if there is room behind the creature and it has not retreated too often from here. Returns
     /// true if it does.
     pub(super) fn begin_back(&mut self, around: &Surroundings<'_>, on_spot: &Extent) -> bool {
-        let least = LEAST * self.size.height;
+        let least = LEAST_ROOM_BEHIND * self.size.height;
         self.get_stuck();
         let retreats = &self.state.walked.retreats;
         if retreats.has_gone_back
@@ -225,7 +228,7 @@ impl Creature {
         {
             return false;
         }
-        let most = MOST * self.size.height;
+        let most = LONGEST_RETREAT * self.size.height;
         let walked = &mut self.state.walked;
         let retreats = &mut walked.retreats;
         retreats.count += 1;
@@ -241,13 +244,18 @@ impl Creature {
     /// Updates how far the retreat still goes: it ends at an obstacle, or soon after the creature can turn.
     pub(super) fn look_back(&mut self, around: &Surroundings<'_>, on_spot: &Extent, aside: f64) {
         let height = self.size.height;
-        let left = self.state.walked.retreats.left.min(MOST * height);
-        let sees = left.min(SEES * height);
+        let left = self
+            .state
+            .walked
+            .retreats
+            .left
+            .min(LONGEST_RETREAT * height);
+        let sees = left.min(SIGHT_BEHIND * height);
         let back = self.room_behind(around, on_spot, sees).max(0.0);
-        let is_enough = self.state.walked.retreats.gone >= ENOUGH * height;
+        let is_enough = self.state.walked.retreats.gone >= ENOUGH_RETREAT * height;
         let turns = is_enough && self.finds_turn(around, on_spot, aside);
         self.state.walked.retreats.left = if turns {
-            back.min(MORE * height)
+            back.min(EXTRA_RETREAT * height)
         } else if back < sees {
             back
         } else {

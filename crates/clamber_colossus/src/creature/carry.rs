@@ -5,7 +5,7 @@ use clamber_world::{MaterialPoint, PointMotion};
 use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
 
-use super::check_way::{LOOKS, SELDOM};
+use super::check_way::{CHECK_INTERVAL, FREE_WAY_FACTOR};
 use super::state::{is_far, is_fast};
 use super::{Creature, Surroundings};
 use crate::angle::nearest_turn;
@@ -13,19 +13,19 @@ use crate::feet::Carried;
 
 /// Ground carries the creature if it is within this distance above or below the creature's origin, as a share of the
 /// creature's height.
-const NEAR: f64 = 0.15;
+const CARRYING_DISTANCE: f64 = 0.15;
 
 /// Distance ahead of the origin, and behind and to both sides of it, at which the motion of the ground is compared with
 /// that below the origin, as a share of the creature's height.
-const BROAD: f64 = 0.12;
+const COMPARED_DISTANCE: f64 = 0.12;
 
 /// Largest difference between these motions for ground that moves as one, as a share of the distance that the ground
 /// moved.
-const ALIKE: f64 = 0.1;
+const ALIKE_MOTION_SHARE: f64 = 0.1;
 
 /// How near the previous position of the remembered ground point must be to the place where it was, as a share of the
 /// creature's height. Farther away, it is another point.
-const SAME: f64 = 1e-6;
+const SAME_POINT_DISTANCE: f64 = 1e-6;
 
 /// What a creature knows of the motion of the ground below it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -152,12 +152,16 @@ impl Creature {
         dt: f64,
         went: f64,
     ) -> Option<PointMotion> {
-        let often = if self.state.speed() != 0.0 { 1 } else { SELDOM };
-        let looks = self.state.ticks().is_multiple_of(often * LOOKS);
+        let often = if self.state.speed() != 0.0 {
+            1
+        } else {
+            FREE_WAY_FACTOR
+        };
+        let looks = self.state.ticks().is_multiple_of(often * CHECK_INTERVAL);
         let among = around.terrain.len() as u32;
         let known = self.state.moving_ground.point.take();
         // When the ray found the point, the ground had already moved in that tick, but the creature had not.
-        let reach = 2.0 * NEAR * self.size.height + went;
+        let reach = 2.0 * CARRYING_DISTANCE * self.size.height + went;
         let is_near = |point: &GroundPoint| point.at.distance(self.state.position()) <= reach;
         let known = known.filter(|point| point.among == among && is_near(point));
         let found = if looks || known.is_none() {
@@ -178,7 +182,7 @@ impl Creature {
         }
         let mut motion = point_motion(around, &point, dt);
         let is_it = motion.as_ref().is_some_and(|motion| {
-            motion.previous_position.distance(point.at) <= SAME * self.size.height
+            motion.previous_position.distance(point.at) <= SAME_POINT_DISTANCE * self.size.height
         });
         if known.is_some() && !is_it {
             // The index now belongs to another obstacle.
@@ -200,7 +204,7 @@ impl Creature {
     /// True if the ground moves the same way ahead of the creature and behind it on both sides, wherever there is
     /// ground. This tells a ship from a rock that rolls between the feet.
     fn is_broad(&self, carried: &Carried, around: &Surroundings<'_>, dt: f64) -> bool {
-        let ahead = self.state.heading() * (BROAD * self.size.height);
+        let ahead = self.state.heading() * (COMPARED_DISTANCE * self.size.height);
         let left = DVec3::new(ahead.z, 0.0, -ahead.x);
         [ahead, left - ahead, -left - ahead]
             .into_iter()
@@ -213,13 +217,14 @@ impl Creature {
                 motion.is_some_and(|motion| {
                     let alike = carried.place(motion.previous_position);
                     let moved = carried.to.distance(carried.from);
-                    alike.distance(motion.position) <= ALIKE * (moved + self.size.height * 1e-3)
+                    alike.distance(motion.position)
+                        <= ALIKE_MOTION_SHARE * (moved + self.size.height * 1e-3)
                 })
             })
     }
 
     fn ground_point_at(&self, around: &Surroundings<'_>, place: DVec3) -> Option<GroundPoint> {
-        let reach = NEAR * self.size.height;
+        let reach = CARRYING_DISTANCE * self.size.height;
         let from = place + DVec3::Y * reach;
         let among = around.terrain.len() as u32;
         let hits = (0..).zip(around.terrain).filter_map(|(obstacle, terrain)| {

@@ -8,16 +8,16 @@ use super::{Creature, Surroundings};
 use crate::kind::{Extent, Extents, Gait};
 
 /// Interval between checks of the way, in ticks.
-pub(super) const LOOKS: u64 = 8;
+pub(super) const CHECK_INTERVAL: u64 = 8;
 
 /// Factor on the interval while there is no obstacle on the way.
-pub(super) const SELDOM: u64 = 4;
+pub(super) const FREE_WAY_FACTOR: u64 = 4;
 
 /// A yaw rate that the angular acceleration produces within this time counts as walking straight on, seconds.
-const STEADY: f64 = 0.1;
+const STEADY_TURN_TIME: f64 = 0.1;
 
 /// A free distance above this means that the way is free as far as the creature looks, metres.
-const FREE: f64 = 1e5;
+const FREE_DISTANCE: f64 = 1e5;
 
 /// A turn on the spot is blocked if its free angle is below this, radians, unless the goal is nearer.
 const LEAST_TURN: f64 = 0.05;
@@ -100,7 +100,7 @@ impl Creature {
             let far = sight.min(goes.distance + sight / 2.0);
             let free = self.room(around, walking).ahead(far);
             if free >= far {
-                2.0 * FREE
+                2.0 * FREE_DISTANCE
             } else {
                 self.doubt_corners();
                 free
@@ -165,17 +165,22 @@ impl Creature {
         self.state.walked.progress.set_blocked(!gets_on);
     }
 
-    /// True in ticks in which the creature checks its way: in one of every [`LOOKS`] ticks. It checks less often while
-    /// it walks straight on along a free way, or while it turns on the spot with room to turn.
+    /// True in ticks in which the creature checks its way: in one of every [`CHECK_INTERVAL`] ticks. It checks less
+    /// often while it walks straight on along a free way, or while it turns on the spot with room to turn.
     pub(super) fn looks(&self, gait: &Gait, wanted: &Wanted) -> bool {
         let (state, free) = (&self.state, &self.state.walked.free);
         let is_new = !free.is_known || wanted.faces && !free.faces;
-        if is_new || state.ticks().is_multiple_of(SELDOM * LOOKS) {
+        if is_new
+            || state
+                .ticks()
+                .is_multiple_of(FREE_WAY_FACTOR * CHECK_INTERVAL)
+        {
             return true;
         }
-        let walks_free = free.ahead > FREE && state.motion.yaw_rate().abs() < STEADY * self.turns();
+        let walks_free = free.ahead > FREE_DISTANCE
+            && state.motion.yaw_rate().abs() < STEADY_TURN_TIME * self.turns();
         let room = free.turn * wanted.aside.signum();
         let turns_free = wanted.turns_on_spot && room > self.turning_room(gait, false);
-        state.ticks().is_multiple_of(LOOKS) && !walks_free && !turns_free
+        state.ticks().is_multiple_of(CHECK_INTERVAL) && !walks_free && !turns_free
     }
 }

@@ -93,6 +93,14 @@ impl Clips {
         layer.map_or(0.0, |layer| layer.time)
     }
 
+    /// Time of the lowest layer, seconds, and the speed at which it plays; 0 without layers.
+    pub(super) fn time_and_speed(&self) -> (f64, f64) {
+        let layer = self.animator.layers().first();
+        layer.map_or((0.0, 0.0), |layer| {
+            (layer.time, layer.speed * self.animator.rate())
+        })
+    }
+
     /// Takes the clip that plays as the clip of standing.
     pub(super) fn stand(&mut self) {
         self.playing = Playing::Idle;

@@ -12,39 +12,39 @@ use crate::feet::Carried;
 use crate::kind::{Extent, Extents};
 
 /// Width of the grid's cells, as a share of the creature's height.
-const CELL: f64 = 0.35;
+const CELL_WIDTH: f64 = 0.35;
 
 /// Number of steps between cells that a search tries at most. It bounds the time of a search.
 const MOST_STEPS: usize = 500;
 
 /// Straight lines are checked in pieces of this length, as a share of the creature's height.
-const PIECE: f64 = 1.0;
+const LINE_PIECE_LENGTH: f64 = 1.0;
 
 /// Straight lines are checked up to this distance, in heights. The creature knows no obstacles farther away.
-const FARTHEST: f64 = 16.0;
+const FARTHEST_LINE: f64 = 16.0;
 
 /// A shortcut along the path leads fewer than this many places ahead.
-const SKIPPED: usize = 12;
+const MOST_SKIPPED: usize = 12;
 
 /// Distance from both ends of a wide way within which it may be narrow, in heights. It is at least the distance of the
 /// body's outermost corner from the origin.
-const NEAR: f64 = 1.2;
+const NARROW_END_DISTANCE: f64 = 1.2;
 
 /// Distance within which the creature has passed a corner, as a share of its height.
-const PASSED: f64 = 0.12;
+const PASSED_DISTANCE: f64 = 0.12;
 
-/// Time until the next search after one that found corners, seconds for a creature of `GIANT` height.
-const ANEW: f64 = 1.0;
+/// Time until the next search after one that found corners, seconds for a creature of `GIANT_HEIGHT`.
+const WAIT_AFTER_CORNERS: f64 = 1.0;
 
-/// Time until the next search after one that found the straight line free, seconds for a creature of `GIANT` height.
-const FAR: f64 = 4.0;
+/// Time until the next search after one that found the straight line free, seconds for a creature of `GIANT_HEIGHT`.
+const WAIT_AFTER_FREE_LINE: f64 = 4.0;
 
-/// Time until the next search after one that found no way, seconds for a creature of `GIANT` height. It doubles with
+/// Time until the next search after one that found no way, seconds for a creature of `GIANT_HEIGHT`. It doubles with
 /// each failure in a row, up to eight times this.
-const AGAIN: f64 = 4.0;
+const WAIT_AFTER_FAILURE: f64 = 4.0;
 
 /// Shortest time until the next search, seconds. It applies to small creatures.
-const LEAST: f64 = 0.5;
+const SHORTEST_WAIT: f64 = 0.5;
 
 /// A place on the grid: steps from the creature's place along X and Z, and how much higher the ground is there, in
 /// thousandths of the creature's height. The height distinguishes storeys.
@@ -52,13 +52,13 @@ type Cell = [i32; 3];
 
 /// Offsets to the four neighbours of a cell, in order around it. A step to one neighbour and a step in the direction of
 /// the next one lead to the diagonal cell between both.
-const SIDES: [[i32; 2]; 4] = [[1, 0], [0, 1], [-1, 0], [0, -1]];
+const NEIGHBOUR_OFFSETS: [[i32; 2]; 4] = [[1, 0], [0, 1], [-1, 0], [0, -1]];
 
 /// Cost of a step to a neighbour.
-const STEP: u32 = 10;
+const STRAIGHT_STEP_COST: u32 = 10;
 
-/// Cost of a diagonal step: about `STEP` times the square root of 2.
-const ACROSS: u32 = 14;
+/// Cost of a diagonal step: about `STRAIGHT_STEP_COST` times the square root of 2.
+const DIAGONAL_STEP_COST: u32 = 14;
 
 /// Largest difference between the ground heights at the end of both ways round to a diagonal cell, in thousandths of
 /// the creature's height. With more, the ways lead to different storeys, and there is no diagonal step.
@@ -148,7 +148,8 @@ impl Creature {
             let stout = on_spot.stout().and(&slim);
             let wide = Width {
                 stout: Some(&stout),
-                near: (NEAR * self.size.height).max(on_spot.farthest() * self.size.scale),
+                near: (NARROW_END_DISTANCE * self.size.height)
+                    .max(on_spot.farthest() * self.size.scale),
                 ..narrow
             };
             found = self.corners(around, &wide, way);
@@ -165,16 +166,16 @@ impl Creature {
         // Wait longer after each failure: a failed search is expensive, since it has tried all cells that it can reach.
         corners.places = found.unwrap_or_default();
         let seconds = match (corners.failed, corners.places.is_empty()) {
-            (0, true) => FAR,
-            (0, false) => ANEW,
-            (failed, _) => AGAIN * f64::from(1u32 << (failed - 1).min(3)),
+            (0, true) => WAIT_AFTER_FREE_LINE,
+            (0, false) => WAIT_AFTER_CORNERS,
+            (failed, _) => WAIT_AFTER_FAILURE * f64::from(1u32 << (failed - 1).min(3)),
         };
         self.state.walked.corners.ticks_left = self.ticks_of(seconds);
     }
 
     /// Removes the next corners that the creature has reached.
     pub(super) fn pass_corners(&mut self) {
-        let passed = PASSED * self.size.height;
+        let passed = PASSED_DISTANCE * self.size.height;
         let position = self.state.position();
         let is_there = |corner: &DVec3| (*corner - position).with_y(0.0).length() < passed;
         let corners = &mut self.state.walked.corners.places;
@@ -189,16 +190,16 @@ impl Creature {
         }
     }
 
-    /// Brings the next search forward to `ANEW` from now, if it is not due sooner.
+    /// Brings the next search forward to `WAIT_AFTER_CORNERS` from now, if it is not due sooner.
     pub(super) fn look_soon(&mut self) {
-        let soon = self.ticks_of(ANEW);
+        let soon = self.ticks_of(WAIT_AFTER_CORNERS);
         let corners = &mut self.state.walked.corners;
         corners.ticks_left = corners.ticks_left.min(soon);
     }
 
-    /// Converts seconds for a creature of `GIANT` height to ticks of this one.
+    /// Converts seconds for a creature of `GIANT_HEIGHT` to ticks of this one.
     fn ticks_of(&self, seconds: f64) -> u32 {
-        let seconds = (seconds * self.size.pace).max(LEAST);
+        let seconds = (seconds * self.size.pace).max(SHORTEST_WAIT);
         (seconds / self.kind.brain().tick()).clamp(1.0, 1e6) as u32
     }
 
@@ -212,7 +213,7 @@ impl Creature {
         let start = self.state.position();
         let end = |from: DVec3| {
             let to = (way.goal - from).with_y(0.0);
-            let left = (to.length() - way.within).clamp(0.0, FARTHEST * self.size.height);
+            let left = (to.length() - way.within).clamp(0.0, FARTHEST_LINE * self.size.height);
             from + to.normalize_or_zero() * left
         };
         if self.passes(around, width, start, end(start)).is_some() {
@@ -233,7 +234,7 @@ impl Creature {
             around,
             width,
             start,
-            cell: CELL * self.size.height,
+            cell: CELL_WIDTH * self.size.height,
         };
         let places = grid.search(way)?;
         // Leave out places wherever the straight line past them is free.
@@ -244,7 +245,7 @@ impl Creature {
                 let [from, to] = [places[index], places[*next]];
                 self.passes(around, width, from, to).is_some()
             };
-            let far = places.len().min(index + SKIPPED);
+            let far = places.len().min(index + MOST_SKIPPED);
             let far = (index + 2..far).rev().find(passes);
             index = far.unwrap_or(index + 1);
             corners.push(places[index]);
@@ -262,10 +263,10 @@ impl Creature {
     ) -> Option<f64> {
         let way = (to - from).with_y(0.0);
         let heights = way.length() / self.size.height;
-        if heights.is_nan() || heights > 2.0 * FARTHEST {
+        if heights.is_nan() || heights > 2.0 * FARTHEST_LINE {
             return None;
         }
-        let pieces = (heights / PIECE).ceil().max(1.0);
+        let pieces = (heights / LINE_PIECE_LENGTH).ceil().max(1.0);
         let step = way / pieces;
         let mut origin = from;
         for _ in 0..pieces as u32 {
@@ -318,7 +319,7 @@ impl Grid<'_> {
         let is_there = |at: &Cell| to_goal(at) <= way.within.max(0.75 * self.cell);
         let guess = |at: &Cell| {
             let left = (to_goal(at) - way.within).max(0.0) / self.cell;
-            (f64::from(STEP) * left).min(1e9) as u32
+            (f64::from(STRAIGHT_STEP_COST) * left).min(1e9) as u32
         };
         let mut known = Known::default();
         let next = |at: &Cell| {
@@ -326,14 +327,14 @@ impl Grid<'_> {
             let sides: [Option<Cell>; 4] =
                 core::array::from_fn(|side| self.beside(*at, side, &mut known));
             for side in 0..4 {
-                reached.extend(sides[side].map(|to| (to, STEP)));
+                reached.extend(sides[side].map(|to| (to, STRAIGHT_STEP_COST)));
                 let other = (side + 1) % 4;
                 if let (Some(a), Some(b)) = (sides[side], sides[other])
                     && let Some(to) = self.beside(a, other, &mut known)
                     && let Some(same) = self.beside(b, side, &mut known)
                     && (to[2] - same[2]).abs() <= SAME_STOREY
                 {
-                    reached.push((to, ACROSS));
+                    reached.push((to, DIAGONAL_STEP_COST));
                 }
             }
             reached
@@ -351,7 +352,7 @@ impl Grid<'_> {
             return None;
         }
         known.tried += 1;
-        let [x, z] = SIDES[side];
+        let [x, z] = NEIGHBOUR_OFFSETS[side];
         let to = self.place([at[0] + x, at[1] + z, 0]);
         let (home, is_sent) = (
             self.creature.state.territory.home(),

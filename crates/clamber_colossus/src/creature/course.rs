@@ -4,7 +4,7 @@ use core::f64::consts::{FRAC_PI_2, TAU};
 
 use glam::DVec3;
 
-use super::check_way::{LOOKS, SELDOM};
+use super::check_way::{CHECK_INTERVAL, FREE_WAY_FACTOR};
 use super::clips::Playing;
 use super::legs::at_once;
 use super::way::Way;
@@ -14,41 +14,41 @@ use crate::feet::{GRAVITY, STEP_TIME};
 use crate::kind::Gait;
 
 /// Acceleration, metres a second squared.
-const SPEEDS_UP: f64 = 1.2;
+const WALK_ACCELERATION: f64 = 1.2;
 
 /// Deceleration, metres a second squared.
-const SLOWS_DOWN: f64 = 2.0;
+const WALK_DECELERATION: f64 = 2.0;
 
 /// Deceleration of an abrupt stop, metres a second squared.
-const HALTS: f64 = 6.0;
+const ABRUPT_DECELERATION: f64 = 6.0;
 
-/// Angular acceleration of a creature of `GIANT` height, radians a second squared. Its limbs may begin to move with 0.5
+/// Angular acceleration of a creature of `GIANT_HEIGHT`, radians a second squared. Its limbs may begin to move with 0.5
 /// g at most, since riders stand on them. Smaller creatures turn sharper, in inverse proportion to their height.
-const TURNS: f64 = 0.12;
+const TURN_ACCELERATION: f64 = 0.12;
 
-/// Steering rate of a creature of `GIANT` height while it walks, radians a second for each radian between heading and
+/// Steering rate of a creature of `GIANT_HEIGHT` while it walks, radians a second for each radian between heading and
 /// goal.
-const STEERS: f64 = 0.8;
+const STEERING_GAIN: f64 = 0.8;
 
 /// Smallest angle within which a turn can end, radians.
 const LEAST_WITHIN: f64 = 0.003;
 
 /// How far the body turns away from a standing foot before that foot steps, as a share of the leg's length. It applies
 /// to turns on the spot without a turn clip.
-const TURNS_BY_STEP: f64 = 0.4;
+const TURN_BY_STEP: f64 = 0.4;
 
 /// Slowest walk, as a share of the walking speed.
-const SLOWEST: f64 = 0.35;
+const SLOWEST_WALK_SHARE: f64 = 0.35;
 
 /// Angle to the goal above which a walking creature turns on the spot first, radians.
-const TURN_FIRST: f64 = 1.2;
+const TURN_FIRST_ANGLE: f64 = 1.2;
 
 /// Angle to the goal up to which a creature that turns on the spot walks on, radians. If the goal is a corner of the
-/// way, this angle replaces `TURN_FIRST`, and `STRAIGHT` replaces this angle.
-const WALK_ON: f64 = 0.5;
+/// way, this angle replaces `TURN_FIRST_ANGLE`, and `STRAIGHT_AHEAD_ANGLE` replaces this angle.
+const WALK_ON_ANGLE: f64 = 0.5;
 
 /// Angle up to which a goal is straight ahead, radians.
-const STRAIGHT: f64 = 0.15;
+const STRAIGHT_AHEAD_ANGLE: f64 = 0.15;
 
 /// Place and motion of a creature.
 #[derive(Clone, Copy, Debug)]
@@ -138,8 +138,8 @@ impl Creature {
     /// that it walks until it looks again.
     pub(super) fn sight(&self, gait: &Gait) -> f64 {
         let speed = self.full_speed(gait);
-        let looks = ((SELDOM + 1) * LOOKS) as f64 * self.kind.brain().tick();
-        speed * speed / (2.0 * 0.7 * SLOWS_DOWN) + speed * looks
+        let looks = ((FREE_WAY_FACTOR + 1) * CHECK_INTERVAL) as f64 * self.kind.brain().tick();
+        speed * speed / (2.0 * 0.7 * WALK_DECELERATION) + speed * looks
     }
 
     /// Free angle that the creature needs to turn at its full rate, radians: the angle in which it can stop, and the
@@ -150,7 +150,7 @@ impl Creature {
         } else {
             self.most_turn(gait)
         };
-        let looks = LOOKS as f64 * self.kind.brain().tick();
+        let looks = CHECK_INTERVAL as f64 * self.kind.brain().tick();
         rate * rate / (2.0 * 0.7 * self.turns()) + rate * looks
     }
 
@@ -161,7 +161,7 @@ impl Creature {
 
     /// Angular acceleration, radians a second squared.
     pub(super) fn turns(&self) -> f64 {
-        TURNS / (self.size.pace * self.size.pace).max(1e-6)
+        TURN_ACCELERATION / (self.size.pace * self.size.pace).max(1e-6)
     }
 
     /// The speed and turn that the creature wants, as far as it knows its way.
@@ -221,7 +221,7 @@ impl Creature {
         let careful = self.full_speed(gait) * stride * stride;
         // The slowest walk must be able to stop within the creature's height. Otherwise the creature would never begin
         // to walk where it cannot see far.
-        let slowest = (SLOWEST * careful).min(braked(self.size.height));
+        let slowest = (SLOWEST_WALK_SHARE * careful).min(braked(self.size.height));
         // The circle that starts along the heading and passes through the goal has the radius distance / (2 sin(angle
         // to the goal)). If the creature walked faster than the steering rate times this radius, it would circle around
         // its goal.
@@ -254,11 +254,11 @@ impl Creature {
         let is_slow = braked(course.ahead) < pace.slowest;
         wanted.is_stopped = self.state.walked.free.is_known() && is_before && is_slow;
         let most = match (next.is_corner, course.turning) {
-            (true, true) => STRAIGHT,
-            (true, false) | (false, true) => WALK_ON,
-            (false, false) => TURN_FIRST,
+            (true, true) => STRAIGHT_AHEAD_ANGLE,
+            (true, false) | (false, true) => WALK_ON_ANGLE,
+            (false, false) => TURN_FIRST_ANGLE,
         };
-        let stops = wanted.is_stopped && next.aside.abs() > STRAIGHT;
+        let stops = wanted.is_stopped && next.aside.abs() > STRAIGHT_AHEAD_ANGLE;
         wanted.faces = next.aside.abs() <= most;
         wanted.turns_on_spot = !wanted.faces || stops || pace.round < pace.slowest;
         wanted.walks = !wanted.turns_on_spot;
@@ -278,7 +278,7 @@ impl Creature {
         }
         let rate = self.size.rate;
         // The turn is multiplied by `rate` below.
-        let steers = STEERS / (self.size.pace * rate).max(1e-3);
+        let steers = STEERING_GAIN / (self.size.pace * rate).max(1e-3);
         let speed = pace
             .careful
             .min(braked(next.distance - next.within))
@@ -298,7 +298,7 @@ impl Creature {
         let free = self.free_turn_rate(course, aside);
         wanted.turn = aside.signum() * braked.min(self.most_turn(gait)).min(free);
         // No turn on the spot before the walk is slow.
-        if course.speed > SLOWEST * self.full_speed(gait) {
+        if course.speed > SLOWEST_WALK_SHARE * self.full_speed(gait) {
             wanted.turn = 0.0;
         }
     }
@@ -313,9 +313,13 @@ impl Creature {
     pub(super) fn moved(&self, gait: &Gait, wanted: &Wanted, course: Course, dt: f64) -> Course {
         let mut moved = course;
         let change = wanted.speed - course.speed;
-        let slows_down = if course.halts { HALTS } else { SLOWS_DOWN };
+        let slows_down = if course.halts {
+            ABRUPT_DECELERATION
+        } else {
+            WALK_DECELERATION
+        };
         // Largest acceleration forwards, and backwards.
-        let mut most = [SPEEDS_UP; 2];
+        let mut most = [WALK_ACCELERATION; 2];
         if course.speed > 0.0 {
             most[1] = slows_down;
         } else if course.speed < 0.0 {
@@ -355,7 +359,7 @@ impl Creature {
         let by_steps = legs.iter().map(|leg| {
             let radius = leg.stands_at.with_y(0.0).length().max(0.1 * leg.length);
             let time = STEP_TIME * (leg.length * self.size.scale / GRAVITY).sqrt();
-            TURNS_BY_STEP * leg.length / (radius * rounds * time)
+            TURN_BY_STEP * leg.length / (radius * rounds * time)
         });
         by_steps.fold(most, f64::min)
     }
@@ -368,7 +372,7 @@ fn level(way: DVec3) -> (f64, f64) {
 
 /// Highest speed from which a walk can stop within a distance, metres a second.
 fn braked(distance: f64) -> f64 {
-    (2.0 * 0.7 * SLOWS_DOWN * distance.max(0.0)).sqrt()
+    (2.0 * 0.7 * WALK_DECELERATION * distance.max(0.0)).sqrt()
 }
 
 /// Angle to the bearing of a way within which a turn has arrived, radians.

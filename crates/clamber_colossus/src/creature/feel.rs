@@ -17,19 +17,19 @@ use crate::senses::{RegionSense, Sense, Senses};
 const FIELD_OF_VIEW: f64 = 1.8;
 
 /// Interval between looks for people, and between measurements of the distance to a wall in one direction, in ticks.
-const LOOKS: u64 = 4;
+const LOOK_INTERVAL: u64 = 4;
 
 /// Time for which a rider may leave the skin without ending the ride, seconds: a leap, a stumble.
-const LEAP: f64 = 0.6;
+const LONGEST_LEAP: f64 = 0.6;
 
 /// Size of the area under a foot, relative to the sole.
-const UNDER: f64 = 1.2;
+const UNDERFOOT_RATIO: f64 = 1.2;
 
 /// Distance that stands for no wall in reach, because JSON has no infinity.
 const NO_WALL: f32 = f32::MAX;
 
 /// Number of directions in which walls are measured.
-const WALLS: usize = 8;
+const WALL_DIRECTIONS: usize = 8;
 
 /// What a creature knows from its senses, beyond the tick.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -42,7 +42,7 @@ pub(super) struct Perceived {
     noise: DVec3,
     rides: Vec<Ride>,
     /// Distances to walls around the creature, metres. The directions are measured in turn.
-    walls: [f32; WALLS],
+    walls: [f32; WALL_DIRECTIONS],
 }
 
 /// The time that a person has been on the creature.
@@ -63,7 +63,7 @@ impl Perceived {
             unseen: u32::MAX,
             noise: place,
             rides: Vec::new(),
-            walls: [NO_WALL; WALLS],
+            walls: [NO_WALL; WALL_DIRECTIONS],
         }
     }
 
@@ -71,7 +71,7 @@ impl Perceived {
     pub(super) fn elsewhere(&self) -> Self {
         Self {
             rides: Vec::new(),
-            walls: [NO_WALL; WALLS],
+            walls: [NO_WALL; WALL_DIRECTIONS],
             ..*self
         }
     }
@@ -97,8 +97,8 @@ impl Perceived {
         longest.map(|ride| ride.person)
     }
 
-    /// Direction of the nearest wall for a heading, radians about Y, and its distance, metres. `None` if no wall
-    /// is in reach.
+    /// Direction of the nearest wall for a heading, radians about Y, and its distance, metres. `None` if no wall is in
+    /// reach.
     pub(super) fn nearest_wall(&self, yaw: f64) -> Option<(f64, f64)> {
         let walls = self.walls.iter().enumerate();
         let (index, distance) = walls.min_by(|a, b| a.1.total_cmp(b.1))?;
@@ -128,7 +128,7 @@ impl Perceived {
 
 /// Direction in which a wall is measured, radians about Y, for a heading.
 fn wall_direction(yaw: f64, index: usize) -> f64 {
-    yaw + index as f64 * core::f64::consts::TAU / WALLS as f64
+    yaw + index as f64 * core::f64::consts::TAU / WALL_DIRECTIONS as f64
 }
 
 impl Creature {
@@ -156,7 +156,7 @@ impl Creature {
 
     fn feel_riders(&mut self, people: &[Person], senses: &mut Senses) {
         let tick = self.kind.brain().tick();
-        let leap = (LEAP / tick).round() as u32;
+        let leap = (LONGEST_LEAP / tick).round() as u32;
         let mesh = self.surface.mesh();
         let origin = self.state.position();
         let rides = &mut self.state.perceived.rides;
@@ -244,7 +244,7 @@ impl Creature {
         // When the visible prey begins to ride or disappears, look for other people at once.
         let has_prey = perceived.visible_prey().is_some();
         let is_lost = has_prey && !around.people.iter().any(is_prey);
-        let looks = is_lost || self.state.ticks().is_multiple_of(LOOKS);
+        let looks = is_lost || self.state.ticks().is_multiple_of(LOOK_INTERVAL);
         let mut nearest: Option<(f64, u64, DVec3)> = None;
         let mut underfoot = 0;
         for person in around.people {
@@ -287,7 +287,7 @@ impl Creature {
     }
 
     fn feel_walls(&mut self, around: &Surroundings<'_>, senses: &mut Senses) {
-        if self.state.ticks().is_multiple_of(LOOKS) {
+        if self.state.ticks().is_multiple_of(LOOK_INTERVAL) {
             self.look_for_wall(around);
         }
         let walls = self.state.perceived.walls.iter().copied();
@@ -300,7 +300,7 @@ impl Creature {
     /// Measures the distance to a wall in the next direction.
     fn look_for_wall(&mut self, around: &Surroundings<'_>) {
         let height = self.size.height;
-        let index = (self.state.ticks() / LOOKS % WALLS as u64) as usize;
+        let index = (self.state.ticks() / LOOK_INTERVAL % WALL_DIRECTIONS as u64) as usize;
         let angle = wall_direction(self.state.yaw(), index);
         let from = self.state.position() + DVec3::Y * (0.3 * height);
         let direction = DVec3::new(libm::sin(angle), 0.0, libm::cos(angle));
@@ -357,7 +357,10 @@ impl Creature {
                 return false;
             };
             let at = world.inverse_transform_point(place) - leg.ball_in(ball);
-            let [low, high] = [leg.sole.corners[0] * UNDER, leg.sole.corners[3] * UNDER];
+            let [low, high] = [
+                leg.sole.corners[0] * UNDERFOOT_RATIO,
+                leg.sole.corners[3] * UNDERFOOT_RATIO,
+            ];
             at.y < 0.2 * leg.length
                 && (low.x..=high.x).contains(&at.x)
                 && (low.z..=high.z).contains(&at.z)

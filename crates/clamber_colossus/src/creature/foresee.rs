@@ -10,9 +10,9 @@ use super::clips::Playing;
 use super::course::Course;
 use crate::error::ColossusError;
 
-/// Time step of a prediction, seconds for a creature of `GIANT` height. Steps are longer if a prediction would need
+/// Time step of a prediction, seconds for a creature of `GIANT_HEIGHT`. Steps are longer if a prediction would need
 /// more than `MOST_STEPS`.
-const STEP: f64 = 0.1;
+const PREDICTION_STEP: f64 = 0.1;
 
 /// Most steps of a prediction.
 const MOST_STEPS: f64 = 100.0;
@@ -64,7 +64,7 @@ impl Creature {
             // Returns the error.
             animator.advance(kind.clips(), seconds, &mut memory.events)?;
         }
-        let step = STEP * self.size.pace.max(1e-3);
+        let step = PREDICTION_STEP * self.size.pace.max(1e-3);
         let steps = (seconds / step).ceil().clamp(1.0, MOST_STEPS);
         let dt = seconds / steps;
         for _ in 0..steps as u32 {

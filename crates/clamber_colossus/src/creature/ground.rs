@@ -3,7 +3,7 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::hips::{NEARS, approach};
+use super::hips::{APPROACH_RATE, approach};
 use super::state::{is_far, is_fast, is_large};
 use super::{Creature, Surroundings};
 use crate::feet::{Carried, Ground};
@@ -12,24 +12,25 @@ use crate::feet::{Carried, Ground};
 /// lie along the heading, from behind to ahead, and one to each side.
 const GROUND_SPACING: f64 = 0.07;
 
-/// How much shorter steps are on slopes, uphill and downhill: by the factor 1 / (1 + `CAREFUL`) at 45 degrees.
-const CAREFUL: f64 = 1.2;
+/// How much shorter steps are on slopes, uphill and downhill: by the factor 1 / (1 + `SLOPE_SHORTENING`) at 45 degrees.
+const SLOPE_SHORTENING: f64 = 1.2;
 
-/// Time constant of the steepness of the ground ahead, seconds for a creature of `GIANT` height.
-const LOOKS_AHEAD: f64 = 1.0;
+/// Time constant of the steepness of the ground ahead, seconds for a creature of `GIANT_HEIGHT`.
+const STEEPNESS_TIME: f64 = 1.0;
 
-/// Largest vertical acceleration from following the ground, metres a second squared, unless `RUNS` allows more.
-const CLIMBS: f64 = 0.5;
+/// Largest vertical acceleration from following the ground, metres a second squared, unless
+/// `CLIMB_SHARE_OF_CENTRIPETAL` allows more.
+const MAX_CLIMB_ACCELERATION: f64 = 0.5;
 
 /// Largest vertical acceleration of a fast creature, as a share of the centripetal acceleration at its speed on a
 /// circle whose radius is its height. With less, the creature would float above slopes or sink into them.
-const RUNS: f64 = 0.4;
+const CLIMB_SHARE_OF_CENTRIPETAL: f64 = 0.4;
 
 /// Height that stands for no ground below, because JSON has no infinity.
 pub(super) const NO_GROUND: f64 = f64::MAX;
 
 /// Number of places where the ground height is measured.
-const PLACES: usize = 9;
+const GROUND_PLACES: usize = 9;
 
 /// Index of the place to the left. The places before it lie along the heading, from behind to ahead.
 const LEFT_PLACE: usize = 7;
@@ -46,7 +47,7 @@ pub(super) struct OnGround {
     climb: f64,
     /// Heights of the ground: along the heading, from behind to ahead, then to the left and to the right. Each tick
     /// measures one of them.
-    heights: [f64; PLACES],
+    heights: [f64; GROUND_PLACES],
 }
 
 /// The ground along the heading: its mean height, and its largest slope, ahead or across.
@@ -62,7 +63,7 @@ impl OnGround {
         Self {
             position,
             climb: 0.0,
-            heights: [NO_GROUND; PLACES],
+            heights: [NO_GROUND; GROUND_PLACES],
         }
     }
 
@@ -133,7 +134,7 @@ impl OnGround {
 impl Creature {
     /// Length of the steps, as a share of their length in the clip.
     pub(super) fn stride(&self) -> f64 {
-        1.0 / (1.0 + CAREFUL * self.state.motion.steepness())
+        1.0 / (1.0 + SLOPE_SHORTENING * self.state.motion.steepness())
     }
 
     /// Lets the model's origin follow the ground below it, as gently as riders need it.
@@ -153,13 +154,13 @@ impl Creature {
             motion.set_steepness(profile.steepest);
         } else {
             // The steepness changes gradually, since the stride depends on it.
-            let share = 1.0 - libm::exp(-dt / (LOOKS_AHEAD * self.size.pace.max(1e-3)));
+            let share = 1.0 - libm::exp(-dt / (STEEPNESS_TIME * self.size.pace.max(1e-3)));
             motion.set_steepness(
                 motion.steepness() + (profile.steepest - motion.steepness()) * share,
             );
         }
-        let most = CLIMBS.max(RUNS * speed * speed / height);
-        let nears = NEARS.max(NEARS * speed / height);
+        let most = MAX_CLIMB_ACCELERATION.max(CLIMB_SHARE_OF_CENTRIPETAL * speed * speed / height);
+        let nears = APPROACH_RATE.max(APPROACH_RATE * speed / height);
         let now = [on_ground.position.y, on_ground.climb];
         (on_ground.position.y, on_ground.climb) = approach(now, profile.height, [most, nears], dt);
     }
@@ -174,8 +175,8 @@ impl Creature {
         let heading = self.state.heading();
         let aside = DVec3::new(heading.z, 0.0, -heading.x) * spacing;
         let all = self.state.clock.is_first() || self.state.speed().abs() * dt > spacing;
-        let turn = (self.state.ticks() % PLACES as u64) as usize;
-        for index in (0..PLACES).filter(|index| all || *index == turn) {
+        let turn = (self.state.ticks() % GROUND_PLACES as u64) as usize;
+        for index in (0..GROUND_PLACES).filter(|index| all || *index == turn) {
             let place = match index {
                 LEFT_PLACE => aside,
                 RIGHT_PLACE => -aside,

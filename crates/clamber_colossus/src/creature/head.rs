@@ -10,16 +10,16 @@ use super::state::{is_far, is_fast};
 use super::{Creature, Surroundings};
 use crate::brain::Gaze;
 use crate::feet::Carried;
-use crate::kind::HUMAN;
+use crate::kind::HUMAN_HEIGHT;
 
 /// Half time in which a gaze moves to a new target, begins and ends, seconds for a creature of human size.
-const LOOKS: f64 = 0.25;
+const GAZE_HALF_TIME: f64 = 0.25;
 
-/// Duration of one glance, seconds for a creature of `GIANT` height.
-const GLANCE: f64 = 3.5;
+/// Duration of one glance, seconds for a creature of `GIANT_HEIGHT`.
+const GLANCE_TIME: f64 = 3.5;
 
 /// Weight of the gaze below which the head is at rest.
-const AWAY: f64 = 0.01;
+const RESTING_GAZE_WEIGHT: f64 = 0.01;
 
 /// How the head turns towards the target of the gaze.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -43,7 +43,7 @@ impl HeadTurn {
 
     /// True if the head does not turn to a target.
     pub(super) fn is_at_rest(&self) -> bool {
-        self.weight.value.abs() < AWAY
+        self.weight.value.abs() < RESTING_GAZE_WEIGHT
     }
 
     /// Moves the target with the ground that carries the creature.
@@ -68,16 +68,16 @@ impl Creature {
         let kind = std::sync::Arc::clone(&self.kind);
         let Some(look) = kind.look() else { return };
         // Time scale: 1 for a creature of human size.
-        let size = (self.size.height / HUMAN).max(0.1).sqrt();
+        let size = (self.size.height / HUMAN_HEIGHT).max(0.1).sqrt();
         let target = self.target(around);
         let weight = f64::from(u8::from(target.is_some()));
         let head = &mut self.state.head;
-        head.weight.step(weight, LOOKS * size, dt);
+        head.weight.step(weight, GAZE_HALF_TIME * size, dt);
         if let Some(target) = target {
             if head.weight.value < 0.02 {
                 head.target = Spring::at(target);
             }
-            head.target.step(target, LOOKS * size, dt);
+            head.target.step(target, GAZE_HALF_TIME * size, dt);
         }
         let target = world.inverse_transform_point(head.target.value);
         let weight = head.weight.value.clamp(0.0, 1.0);
@@ -109,7 +109,7 @@ impl Creature {
             Gaze::Around => {
                 let height = self.size.height;
                 let glance = (self.state.ticks() as f64 * self.kind.brain().tick()
-                    / (GLANCE * self.size.pace)) as u64;
+                    / (GLANCE_TIME * self.size.pace)) as u64;
                 let mut lot = fastrand::Rng::with_seed(
                     self.config.seed ^ glance.wrapping_mul(0x9e37_79b9_7f4a_7c15),
                 );

@@ -1,5 +1,5 @@
-//! Moves a creature on by a tick: its speeds change, its clips go on, its place follows, and it senses whether its act is
-//! done or blocked.
+//! Moves a creature on by a tick: its speeds change, its clips go on, its place follows, and it senses whether its act
+//! is done or blocked.
 
 use clamber_animation::{AnimationEvent, RootDelta};
 use serde::{Deserialize, Serialize};
@@ -12,16 +12,16 @@ use super::{Creature, CreatureEvent, Surroundings};
 use crate::angle::nearest_turn;
 use crate::brain::{Act, StateId};
 use crate::error::ColossusError;
-use crate::kind::{Gait, HUMAN};
+use crate::kind::{Gait, HUMAN_HEIGHT};
 use crate::senses::Sense;
 
 /// Time in which one clip of the gait fades into another, seconds for a creature of human height. Larger creatures take
 /// longer, by the square root of their height (Froude's law).
-const FADE: f64 = 0.35;
+const GAIT_FADE_TIME: f64 = 0.35;
 
-/// Shortest time between the beginning of an act and the sense `blocked`, seconds for a creature of `GIANT` height.
+/// Shortest time between the beginning of an act and the sense `blocked`, seconds for a creature of `GIANT_HEIGHT`.
 /// Without it, a brain whose next state leads back to the blocked one would change states in every tick.
-const TRIES: f64 = 1.0;
+const SHORTEST_TRY: f64 = 1.0;
 
 /// Heading and speeds of a creature.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -166,8 +166,8 @@ impl Creature {
         self.state.acting.halt(moved.halts);
         let playing = self.gait_clip(gait, way, &wanted);
         let clip_speed = self.clip_speed(gait, playing, &moved);
-        let size = (self.size.height / HUMAN).max(1e-4).sqrt();
-        self.play(playing, clip_speed, FADE * size)?;
+        let size = (self.size.height / HUMAN_HEIGHT).max(1e-4).sqrt();
+        self.play(playing, clip_speed, GAIT_FADE_TIME * size)?;
         let sleeps = self.is_put_to_sleep();
         if sleeps && playing == Playing::Idle {
             self.state.clips.stop();
@@ -249,7 +249,7 @@ impl Creature {
         let progress = &mut self.state.walked.progress;
         progress.tried = progress.tried.saturating_add(1);
         let tried = f64::from(progress.tried) * dt;
-        let tries = progress.is_blocked && tried < TRIES * self.size.pace;
+        let tries = progress.is_blocked && tried < SHORTEST_TRY * self.size.pace;
         let is_blocked = progress.is_blocked && !tries;
         let is_over = !tries
             && match self.kind.brain().act(state) {

@@ -11,7 +11,7 @@ use super::{Creature, CreatureConfig, CreatureState};
 use crate::error::ColossusError;
 
 /// Distance within which a sent creature has arrived, as a share of its height.
-const WITHIN: f64 = 0.1;
+const ARRIVAL_DISTANCE: f64 = 0.1;
 
 /// The place to which the game has sent a creature.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -108,7 +108,7 @@ impl Creature {
         let errand = Errand { to, ..errand };
         self.state.acting.replace_errand(Some(errand));
         self.state.walked.progress.set_blocked(false);
-        if moved > WITHIN * self.size.height {
+        if moved > ARRIVAL_DISTANCE * self.size.height {
             self.state.walked = self.state.walked.to_another_goal();
             self.look_soon();
         }
@@ -174,7 +174,7 @@ impl Creature {
             return errand.has_begun.then_some(Way {
                 goal: errand.to,
                 bearing: None,
-                within: WITHIN * self.size.height,
+                within: ARRIVAL_DISTANCE * self.size.height,
                 within_angle: 0.0,
                 walks: true,
             });

@@ -71,11 +71,11 @@ impl PartialEq for Sound {
 
 /// Largest coordinate in a restored state, metres. A creature farther away could not be stepped. It is twice the
 /// largest coordinate of a place where a creature can be put, so that the creature can walk on from there.
-pub(super) const FARTHEST: f64 = 2e12;
+pub(super) const FARTHEST_COORDINATE: f64 = 2e12;
 
 /// Largest speed in a restored state, metres a second. A faster creature could not be stepped. It also bounds the
 /// heading, rates of turning and steepness.
-const FASTEST: f64 = 1e6;
+const FASTEST_SPEED: f64 = 1e6;
 
 /// True if a place is farther away than a creature gets, or is no place.
 pub(super) fn is_far(place: DVec3) -> bool {
@@ -84,12 +84,12 @@ pub(super) fn is_far(place: DVec3) -> bool {
 
 /// True if a coordinate or a distance is larger than a creature's, or is no number.
 pub(super) fn is_large(number: f64) -> bool {
-    number.is_nan() || number.abs() > FARTHEST
+    number.is_nan() || number.abs() > FARTHEST_COORDINATE
 }
 
 /// True if a speed, an angle or a rate is larger than a creature's, or is no number.
 pub(super) fn is_fast(number: f64) -> bool {
-    number.is_nan() || number.abs() > FASTEST
+    number.is_nan() || number.abs() > FASTEST_SPEED
 }
 
 impl CreatureState {
@@ -300,14 +300,17 @@ impl CreatureState {
             && self.head.is_within_range()
             && self.striking.is_within_range()
             && !errand.is_some_and(|errand| is_far(errand.to()))
-            && self.hips.is_within(FASTEST)
-            && self.walked.is_within(FARTHEST)
-            && self.feet.iter().all(|foot| foot.is_within(FARTHEST))
+            && self.hips.is_within(FASTEST_SPEED)
+            && self.walked.is_within(FARTHEST_COORDINATE)
+            && self
+                .feet
+                .iter()
+                .all(|foot| foot.is_within(FARTHEST_COORDINATE))
     }
 
     /// Refuses a state whose clips cannot pose the creature, or cannot go on.
     fn check_pose(&self, kind: &CreatureKind) -> Result<(), ColossusError> {
-        if self.animator().fade_bound() > FARTHEST {
+        if self.animator().fade_bound() > FARTHEST_COORDINATE {
             return Err(ColossusError::OtherKind(
                 "what is left of its last clip is no number that a pose has",
             ));

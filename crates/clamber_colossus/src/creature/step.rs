@@ -8,12 +8,12 @@ use crate::brain::Act;
 use crate::error::ColossusError;
 use crate::feet::Ground;
 
-/// Time that a creature of `GIANT` height needs to come to rest when it falls asleep, seconds.
-const SETTLES: f64 = 0.8;
+/// Time that a creature of `GIANT_HEIGHT` needs to come to rest when it falls asleep, seconds.
+const FALL_ASLEEP_TIME: f64 = 0.8;
 
-/// Longest time that a creature of `GIANT` height waits for its feet to stand and its gaze to end when it falls asleep,
+/// Longest time that a creature of `GIANT_HEIGHT` waits for its feet to stand and its gaze to end when it falls asleep,
 /// seconds.
-const MOST_SETTLES: f64 = 16.0;
+const LONGEST_FALL_ASLEEP: f64 = 16.0;
 
 /// The ticks of a creature.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -141,7 +141,7 @@ impl Creature {
                 .feet
                 .iter()
                 .all(|foot| foot.is_planted() && !foot.wants_step());
-        if since <= SETTLES || since <= MOST_SETTLES && !is_quiet {
+        if since <= FALL_ASLEEP_TIME || since <= LONGEST_FALL_ASLEEP && !is_quiet {
             return Ok(false);
         }
         // The first still tick poses the skin again, so that it has no motion.

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use super::clips::Playing;
 use super::report::{AttackPhase, Blow};
-use super::room::STEEP;
+use super::room::LEAST_GROUND_NORMAL;
 use super::state::{is_far, is_large};
 use super::{Creature, Person, Surroundings};
 use crate::brain::{Act, StateId};
@@ -20,20 +20,20 @@ use crate::kind::Strike;
 
 /// Distance from the skin within which a limb strikes, metres. A climber that the limb pushes stays at about this
 /// distance.
-const REACH: f64 = 0.05;
+const STRIKE_DISTANCE: f64 = 0.05;
 
 /// Half time in which a neck or an arm leans towards its target, as a share of the time until the active phase. More
 /// than nine tenths of the lean are done by then.
-const SETTLED: f64 = 0.3;
+const LEAN_HALF_TIME_SHARE: f64 = 0.3;
 
 /// Lower bound for that time, seconds of the clip.
-const QUICKEST: f64 = 0.15;
+const SHORTEST_WIND_UP: f64 = 0.15;
 
-/// Half time in which a neck or an arm leans back, seconds for a creature of `GIANT` height.
-const RETURNS: f64 = 0.4;
+/// Half time in which a neck or an arm leans back, seconds for a creature of `GIANT_HEIGHT`.
+const LEAN_BACK_HALF_TIME: f64 = 0.4;
 
 /// A lean is over when its offset is below this, in heights of the creature, and its speed is below this a second.
-const LEAST: f64 = 1e-4;
+const LEAST_LEAN: f64 = 1e-4;
 
 /// Where the current attack strikes, and the people that it has struck.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -165,7 +165,7 @@ impl Creature {
                 continue;
             }
             let body = WorldCapsule {
-                radius: person.body.radius + REACH,
+                radius: person.body.radius + STRIKE_DISTANCE,
                 ..person.body
             };
             let hit = self.touch(strike, &body);
@@ -244,7 +244,7 @@ impl Creature {
             .attack()
             .filter(|(state, phase)| *phase != AttackPhase::Recovery && chain_of(*state).is_some());
         let (rate, pace) = (self.size.rate.max(1e-3), self.size.pace);
-        let least = LEAST * self.size.height;
+        let least = LEAST_LEAN * self.size.height;
         let aim = self.state.striking.aim;
         let Lean { spring, with } = &mut self.state.striking.lean;
         // A lean ends before another attack leans.
@@ -254,11 +254,11 @@ impl Creature {
         let Some(state) = *with else { return };
         let goes = strikes.is_some_and(|(striking, _)| striking == state);
         let active = kind.act(state).strike.as_ref().map(|strike| strike.active);
-        let winds_up = active.map_or(0.0, |[from, _]| from).max(QUICKEST);
+        let winds_up = active.map_or(0.0, |[from, _]| from).max(SHORTEST_WIND_UP);
         if goes {
-            spring.step(aim, SETTLED * winds_up / rate, dt);
+            spring.step(aim, LEAN_HALF_TIME_SHARE * winds_up / rate, dt);
         } else {
-            spring.step(DVec3::ZERO, RETURNS * pace, dt);
+            spring.step(DVec3::ZERO, LEAN_BACK_HALF_TIME * pace, dt);
             if spring.value.length() < least && spring.velocity.length() < least {
                 self.state.striking.lean = Lean::default();
                 return;
@@ -308,7 +308,7 @@ fn is_free(from: DVec3, to: DVec3, skips: f64, around: &Surroundings<'_>) -> boo
     };
     let from = from + along * skips;
     // Terrain in which the ray begins is ground, or the ray before has already met it.
-    let mut is_rock = |hit: &Contact| hit.normal.y < STEEP && hit.distance > 0.0;
+    let mut is_rock = |hit: &Contact| hit.normal.y < LEAST_GROUND_NORMAL && hit.distance > 0.0;
     let mut rocks = around.terrain.iter();
     let mut others = around.creatures.iter();
     !rocks.any(|rock| {

@@ -56,7 +56,7 @@ pub(super) struct Way {
 
 /// Shortest distance within which a walk arrives, in heights. With less, the creature would walk to and fro over the
 /// place.
-const NEAREST: f64 = 0.015;
+const LEAST_ARRIVAL_DISTANCE: f64 = 0.015;
 
 impl Creature {
     /// Begins a walk or a turn, and draws a new place for patrols.
@@ -77,7 +77,7 @@ impl Creature {
                     return Some(Way {
                         goal,
                         bearing: None,
-                        within: within.max(NEAREST * self.size.height),
+                        within: within.max(LEAST_ARRIVAL_DISTANCE * self.size.height),
                         within_angle: 0.0,
                         walks: true,
                     });

@@ -6,10 +6,10 @@ use glam::DVec3;
 pub(crate) const STEP_TIME: f64 = 1.5;
 
 /// Shares of a swing at which the ground on its way is checked.
-pub(crate) const SHARES: [f64; 3] = [0.25, 0.5, 0.75];
+pub(crate) const SWING_SHARES: [f64; 3] = [0.25, 0.5, 0.75];
 
 /// A swinging foot does not come down if its clip stands for less than this, as a share of the duration of a step.
-const TOO_SHORT: f64 = 0.2;
+const TOO_SHORT_STAND: f64 = 0.2;
 
 /// Gravitational acceleration, metres a second squared. It sets the duration of steps.
 pub(crate) const GRAVITY: f64 = 9.81;
@@ -35,7 +35,7 @@ pub(crate) struct FootGoal {
     pub(crate) most_aside: f64,
     /// Largest vertical acceleration of the offset in a swing, metres a second squared.
     pub(crate) most_up: f64,
-    /// Height of the ball in the clip at [`SHARES`] of the time until it lands.
+    /// Height of the ball in the clip at [`SWING_SHARES`] of the time until it lands.
     pub(crate) ahead: [f64; 3],
     /// Yaw of the foot in the clip, radians.
     pub(crate) heading: f64,
@@ -56,7 +56,7 @@ pub(crate) struct FootGoal {
 impl FootGoal {
     /// True if the clip lifts the foot so soon that the foot need not come down before.
     pub(super) fn is_lifted_soon(&self) -> bool {
-        self.is_gait && self.stands_for < TOO_SHORT * self.step_time()
+        self.is_gait && self.stands_for < TOO_SHORT_STAND * self.step_time()
     }
 
     /// Shortest duration of a step that is not in the clip, seconds.

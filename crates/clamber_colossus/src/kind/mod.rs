@@ -28,7 +28,7 @@ use glam::{DAffine3, DVec3};
 
 use act::CompiledAct;
 pub(crate) use blended::BlendedSole;
-pub(crate) use extent::{BANDS, Band, EDGES, Extent, Extents};
+pub(crate) use extent::{BAND_COUNT, BAND_EDGES, Band, Extent, Extents};
 pub use file::{
     BodyFile, ClipFile, Facing, FurFile, GaitFile, HeadFile, Knee, LegFile, PlateFile, Times,
     WeakPointFile,
@@ -49,7 +49,7 @@ const GRAVITY: f64 = 9.81;
 
 /// Height of a human, metres. If a brain file gives neither `made_for` nor `height`, standing feet are found in clips
 /// as for a creature of this height. The unit of a file tells no height, since many files are in centimetres.
-pub(crate) const HUMAN: f64 = 1.75;
+pub(crate) const HUMAN_HEIGHT: f64 = 1.75;
 
 /// A kind of creature: its skeleton, clips, skin and brain, and the use of its body. It never changes, and many
 /// creatures share it.
@@ -86,7 +86,7 @@ pub struct CreatureKind {
 }
 
 /// The `number` of the next kind.
-static NEXT: AtomicU64 = AtomicU64::new(1);
+static NEXT_NUMBER: AtomicU64 = AtomicU64::new(1);
 
 /// The parts of a creature's file. They have the names of the fields of `clamber_gltf::Rig`.
 #[derive(Clone, Debug)]
@@ -131,7 +131,7 @@ impl CreatureKind {
         let names = Names {
             skeleton: &skeleton,
             clips: &clips,
-            gravity: GRAVITY * height / known.unwrap_or(HUMAN),
+            gravity: GRAVITY * height / known.unwrap_or(HUMAN_HEIGHT),
         };
         let mesh = additions::furred(&names, &body.fur, mesh, &materials)?;
         for file in &body.weak_points {
@@ -168,7 +168,7 @@ impl CreatureKind {
             .transpose()?
             .unzip();
         Ok(Self {
-            number: NEXT.fetch_add(1, Ordering::Relaxed),
+            number: NEXT_NUMBER.fetch_add(1, Ordering::Relaxed),
             acts,
             regions,
             hips: common_parent(&skeleton, &legs),
@@ -443,7 +443,7 @@ fn common_parent(skeleton: &Skeleton, legs: &[Leg]) -> Option<JointId> {
 /// Largest angular acceleration of the head, radians a second squared, for a creature of human height. Larger creatures
 /// turn the head slower: times grow with the square root of the height. At any size a rider on the head feels two
 /// fifths of this number in metres a second squared.
-const TURNS_HEAD: f64 = 20.0;
+const HEAD_TURN_ACCELERATION: f64 = 20.0;
 
 fn look(
     names: &Names<'_>,
@@ -469,7 +469,7 @@ fn look(
         look.with_limits(LookLimits {
             yaw,
             pitch,
-            acceleration: TURNS_HEAD,
+            acceleration: HEAD_TURN_ACCELERATION,
         })
     });
     let joints = file.joints.iter().map(|(name, _)| name);

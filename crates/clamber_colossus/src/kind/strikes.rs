@@ -44,18 +44,18 @@ pub(crate) struct Swept {
 }
 
 /// Number of steps in which the path of a ball is sampled.
-const SWEPT: u32 = 16;
+const SWEEP_STEPS: u32 = 16;
 
 /// Largest length to which a striking leg, neck or arm is stretched, as a share of its length.
-const STRETCH: f64 = 0.97;
+const MAX_STRETCH: f64 = 0.97;
 
 /// Samples of the hip and the ankle of a striking leg a second.
-const LOOKS: f64 = 20.0;
+const SAMPLE_RATE: f64 = 20.0;
 /// A foot has left its place when its ankle is further from it than this share of the leg's length.
-const LEFT: f64 = 0.03;
+const LEFT_PLACE_DISTANCE: f64 = 0.03;
 
 /// Most bones of a neck or an arm that aims: with more bones the body would bend as well.
-const BONES: usize = 3;
+const MOST_BONES: usize = 3;
 
 impl Strike {
     pub(crate) fn new(
@@ -115,7 +115,7 @@ impl Strike {
 
     /// The share of a displacement of the spot, in model space, that the leg or the chain can reach: from 0 to 1.
     pub(crate) fn reach(&self, way: DVec3) -> f64 {
-        let length = STRETCH * self.length;
+        let length = MAX_STRETCH * self.length;
         let share = |from: &DVec3| {
             // The share at which |from + share * way| is the leg's length.
             let (a, b) = (way.length_squared(), from.dot(way));
@@ -173,12 +173,13 @@ impl Timed<'_> {
             Some([place(leg.hip)?, place(leg.ankle)?])
         };
         let step = |steps: f64, way: f64| {
-            let steps = (steps * LOOKS).max(0.0) as u32;
-            (0..=steps).map(move |step| to + way * f64::from(step) / LOOKS)
+            let steps = (steps * SAMPLE_RATE).max(0.0) as u32;
+            (0..=steps).map(move |step| to + way * f64::from(step) / SAMPLE_RATE)
         };
         let down = at(to).map(|[_, ankle]| ankle);
         let stands = |[hip, ankle]: [DVec3; 2]| {
-            let down = down.filter(|down| ankle.distance(*down) <= LEFT * leg.length)?;
+            let down =
+                down.filter(|down| ankle.distance(*down) <= LEFT_PLACE_DISTANCE * leg.length)?;
             Some(down - hip)
         };
         let before = step(to - from, -1.0).map_while(|time| stands(at(time)?));
@@ -194,8 +195,8 @@ impl Timed<'_> {
             way: Vec::new(),
         };
         let mut swept: Vec<Swept> = balls.iter().map(new).collect();
-        for phase in 0..=SWEPT {
-            let time = self.to * f64::from(phase) / f64::from(SWEPT);
+        for phase in 0..=SWEEP_STEPS {
+            let time = self.to * f64::from(phase) / f64::from(SWEEP_STEPS);
             let rest = self.names.clips.rest();
             let pose = self.clip.sample(rest, time, Playback::Clamp).ok()?;
             for (ball, swept) in balls.iter().zip(&mut swept) {
@@ -208,7 +209,7 @@ impl Timed<'_> {
     }
 }
 
-/// The neck or arm above the end of a limb: at most [`BONES`] bones, from joints that no leg hangs from.
+/// The neck or arm above the end of a limb: at most [`MOST_BONES`] bones, from joints that no leg hangs from.
 fn chain_to(names: &Names<'_>, end: JointId, legs: &[Leg]) -> Option<Chain> {
     let skeleton = names.skeleton;
     let parent = |joint: &JointId| skeleton.joints()[joint.index()].parent;
@@ -217,6 +218,6 @@ fn chain_to(names: &Names<'_>, end: JointId, legs: &[Leg]) -> Option<Chain> {
         parent(joint).is_some() && !legs.iter().any(holds)
     };
     let above = core::iter::successors(Some(end), parent);
-    let first = above.take_while(is_free).take(BONES + 1).last()?;
+    let first = above.take_while(is_free).take(MOST_BONES + 1).last()?;
     Chain::new(skeleton, first, end).ok()
 }

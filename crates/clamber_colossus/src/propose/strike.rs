@@ -8,18 +8,18 @@ use super::look::{Look, place, rounded};
 use crate::error::ColossusError;
 
 /// Samples of a clip a second.
-const LOOKS: f64 = 60.0;
+const SAMPLE_RATE: f64 = 60.0;
 
 /// A limb hurts while it is faster than this share of its speed at the strike.
-const FAST: f64 = 0.4;
+const FAST_SHARE: f64 = 0.4;
 /// Shortest time in which a limb hurts, seconds.
-const SHORTEST: f64 = 0.15;
+const SHORTEST_STRIKE: f64 = 0.15;
 
 /// Limbs that reach this share of the largest speed count as equally fast.
-const ALIKE: f64 = 0.9;
+const EQUALLY_FAST_SHARE: f64 = 0.9;
 
 /// Most joints below the striking joint that hurt as well.
-const MOST: usize = 3;
+const MOST_JOINTS_BELOW: usize = 3;
 
 /// A limb that strikes in a clip.
 pub(super) struct Struck {
@@ -38,13 +38,13 @@ pub(super) struct Above {
 }
 
 /// Words in the names of clips in which a leg strikes.
-const LEGS: [&str; 2] = ["kick", "stomp"];
+const LEG_STRIKE_WORDS: [&str; 2] = ["kick", "stomp"];
 /// Words in the names of clips in which the head strikes.
-const HEADS: [&str; 2] = ["bite", "headbutt"];
+const HEAD_STRIKE_WORDS: [&str; 2] = ["bite", "headbutt"];
 
 /// A leg is the striking limb only if it is this many times as fast as all other joints, since most legs only step
-/// during an attack. Clips with a word of [`LEGS`] are exempt.
-const FASTER: f64 = 2.0;
+/// during an attack. Clips with a word of [`LEG_STRIKE_WORDS`] are exempt.
+const LEG_SPEED_RATIO: f64 = 2.0;
 
 /// Which limb of a clip may strike, and how its joints move.
 struct Search<'a> {
@@ -85,7 +85,7 @@ pub(super) fn find(
     let below = look
         .joints()
         .filter(|joint| is_below(joint) && moves(joint));
-    let limb = below.take(MOST).chain([end]);
+    let limb = below.take(MOST_JOINTS_BELOW).chain([end]);
     Ok((active[0] < active[1]).then(|| Struck {
         limb: limb.map(|joint| look.name(joint).to_owned()).collect(),
         active,
@@ -105,7 +105,7 @@ impl<'a> Search<'a> {
             .filter(|joint| look.is_named(*joint))
             .filter_map(|joint| Some((joint, look.middle(joint)? + look.place(joint))))
             .collect();
-        let count = (clip.duration() * LOOKS).ceil().max(1.0) as usize;
+        let count = (clip.duration() * SAMPLE_RATE).ceil().max(1.0) as usize;
         let step = clip.duration() / count as f64;
         let depths = look
             .joints()
@@ -117,8 +117,8 @@ impl<'a> Search<'a> {
         Ok(Self {
             look,
             legs,
-            kicks: is_of(&LEGS) && !legs.is_empty(),
-            head: look.head().filter(|_| is_of(&HEADS)),
+            kicks: is_of(&LEG_STRIKE_WORDS) && !legs.is_empty(),
+            head: look.head().filter(|_| is_of(&HEAD_STRIKE_WORDS)),
             ways: ways(look, clip, &middles, (count, step))?,
             middles,
             step,
@@ -137,7 +137,7 @@ impl<'a> Search<'a> {
                 .is_some_and(|head| look.upward(joint).all(|above| above != head));
         match is_none {
             true => 0.0,
-            false if is_leg(joint) && !kicks => 1.0 / FASTER,
+            false if is_leg(joint) && !kicks => 1.0 / LEG_SPEED_RATIO,
             false => 1.0,
         }
     }
@@ -175,7 +175,8 @@ impl<'a> Search<'a> {
             return None;
         };
         let ways = &self.ways;
-        let alike = (0..ways.len()).filter(|index| self.strikes(*index, at) > ALIKE * fastest);
+        let alike =
+            (0..ways.len()).filter(|index| self.strikes(*index, at) > EQUALLY_FAST_SHARE * fastest);
         let foremost = alike.max_by(|a, b| ways[*a][at].z.total_cmp(&ways[*b][at].z));
         Some((foremost?, at))
     }
@@ -183,13 +184,13 @@ impl<'a> Search<'a> {
     /// Begin and end of the time around a sample in which a joint hurts, seconds of a clip of a duration.
     fn active(&self, way: &[DVec3], at: usize, duration: f64) -> [f64; 2] {
         let speed = |at: usize| way[at].distance(way[at + 1]);
-        let least = FAST * speed(at);
+        let least = FAST_SHARE * speed(at);
         let before = (0..at).rev().take_while(|at| speed(*at) > least).count();
         let after = (at + 1..way.len() - 1)
             .take_while(|at| speed(*at) > least)
             .count();
         let active = [at - before, at + 1 + after].map(|sample| sample as f64 * self.step);
-        let wider = (0.5 * (SHORTEST - (active[1] - active[0]))).max(0.0);
+        let wider = (0.5 * (SHORTEST_STRIKE - (active[1] - active[0]))).max(0.0);
         let active = [active[0] - wider, active[1] + wider].map(|time| time.clamp(0.0, duration));
         active.map(|time| rounded(time, 1e2).min(duration))
     }
@@ -232,7 +233,7 @@ pub(super) fn above(
     let joints = limb.iter().filter_map(|name| look.skeleton.find(name));
     let limb: Vec<JointId> = joints.collect();
     let rest = look.skeleton.palette(&look.skeleton.rest_pose())?;
-    let count = ((to - from) * LOOKS).ceil().max(1.0) as usize;
+    let count = ((to - from) * SAMPLE_RATE).ceil().max(1.0) as usize;
     let (mut lowest, mut end) = (f64::INFINITY, 0.0);
     for sample in 0..=count {
         let time = from + (to - from) * sample as f64 / count as f64;

@@ -6,7 +6,9 @@ use clamber_world::{Obstacle, ObstacleId};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::{Arena, ArenaEvent, CreatureId, KindId, LAST, Member, Outcome, creature_obstacle};
+use super::{
+    Arena, ArenaEvent, CreatureId, KindId, LAST_NUMBER, Member, Outcome, creature_obstacle,
+};
 use crate::error::ArenaError;
 use crate::fighter::{Fighter, FighterConfig, FighterId, Room};
 use crate::projectile::ProjectileId;
@@ -198,14 +200,14 @@ impl Joining {
         })?;
         let next = |given: u32, joining: usize| u64::from(given) + joining as u64;
         let next = next(arena.next_fighter, fighters).max(next(arena.next_creature, creatures));
-        check(next < u64::from(LAST), || {
+        check(next < u64::from(LAST_NUMBER), || {
             "all numbers were given".to_owned()
         })
     }
 }
 
 /// Greatest coordinate of a position in an order, metres.
-const FARTHEST: f64 = 1e12;
+const FARTHEST_PLACE: f64 = 1e12;
 
 /// Greatest absolute heading in an order, radians.
 const MOST_YAW: f64 = 1e6;
@@ -505,7 +507,7 @@ fn share(what: &str, found: f64) -> Result<(), String> {
 
 /// Refuses a place that is too far away.
 fn place(place: DVec3) -> Result<(), String> {
-    let is_near = place.is_finite() && place.abs().max_element() <= FARTHEST;
+    let is_near = place.is_finite() && place.abs().max_element() <= FARTHEST_PLACE;
     check(is_near, || {
         format!("the place {place} is not finite, or beyond 1e12 m")
     })

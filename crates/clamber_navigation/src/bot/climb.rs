@@ -5,34 +5,34 @@ use glam::DVec3;
 
 use super::follow::Progress;
 use super::jumps::TakeOff;
-use super::{Bot, RESTS, View};
+use super::{Bot, CALM_REST_TIME, View};
 use crate::Footing;
 
 /// A bot that hangs counts as shaken in shakes above this share of the shake in which it can only hang. Its wait before
 /// it lets go then starts over.
-const STILL: f64 = 0.2;
+const SHAKEN_HANG_SHARE: f64 = 0.2;
 
 /// The steepest slope on which the bot lets go to rest anywhere, as a share of the steepest one that it can stand on.
-const LETS_GO: f64 = 0.8;
+const LET_GO_SLOPE: f64 = 0.8;
 
 /// The steepest slope on which the bot lets go to rest or walk as planned, as a share of the steepest one that it can
 /// stand on.
-const AS_PLANNED: f64 = 0.97;
+const PLANNED_REST_SLOPE: f64 = 0.97;
 
 /// From a ledge the bot hangs this many times as long before it lets go.
-const LEDGES: f64 = 2.0;
+const LEDGE_HANG_FACTOR: f64 = 2.0;
 
 /// Distance that the bot goes along a ledge without room above, radii.
-const SHIMMIES: f64 = 2.5;
+const SHIMMY_DISTANCE: f64 = 2.5;
 
 /// Holds on.
-const HOLD: ClimberInput = ClimberInput {
+const HOLD_ON: ClimberInput = ClimberInput {
     grip: true,
     ..ClimberInput::IDLE
 };
 
 /// Rests: the climber lets go, and stands or lies.
-const REST: ClimberInput = ClimberInput::IDLE;
+const LET_GO: ClimberInput = ClimberInput::IDLE;
 
 /// How safe a bot is where it is.
 struct Balance {
@@ -48,7 +48,7 @@ struct Balance {
 impl Balance {
     /// Rests if the bot can stand; otherwise holds on.
     fn waits(&self) -> ClimberInput {
-        if self.can_stand { REST } else { HOLD }
+        if self.can_stand { LET_GO } else { HOLD_ON }
     }
 }
 
@@ -64,10 +64,10 @@ impl Bot {
             if let Some(plan) = &mut self.plan {
                 plan.waits(view.seconds);
             }
-            return HOLD;
+            return HOLD_ON;
         }
         if balance.rests_here {
-            return REST;
+            return LET_GO;
         }
         self.follow_or_plan(view, patch);
         if self.plan.is_none() {
@@ -90,8 +90,9 @@ impl Bot {
             .map_or(0.0, |grip| grip.hang_acceleration);
         let throws = view.climber.config().ground.throw_acceleration;
         // If no place stays calm, the bot rests wherever it can, between shakes.
-        let is_calm = || !self.finds_calm || view.forecast.is_calm_at(&self.graph, patch, RESTS);
-        let rests_here = self.rests && (stands || view.is_level(LETS_GO)) && is_calm();
+        let is_calm =
+            || !self.finds_calm || view.forecast.is_calm_at(&self.graph, patch, CALM_REST_TIME);
+        let rests_here = self.rests && (stands || view.is_level(LET_GO_SLOPE)) && is_calm();
         // The shake ahead counts as well, because hands need time to take hold.
         let can_stand =
             state.shake.length().max(view.shake_ahead) <= self.config.stands_in * throws;
@@ -118,7 +119,7 @@ impl Bot {
         }
         // The bot has no way for now, and rests if it can.
         let is_level = self.graph.patches[patch].can_stand || balance.stands;
-        if is_level { REST } else { HOLD }
+        if is_level { LET_GO } else { HOLD_ON }
     }
 
     /// The input of a rest that the plan has here; `None` once the bot is rested.
@@ -126,7 +127,7 @@ impl Bot {
         let state = view.climber.state();
         let progress = self.plan.as_mut()?;
         let wanted = progress.rests_until()?;
-        let is_level = balance.stands || view.is_level(AS_PLANNED);
+        let is_level = balance.stands || view.is_level(PLANNED_REST_SLOPE);
         let needs = state.stamina < 1.0 && state.stamina < wanted + self.config.reserve;
         if needs && is_level {
             progress.waits(view.seconds);
@@ -148,7 +149,7 @@ impl Bot {
             TakeOff::Now(aim) if balance.can_stand => Some(if self.approach.jumps(view.seconds) {
                 self.jumps.begin(&self.graph, view, ends, aim)
             } else {
-                REST
+                LET_GO
             }),
             TakeOff::Later | TakeOff::Tired => {
                 progress.waits(view.seconds);
@@ -161,10 +162,10 @@ impl Bot {
     /// The input towards the next patch of the plan.
     fn go_on(&mut self, view: &View<'_>, balance: &Balance) -> ClimberInput {
         let Some(progress) = &mut self.plan else {
-            return HOLD;
+            return HOLD_ON;
         };
         let Some(target) = progress.target(&self.graph, view, &self.config) else {
-            return HOLD;
+            return HOLD_ON;
         };
         let Balance {
             stands, can_stand, ..
@@ -173,7 +174,7 @@ impl Bot {
         let up = view.climber.config().up();
         let level = toward - up * toward.dot(up);
         // If the way can be walked, the climber lets go, so that its stamina refills.
-        let walks = stands || can_stand && progress.walks() && view.is_level(AS_PLANNED);
+        let walks = stands || can_stand && progress.walks() && view.is_level(PLANNED_REST_SLOPE);
         let tries_else = progress.tries_else(view);
         let jumps = stands && progress.is_stuck(view.seconds, self.config.patience);
         ClimberInput {
@@ -197,13 +198,15 @@ impl Bot {
         let seconds = view.seconds;
         let state = view.climber.state();
         let grip = view.climber.config().grip;
-        let still = grip.map_or(f64::INFINITY, |grip| STILL * grip.hang_acceleration);
+        let still = grip.map_or(f64::INFINITY, |grip| {
+            SHAKEN_HANG_SHARE * grip.hang_acceleration
+        });
         if state.shake.length() > still {
             self.hangs = None;
         }
         let since = *self.hangs.get_or_insert(seconds);
         let is_on_ledge = state.mode == ClimberMode::LedgeHanging;
-        let most = if is_on_ledge { LEDGES } else { 1.0 } * self.config.hangs_for;
+        let most = if is_on_ledge { LEDGE_HANG_FACTOR } else { 1.0 } * self.config.hangs_for;
         // A climber that pulls itself up may find room above.
         let pulls_up = is_on_ledge && state.ledge_hanging.pull_up > 0.0;
         let holds = pulls_up || seconds - since <= most;
@@ -242,7 +245,7 @@ impl Bot {
                 view.climber.config().body.radius,
             );
             let lasts = ledge.map_or(0.0, |ledge| {
-                SHIMMIES * radius / ledge.shimmy_speed.max(1e-3)
+                SHIMMY_DISTANCE * radius / ledge.shimmy_speed.max(1e-3)
             });
             self.shimmies = (aside * 1f64.copysign(toward), seconds + lasts);
         }

@@ -17,7 +17,7 @@ use std::sync::Arc;
 pub use config::BotConfig;
 pub use view::{Danger, View};
 
-use crate::report::LEVEL;
+use crate::report::REST_SLOPE_SHARE;
 use crate::{ClimbGraph, Footing, Goal, Plan};
 use follow::Progress;
 use ground::Approach;
@@ -68,7 +68,8 @@ impl Bot {
             .filter(|patch| {
                 let patch = &graph.patches[*patch];
                 let cosine = patch.normal.dot(graph.config.climber.up());
-                patch.can_stand && cosine > libm::cos(LEVEL * graph.config.climber.ground.max_slope)
+                patch.can_stand
+                    && cosine > libm::cos(REST_SLOPE_SHARE * graph.config.climber.ground.max_slope)
             })
             .collect();
         Self {
@@ -105,7 +106,10 @@ impl Bot {
     /// stamina, or has no patch of the graph near it. It then lets go and tries another entry.
     pub fn is_lost(&self, seconds: f64) -> bool {
         let lasts = self.lost.map_or(0.0, |[first, last]| last - first);
-        lasts > LOST && self.lost.is_some_and(|[_, last]| seconds - last <= LOST)
+        lasts > LOST_TIME
+            && self
+                .lost
+                .is_some_and(|[_, last]| seconds - last <= LOST_TIME)
     }
 
     /// Number of times that the bot has planned.
@@ -124,7 +128,9 @@ impl Bot {
         );
         let is_near = |patch: &usize| {
             let patch = self.graph.patches.get(*patch);
-            patch.is_some_and(|patch| view.spot(patch).seat.distance(here) < THERE * radius)
+            patch.is_some_and(|patch| {
+                view.spot(patch).seat.distance(here) < ARRIVED_SEAT_DISTANCE * radius
+            })
         };
         let goal = view.goal.patches();
         goal.binary_search(&patch).is_ok() || goal.iter().any(is_near)
@@ -172,7 +178,7 @@ impl Bot {
                     && self.patch_below(view).is_some_and(|patch| {
                         let footings = [Footing::Stands, Footing::Holds];
                         let needs = footings.map(|footing| view.goal.least_stamina(patch, footing));
-                        state.stamina >= needs[0].min(needs[1]) + SPARE
+                        state.stamina >= needs[0].min(needs[1]) + SPARE_STAMINA
                     })
         };
         self.rests = costs && view.is_on_creature() && state.stamina < least && !goes_on();
@@ -244,16 +250,16 @@ impl Bot {
 }
 
 /// A place to rest has to stay calm for this time, seconds.
-const RESTS: f64 = 8.0;
+const CALM_REST_TIME: f64 = 8.0;
 
 /// A bot within this share of its radius of a goal patch's seat has arrived.
-const THERE: f64 = 0.5;
+const ARRIVED_SEAT_DISTANCE: f64 = 0.5;
 
 /// A bot that finds no way for this time lets go, seconds.
-const LOST: f64 = 3.0;
+const LOST_TIME: f64 = 3.0;
 
 /// Stamina that the bot has to spare when it goes on without a rest.
-const SPARE: f64 = 0.05;
+const SPARE_STAMINA: f64 = 0.05;
 
 /// The place to which the bot moves next.
 #[derive(Clone, Copy, Debug)]

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::follow::Progress;
 use super::jumps::Jumps;
 use super::room::Room;
-use super::{Bot, LOST, RESTS, View};
+use super::{Bot, CALM_REST_TIME, LOST_TIME, View};
 use crate::plan::Around;
 use crate::{Footing, Forecast, Start};
 
@@ -22,12 +22,12 @@ pub(super) struct Blocked {
 impl Blocked {
     /// True if the way has been open long enough to try it like a new one.
     fn is_forgotten(&self, seconds: f64) -> bool {
-        seconds > self.until + FORGETS * self.lasts
+        seconds > self.until + FORGET_FACTOR * self.lasts
     }
 }
 
 /// A blocked way is forgotten after it was open for this many times as long as it was avoided.
-const FORGETS: f64 = 4.0;
+const FORGET_FACTOR: f64 = 4.0;
 
 impl Bot {
     /// Goes on with the present plan, or makes another one.
@@ -103,7 +103,8 @@ impl Bot {
             is_open(from, to) && !limbs.lead_onto(&self.graph, view, [from, to])
         };
         let rests = self.rests;
-        let arrives = |patch: usize| !rests || view.forecast.is_calm_at(&self.graph, patch, RESTS);
+        let arrives =
+            |patch: usize| !rests || view.forecast.is_calm_at(&self.graph, patch, CALM_REST_TIME);
         let stamina = (state.stamina - self.config.reserve).max(0.0);
         let safe_starts = self.starts(patch, stamina, &is_safe);
         let starts = self.starts(patch, stamina, &is_open);
@@ -181,7 +182,7 @@ impl Bot {
 
     /// Since when the bot finds no way, and now. It begins anew if the last time was too long ago to count.
     pub(super) fn lost_until(&self, seconds: f64) -> [f64; 2] {
-        let lately = self.lost.filter(|[_, last]| seconds - last <= LOST);
+        let lately = self.lost.filter(|[_, last]| seconds - last <= LOST_TIME);
         [lately.map_or(seconds, |[first, _]| first), seconds]
     }
 }

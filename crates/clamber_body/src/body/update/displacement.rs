@@ -9,13 +9,13 @@ use crate::body::root::Root;
 use crate::body::stance::Stance;
 
 /// Least half time in which a displacement between two stances decays, seconds.
-const OFFSET: f64 = 0.09;
+const LEAST_HALF_TIME: f64 = 0.09;
 
 /// Growth of that half time with the displacement's initial speed, seconds per metre a second.
-const OFFSET_PER_SPEED: f64 = 0.0233;
+const HALF_TIME_PER_SPEED: f64 = 0.0233;
 
 /// Limit of a new displacement's speed, metres a second: a body that lands faster does not go deeper.
-const FASTEST: f64 = 9.0;
+const MAX_DISPLACEMENT_SPEED: f64 = 9.0;
 
 /// Displacement of the model from its stance's own place.
 #[derive(Clone, Copy, Debug)]
@@ -31,8 +31,8 @@ impl Displacement {
     fn after(offset: Spring<DVec3>) -> Self {
         Self {
             offset,
-            half: OFFSET
-                .max(OFFSET_PER_SPEED * offset.velocity.length())
+            half: LEAST_HALF_TIME
+                .max(HALF_TIME_PER_SPEED * offset.velocity.length())
                 .max(soft_half(offset.value.length())),
         }
     }
@@ -84,7 +84,7 @@ impl Update<'_> {
         let expected = self.carry.point(memory.root.position) + velocity * self.dt;
         Displacement::after(Spring {
             value: expected - target.position,
-            velocity: (velocity - motion).clamp_length_max(FASTEST),
+            velocity: (velocity - motion).clamp_length_max(MAX_DISPLACEMENT_SPEED),
         })
     }
 }

@@ -10,7 +10,7 @@ use crate::BodyError;
 use crate::body::root::Root;
 
 /// Half time of a change of the gaze's weight, seconds.
-const GAZE: f64 = 0.15;
+const GAZE_HALF_TIME: f64 = 0.15;
 
 /// Where the head looks.
 #[derive(Clone, Copy, Debug)]
@@ -49,7 +49,7 @@ impl Update<'_> {
         if self.memory.is_none() {
             gaze.weight = Spring::at(goal);
         } else {
-            gaze.weight.step(goal, GAZE, self.dt);
+            gaze.weight.step(goal, GAZE_HALF_TIME, self.dt);
         }
         let weight = gaze.weight.value.clamp(0.0, 1.0);
         if weight > 1e-3 {

@@ -21,13 +21,13 @@ use crate::figure::Place;
 use crate::{BodyError, Extremity};
 
 /// Share of a limb's length over which a limb on its way slows down near its full stretch.
-const SOFT: f64 = 0.03;
+const SOFT_STRETCH: f64 = 0.03;
 
-/// Distance from the clips' pose at which a free limb has all of [`SOFT`], metres.
-const SOFT_WITHIN: f64 = 0.05;
+/// Distance from the clips' pose at which a free limb has all of [`SOFT_STRETCH`], metres.
+const FULLY_SOFT_DISTANCE: f64 = 0.05;
 
 /// Distance from the clips' pose within which a free limb follows the clips without inverse kinematics, metres.
-const AT_CLIP: f64 = 1e-3;
+const CLIP_DISTANCE: f64 = 1e-3;
 
 impl Update<'_> {
     /// The limbs after this frame, before they step: they move with the support, and leave the holds of another stance.
@@ -192,15 +192,19 @@ impl Update<'_> {
             limb.kept(&swung)
         });
         let far = limb.kept_distance();
-        if end.is_none() && turn.is_none() && far < AT_CLIP {
+        if end.is_none() && turn.is_none() && far < CLIP_DISTANCE {
             limb.pole.forget();
             return Ok(clip);
         }
         let soft = match limb.doing {
             Doing::Planted(_) => 1.0,
             // The softness grows gradually, since a limb may be straight when its step begins.
-            Doing::Swinging(swing) => 1.0 - SOFT * (2.0 * swing.time / swing.duration).min(1.0),
-            Doing::Free => 1.0 - SOFT * (far / (SOFT_WITHIN * context.size())).min(1.0),
+            Doing::Swinging(swing) => {
+                1.0 - SOFT_STRETCH * (2.0 * swing.time / swing.duration).min(1.0)
+            }
+            Doing::Free => {
+                1.0 - SOFT_STRETCH * (far / (FULLY_SOFT_DISTANCE * context.size())).min(1.0)
+            }
         };
         let wanted = Wanted { place, soft };
         let shape = self.figure.limb(extremity);

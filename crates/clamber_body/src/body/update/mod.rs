@@ -1,5 +1,5 @@
-//! One frame of a body, in this order: the support's motion, rotation, walk, clips, the model's place, hands and feet, the
-//! body's displacement for them, the final pose, the gaze. [`Update::run`] reads the same way.
+//! One frame of a body, in this order: the support's motion, rotation, walk, clips, the model's place, hands and feet,
+//! the body's displacement for them, the final pose, the gaze. [`Update::run`] reads the same way.
 
 mod displacement;
 mod gaze;
@@ -7,7 +7,6 @@ mod limbs;
 mod reached;
 mod turning;
 
-use clamber_animation::Spring;
 use clamber_climber::ClimberMode;
 use clamber_surface::rig::Pose;
 use glam::{DQuat, DVec3};
@@ -32,11 +31,11 @@ use crate::figure::Place;
 use crate::{BodyError, Extremity, Figure};
 
 /// A climber was teleported if it is farther from its expected position than this share of the leg's length plus the
-/// distance by [`WAYS`].
-const TELEPORT: f64 = 1.0;
+/// distance by [`TELEPORT_STEPS`].
+const TELEPORT_DISTANCE: f64 = 1.0;
 
-/// This many times the distance at the last and the current speed together is added to [`TELEPORT`].
-const WAYS: f64 = 3.0;
+/// This many times the distance at the last and the current speed together is added to [`TELEPORT_DISTANCE`].
+const TELEPORT_STEPS: f64 = 3.0;
 
 /// Largest depth of a step down, as a share of the leg's length.
 const STEP_DOWN: f64 = 0.5;
@@ -84,8 +83,8 @@ impl<'a> Update<'a> {
         let speed = (state.velocity - state.base_velocity).length();
         let is_here = |memory: &Memory| {
             let expected = carry.point(memory.climber.position);
-            let most = TELEPORT * figure.leg_length()
-                + WAYS * (speed + memory.climber.motion.length()) * dt;
+            let most = TELEPORT_DISTANCE * figure.leg_length()
+                + TELEPORT_STEPS * (speed + memory.climber.motion.length()) * dt;
             state.position.distance(expected) <= most
         };
         let memory = memory.filter(is_here);

@@ -1,5 +1,5 @@
-//! Moves the body so that hands and feet reach their places: the pelvis goes down for the feet, or the body moves towards
-//! its holds.
+//! Moves the body so that hands and feet reach their places: the pelvis goes down for the feet, or the body moves
+//! towards its holds.
 
 use clamber_animation::Spring;
 use glam::DVec3;
@@ -17,7 +17,7 @@ use crate::body::walk::Walk;
 use crate::figure::Place;
 
 /// Half time of the body's displacement to where all limbs reach, seconds.
-const PULLS: f64 = 0.06;
+const PULL_HALF_TIME: f64 = 0.06;
 
 /// The body where its limbs reach.
 pub(super) struct Reached {
@@ -131,7 +131,7 @@ impl Update<'_> {
         let mut pull = self.kept().map_or(Spring::default(), |memory| memory.pull);
         pull.value = self.carry.vector(pull.value);
         pull.velocity = self.carry.vector(pull.velocity);
-        pull.step(wanted, PULLS * size.sqrt(), self.dt);
+        pull.step(wanted, PULL_HALF_TIME * size.sqrt(), self.dt);
         for (tie, limb) in ties.iter_mut().zip(limbs.iter()) {
             *tie = tie.filter(|_| limb.is_planted());
         }
@@ -184,9 +184,9 @@ impl Update<'_> {
             let end = ends[index]?;
             let length = self.figure.limb(extremity).length;
             let share = if extremity.is_hand() {
-                reach::ARM
+                reach::ARM_REACH
             } else {
-                reach::LEG
+                reach::LEG_REACH
             };
             Some(Tie {
                 root: shoulders[index],

@@ -12,7 +12,7 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use super::report::AttackPhase;
-use super::state::FARTHEST;
+use super::state::FARTHEST_COORDINATE;
 use super::{Creature, Surroundings};
 use crate::brain::{Act, Attack, StateId, WaveOf};
 use crate::feet::Carried;
@@ -25,10 +25,10 @@ pub use shot::ActiveShot;
 pub use wave::ActiveWave;
 
 /// Largest number of waves, and of shots, at a time. One more removes the oldest one.
-const MOST: usize = 64;
+const MOST_AT_A_TIME: usize = 64;
 
 /// Distance from terrain at which a ray begins, metres, so that it does not hit this terrain.
-const TOUCHING: f64 = 1e-3;
+const RAY_START_DISTANCE: f64 = 1e-3;
 
 /// The waves, shots and beam of a creature, and their target.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -91,17 +91,18 @@ impl Ranged {
 
     /// True if a creature of this kind can have these waves, shots and beam.
     pub(super) fn fits(&self, kind: &CreatureKind) -> bool {
-        let is_near = |place: DVec3| place.is_finite() && place.abs().max_element() <= FARTHEST;
+        let is_near =
+            |place: DVec3| place.is_finite() && place.abs().max_element() <= FARTHEST_COORDINATE;
         let beam = self
             .beam
             .is_none_or(|beam| is_near(beam.from) && (beam.direction.length() - 1.0).abs() < 1e-6);
         is_near(self.mark)
             && beam
             && self.next_shot <= u64::MAX / 2
-            && self.waves.len().max(self.shots.len()) <= MOST
+            && self.waves.len().max(self.shots.len()) <= MOST_AT_A_TIME
             && self.waves.iter().all(|wave| {
                 let attack = attack_of(kind, wave.state);
-                let reach = (0.0..=FARTHEST).contains(&wave.reach);
+                let reach = (0.0..=FARTHEST_COORDINATE).contains(&wave.reach);
                 is_near(wave.place)
                     && reach
                     && attack.is_some_and(|one| one.wave_of(wave.of).is_some())
@@ -242,7 +243,10 @@ impl Creature {
 
 /// The nearest place that a creature's attacks can reach.
 fn reachable(place: DVec3) -> DVec3 {
-    place.clamp(DVec3::splat(-FARTHEST), DVec3::splat(FARTHEST))
+    place.clamp(
+        DVec3::splat(-FARTHEST_COORDINATE),
+        DVec3::splat(FARTHEST_COORDINATE),
+    )
 }
 
 /// The attack of a state; `None` if its act is no attack.
@@ -256,7 +260,7 @@ fn attack_of(kind: &CreatureKind, state: StateId) -> Option<&Attack> {
 /// Moves a place by a length in a direction, or half way to the terrain in that direction.
 fn moved_off(place: DVec3, out: DVec3, by: f64, around: &Surroundings<'_>) -> DVec3 {
     let hits = around.terrain.iter();
-    let hits = hits.filter_map(|one| one.cast_ray(place + out * TOUCHING, out, by));
+    let hits = hits.filter_map(|one| one.cast_ray(place + out * RAY_START_DISTANCE, out, by));
     let free = hits.map(|hit| 0.5 * hit.distance).fold(by, f64::min);
     place + out * free
 }
