@@ -154,8 +154,8 @@ pub(crate) struct Schedule<'a, 'c> {
 }
 
 impl Climb {
-    /// Advances all limbs by a frame: holds move with their material, the clock goes on, limbs whose turn has come wait
-    /// for their step, and those that may move start it.
+    /// Advances all limbs by a frame: holds move with their material, the clock goes on, limbs ask for their step when
+    /// it is their turn, and those that may move start it.
     pub(crate) fn step(
         &mut self,
         schedule: &Schedule<'_, '_>,
@@ -224,7 +224,7 @@ impl Climb {
         }
     }
 
-    /// Lets the limbs wait for a step whose turn has come, or that are out of place.
+    /// Lets limbs wait for a step if it is their turn, or if they are out of place.
     fn ask(&self, schedule: &Schedule<'_, '_>, cycle: &Cycle, limbs: &mut [LimbMemory; 4]) {
         let size = schedule.context.size();
         let Cycle { length, was, .. } = *cycle;

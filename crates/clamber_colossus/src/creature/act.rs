@@ -13,7 +13,7 @@ use crate::error::ColossusError;
 /// Share of the walking speed below which the creature has come to a stand, so that an act of another kind can begin.
 const STANDING_SPEED_SHARE: f64 = 0.12;
 
-/// What a creature does: an errand of the game, or else the act of a state of its brain.
+/// The errand or the act that a creature carries out. An errand of the game comes before the act of the brain's state.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Acting {
     /// State whose act has begun. It differs from the brain's state while the creature still comes to a stop.

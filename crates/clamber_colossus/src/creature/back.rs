@@ -111,7 +111,7 @@ impl Retreats {
         self.round = 0;
     }
 
-    /// Forgets what was tried in the last turn, once the creature has ceased to turn on the spot.
+    /// Clears the record of the last turn, once the creature no longer turns on the spot.
     pub(super) fn end_turn(&mut self) {
         (self.has_gone_round, self.has_gone_back) = (false, false);
         self.has_looked_round = false;

@@ -27,7 +27,7 @@ const ALIKE_MOTION_SHARE: f64 = 0.1;
 /// creature's height. Farther away, it is another point.
 const SAME_POINT_DISTANCE: f64 = 1e-6;
 
-/// What a creature knows of the motion of the ground below it.
+/// The point of the ground that carries a creature, and its motion in the last tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct MovingGround {
     /// The remembered point of the ground, whose motion carries the creature.

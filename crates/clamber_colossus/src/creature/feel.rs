@@ -31,7 +31,7 @@ const NO_WALL: f32 = f32::MAX;
 /// Number of directions in which walls are measured.
 const WALL_DIRECTIONS: usize = 8;
 
-/// What a creature knows from its senses, beyond the tick.
+/// Knowledge from the senses that a creature keeps beyond the tick.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Perceived {
     /// Id of the last visible prey, and where it was seen last.

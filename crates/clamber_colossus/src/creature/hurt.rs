@@ -9,7 +9,7 @@ use super::report::CreatureEvent;
 use super::{Creature, Wound};
 use crate::kind::{CreatureKind, Plate};
 
-/// The damage to a creature, and what the next step has to sense and to report of it.
+/// The damage to a creature, and the wounds and events that the next step senses and reports.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Damage {
     /// Hit points left of each weak point.

@@ -1,4 +1,4 @@
-//! What a creature knows of its current way.
+//! Knowledge of a creature about its current way.
 
 use serde::{Deserialize, Serialize};
 
