@@ -19,9 +19,9 @@ use crate::humanoid::reference;
 use crate::{Humanoid, Limb, LimbEnd};
 
 /// Keys of a carried clip, per second.
-const RATE: f64 = 30.0;
+const KEY_RATE: f64 = 30.0;
 
-/// Most key intervals of a carried clip, one hour at [`RATE`]. It bounds memory: a file may claim any length for a
+/// Most key intervals of a carried clip, one hour at [`KEY_RATE`]. It bounds memory: a file may claim any length for a
 /// clip.
 const MOST_KEYS: f64 = 108_000.0;
 
@@ -139,7 +139,7 @@ impl<'a> Retarget<'a> {
     /// [`RetargetError::Rig`] if the clip does not fit the source's skeleton.
     pub fn clip(&self, clip: &Clip) -> Result<Clip, RetargetError> {
         let duration = clip.duration();
-        let keys = (duration * RATE).ceil().clamp(1.0, MOST_KEYS) as usize + 1;
+        let keys = (duration * KEY_RATE).ceil().clamp(1.0, MOST_KEYS) as usize + 1;
         let times: Vec<f32> = (0..keys)
             .map(|key| (duration * key as f64 / (keys - 1) as f64) as f32)
             .collect();
@@ -388,7 +388,7 @@ impl<'a> Retarget<'a> {
 
 /// An ankle within this share of the leg from a height of 0 counts as standing there. A model with farther ankles is
 /// moved.
-const STANDS: f64 = 0.5;
+const STANDING_ANKLE_HEIGHT: f64 = 0.5;
 
 /// How far the lower sole is below a height of 0 in the bind pose, model units. 0 if the lower ankle is near that
 /// height.
@@ -401,7 +401,7 @@ fn lift(body: &Humanoid, bound: &[DAffine3]) -> f64 {
     });
     let ankle = ankles.fold(f64::INFINITY, f64::min);
     let leg = body.legs[0].length();
-    if ankle.abs() < STANDS * leg {
+    if ankle.abs() < STANDING_ANKLE_HEIGHT * leg {
         0.0
     } else {
         sole_height(ankle, leg) - ankle
@@ -434,7 +434,7 @@ fn start(skeleton: &Skeleton, bound: &[DAffine3]) -> (Pose, Vec<JointId>) {
             .map_or(DQuat::IDENTITY, |parent| rotation(&bound[parent.index()]));
         let local = parent.conjugate() * rotation(&bound[index]);
         let transform = &mut pose.transforms[index];
-        if local.dot(transform.rotation.as_dquat().normalize()).abs() < SAME {
+        if local.dot(transform.rotation.as_dquat().normalize()).abs() < SAME_ROTATION_COSINE {
             transform.rotation = local.normalize().as_quat();
             turned.push(JointId(index as u32));
         }
@@ -443,7 +443,7 @@ fn start(skeleton: &Skeleton, bound: &[DAffine3]) -> (Pose, Vec<JointId>) {
 }
 
 /// Cosine of half the angle below which two rotations count as equal: 0.01°, the rounding of inverse bind matrices.
-const SAME: f64 = 1.0 - 4e-9;
+const SAME_ROTATION_COSINE: f64 = 1.0 - 4e-9;
 
 /// The rotation that takes X to `direction`, and Y as near to `other` as possible.
 fn frame(direction: DVec3, other: DVec3) -> DQuat {

@@ -7,10 +7,10 @@ use clamber_world::{
 use glam::DVec3;
 
 use crate::Climber;
-use crate::step::CONTINUOUS;
+use crate::step::CONTINUOUS_GAP;
 
 /// Maximum number of steps of a sweep. Capsules that pass each other take a few, capsules that just graze a few dozen.
-const STEPS: u32 = 64;
+const MAX_SWEEP_STEPS: u32 = 64;
 
 /// Distance between the axes of two bodies, as a fraction of their radii, below which they are at one place, and do not
 /// stop each other.
@@ -18,7 +18,7 @@ pub(crate) const SAME_PLACE: f64 = 1e-7;
 
 /// Cosine from up of a contact normal, below which the contact is on a climber's side: 60 degrees, where no climber
 /// stands.
-const SIDE: f64 = 0.5;
+const SIDE_COSINE: f64 = 0.5;
 
 /// A climber as an obstacle to other climbers, for one tick: a solid capsule that is where its support carries it.
 ///
@@ -89,7 +89,7 @@ impl ClimberObstacle {
         let begin = state.position - state.own_way;
         let own = state.velocity - state.base_velocity;
         let mut attachment = state.support.map(|support| support.attachment);
-        let slack = CONTINUOUS * config.body.radius;
+        let slack = CONTINUOUS_GAP * config.body.radius;
         let followed = support.and_then(|obstacle| {
             let attachment = attachment.as_mut()?;
             let followed = attachment.follow(obstacle, dt, slack)?;
@@ -187,7 +187,7 @@ impl ClimberObstacle {
         let out = (point - self.now.nearest_on_axis(point)).normalize_or_zero();
         let (rise, high) = (self.own.dot(self.up), out.dot(self.up));
         let fall = if high > 0.0 { rise.min(0.0) } else { 0.0 };
-        let side = if high < SIDE {
+        let side = if high < SIDE_COSINE {
             (out - self.up * high).normalize_or_zero()
         } else {
             DVec3::ZERO
@@ -203,7 +203,7 @@ impl ClimberObstacle {
             return None;
         }
         let mut time = 0.0;
-        for step in 0..=STEPS {
+        for step in 0..=MAX_SWEEP_STEPS {
             let moved = capsule.with_ends_moved(ways.map(|way| way * time));
             let apart = between(&self.now, &moved);
             let gap = apart.distance - sum;
@@ -226,7 +226,7 @@ impl ClimberObstacle {
                 return None;
             }
             // At the last step a contact is reported rather than missed, so that no contact is late.
-            if touches || step == STEPS {
+            if touches || step == MAX_SWEEP_STEPS {
                 return Some(SweepContact {
                     time,
                     contact: self.contact(&apart),

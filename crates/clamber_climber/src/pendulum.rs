@@ -13,27 +13,27 @@ use glam::DVec3;
 
 /// Largest angle of a step of the integrator, radians, both as phase at the pendulum's natural frequency and as angle
 /// turned. The error of the period is 1/24 of its square, 0.04 %.
-const STEP: f64 = 0.1;
+const MAX_STEP_ANGLE: f64 = 0.1;
 
 /// Maximum number of steps in a tick: twice what an arm of 1.5 m needs for a tick of 0.25 s. Shorter arms are
 /// integrated more coarsely; gravity times the length bounds their error.
-const STEPS: f64 = 32.0;
+const MAX_STEPS: f64 = 32.0;
 
 /// Maximum number of times that an arm goes slack or becomes taut within a tick. More changes than this are rounding.
-const EVENTS: usize = 8;
+const MAX_ARM_EVENTS: usize = 8;
 
 /// Share of its full length by which an arm may be shorter and still count as taut.
-const TAUT: f64 = 1e-9;
+const TAUT_TOLERANCE: f64 = 1e-9;
 
 /// Length up to which an arm has no direction, metres.
-const SHORTEST: f64 = 1e-9;
+const SHORTEST_ARM: f64 = 1e-9;
 
 /// Number of pieces of a flight that are searched for the time at which the arm is at full length. A body that leaves
 /// the sphere and returns within one piece was barely outside.
-const PIECES: usize = 8;
+const FLIGHT_PIECES: usize = 8;
 
 /// Number of bisections of a piece, until its ends are neighbouring numbers.
-const HALVINGS: usize = 52;
+const PIECE_BISECTIONS: usize = 52;
 
 /// A body at the end of an arm.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -103,7 +103,7 @@ impl Pendulum {
     fn integrate(&mut self, tick: &PendulumTick) -> PendulumReport {
         let mut report = PendulumReport::default();
         self.velocity -= tick.pivot_change;
-        if tick.length <= SHORTEST {
+        if tick.length <= SHORTEST_ARM {
             let held = self.velocity + tick.gravity * tick.dt;
             *self = Self::default();
             report.arm = ArmTension::Taut;
@@ -113,14 +113,14 @@ impl Pendulum {
         let mut pull = 0.0;
         report.arm = self.take_hold(tick, &mut pull);
         let mut left = tick.dt;
-        for event in 0..EVENTS {
+        for event in 0..MAX_ARM_EVENTS {
             if left <= 0.0 {
                 break;
             }
             match report.arm {
                 ArmTension::Taut => {
                     // The last swing may not go slack any more, so that the tick ends.
-                    left = self.swing(tick, left, pull, event + 1 == EVENTS);
+                    left = self.swing(tick, left, pull, event + 1 == MAX_ARM_EVENTS);
                     if left > 0.0 {
                         report.arm = ArmTension::Slack;
                         pull = 0.0;
@@ -144,7 +144,7 @@ impl Pendulum {
     /// Whether the arm is taut after the pivot's impulse. A taut arm takes up the component along
     /// it: `pull` becomes the mean of this over the tick, negative if the pivot follows the body.
     fn take_hold(&mut self, tick: &PendulumTick, pull: &mut f64) -> ArmTension {
-        if self.arm.length() < tick.length * (1.0 - TAUT) {
+        if self.arm.length() < tick.length * (1.0 - TAUT_TOLERANCE) {
             return ArmTension::Slack;
         }
         self.arm = self.arm.normalize_or_zero() * tick.length;
@@ -174,9 +174,9 @@ impl Pendulum {
     fn swing(&mut self, tick: &PendulumTick, time: f64, pull: f64, rigid: bool) -> f64 {
         let frequency = libm::sqrt(tick.gravity.length() / tick.length);
         let turning = self.velocity.length() / tick.length;
-        let steps = (time * frequency.max(turning) / STEP)
+        let steps = (time * frequency.max(turning) / MAX_STEP_ANGLE)
             .ceil()
-            .clamp(1.0, STEPS);
+            .clamp(1.0, MAX_STEPS);
         let h = time / steps;
         let damped = libm::exp(-0.5 * tick.damping.max(0.0) * h);
         for step in 0..steps as u32 {
@@ -219,14 +219,14 @@ impl Pendulum {
         let start = *self;
         let at = |t: f64| start.arm + (start.velocity + tick.gravity * (0.5 * t)) * t;
         // A body whose arm has just gone slack begins at the arm's full length.
-        let most = tick.length * (1.0 + 0.1 * TAUT);
+        let most = tick.length * (1.0 + 0.1 * TAUT_TOLERANCE);
         let beyond = |t: f64| at(t).length() > most;
         let mut flown = time;
-        for piece in 1..=PIECES {
-            let mut late = time * piece as f64 / PIECES as f64;
+        for piece in 1..=FLIGHT_PIECES {
+            let mut late = time * piece as f64 / FLIGHT_PIECES as f64;
             if beyond(late) {
-                let mut early = time * (piece - 1) as f64 / PIECES as f64;
-                for _ in 0..HALVINGS {
+                let mut early = time * (piece - 1) as f64 / FLIGHT_PIECES as f64;
+                for _ in 0..PIECE_BISECTIONS {
                     let middle = 0.5 * (early + late);
                     if beyond(middle) {
                         late = middle;

@@ -7,11 +7,11 @@ use crate::step::slow_speed;
 use crate::{Blow, Climber, ClimberMode, ContactPhase};
 
 /// Fraction of [`slow_speed`] below which an impact is no blow to a climber on its feet or in the air.
-const FELT: f64 = 0.02;
+const FELT_IMPACT_SHARE: f64 = 0.02;
 
 /// Cosine from up of the direction to a body, above which the body counts as lying on the climber and not as in its
 /// way: 60 degrees.
-const ABOVE: f64 = 0.5;
+const LYING_ABOVE_COSINE: f64 = 0.5;
 
 impl Climber {
     /// The data of this climber after its step that a physics engine needs, so that dynamic bodies collide with the
@@ -44,7 +44,7 @@ impl Climber {
             gentle: if state.mode.is_holding() {
                 slow
             } else {
-                slow * FELT
+                slow * FELT_IMPACT_SHARE
             },
             support,
         }
@@ -60,7 +60,7 @@ impl Climber {
         let support = state.support.map(|support| support.normal_in_world());
         let ground = || {
             let touched = self.contacts().iter().map(|contact| contact.normal);
-            let below = touched.filter(|normal| normal.dot(up) > ABOVE);
+            let below = touched.filter(|normal| normal.dot(up) > LYING_ABOVE_COSINE);
             below.max_by(|a, b| a.dot(up).total_cmp(&b.dot(up)))
         };
         support.or_else(ground)
@@ -75,7 +75,7 @@ impl Climber {
                 contact.phase,
                 ContactPhase::Ground | ContactPhase::Grip | ContactPhase::Ledge
             );
-            contact.obstacle == world && !is_support && contact.normal.dot(up) > -ABOVE
+            contact.obstacle == world && !is_support && contact.normal.dot(up) > -LYING_ABOVE_COSINE
         });
         of_world.map(|contact| ProxyTouch {
             material: contact.material,

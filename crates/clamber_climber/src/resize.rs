@@ -8,7 +8,7 @@ use crate::step::Judge;
 use crate::{Climber, ClimberConfig, ClimberError, ClimberMode, StepRules};
 
 /// Length of the tick in which obstacles are queried as they are now, seconds: no obstacle moves in it.
-const NOW: f64 = 1.0;
+const INSTANT_TICK: f64 = 1.0;
 
 impl Climber {
     /// [`Climber::set_config`] for a body that may be of another size, among obstacles as they are now. The body keeps
@@ -94,7 +94,7 @@ impl Climber {
             config: &config,
             state: &state,
             obstacles,
-            dt: NOW,
+            dt: INSTANT_TICK,
         };
         let is_solid = |id, obstacle: &dyn Obstacle, contact: &Contact| {
             judge.rule(id, obstacle, contact).solid
@@ -103,7 +103,7 @@ impl Climber {
             solid: rules.contact.is_some().then_some(&is_solid),
             ..ContactFilters::default()
         };
-        let mut mover = Mover::new(obstacles, NOW, self.mover_memory())?
+        let mut mover = Mover::new(obstacles, INSTANT_TICK, self.mover_memory())?
             .with_filters(filters)
             .with_character(crate::step::among_others(&config));
         let grows = wider > 0.0 || config.body.height > before.body.height;

@@ -160,15 +160,15 @@ pub struct ContactQuery<'a> {
 
 /// A body below a plane by up to this fraction of its margin counts as on it: far more than the rounding of a
 /// creature's skin.
-const ON: f64 = 0.1;
+const ON_PLANE_TOLERANCE: f64 = 0.1;
 
 /// Depth, as a fraction of its radius, by which a climber that stands on an obstacle may be below a plane of that
 /// obstacle and still count as above it: deformation pushes its feet into the obstacle.
-const SUNK: f64 = 0.5;
+const SUNK_DEPTH: f64 = 0.5;
 
 /// Cosine from up of a face's normal, up to which the face is a wall or a ceiling, for a climber that stands on the
 /// obstacle, too.
-const GRAZING: f64 = 0.05;
+const GRAZING_COSINE: f64 = 0.05;
 
 impl<'a> ContactQuery<'a> {
     /// The default rule: every contact is solid, and can be stood on and stepped onto. [Fur](SurfaceKind::Fur) can be
@@ -232,8 +232,8 @@ impl<'a> ContactQuery<'a> {
         let body = &self.config.body;
         let normal = contact.normal;
         let up = self.config.up();
-        let rises = normal.dot(up) > GRAZING;
-        let is_wall = normal.dot(up).abs() <= GRAZING;
+        let rises = normal.dot(up) > GRAZING_COSINE;
+        let is_wall = normal.dot(up).abs() <= GRAZING_COSINE;
         let (place, velocity) = match self.path() {
             Some(path) => (path.previous_position, path.velocity),
             None => (contact.point, DVec3::ZERO),
@@ -241,14 +241,14 @@ impl<'a> ContactQuery<'a> {
         let height = (state.position - place).dot(normal) - body.radius;
         if self.is_supported_by_it(ClimberMode::Standing) {
             let feet = (state.position - place).dot(up) - body.radius;
-            let sunk = -SUNK * body.radius;
+            let sunk = -SUNK_DEPTH * body.radius;
             return rises && height >= sunk || is_wall && feet >= sunk;
         }
         if self.is_supported_by_it(ClimberMode::LedgeHanging) {
             return rises || is_wall;
         }
         let is_level = self.config.slope(normal) <= self.config.ground.stays_on_slope();
-        let on = ON * body.margin;
+        let on = ON_PLANE_TOLERANCE * body.margin;
         let rising = (state.velocity - velocity).dot(normal) * self.dt;
         is_level && (height >= -on || height >= -body.margin && rising <= on)
     }

@@ -18,22 +18,22 @@ pub const THROW: u32 = 1 << 3;
 
 /// Bit of [`PlayerInput::buttons`] for [`ClimberInput::jump`]. It lies above the eight bits of the actions, like the
 /// next three.
-const JUMP: u16 = 1 << 8;
+const JUMP_BIT: u16 = 1 << 8;
 /// Bit of [`PlayerInput::buttons`] for [`ClimberInput::jump_held`].
 const JUMP_HELD: u16 = 1 << 9;
 /// Bit of [`PlayerInput::buttons`] for [`ClimberInput::grip`].
-const GRIP: u16 = 1 << 10;
+const GRIP_BIT: u16 = 1 << 10;
 /// Bit of [`PlayerInput::buttons`] for [`ClimberInput::crouch`].
-const CROUCH: u16 = 1 << 11;
+const CROUCH_BIT: u16 = 1 << 11;
 /// Bits of [`PlayerInput::buttons`] for the lower eight bits of [`ClimberInput::actions`].
-const ACTIONS: u16 = 0xff;
+const ACTION_BITS: u16 = 0xff;
 
 /// Rounding steps per unit of a vector's component: the largest `i8`, so that components from -1 to 1 fit.
-const STEPS: f64 = 127.0;
+const ROUNDING_STEPS: f64 = 127.0;
 
 /// Vectors up to this length are not normalised. Rounding to 127ths makes a unit vector up to 0.7 % longer; normalising
 /// it again would change its bits in a second round trip.
-const LONGEST: f64 = 1.01;
+const LONGEST_UNIT_VECTOR: f64 = 1.01;
 
 /// A player's input for one tick in thirteen bytes, to be sent over a network.
 ///
@@ -63,13 +63,13 @@ impl PlayerInput {
         let unit = |v: DVec3| {
             if !v.is_finite() {
                 DVec3::ZERO
-            } else if v.length() > LONGEST {
+            } else if v.length() > LONGEST_UNIT_VECTOR {
                 v.normalize_or_zero()
             } else {
                 v
             }
         };
-        let step = |x: f64| (x * STEPS).round() as i8;
+        let step = |x: f64| (x * ROUNDING_STEPS).round() as i8;
         let (walk, climb) = (unit(input.walk), unit(input.climb));
         let aim = if input.aim.is_finite() {
             input.aim
@@ -88,30 +88,30 @@ impl PlayerInput {
                 (turn.round() as i32 as u16).cast_signed(),
                 (rise.round() as i32).clamp(-32_768, 32_767) as i16,
             ],
-            buttons: (input.actions as u16 & ACTIONS)
-                | flag(input.jump, JUMP)
+            buttons: (input.actions as u16 & ACTION_BITS)
+                | flag(input.jump, JUMP_BIT)
                 | flag(input.jump_held, JUMP_HELD)
-                | flag(input.grip, GRIP)
-                | flag(input.crouch, CROUCH),
+                | flag(input.grip, GRIP_BIT)
+                | flag(input.crouch, CROUCH_BIT),
             order: 0,
         }
     }
 
     /// Converts back to the input that [`Arena::step`](crate::Arena::step) takes.
     pub fn to_input(self) -> ClimberInput {
-        let part = |x: i8| (f64::from(x) / STEPS).max(-1.0);
+        let part = |x: i8| (f64::from(x) / ROUNDING_STEPS).max(-1.0);
         let [turn, rise] = self.aim;
         let (sin, cos) = libm::sincos(f64::from(turn) / 65_536.0 * core::f64::consts::TAU);
         let (up, level) = libm::sincos(f64::from(rise) / 65_536.0 * core::f64::consts::PI);
         ClimberInput {
             walk: DVec3::new(part(self.walk[0]), 0.0, part(self.walk[1])),
             climb: DVec3::from_array(self.climb.map(part)),
-            jump: self.buttons & JUMP != 0,
+            jump: self.buttons & JUMP_BIT != 0,
             jump_held: self.buttons & JUMP_HELD != 0,
-            grip: self.buttons & GRIP != 0,
-            crouch: self.buttons & CROUCH != 0,
+            grip: self.buttons & GRIP_BIT != 0,
+            crouch: self.buttons & CROUCH_BIT != 0,
             blow: None,
-            actions: u32::from(self.buttons & ACTIONS),
+            actions: u32::from(self.buttons & ACTION_BITS),
             aim: DVec3::new(level * sin, up, level * cos),
         }
     }

@@ -137,11 +137,11 @@ pub(crate) fn within(
 }
 
 /// Largest number in a configuration, in the number's own unit. It keeps sums and products of such numbers finite.
-const MOST: f64 = 1e9;
+const LARGEST_NUMBER: f64 = 1e9;
 
 /// Checks that a number is from 0 to 1e9.
 pub(crate) fn not_negative(name: &'static str, found: f64) -> Result<(), ArenaError> {
-    within(name, "from 0 to 1e9", found, [0.0, MOST])
+    within(name, "from 0 to 1e9", found, [0.0, LARGEST_NUMBER])
 }
 
 /// Checks that a number is positive and at most 1e9.
@@ -150,6 +150,6 @@ pub(crate) fn positive(name: &'static str, found: f64) -> Result<(), ArenaError>
         name,
         "positive and at most 1e9",
         found,
-        [f64::MIN_POSITIVE, MOST],
+        [f64::MIN_POSITIVE, LARGEST_NUMBER],
     )
 }

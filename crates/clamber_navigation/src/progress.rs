@@ -32,20 +32,20 @@ pub struct Progress {
 
 /// A build reports its progress once in this many steps, so that the caller's function costs little. It can be
 /// cancelled only then.
-const TELLS: usize = 256;
+const STEPS_PER_REPORT: usize = 256;
 
 /// Calls the caller's progress function, and cancels the build if it says so.
 pub(crate) struct Tell<'a>(pub(crate) &'a mut dyn FnMut(Progress) -> ControlFlow<()>);
 
 impl Tell<'_> {
-    /// Reports one short step of many: only every [`TELLS`] steps.
+    /// Reports one short step of many: only every [`STEPS_PER_REPORT`] steps.
     pub(crate) fn at(
         &mut self,
         stage: Stage,
         done: usize,
         of: usize,
     ) -> Result<(), NavigationError> {
-        if done.is_multiple_of(TELLS) {
+        if done.is_multiple_of(STEPS_PER_REPORT) {
             return self.now(stage, done, of);
         }
         Ok(())

@@ -6,7 +6,7 @@ use wgpu::{
     DepthStencilState, FragmentState, MultisampleState, PipelineCompilationOptions,
     PipelineLayoutDescriptor, PrimitiveState, RenderPipeline, RenderPipelineDescriptor,
     SamplerBindingType, ShaderModule, ShaderStages, StencilState, TextureSampleType,
-    TextureViewDimension, VertexBufferLayout, VertexState, VertexStepMode,
+    TextureViewDimension, VertexAttribute, VertexBufferLayout, VertexState, VertexStepMode,
 };
 
 use crate::Gpu;
@@ -43,10 +43,6 @@ struct Plan<'a> {
 
 impl Pipelines {
     pub(crate) fn new(gpu: &Gpu) -> Self {
-        let device = &gpu.device;
-        let mesh_module = device.create_shader_module(wgpu::include_wgsl!("shaders/mesh.wgsl"));
-        let overlay_module =
-            device.create_shader_module(wgpu::include_wgsl!("shaders/overlay.wgsl"));
         let uniform = BindingType::Buffer {
             ty: BufferBindingType::Uniform,
             has_dynamic_offset: false,
@@ -57,98 +53,100 @@ impl Pipelines {
             has_dynamic_offset: false,
             min_binding_size: None,
         };
+        let texture = BindingType::Texture {
+            sample_type: TextureSampleType::Depth,
+            view_dimension: TextureViewDimension::D2,
+            multisampled: false,
+        };
+        let sampler = BindingType::Sampler(SamplerBindingType::Comparison);
         let globals = group(gpu, "globals", &[uniform, storage]);
-        let shadow_map = group(
-            gpu,
-            "shadow map",
-            &[
-                BindingType::Texture {
-                    sample_type: TextureSampleType::Depth,
-                    view_dimension: TextureViewDimension::D2,
-                    multisampled: false,
-                },
-                BindingType::Sampler(SamplerBindingType::Comparison),
-            ],
-        );
+        let shadow_map = group(gpu, "shadow map", &[texture, sampler]);
         let overlay_globals = group(gpu, "overlay", &[uniform]);
-        let posed = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4];
-        let still = wgpu::vertex_attr_array![2 => Float32x4, 3 => Float32x4];
-        let over = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4, 2 => Float32x4];
-        let layout = |array_stride, attributes| {
-            Some(VertexBufferLayout {
-                array_stride,
-                step_mode: VertexStepMode::Vertex,
-                attributes,
-            })
-        };
-        let mesh_buffers = [layout(POSED_BYTES, &posed), layout(STILL_BYTES, &still)];
-        let overlay_buffers = [layout(OVERLAY_BYTES, &over)];
-        let drawn = Plan {
-            label: "mesh",
-            module: &mesh_module,
-            groups: &[Some(&globals), Some(&shadow_map)],
-            vertex: "vertex",
-            buffers: &mesh_buffers,
-            fragment: Some("fragment"),
-            samples: SAMPLES,
-            compare: CompareFunction::Greater,
-            writes_depth: true,
-        };
-        let mesh = pipeline(gpu, &drawn);
-        let sky = pipeline(
-            gpu,
-            &Plan {
-                label: "sky",
-                vertex: "sky_vertex",
-                buffers: &[],
-                fragment: Some("sky_fragment"),
-                compare: CompareFunction::Always,
-                writes_depth: false,
-                ..drawn
-            },
-        );
-        let shadow = pipeline(
-            gpu,
-            &Plan {
-                label: "shadow",
-                groups: &[Some(&globals)],
-                vertex: "shadow_vertex",
-                fragment: None,
-                samples: 1,
-                compare: CompareFunction::Less,
-                ..drawn
-            },
-        );
-        let over = |label, compare| {
-            pipeline(
-                gpu,
-                &Plan {
-                    label,
-                    module: &overlay_module,
-                    groups: &[Some(&overlay_globals)],
-                    vertex: "vertex",
-                    buffers: &overlay_buffers,
-                    fragment: Some("fragment"),
-                    samples: SAMPLES,
-                    compare,
-                    writes_depth: false,
-                },
-            )
-        };
-        let overlay = [
-            over("overlay in sight", CompareFunction::GreaterEqual),
-            over("overlay behind", CompareFunction::Less),
-        ];
+        let [mesh, sky, shadow] = of_meshes(gpu, &globals, &shadow_map);
         Self {
-            globals,
-            shadow_map,
-            overlay_globals,
             sky,
             mesh,
             shadow,
-            overlay,
+            overlay: of_overlays(gpu, &overlay_globals),
+            globals,
+            shadow_map,
+            overlay_globals,
         }
     }
+}
+
+/// The pipelines of meshes, of the sky and of shadows.
+fn of_meshes(
+    gpu: &Gpu,
+    globals: &BindGroupLayout,
+    shadow_map: &BindGroupLayout,
+) -> [RenderPipeline; 3] {
+    let shader = wgpu::include_wgsl!("shaders/mesh.wgsl");
+    let module = gpu.device.create_shader_module(shader);
+    let posed = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4];
+    let still = wgpu::vertex_attr_array![2 => Float32x4, 3 => Float32x4];
+    let mesh = Plan {
+        label: "mesh",
+        module: &module,
+        groups: &[Some(globals), Some(shadow_map)],
+        vertex: "vertex",
+        buffers: &[layout(POSED_BYTES, &posed), layout(STILL_BYTES, &still)],
+        fragment: Some("fragment"),
+        samples: SAMPLES,
+        compare: CompareFunction::Greater,
+        writes_depth: true,
+    };
+    let sky = Plan {
+        label: "sky",
+        vertex: "sky_vertex",
+        buffers: &[],
+        fragment: Some("sky_fragment"),
+        compare: CompareFunction::Always,
+        writes_depth: false,
+        ..mesh
+    };
+    let shadow = Plan {
+        label: "shadow",
+        groups: &[Some(globals)],
+        vertex: "shadow_vertex",
+        fragment: None,
+        samples: 1,
+        compare: CompareFunction::Less,
+        ..mesh
+    };
+    [&mesh, &sky, &shadow].map(|plan| pipeline(gpu, plan))
+}
+
+/// The pipelines of the visible parts of an overlay, and of the parts behind a mesh.
+fn of_overlays(gpu: &Gpu, globals: &BindGroupLayout) -> [RenderPipeline; 2] {
+    let shader = wgpu::include_wgsl!("shaders/overlay.wgsl");
+    let module = gpu.device.create_shader_module(shader);
+    let vertices = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4, 2 => Float32x4];
+    let visible = Plan {
+        label: "overlay in sight",
+        module: &module,
+        groups: &[Some(globals)],
+        vertex: "vertex",
+        buffers: &[layout(OVERLAY_BYTES, &vertices)],
+        fragment: Some("fragment"),
+        samples: SAMPLES,
+        compare: CompareFunction::GreaterEqual,
+        writes_depth: false,
+    };
+    let behind = Plan {
+        label: "overlay behind",
+        compare: CompareFunction::Less,
+        ..visible
+    };
+    [&visible, &behind].map(|plan| pipeline(gpu, plan))
+}
+
+fn layout(array_stride: u64, attributes: &[VertexAttribute]) -> Option<VertexBufferLayout<'_>> {
+    Some(VertexBufferLayout {
+        array_stride,
+        step_mode: VertexStepMode::Vertex,
+        attributes,
+    })
 }
 
 fn group(gpu: &Gpu, label: &str, bindings: &[BindingType]) -> BindGroupLayout {

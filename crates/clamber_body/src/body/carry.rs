@@ -22,7 +22,7 @@ impl Carry {
     ) -> Option<Self> {
         let (_, obstacle) = obstacles.iter().find(|(id, _)| *id == carrier.obstacle)?;
         let mut now = *carrier;
-        now.follow(*obstacle, dt.max(f64::MIN_POSITIVE), SLACK)?;
+        now.follow(*obstacle, dt.max(f64::MIN_POSITIVE), FOLLOW_SLACK)?;
         Some(Self {
             from: carrier.point,
             to: now.point,
@@ -61,4 +61,4 @@ impl Carry {
 
 /// Largest distance between a stored material point and the obstacle's report of its previous position, metres; see
 /// [`Attachment::follow`]. A larger distance ends the hold.
-pub(crate) const SLACK: f64 = 0.05;
+pub(crate) const FOLLOW_SLACK: f64 = 0.05;

@@ -29,7 +29,7 @@ impl Context<'_> {
 
     /// Size of the body relative to the one for which this crate's lengths are given, by the legs' lengths.
     pub(crate) fn size(&self) -> f64 {
-        self.figure.leg_length() / super::walk::LEG
+        self.figure.leg_length() / super::walk::REFERENCE_LEG_LENGTH
     }
 
     /// The place of a hand or foot in the clips' pose, in world space.

@@ -9,33 +9,33 @@ use super::limb::Swing;
 use crate::figure::Place;
 
 /// Largest depth inside an obstacle from which a hand or foot is led out, metres.
-const THROUGH: f64 = 0.15;
+const MAX_DETOUR_DEPTH: f64 = 0.15;
 
 /// Speed at which a detour changes beyond the rate at which the point sinks in, metres a second. It limits detours for
 /// paths that begin deep inside an obstacle or lead through one.
-const CHANGES: f64 = 4.0;
+const DETOUR_CHANGE_SPEED: f64 = 4.0;
 
 /// Last share of a step, over which the detour fades out.
-const LANDS: f64 = 0.2;
+const FADE_OUT_SHARE: f64 = 0.2;
 
 /// Displacement of the middle of a step's path away from the skin, metres.
-const LIFT: f64 = 0.05;
+const PATH_LIFT: f64 = 0.05;
 
 /// Distance from the middle of a step's path within which obstacles are looked for, metres.
-const AROUND: f64 = 0.4;
+const PATH_SEARCH_RADIUS: f64 = 0.4;
 
 /// Displacement of the middle of a step's path, away from the skin and out of an obstacle that the path would cross.
 pub(crate) fn bow(context: &Context<'_>, from: &Place, to: &Hold) -> DVec3 {
     let size = context.size();
-    let bow = to.normal() * (LIFT * size);
+    let bow = to.normal() * (PATH_LIFT * size);
     let middle = from.point(to.touching).midpoint(to.point()) + bow;
-    let Some(near) = context.around.nearest(middle, AROUND * size) else {
+    let Some(near) = context.around.nearest(middle, PATH_SEARCH_RADIUS * size) else {
         return bow;
     };
     let normal = near.contact.normal;
     let depth = (near.contact.point - middle).dot(normal);
     if depth > 0.0 {
-        bow + normal * (depth + LIFT * size)
+        bow + normal * (depth + PATH_LIFT * size)
     } else {
         bow
     }
@@ -55,10 +55,10 @@ impl Detour {
     }
 
     /// Leads a point inside an obstacle back to the surface. The displacement grows as fast as the point sinks in. It
-    /// changes by [`CHANGES`] if the point is deep already or comes out on another side.
+    /// changes by [`DETOUR_CHANGE_SPEED`] if the point is deep already or comes out on another side.
     pub(crate) fn step(&mut self, context: &Context<'_>, touching: DVec3) {
         let size = context.size();
-        let near = context.around.nearest(touching, THROUGH * size);
+        let near = context.around.nearest(touching, MAX_DETOUR_DEPTH * size);
         let depth = near.map(|found| {
             let normal = found.contact.normal;
             ((found.contact.point - touching).dot(normal), normal)
@@ -68,7 +68,7 @@ impl Detour {
             (Some(before), Some((depth, _))) => (depth.max(0.0) - before.max(0.0)).abs(),
             _ => 0.0,
         };
-        let most = sinks + CHANGES * size * context.dt;
+        let most = sinks + DETOUR_CHANGE_SPEED * size * context.dt;
         self.way += (wanted - self.way).clamp_length_max(most);
         self.depth = depth.map(|(depth, _)| depth);
     }
@@ -85,7 +85,7 @@ impl Detour {
     pub(crate) fn lead(&self, swing: &Swing) -> Place {
         let mut place = swing.place();
         let left = 1.0 - (swing.time / swing.duration).clamp(0.0, 1.0);
-        place.position += self.way * (left / LANDS).min(1.0);
+        place.position += self.way * (left / FADE_OUT_SHARE).min(1.0);
         place
     }
 }

@@ -8,7 +8,7 @@ use super::context::Context;
 use super::event::Plant;
 use super::hold::Hold;
 use super::limb::{Doing, LimbMemory};
-use super::reach::LEG;
+use super::reach::LEG_REACH;
 use super::root::Root;
 use super::stance::arc;
 use super::walk::Walk;
@@ -17,60 +17,61 @@ use crate::{Extremity, Side};
 
 /// Distance, metres, and angle, radians, from its place in the clips' pose at which a foot leaves the ground (Unreal's
 /// foot placement: 0.35 m, 45°).
-const UNPLANT: (f64, f64) = (0.35, 0.785);
+const UNPLANT_LIMITS: (f64, f64) = (0.35, 0.785);
 
 /// The same distance and angle for a standing body with the other foot on the ground.
-const REPLANT: (f64, f64) = (0.13, 0.4);
+const REPLANT_LIMITS: (f64, f64) = (0.13, 0.4);
 
 /// Height up to which a foot is planted without a step down, metres.
-const LOW: f64 = 0.006;
+const PLANT_HEIGHT: f64 = 0.006;
 
 /// Duration of a step to another place that the gait does not ask for, seconds.
-const STEP: f64 = 0.26;
+const CORRECTIVE_STEP_TIME: f64 = 0.26;
 
-/// Duration of a step straight down from [`HIGH`], seconds. Lower steps take proportionally less, at least a fifth.
-const DOWN: f64 = 0.12;
+/// Duration of a step straight down from [`STEP_DOWN_HEIGHT`], seconds. Lower steps take proportionally less, at least
+/// a fifth.
+const STEP_DOWN_TIME: f64 = 0.12;
 
-/// Height from which a step straight down takes all of [`DOWN`], metres.
-const HIGH: f64 = 0.08;
+/// Height from which a step straight down takes all of [`STEP_DOWN_TIME`], metres.
+const STEP_DOWN_HEIGHT: f64 = 0.08;
 
 /// Height of the path of a step to another place, metres.
-const LIFT: f64 = 0.06;
+const STEP_LIFT: f64 = 0.06;
 
 /// Half time of the spring on the ground's height below a foot in the air, seconds: Unreal's floor spring.
-const FLOOR: f64 = 0.05;
+const FLOOR_HALF_TIME: f64 = 0.05;
 
 /// Cosine of the steepest slope that a foot stands on: 50°.
-const STEEP: f64 = 0.64;
+const STEEPEST_FOOT_COSINE: f64 = 0.64;
 
 /// Cosines of the slopes at which feet stop rolling, 33°, and up to which they roll as in the clip, 8°. Between them
 /// the roll fades.
-const ROLLS: [f64; 2] = [0.84, 0.99];
+const FOOT_ROLL_COSINES: [f64; 2] = [0.84, 0.99];
 
 /// Largest angle by which a heel is lifted for a leg that is too short, radians.
 const HEEL_UP: f64 = 0.9;
 
 /// Number of bisections that find the angle of a lifted heel.
-const HALVINGS: usize = 12;
+const HEEL_BISECTIONS: usize = 12;
 
 /// Height of the clip's sole up to which a foot of a standing body is on the ground, metres.
 const DOWN_TO: f64 = 0.15;
 
 /// Least cosine of the tilt of the clip's foot at which a foot of a standing body is on the ground.
-const LEVEL: f64 = 0.8;
+const LEVEL_FOOT_COSINE: f64 = 0.8;
 
 /// Largest speed at which a heel is lifted or lowered, radians a second.
 const HEEL_SPEED: f64 = 8.0;
 
 /// Distance of the ankle from the hip, with the heel lifted, beyond which a foot leaves its place early, as a share of
 /// the leg's length.
-const EARLY: f64 = 1.0;
+const EARLY_LIFT_DISTANCE: f64 = 1.0;
 
 /// Height above the model's origin from which the ground below a foot is looked for, metres.
-const ABOVE: f64 = 0.6;
+const RAY_START_HEIGHT: f64 = 0.6;
 
 /// Depth below the model's origin down to which the ground below a foot is looked for, metres.
-const BELOW: f64 = 0.9;
+const RAY_END_DEPTH: f64 = 0.9;
 
 pub(crate) fn step(
     context: &Context<'_>,
@@ -162,12 +163,15 @@ impl Foot<'_, '_> {
                 let (distance, angle) = self.away(&hold);
                 let size = self.context.size();
                 let is_far = |(far, turned): (f64, f64)| distance > far * size || angle > turned;
-                if is_far(UNPLANT) || !self.walk.is_going() && other_stands && is_far(REPLANT) {
+                if is_far(UNPLANT_LIMITS)
+                    || !self.walk.is_going() && other_stands && is_far(REPLANT_LIMITS)
+                {
                     match self.find(&self.clip) {
-                        Some(hold) => {
-                            self.memory
-                                .swing_to(hold, STEP, hold.normal() * (LIFT * size))
-                        }
+                        Some(hold) => self.memory.swing_to(
+                            hold,
+                            CORRECTIVE_STEP_TIME,
+                            hold.normal() * (STEP_LIFT * size),
+                        ),
                         None => self.lift(),
                     }
                 }
@@ -196,7 +200,7 @@ impl Foot<'_, '_> {
     fn is_down(&self) -> bool {
         let clip = &self.context.clip[Extremity::Foot(self.side).index()];
         let height = clip.point(self.shape.contact).y / self.context.size();
-        self.walk.is_going() || height < DOWN_TO && (clip.rotation * DVec3::Y).y > LEVEL
+        self.walk.is_going() || height < DOWN_TO && (clip.rotation * DVec3::Y).y > LEVEL_FOOT_COSINE
     }
 
     /// Moves the hold with its material; lifts the foot if the material is gone.
@@ -227,12 +231,12 @@ impl Foot<'_, '_> {
         {
             let at =
                 |heel: f64| on_hold(self.context, &self.memory, hold, extremity, heel).position;
-            let reach = LEG * self.shape.length;
+            let reach = LEG_REACH * self.shape.length;
             let is_behind = (at(0.0) - self.hip).dot(self.context.motion) < 0.0;
-            let is_level = hold.normal().dot(self.context.up) > ROLLS[1];
+            let is_level = hold.normal().dot(self.context.up) > FOOT_ROLL_COSINES[1];
             if (is_behind || is_level) && at(0.0).distance(self.hip) > reach {
                 let (mut low, mut high) = (0.0, HEEL_UP);
-                for _ in 0..HALVINGS {
+                for _ in 0..HEEL_BISECTIONS {
                     let middle = 0.5 * (low + high);
                     if at(middle).distance(self.hip) > reach {
                         low = middle;
@@ -275,7 +279,8 @@ impl Foot<'_, '_> {
     /// True if the foot is behind the hip and out of the leg's reach even on its toes.
     fn is_left_behind(&self, hold: &Hold) -> bool {
         let toes = rolled(hold, self.shape, -HEEL_UP).position - self.hip;
-        toes.dot(self.context.motion) < 0.0 && toes.length() > EARLY * self.shape.length
+        toes.dot(self.context.motion) < 0.0
+            && toes.length() > EARLY_LIFT_DISTANCE * self.shape.length
     }
 
     /// Adapts the foot's height to the ground below it or at its next landing, whichever is higher, so that it passes
@@ -304,8 +309,12 @@ impl Foot<'_, '_> {
             self.memory.ground = Spring::at(height);
             self.memory.tilt = Spring::at(normal);
         } else {
-            self.memory.ground.step(height, FLOOR, self.context.dt);
-            self.memory.tilt.step(normal, FLOOR, self.context.dt);
+            self.memory
+                .ground
+                .step(height, FLOOR_HALF_TIME, self.context.dt);
+            self.memory
+                .tilt
+                .step(normal, FLOOR_HALF_TIME, self.context.dt);
         }
     }
 
@@ -313,12 +322,12 @@ impl Foot<'_, '_> {
         let up = self.context.up;
         let size = self.context.size();
         let level = point - up * (point - self.stand.position).dot(up);
-        let from = level + up * (ABOVE * size);
-        let found = self
-            .context
-            .around
-            .cast(from, -up, (ABOVE + BELOW) * size)?;
-        (found.contact.normal.dot(up) > STEEP).then_some(found)
+        let from = level + up * (RAY_START_HEIGHT * size);
+        let found =
+            self.context
+                .around
+                .cast(from, -up, (RAY_START_HEIGHT + RAY_END_DEPTH) * size)?;
+        (found.contact.normal.dot(up) > STEEPEST_FOOT_COSINE).then_some(found)
     }
 
     /// A hold on the ground below the heel or the ball of a place, whichever comes down first.
@@ -343,7 +352,7 @@ impl Foot<'_, '_> {
         let height = (shown.point(hold.touching) - hold.point()).dot(self.context.up);
         if self.context.is_fresh {
             self.memory.doing = Doing::Planted(hold);
-        } else if height < LOW * size {
+        } else if height < PLANT_HEIGHT * size {
             let pitch = pitch(self.context, Extremity::Foot(self.side), &hold);
             let now = rolled(&hold, self.shape, pitch);
             // The foot is straight above its hold, so only its height and its rotation differ.
@@ -355,9 +364,10 @@ impl Foot<'_, '_> {
             self.memory.heel = 0.0;
             self.memory.stop(&raised, &now);
             self.tell(&hold, plants);
-        } else if height < BELOW * size {
-            let share = (height / (HIGH * size)).clamp(0.2, 1.0);
-            self.memory.swing_to(hold, DOWN * share, DVec3::ZERO);
+        } else if height < RAY_END_DEPTH * size {
+            let share = (height / (STEP_DOWN_HEIGHT * size)).clamp(0.2, 1.0);
+            self.memory
+                .swing_to(hold, STEP_DOWN_TIME * share, DVec3::ZERO);
         }
     }
 
@@ -392,7 +402,7 @@ fn over_ground(
 fn pitch(context: &Context<'_>, extremity: Extremity, hold: &Hold) -> f64 {
     let clip = &context.clip[extremity.index()];
     let pitch = libm::asin((clip.rotation * DVec3::X).y.clamp(-1.0, 1.0));
-    let [steep, level] = ROLLS;
+    let [steep, level] = FOOT_ROLL_COSINES;
     let upright = hold.normal().dot(context.up);
     pitch * ((upright - steep) / (level - steep)).clamp(0.0, 1.0)
 }

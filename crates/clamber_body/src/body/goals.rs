@@ -9,34 +9,34 @@ use super::stance::Stance;
 use crate::Extremity;
 
 /// Distance outside a wall's goal at which the ray for a hold begins, metres.
-const BEFORE: f64 = 0.35;
+const WALL_RAY_START: f64 = 0.35;
 
 /// Distance behind a wall's goal at which the ray for a hold ends, metres.
-const BEHIND: f64 = 0.5;
+const WALL_RAY_END: f64 = 0.5;
 
 /// Distance from a wall's goal within which a hold is looked for if the ray finds none, metres. Half of it at an edge.
-const AROUND: f64 = 0.4;
+const WALL_SEARCH_RADIUS: f64 = 0.4;
 
 /// Height above a ledge's edge at which the ray for a hold begins, metres.
-const OVER: f64 = 0.3;
+const LEDGE_RAY_START: f64 = 0.3;
 
 /// Depth below a ledge's edge at which the ray for a hold ends, metres.
-const UNDER: f64 = 0.4;
+const LEDGE_RAY_END: f64 = 0.4;
 
 /// Distance from an overhead goal within which a hold is looked for, metres.
-const NEAR: f64 = 0.35;
+const OVERHEAD_SEARCH_RADIUS: f64 = 0.35;
 
 /// Least cosine between the normal at a ray's hit and the goal's outward direction.
-const FACES: f64 = 0.1;
+const FACING_COSINE: f64 = 0.1;
 
 /// Tangent of the angle by which fingers lean towards the middle of the body.
-const INWARD: f64 = 0.18;
+const FINGER_INWARD_TANGENT: f64 = 0.18;
 
 /// Sine of the angle by which toes point up on a wall.
-const TOES_UP: f64 = 0.28;
+const TOES_UP_SINE: f64 = 0.28;
 
 /// Distance of the toes' tips ahead of the ankle, as a multiple of the ball's distance.
-const TIP: f64 = 1.3;
+const TOE_TIP_RATIO: f64 = 1.3;
 
 /// The desired place of a hand or foot.
 #[derive(Clone, Copy, Debug)]
@@ -148,12 +148,20 @@ impl Goal {
         let size = context.size();
         let around = &context.around;
         let (before, length, radius) = match self.kind {
-            Kind::Wall => (BEFORE * size, (BEFORE + BEHIND) * size, AROUND * size),
-            Kind::Edge => (OVER * size, (OVER + UNDER) * size, 0.5 * AROUND * size),
-            Kind::Overhead => (0.0, 0.0, NEAR * size),
+            Kind::Wall => (
+                WALL_RAY_START * size,
+                (WALL_RAY_START + WALL_RAY_END) * size,
+                WALL_SEARCH_RADIUS * size,
+            ),
+            Kind::Edge => (
+                LEDGE_RAY_START * size,
+                (LEDGE_RAY_START + LEDGE_RAY_END) * size,
+                0.5 * WALL_SEARCH_RADIUS * size,
+            ),
+            Kind::Overhead => (0.0, 0.0, OVERHEAD_SEARCH_RADIUS * size),
         };
         let from = self.point + self.out * before;
-        let faces = |normal: DVec3| normal.dot(self.out) > FACES;
+        let faces = |normal: DVec3| normal.dot(self.out) > FACING_COSINE;
         let ahead = if self.kind == Kind::Overhead {
             None
         } else {
@@ -186,12 +194,17 @@ impl Goal {
         let (along, outward, touching) = if extremity.is_hand() {
             let along = match self.kind {
                 Kind::Edge => self.ahead,
-                _ => self.above - self.aside * INWARD,
+                _ => self.above - self.aside * FINGER_INWARD_TANGENT,
             };
             (along, normal, shape.contact)
         } else {
-            let into = -normal * (1.0 - TOES_UP * TOES_UP).sqrt() + self.above * TOES_UP;
-            let tip = DVec3::new(shape.ball.x * TIP, 0.6 * shape.ball.y, shape.ball.z);
+            let into =
+                -normal * (1.0 - TOES_UP_SINE * TOES_UP_SINE).sqrt() + self.above * TOES_UP_SINE;
+            let tip = DVec3::new(
+                shape.ball.x * TOE_TIP_RATIO,
+                0.6 * shape.ball.y,
+                shape.ball.z,
+            );
             (into, self.above, tip)
         };
         Hold::new(found, along, outward, touching)

@@ -7,28 +7,28 @@ use super::hold::Surroundings;
 
 /// Height above the body's lowest point at which rays to the ground begin, as a share of the leg's length (Unreal's
 /// foot placement: 0.75 m).
-const ABOVE: f64 = 0.9;
+const RAY_START_HEIGHT: f64 = 0.9;
 
 /// Depth below the body's lowest point at which rays to the ground end, as a share of the leg's length (Unreal's foot
 /// placement: 1 m).
-const BELOW: f64 = 1.2;
+const RAY_END_DEPTH: f64 = 1.2;
 
 /// Half of the distance over which the height is averaged, as a share of the leg's length.
 const HALF_WINDOW: f64 = 0.36;
 
 /// Number of rays to the ground ahead, and as many behind.
-const POINTS: i32 = 3;
+const RAYS_AHEAD: i32 = 3;
 
 /// Difference in height from the ground in the middle up to which a ray's hit counts as ground, as a share of the leg's
 /// length.
-const STEP: f64 = 0.3;
+const MAX_STEP_HEIGHT: f64 = 0.3;
 
 /// Growth of that difference with the ray's distance from the middle, metres per metre.
-const SLOPE: f64 = 1.4;
+const STEP_HEIGHT_PER_DISTANCE: f64 = 1.4;
 
 /// Half time of the shown height's way to the ground's height, seconds: Unreal's pelvis spring. On slopes the height
 /// does not lag, since it also moves at the slope's rate.
-const SETTLE: f64 = 0.09;
+const HEIGHT_HALF_TIME: f64 = 0.09;
 
 /// The ground below the feet.
 #[derive(Clone, Copy, Debug, Default)]
@@ -54,10 +54,12 @@ pub(crate) struct Look<'a> {
 
 impl Look<'_> {
     fn height_at(&self, away: DVec3) -> Option<f64> {
-        let from = self.bottom + away + self.up * (ABOVE * self.leg);
-        let found = self
-            .around
-            .cast(from, -self.up, (ABOVE + BELOW) * self.leg)?;
+        let from = self.bottom + away + self.up * (RAY_START_HEIGHT * self.leg);
+        let found = self.around.cast(
+            from,
+            -self.up,
+            (RAY_START_HEIGHT + RAY_END_DEPTH) * self.leg,
+        )?;
         Some(found.contact.point.dot(self.up))
     }
 
@@ -76,19 +78,19 @@ impl Look<'_> {
         let (mut sum, mut ends) = (middle, [middle; 2]);
         for side in [-1, 1] {
             let mut last = middle;
-            for point in 1..=POINTS {
-                let far = HALF_WINDOW * self.leg * f64::from(point) / f64::from(POINTS);
+            for point in 1..=RAYS_AHEAD {
+                let far = HALF_WINDOW * self.leg * f64::from(point) / f64::from(RAYS_AHEAD);
                 let height = self.height_at(ahead * (far * f64::from(side)));
                 // Walls, and holes beside the path, do not count as ground.
-                let most = STEP * self.leg + SLOPE * far;
+                let most = MAX_STEP_HEIGHT * self.leg + STEP_HEIGHT_PER_DISTANCE * far;
                 let height = height.filter(|height| (height - middle).abs() < most);
                 last = height.unwrap_or(last);
-                let share = if point == POINTS { 0.5 } else { 1.0 };
+                let share = if point == RAYS_AHEAD { 0.5 } else { 1.0 };
                 sum += last * share;
             }
             ends[usize::from(side > 0)] = last;
         }
-        let mean = sum / f64::from(2 * POINTS);
+        let mean = sum / f64::from(2 * RAYS_AHEAD);
         let slope = (ends[1] - ends[0]) / (2.0 * HALF_WINDOW * self.leg);
         (middle + (mean - middle) * walks, slope * speed * walks)
     }
@@ -110,7 +112,7 @@ impl Ground {
         let (found, rate) = look.find();
         let expected = self.found + carried + 0.5 * (self.rate + rate) * dt;
         self.error.value += expected - found;
-        self.error.step(0.0, SETTLE, dt);
+        self.error.step(0.0, HEIGHT_HALF_TIME, dt);
         self.found = found;
         self.rate = rate;
     }

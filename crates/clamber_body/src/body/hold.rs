@@ -3,7 +3,7 @@
 use clamber_world::{Attachment, Contact, Obstacle, ObstacleId, SurfaceTag};
 use glam::{DQuat, DVec3};
 
-use super::carry::SLACK;
+use super::carry::FOLLOW_SLACK;
 use crate::figure::{Place, turned};
 
 /// The obstacles that a body can touch.
@@ -99,7 +99,8 @@ impl Hold {
     pub(crate) fn follow(&mut self, around: &Surroundings<'_>) -> bool {
         let dt = around.dt.max(f64::MIN_POSITIVE);
         let obstacle = around.get(self.attachment.obstacle);
-        obstacle.is_some_and(|obstacle| self.attachment.follow(obstacle, dt, SLACK).is_some())
+        obstacle
+            .is_some_and(|obstacle| self.attachment.follow(obstacle, dt, FOLLOW_SLACK).is_some())
     }
 
     pub(crate) fn point(&self) -> DVec3 {

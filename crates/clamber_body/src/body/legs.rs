@@ -5,19 +5,19 @@ use glam::{DQuat, DVec3};
 use super::stance::arc;
 
 /// Length of the pendulum, as a share of the leg's length.
-const LENGTH: f64 = 0.6;
+const PENDULUM_LENGTH: f64 = 0.6;
 
 /// Rate at which the swing decays, per second.
-const DAMPING: f64 = 2.5;
+const SWING_DAMPING: f64 = 2.5;
 
 /// Longest step of the integrator, seconds.
-const STEP: f64 = 1.0 / 240.0;
+const INTEGRATION_STEP: f64 = 1.0 / 240.0;
 
 /// Most steps of the integrator in one frame. Longer frames take longer steps.
 const MOST_STEPS: f64 = 64.0;
 
 /// Cosine of the largest angle between the legs and the trunk's axis: 60°.
-const LIMIT: f64 = 0.5;
+const MAX_SWING_COSINE: f64 = 0.5;
 
 /// The end of the pendulum, its velocity, and the hips from which it hangs, in world space.
 #[derive(Clone, Copy, Debug)]
@@ -30,7 +30,7 @@ pub(crate) struct Legs {
 impl Legs {
     pub(crate) fn at_rest(hips: DVec3, down: DVec3, velocity: DVec3, leg: f64) -> Self {
         Self {
-            end: hips + down * (LENGTH * leg),
+            end: hips + down * (PENDULUM_LENGTH * leg),
             velocity,
             hips,
         }
@@ -38,12 +38,12 @@ impl Legs {
 
     /// Lets the legs swing while the hips move to `hips`. `down` points along the trunk, away from the head.
     pub(crate) fn step(&mut self, hips: DVec3, down: DVec3, gravity: DVec3, leg: f64, dt: f64) {
-        let length = LENGTH * leg;
-        let steps = (dt / STEP).ceil().clamp(1.0, MOST_STEPS);
+        let length = PENDULUM_LENGTH * leg;
+        let steps = (dt / INTEGRATION_STEP).ceil().clamp(1.0, MOST_STEPS);
         let h = dt / steps;
         if dt > 0.0 {
             let hips_velocity = (hips - self.hips) / dt;
-            let kept = libm::exp(-DAMPING * h);
+            let kept = libm::exp(-SWING_DAMPING * h);
             for step in 1..=steps as u32 {
                 let pivot = self.hips.lerp(hips, f64::from(step) / steps);
                 let was = self.end;
@@ -65,9 +65,9 @@ impl Legs {
 
 fn limited(arm: DVec3, down: DVec3) -> DVec3 {
     let along = arm.dot(down);
-    if along >= LIMIT {
+    if along >= MAX_SWING_COSINE {
         return arm;
     }
     let across = (arm - down * along).normalize_or(down.any_orthonormal_vector());
-    down * LIMIT + across * (1.0 - LIMIT * LIMIT).sqrt()
+    down * MAX_SWING_COSINE + across * (1.0 - MAX_SWING_COSINE * MAX_SWING_COSINE).sqrt()
 }

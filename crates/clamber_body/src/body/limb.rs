@@ -14,13 +14,13 @@ use crate::figure::Place;
 const LET_GO: f64 = 0.07;
 
 /// Speed to which a hand's or foot's velocity is limited when a step begins, metres a second.
-const FASTEST: f64 = 6.0;
+const MAX_START_SPEED: f64 = 6.0;
 
 /// Limit of the remembered angular velocity of a hand or foot, radians a second.
-const SPINS: f64 = 20.0;
+const MAX_SPIN: f64 = 20.0;
 
 /// Time constant with which the remembered speed of a hand or foot decays, seconds.
-const PACE: f64 = 0.06;
+const SPEED_DECAY_TIME: f64 = 0.06;
 
 /// The current action of a hand or foot.
 #[derive(Clone, Copy, Debug, Default)]
@@ -77,7 +77,7 @@ pub(crate) struct LimbMemory {
     spin: DVec3,
     /// Velocity of the body, relative to the support.
     pub(crate) carried: DVec3,
-    /// Recent top speed, relative to the support, metres a second; it decays over [`PACE`].
+    /// Recent top speed, relative to the support, metres a second; it decays over [`SPEED_DECAY_TIME`].
     pub(crate) pace: f64,
     /// Displacement of the path around obstacles.
     pub(crate) detour: Detour,
@@ -164,7 +164,7 @@ impl LimbMemory {
         self.detour = Detour::default();
         self.doing = Doing::Swinging(Swing {
             from: self.shown,
-            velocity: self.velocity.clamp_length_max(FASTEST),
+            velocity: self.velocity.clamp_length_max(MAX_START_SPEED),
             to,
             // The last frame showed this place, so the step's time starts within this frame.
             time: self.late.min(self.frame),
@@ -238,8 +238,8 @@ impl LimbMemory {
         if dt > 0.0 {
             self.velocity = (place.position - self.shown.position) / dt;
             let turned = place.rotation * self.shown.rotation.conjugate();
-            self.spin = (rotation_vector(turned) / dt).clamp_length_max(SPINS);
-            self.pace = (self.pace * libm::exp(-dt / PACE)).max(self.velocity.length());
+            self.spin = (rotation_vector(turned) / dt).clamp_length_max(MAX_SPIN);
+            self.pace = (self.pace * libm::exp(-dt / SPEED_DECAY_TIME)).max(self.velocity.length());
         }
         self.shown = place;
     }

@@ -1,5 +1,4 @@
-use clamber_animation::ik::LookMemory;
-use clamber_animation::{RotationSpring, Spring};
+use clamber_animation::Spring;
 use clamber_surface::geometry::Similarity;
 use clamber_world::Attachment;
 use glam::DVec3;
@@ -10,15 +9,14 @@ use super::legs::Legs;
 use super::limb::LimbMemory;
 use super::root::Root;
 use super::stance::Stance;
+use super::update::{Displacement, Gaze, Turning};
 use super::walk::Walk;
 
 /// Everything that a body remembers from frame to frame, except its clips. Lengths are metres in world space. The
 /// memory moves with the climber's support, the carrier.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Memory {
-    pub(crate) carrier: Option<Attachment>,
-    /// The climber's position.
-    pub(crate) position: DVec3,
+    pub(crate) climber: ClimberMemory,
     pub(crate) stance: Stance,
     /// Seconds since the hands took hold.
     pub(crate) held: f64,
@@ -28,32 +26,32 @@ pub(crate) struct Memory {
     pub(crate) root: Root,
     /// Velocity of the shown place, relative to the carrier.
     pub(crate) velocity: DVec3,
-    /// Velocity of the carrier.
-    pub(crate) base: DVec3,
-    pub(crate) turn: RotationSpring,
-    /// Displacement of the model from its stance's own place; it decays.
-    pub(crate) offset: Spring<DVec3>,
-    /// Half time of `offset`, seconds.
-    pub(crate) offset_half: f64,
+    pub(crate) turning: Turning,
+    pub(crate) displacement: Displacement,
     pub(crate) ground: Ground,
     /// Depth of the pelvis below its height in the clips' pose, for the feet.
     pub(crate) drop: f64,
     /// Displacement of the body towards the holds of its hands and feet.
     pub(crate) pull: Spring<DVec3>,
-    /// Low-pass filtered level velocity. The body leans into the difference from the current one.
-    pub(crate) slow: Spring<DVec3>,
+    pub(crate) walk: Walk,
+    pub(crate) climb: Climb,
+    pub(crate) legs: Legs,
+    pub(crate) gaze: Gaze,
+    pub(crate) limbs: [LimbMemory; 4],
+    pub(crate) scale: f64,
+}
+
+/// The climber's place and motion.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ClimberMemory {
+    pub(crate) carrier: Option<Attachment>,
+    pub(crate) position: DVec3,
+    /// Velocity of the carrier.
+    pub(crate) base: DVec3,
     /// Velocity of the climber relative to the carrier; on a wall, its part along the skin.
     pub(crate) motion: DVec3,
     /// Velocity of the climber relative to the carrier, in all directions.
     pub(crate) full_motion: DVec3,
-    pub(crate) walk: Walk,
-    pub(crate) climb: Climb,
-    pub(crate) legs: Legs,
-    pub(crate) look: LookMemory,
-    pub(crate) look_weight: Spring<f64>,
-    pub(crate) look_at: DVec3,
-    pub(crate) limbs: [LimbMemory; 4],
-    pub(crate) scale: f64,
 }
 
 impl Memory {

@@ -52,7 +52,7 @@ pub struct Body {
 }
 
 /// Number of plants for which a new body reserves memory, so that steady frames do not allocate.
-const PLANTS: usize = 8;
+const RESERVED_PLANTS: usize = 8;
 
 impl Body {
     /// A body of a figure. It has no place until the first [`Body::update`].
@@ -61,7 +61,7 @@ impl Body {
             pose: figure.animations().rest().clone(),
             player: Player::new(),
             memory: None,
-            plants: Vec::with_capacity(PLANTS),
+            plants: Vec::with_capacity(RESERVED_PLANTS),
         }
     }
 

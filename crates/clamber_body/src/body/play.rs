@@ -10,7 +10,7 @@ use crate::figure::STRIDES;
 use crate::{BodyClip, Figure};
 
 /// Length of a fade between the body's own clips, seconds.
-const FADE: f64 = 0.22;
+const FADE_TIME: f64 = 0.22;
 
 /// Name of the marker at which a jump leaves the ground.
 const TAKE_OFF: &str = "take_off";
@@ -129,7 +129,7 @@ impl Player {
         self.gets_up &= matches!(base, Base::Once(BodyClip::GetUp));
         self.change_to(figure, base)?;
         self.animator
-            .set_scale(figure.leg_length() / super::walk::LEG)?;
+            .set_scale(figure.leg_length() / super::walk::REFERENCE_LEG_LENGTH)?;
         let rate = self.animator.rate();
         match base {
             Base::Walk => drive(self.animator.layers_mut(), figure, walk, rate, dt)?,
@@ -176,7 +176,7 @@ impl Player {
         if self.base == Some(base) {
             return Ok(());
         }
-        let fade = if self.base.is_some() { FADE } else { 0.0 };
+        let fade = if self.base.is_some() { FADE_TIME } else { 0.0 };
         let clip = |clip: BodyClip| figure.clips().get(clip);
         let keeps = usize::from(self.act.is_some());
         let start = start_of(figure, base);

@@ -26,10 +26,10 @@ pub(crate) enum Stance {
 }
 
 /// Height of the ball's centre above the hips while hanging, as a share of the leg's length.
-const BELOW: f64 = 0.13;
+const HANGING_HIPS_DEPTH: f64 = 0.13;
 
 /// Height of the ball's centre above the hips on a wall, as a share of the leg's length.
-const WAIST: f64 = 0.16;
+const WAIST_HEIGHT: f64 = 0.16;
 
 impl Stance {
     pub(crate) fn of(state: &ClimberState) -> Self {
@@ -97,11 +97,11 @@ impl Stance {
                 let away = (state.position - support.attachment.point).dot(normal);
                 // The waist is at the ball's centre, so that the body turns around corners without a jump.
                 let far = postures.wall[0].dot(ahead) - away;
-                let waist = DVec3::Y * (postures.wall_hips.y + WAIST * leg) + ahead * far;
+                let waist = DVec3::Y * (postures.wall_hips.y + WAIST_HEIGHT * leg) + ahead * far;
                 Root::with_point_at(waist, state.position, rotation)
             }
             (Self::Hang, Some(_)) => {
-                let hips = state.position - above * (BELOW * leg);
+                let hips = state.position - above * (HANGING_HIPS_DEPTH * leg);
                 Root::with_point_at(postures.hang_hips, hips, rotation)
             }
             (Self::Ledge, Some(support)) => {
@@ -124,7 +124,7 @@ impl Stance {
                 let rises = ledge.drop + config.body.radius + config.body.margin;
                 let whole = stands - hangs;
                 let level = whole - up * whole.dot(up);
-                let near = NEAR * config.body.radius;
+                let near = LEDGE_FOLLOW_DISTANCE * config.body.radius;
                 let high = gone(way.dot(up), [rises, whole.dot(up)], near);
                 let deep = gone(way.dot(state.heading), [out, level.length()], near);
                 let inward = level.normalize_or(state.heading);
@@ -142,7 +142,7 @@ impl Stance {
 
 /// Distance from its place below a ledge up to which the model moves exactly as the ball, as a share of the ball's
 /// radius. Within it, the model does not move when the hands change to a hold at another height.
-const NEAR: f64 = 0.5;
+const LEDGE_FOLLOW_DISTANCE: f64 = 0.5;
 
 /// Displacement of the model when the ball has moved by `way`: the same up to `near`, then linearly growing to `whole`,
 /// where the ball has moved by `ball`.

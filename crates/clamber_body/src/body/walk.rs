@@ -7,18 +7,18 @@ use crate::Figure;
 use crate::figure::Stride;
 
 /// Half time of a change between clips, seconds.
-const MIX: f64 = 0.08;
+const MIX_HALF_TIME: f64 = 0.08;
 
 /// Share of the walk clip's speed from which the walk is shown at full weight. Below it, steps get shorter.
-const FULL: f64 = 0.7;
+const FULL_WALK_SHARE: f64 = 0.7;
 
-/// Factor in the limit `1 / (1 + SHORTER * slope)` of the walk's weight and of its steps; the slope is the rise per
-/// metre.
-const SHORTER: f64 = 1.8;
+/// Factor in the limit `1 / (1 + SLOPE_SHORTENING * slope)` of the walk's weight and of its steps; the slope is the
+/// rise per metre.
+const SLOPE_SHORTENING: f64 = 1.8;
 
 /// Length of the leg for which the clips are made, metres. Speeds change with the square root of the leg's length
 /// (Froude).
-pub(crate) const LEG: f64 = 0.831;
+pub(crate) const REFERENCE_LEG_LENGTH: f64 = 0.831;
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Walk {
@@ -56,10 +56,10 @@ impl Walk {
         dt: f64,
     ) {
         let speed = velocity.length();
-        let size = (LEG / figure.leg_length()).sqrt();
+        let size = (REFERENCE_LEG_LENGTH / figure.leg_length()).sqrt();
         let strides = figure.gait().strides();
         let [walk, run] = [0, 1].map(|clip| strides[clip].speed * size);
-        let goes = (speed / (FULL * walk)).min(1.0);
+        let goes = (speed / (FULL_WALK_SHARE * walk)).min(1.0);
         if speed > 1e-3 {
             let way = velocity / speed;
             let [x, z] = [way.dot(left), way.dot(ahead)];
@@ -75,13 +75,13 @@ impl Walk {
             ];
             let sum: f64 = wanted.iter().sum();
             for (share, wanted) in self.shares.iter_mut().zip(wanted) {
-                *share = damp(*share, wanted / sum.max(1e-9), MIX, dt);
+                *share = damp(*share, wanted / sum.max(1e-9), MIX_HALF_TIME, dt);
             }
         }
         // Steps are shorter on slopes and stairs, so that legs reach.
-        let most = 1.0 / (1.0 + SHORTER * slope.abs());
+        let most = 1.0 / (1.0 + SLOPE_SHORTENING * slope.abs());
         let wanted = goes.sqrt().min(most);
-        self.going = damp(self.going, wanted, MIX, dt);
+        self.going = damp(self.going, wanted, MIX_HALF_TIME, dt);
         self.stride = figure.gait().mixed(&self.shares);
         // Steps are shorter where only a part of the walk is shown.
         let length = self.stride.length * wanted.max(0.3);

@@ -17,23 +17,23 @@ pub(crate) const STRIDES: [BodyClip; 5] = [
 ];
 
 /// Number of phases at which a clip is sampled. Phases of contact are exact to one sample.
-const SAMPLES: usize = 96;
+const PHASE_SAMPLES: usize = 96;
 
 /// Height of a sole above its lowest point, as a share of the leg's length, below which a foot can be on the ground.
-const LOW: f64 = 0.04;
+const CONTACT_HEIGHT: f64 = 0.04;
 
 /// Level speed of a sole over ground, as a share of the gait's speed, below which a foot can be on the ground. Unreal's
 /// foot placement has 0.6 m/s for a walk.
-const SLOW: f64 = 0.45;
+const CONTACT_SPEED: f64 = 0.45;
 
 /// Length of a cycle, and of the way in a second, as a share of the leg's length, for a clip without a ground speed.
-const STRIDE: f64 = 1.6;
+const DEFAULT_STRIDE: f64 = 1.6;
 
 /// Phases at which the left and the right foot come down, as shares of a cycle, where the clip does not tell.
-const DOWN: [f64; 2] = [0.0, 0.5];
+const DEFAULT_DOWN_PHASES: [f64; 2] = [0.0, 0.5];
 
 /// Phases at which the left and the right foot leave the ground, as shares of a cycle, where the clip does not tell.
-const UP: [f64; 2] = [0.6, 0.1];
+const DEFAULT_UP_PHASES: [f64; 2] = [0.6, 0.1];
 
 /// One cycle of a gait, in which each foot steps once. Phases are shares of the cycle; the left foot comes down at
 /// phase 0.
@@ -73,12 +73,12 @@ impl Gait {
         for (clip, way) in STRIDES.into_iter().zip(ways) {
             let clip = set.clip(clips.get(clip))?;
             let speed = clip.ground_speed().map(|speed| speed * scale);
-            let mut soles = [[DVec3::ZERO; SAMPLES]; 2];
-            let mut heights = [[0.0; SAMPLES]; 2];
+            let mut soles = [[DVec3::ZERO; PHASE_SAMPLES]; 2];
+            let mut heights = [[0.0; PHASE_SAMPLES]; 2];
             let mut pose = Pose::default();
-            for index in 0..SAMPLES {
+            for index in 0..PHASE_SAMPLES {
                 pose.transforms.clone_from(&set.rest().transforms);
-                let time = clip.duration() * index as f64 / SAMPLES as f64;
+                let time = clip.duration() * index as f64 / PHASE_SAMPLES as f64;
                 clip.sample_into(time, Playback::Loop, &mut pose)?;
                 for side in Side::BOTH {
                     let shape = &limbs[Extremity::Foot(side).index()];
@@ -145,36 +145,36 @@ impl Stride {
 }
 
 fn measure(
-    soles: &[[DVec3; SAMPLES]; 2],
-    heights: &[[f64; SAMPLES]; 2],
+    soles: &[[DVec3; PHASE_SAMPLES]; 2],
+    heights: &[[f64; PHASE_SAMPLES]; 2],
     way: DVec3,
     duration: f64,
     speed: Option<f64>,
     leg: f64,
 ) -> Stride {
     let mut stride = Stride {
-        length: speed.map_or(STRIDE * leg, |speed| speed * duration),
-        speed: speed.unwrap_or(STRIDE * leg),
-        down: DOWN,
-        up: UP,
+        length: speed.map_or(DEFAULT_STRIDE * leg, |speed| speed * duration),
+        speed: speed.unwrap_or(DEFAULT_STRIDE * leg),
+        down: DEFAULT_DOWN_PHASES,
+        up: DEFAULT_UP_PHASES,
         landing: [0, 1].map(|side| soles[side][0]),
         start: 0.0,
     };
     let Some(speed) = speed.filter(|speed| *speed > 0.0 && duration > 0.0) else {
         return stride;
     };
-    let step = duration / SAMPLES as f64;
+    let step = duration / PHASE_SAMPLES as f64;
     for side in 0..2 {
         let floor = heights[side].iter().copied().fold(f64::INFINITY, f64::min);
-        let stands: [bool; SAMPLES] = core::array::from_fn(|index| {
-            let moved = soles[side][(index + 1) % SAMPLES] - soles[side][index];
+        let stands: [bool; PHASE_SAMPLES] = core::array::from_fn(|index| {
+            let moved = soles[side][(index + 1) % PHASE_SAMPLES] - soles[side][index];
             let over_ground = moved / step + way * speed;
             let level = DVec3::new(over_ground.x, 0.0, over_ground.z).length();
-            heights[side][index] - floor < LOW * leg && level < SLOW * speed
+            heights[side][index] - floor < CONTACT_HEIGHT * leg && level < CONTACT_SPEED * speed
         });
         if let Some((first, count)) = longest(&stands) {
-            stride.down[side] = first as f64 / SAMPLES as f64;
-            stride.up[side] = ((first + count) % SAMPLES) as f64 / SAMPLES as f64;
+            stride.down[side] = first as f64 / PHASE_SAMPLES as f64;
+            stride.up[side] = ((first + count) % PHASE_SAMPLES) as f64 / PHASE_SAMPLES as f64;
             stride.landing[side] = soles[side][first];
         }
     }
@@ -186,14 +186,15 @@ fn measure(
 }
 
 /// The first index and the length of the longest run of `true` in a circle. `None` if all values are equal.
-fn longest(circle: &[bool; SAMPLES]) -> Option<(usize, usize)> {
-    let starts = (0..SAMPLES).filter(|&k| circle[k] && !circle[(k + SAMPLES - 1) % SAMPLES]);
+fn longest(circle: &[bool; PHASE_SAMPLES]) -> Option<(usize, usize)> {
+    let starts = (0..PHASE_SAMPLES)
+        .filter(|&k| circle[k] && !circle[(k + PHASE_SAMPLES - 1) % PHASE_SAMPLES]);
     let run = |start: usize| {
-        (0..SAMPLES)
-            .take_while(|k| circle[(start + k) % SAMPLES])
+        (0..PHASE_SAMPLES)
+            .take_while(|k| circle[(start + k) % PHASE_SAMPLES])
             .count()
     };
     starts
         .map(|start| (start, run(start)))
-        .max_by_key(|(start, count)| (*count, SAMPLES - start))
+        .max_by_key(|(start, count)| (*count, PHASE_SAMPLES - start))
 }

@@ -9,25 +9,25 @@ use crate::{Humanoid, Limb, LimbEnd, Side};
 
 /// Distance of the palm's middle from the wrist along the hand, as a share of the forearm's length. The value is the
 /// hero's, rounded.
-const PALM: f64 = 0.34;
+const PALM_DISTANCE: f64 = 0.34;
 
 /// Distance of the palm's skin from the hand's bone, as a share of the forearm's length. The value is the hero's,
 /// rounded.
 const PALM_SKIN: f64 = 0.12;
 
 /// Height of the ankle above the sole, as a share of the leg's length. The value is the hero's, rounded.
-const ANKLE: f64 = 0.09;
+const ANKLE_HEIGHT: f64 = 0.09;
 
 /// Distance of the heel behind the ankle, as a share of the leg's length. The value is the hero's, rounded.
-const HEEL: f64 = 0.055;
+const HEEL_DISTANCE: f64 = 0.055;
 
 /// Distance of the ball of the foot ahead of the ankle, as a share of the leg's length, for skeletons without toes. The
 /// value is the hero's, rounded.
-const BALL: f64 = 0.16;
+const BALL_DISTANCE: f64 = 0.16;
 
 /// Least angles between the two bones of an arm and of a leg, radians: 20° and 25°. Elbows and knees do not fold
 /// further.
-const LEAST: [f64; 2] = [0.35, 0.44];
+const LEAST_BEND_ANGLES: [f64; 2] = [0.35, 0.44];
 
 /// Position of a hand's or foot's joint, and its rotation. The rotation takes X to the direction of the fingers or
 /// toes, and Y to the outward direction of the back of the hand or the top of the foot, away from the touched surface.
@@ -89,7 +89,7 @@ impl LimbShape {
         let (along, outward, contact, ball, heel) = if is_hand {
             let along = (tip - elbow).normalize_or(DVec3::NEG_Y);
             let palm = palm(skeleton, humanoid, bound, (limb, side), tip, along);
-            let center = DVec3::new(PALM * lower, -PALM_SKIN * lower, 0.0);
+            let center = DVec3::new(PALM_DISTANCE * lower, -PALM_SKIN * lower, 0.0);
             // A hand without a joint cannot be turned, so its end itself is the point that touches.
             let center = if joint.is_some() { center } else { DVec3::ZERO };
             (along, -palm, center, center, center)
@@ -100,13 +100,19 @@ impl LimbShape {
                 .filter(|way| way.length() * scale > 0.02 * length);
             let along = level.map_or(humanoid.facing, DVec3::normalize);
             let height = sole_height(tip.y * scale, length);
-            let ball = level.map_or(BALL * length, |way| way.length() * scale);
+            let ball = level.map_or(BALL_DISTANCE * length, |way| way.length() * scale);
             let at = |ahead: f64| DVec3::new(ahead, -height, 0.0);
-            (along, DVec3::Y, at(0.0), at(ball), at(-HEEL * length))
+            (
+                along,
+                DVec3::Y,
+                at(0.0),
+                at(ball),
+                at(-HEEL_DISTANCE * length),
+            )
         };
         let own = bound[joint.unwrap_or(limb.lower).index()].matrix3.inverse();
         let axes = [along, outward].map(|axis| (own * axis).normalize_or(DVec3::X));
-        let least = LEAST[usize::from(!is_hand)];
+        let least = LEAST_BEND_ANGLES[usize::from(!is_hand)];
         Self {
             ik: limb.ik.with_least_angle(least).unwrap_or(limb.ik),
             upper: limb.upper,
@@ -164,7 +170,7 @@ pub(crate) fn sole_height(ankle: f64, leg: f64) -> f64 {
     if (0.03 * leg..=0.25 * leg).contains(&ankle) {
         ankle
     } else {
-        ANKLE * leg
+        ANKLE_HEIGHT * leg
     }
 }
 

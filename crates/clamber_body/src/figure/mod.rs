@@ -44,7 +44,7 @@ pub struct Figure {
 }
 
 /// Share of the gaze's remaining turn that each joint of the neck takes. The last joint of the chain takes the rest.
-const NECK: f64 = 0.4;
+const NECK_TURN_SHARE: f64 = 0.4;
 
 impl Figure {
     /// A figure from a skeleton, its humanoid and its clips, with metres as model units.
@@ -95,7 +95,13 @@ impl Figure {
         let eye =
             own * (humanoid.facing * 0.5 + DVec3::Y * 0.5) * (0.1 * humanoid.legs[0].length());
         let mut chain = vec![(humanoid.head, 0.6)];
-        chain.extend(humanoid.neck.iter().rev().map(|joint| (*joint, NECK)));
+        chain.extend(
+            humanoid
+                .neck
+                .iter()
+                .rev()
+                .map(|joint| (*joint, NECK_TURN_SHARE)),
+        );
         let look = LookAt::new(&skeleton, &chain, eye, own * humanoid.facing, DVec3::Y)?;
         let from = humanoid.spine.first().copied().unwrap_or(humanoid.hips);
         let mask = JointMask::branch(&skeleton, from)?;

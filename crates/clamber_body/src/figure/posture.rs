@@ -1,7 +1,7 @@
 //! Measures from the clips, once, where hands and feet touch walls and ledges.
 
 use clamber_animation::{AnimationError, AnimationSet, joint_in_model};
-use clamber_surface::rig::{Playback, Pose, Skeleton};
+use clamber_surface::rig::{Clip, Playback, Pose, Skeleton};
 use glam::DVec3;
 
 use super::{BodyClip, Clips, LimbShape};
@@ -9,27 +9,27 @@ use crate::Humanoid;
 
 /// Height of the hips while standing, as a share of the leg's length. The value is the hero's, for a clip in which the
 /// hips' joint is not found.
-const HIPS: f64 = 0.97;
+const HIPS_HEIGHT: f64 = 0.97;
 
 /// Hands on a wall: distance from the middle and height, as shares of the leg's length. The value is the hero's, for a
 /// figure without the clip `climb`.
-const HANDS: [f64; 2] = [0.31, 1.64];
+const HANDS_ON_WALL: [f64; 2] = [0.31, 1.64];
 
 /// Feet on a wall: distance from the middle and height, as shares of the leg's length. The value is the hero's, for a
 /// figure without the clip `climb` or `ledge`.
-const FEET: [f64; 2] = [0.13, 0.23];
+const FEET_ON_WALL: [f64; 2] = [0.13, 0.23];
 
 /// Distance of the wall ahead of the model's origin, as a share of the leg's length. The value is the hero's, for a
 /// figure without the clip `climb`.
-const WALL: f64 = 0.54;
+const WALL_DISTANCE: f64 = 0.54;
 
 /// Edge of a ledge: height and distance ahead of the model's origin, as shares of the leg's length. The value is the
 /// hero's, for a figure without the clip `ledge`.
-const EDGE: [f64; 2] = [1.94, 0.43];
+const LEDGE_EDGE: [f64; 2] = [1.94, 0.43];
 
 /// Height of the point that is held while hanging, as a share of the leg's length. The value is the hero's, for a
 /// figure without the clip `hang`.
-const ABOVE: f64 = 2.39;
+const HANG_POINT_HEIGHT: f64 = 2.39;
 
 /// The points for which the climbing clips are made, metres in model space.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,39 +67,31 @@ impl Postures {
     ) -> Result<Self, AnimationError> {
         let (ahead, leg) = (humanoid.facing, limbs[2].length);
         let left = DVec3::Y.cross(ahead);
-        let sampled = |clip: BodyClip| -> Result<([DVec3; 4], DVec3), AnimationError> {
-            let clip = set.clip(clips.get(clip))?;
-            let mut pose = Pose {
-                transforms: set.rest().transforms.clone(),
-            };
-            clip.sample_into(0.0, Playback::Clamp, &mut pose)?;
-            let touch = |index: usize| {
-                let place = limbs[index].place(skeleton, &pose, scale)?;
-                // Feet touch walls with their balls.
-                Some(place.point(limbs[index].ball))
-            };
-            let hips = joint_in_model(skeleton, &pose, humanoid.hips);
-            let hips = hips.map_or(DVec3::Y * (HIPS * leg), |hips| hips.translation * scale);
-            let touches = core::array::from_fn(|index| touch(index).unwrap_or_default());
-            Ok((touches, hips))
+        let sampled = |clip: BodyClip| {
+            sampled(
+                skeleton,
+                humanoid,
+                set.clip(clips.get(clip))?,
+                (set, limbs, scale),
+            )
         };
         let at = |aside: f64, up: f64, far: f64| (left * aside + DVec3::Y * up + ahead * far) * leg;
         let (_, hips) = sampled(BodyClip::Idle)?;
         let mut postures = Self {
             wall: [
-                at(HANDS[0], HANDS[1], WALL),
-                at(-HANDS[0], HANDS[1], WALL),
-                at(FEET[0], FEET[1], WALL),
-                at(-FEET[0], FEET[1], WALL),
+                at(HANDS_ON_WALL[0], HANDS_ON_WALL[1], WALL_DISTANCE),
+                at(-HANDS_ON_WALL[0], HANDS_ON_WALL[1], WALL_DISTANCE),
+                at(FEET_ON_WALL[0], FEET_ON_WALL[1], WALL_DISTANCE),
+                at(-FEET_ON_WALL[0], FEET_ON_WALL[1], WALL_DISTANCE),
             ],
             wall_hips: at(0.0, 0.82, 0.0),
-            edge: at(0.0, EDGE[0], EDGE[1]),
+            edge: at(0.0, LEDGE_EDGE[0], LEDGE_EDGE[1]),
             edge_width: 0.27 * leg,
             edge_feet: [
-                at(FEET[0], FEET[1], EDGE[1]),
-                at(-FEET[0], FEET[1], EDGE[1]),
+                at(FEET_ON_WALL[0], FEET_ON_WALL[1], LEDGE_EDGE[1]),
+                at(-FEET_ON_WALL[0], FEET_ON_WALL[1], LEDGE_EDGE[1]),
             ],
-            above: at(0.0, ABOVE, 0.0),
+            above: at(0.0, HANG_POINT_HEIGHT, 0.0),
             above_width: 0.2 * leg,
             hang_hips: hips,
             tumble_hips: hips,
@@ -141,4 +133,28 @@ impl Postures {
         }
         Ok(postures)
     }
+}
+
+/// Places of hands and feet at a clip's beginning, and the hips. Feet touch walls with their balls.
+fn sampled(
+    skeleton: &Skeleton,
+    humanoid: &Humanoid,
+    clip: &Clip,
+    (set, limbs, scale): (&AnimationSet, &[LimbShape; 4], f64),
+) -> Result<([DVec3; 4], DVec3), AnimationError> {
+    let mut pose = Pose {
+        transforms: set.rest().transforms.clone(),
+    };
+    clip.sample_into(0.0, Playback::Clamp, &mut pose)?;
+    let touch = |index: usize| {
+        let place = limbs[index].place(skeleton, &pose, scale)?;
+        Some(place.point(limbs[index].ball))
+    };
+    let leg = limbs[2].length;
+    let hips = joint_in_model(skeleton, &pose, humanoid.hips);
+    let hips = hips.map_or(DVec3::Y * (HIPS_HEIGHT * leg), |hips| {
+        hips.translation * scale
+    });
+    let touches = core::array::from_fn(|index| touch(index).unwrap_or_default());
+    Ok((touches, hips))
 }

@@ -31,7 +31,7 @@ pub(super) enum NamedEnd {
 }
 
 /// Words that mark a joint below the forearm as a finger.
-const FINGERS: [&str; 8] = [
+const FINGER_WORDS: [&str; 8] = [
     "finger", "fingers", "index", "little", "middle", "pinky", "ring", "thumb",
 ];
 
@@ -272,11 +272,13 @@ impl Bound<'_> {
         self.model(joint).inverse().transform_point3(point)
     }
 
-    /// The chains of joints below a forearm whose names contain a word of [`FINGERS`].
+    /// The chains of joints below a forearm whose names contain a word of [`FINGER_WORDS`].
     fn fingers(&self, lower: JointId) -> Vec<Vec<JointId>> {
         let is_finger = |joint: &JointId| {
             let words = words(&self.skeleton.joints()[joint.index()].name);
-            words.iter().any(|word| FINGERS.contains(&word.as_str()))
+            words
+                .iter()
+                .any(|word| FINGER_WORDS.contains(&word.as_str()))
         };
         let parent = |joint: JointId| self.skeleton.joints()[joint.index()].parent;
         let all = (0..self.skeleton.joints().len() as u32).map(JointId);

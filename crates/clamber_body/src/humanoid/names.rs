@@ -35,7 +35,7 @@ pub(super) struct Meaning {
 }
 
 /// Words that are ignored in names.
-const NOISE: [&str; 18] = [
+const IGNORED_WORDS: [&str; 18] = [
     "armature",
     "b",
     "base",
@@ -57,14 +57,14 @@ const NOISE: [&str; 18] = [
 ];
 
 /// Words that exclude a joint from the body: such joints twist, steer or hold something.
-const OTHERS: [&str; 22] = [
+const EXCLUDING_WORDS: [&str; 22] = [
     "control", "ctrl", "end", "fk", "helper", "ik", "item", "mch", "nub", "orient", "parent",
     "pole", "roll", "slot", "socket", "target", "tip", "tracker", "tweak", "twist", "vis",
     "weapon",
 ];
 
 /// Each part with the names that mean it. A name is compared without ignored words, sides, digits and separators.
-const PARTS: [(Part, &[&str]); 15] = [
+const PART_NAMES: [(Part, &[&str]); 15] = [
     (
         Part::Shoulder,
         &["shoulder", "clavicle", "collar", "collarbone"],
@@ -111,7 +111,10 @@ impl Meaning {
         // Drops the name of an armature or a namespace.
         let name = name.rsplit([':', '|']).next().unwrap_or(name);
         let words = words(name);
-        if words.iter().any(|word| OTHERS.contains(&word.as_str())) {
+        if words
+            .iter()
+            .any(|word| EXCLUDING_WORDS.contains(&word.as_str()))
+        {
             return None;
         }
         let rank = match words.first().map(String::as_str) {
@@ -125,12 +128,12 @@ impl Meaning {
             match word.as_str() {
                 "l" | "left" => side = Some(Side::Left),
                 "r" | "right" => side = Some(Side::Right),
-                word if NOISE.contains(&word) => {}
+                word if IGNORED_WORDS.contains(&word) => {}
                 word => rest += word,
             }
         }
         let is = |(_, names): &&(Part, &[&str])| names.contains(&rest.as_str());
-        let part = PARTS.iter().find(is)?.0;
+        let part = PART_NAMES.iter().find(is)?.0;
         Some(Self { part, side, rank })
     }
 }

@@ -5,10 +5,10 @@ use clamber_surface::rig::{JointId, Skeleton};
 use glam::{DAffine3, DVec3};
 
 /// Least cosine of the angle between the trunk (hips to head) and Y in an upright bind pose: about 45°.
-const UPRIGHT: f64 = 0.7;
+const UPRIGHT_COSINE: f64 = 0.7;
 
 /// Largest ratio of the trunk's lengths in the bind pose and at rest, either way. A larger ratio means other units.
-const SIZE: f64 = 2.0;
+const MAX_SIZE_RATIO: f64 = 2.0;
 
 /// All joints in model space in the bind pose: the pose in which the artist has fitted the skeleton to the mesh,
 /// usually a T-pose or an A-pose. The nodes at rest may be in any pose of a clip.
@@ -51,7 +51,8 @@ pub(crate) fn reference(
         let mut bound: Vec<DAffine3> = bound.into_iter().collect::<Option<_>>()?;
         let (is, was) = (trunk(&bound), trunk(&rest).length());
         let ratio = is.length() / was;
-        let fits = is.y >= UPRIGHT * is.length() && (1.0 / SIZE..=SIZE).contains(&ratio);
+        let fits = is.y >= UPRIGHT_COSINE * is.length()
+            && (1.0 / MAX_SIZE_RATIO..=MAX_SIZE_RATIO).contains(&ratio);
         let place = |models: &[DAffine3]| {
             let hips = models[hips.index()].translation;
             let sole = feet.map(|foot| models[foot.index()].translation.y);

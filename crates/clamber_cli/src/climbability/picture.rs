@@ -72,6 +72,34 @@ impl Picture {
         }
     }
 
+    /// Fills a triangle in pieces of a few pixels, each with the colour at its middle: the triangle may have many
+    /// patches. `color` takes the weights of the corners.
+    fn fill_in_pieces(&mut self, [a, b, c]: [DVec3; 3], color: impl Fn([f32; 3]) -> [u8; 3]) {
+        let parts = ((b - a).length().max((c - a).length()) / 6.0)
+            .ceil()
+            .clamp(1.0, 64.0);
+        let color = |i: f64, j: f64| {
+            let (u, v) = (i / parts, j / parts);
+            color([1.0 - u - v, u, v].map(|w| w as f32))
+        };
+        let corner = |i: u32, j: u32| {
+            let (u, v) = (f64::from(i) / parts, f64::from(j) / parts);
+            a + (b - a) * u + (c - a) * v
+        };
+        let n = parts as u32;
+        for i in 0..n {
+            for j in 0..n - i {
+                let (x, y) = (f64::from(i), f64::from(j));
+                let upright = [corner(i, j), corner(i + 1, j), corner(i, j + 1)];
+                self.fill(upright, color(x + 1.0 / 3.0, y + 1.0 / 3.0));
+                if i + j + 1 < n {
+                    let inverted = [corner(i + 1, j + 1), corner(i, j + 1), corner(i + 1, j)];
+                    self.fill(inverted, color(x + 2.0 / 3.0, y + 2.0 / 3.0));
+                }
+            }
+        }
+    }
+
     /// Draws a weak point's disc over everything else. The radius is in pixels.
     fn mark(&mut self, middle: DVec3, radius: f64) {
         let low = (middle.truncate() - radius).max(DVec2::ZERO);
@@ -143,32 +171,9 @@ pub(super) fn draw(
             if facing <= 0.0 {
                 continue;
             }
-            let [a, b, c] = corners.map(at);
-            // A triangle may have many patches: it is drawn in pieces of a few pixels, each with the colour of its own
-            // patch.
-            let parts = ((b - a).length().max((c - a).length()) / 6.0)
-                .ceil()
-                .clamp(1.0, 64.0);
-            let n = parts as u32;
-            for i in 0..n {
-                for j in 0..n - i {
-                    let corner = |i: u32, j: u32| {
-                        let (u, v) = (f64::from(i) / parts, f64::from(j) / parts);
-                        a + (b - a) * u + (c - a) * v
-                    };
-                    let color = |i: f64, j: f64| {
-                        let (u, v) = (i / parts, j / parts);
-                        lit(color(index, [1.0 - u - v, u, v].map(|w| w as f32)), facing)
-                    };
-                    let (x, y) = (f64::from(i), f64::from(j));
-                    let upright = [corner(i, j), corner(i + 1, j), corner(i, j + 1)];
-                    picture.fill(upright, color(x + 1.0 / 3.0, y + 1.0 / 3.0));
-                    if i + j + 1 < n {
-                        let inverted = [corner(i + 1, j + 1), corner(i, j + 1), corner(i + 1, j)];
-                        picture.fill(inverted, color(x + 2.0 / 3.0, y + 2.0 / 3.0));
-                    }
-                }
-            }
+            picture.fill_in_pieces(corners.map(at), |weights| {
+                lit(color(index, weights), facing)
+            });
         }
         for point in &report.weak_points {
             picture.mark(at(point.place), 5.0);

@@ -94,20 +94,7 @@ fn draw(model: &Model, body: Option<&Humanoid>, file: &Path) -> Result<(), Strin
     let facing = body.map_or(DVec3::Z, |body| body.facing);
     let left = DVec3::Y.cross(facing);
     let is_body = |joint| body.is_some_and(|body| body.role(joint).is_some());
-    let named: Vec<(String, JointId)> = match body {
-        Some(body) => {
-            let joints = body.joints().into_iter();
-            joints
-                .map(|(role, joint)| (role.to_string(), joint))
-                .collect()
-        }
-        None => {
-            let joints = model.rig.skeleton.joints().iter().zip(0..);
-            joints
-                .map(|(joint, id)| (joint.name.clone(), JointId(id)))
-                .collect()
-        }
-    };
+    let named = labels(&model.rig, body);
     // The horizontal axes of the pictures. Seen from the front, its left is at the right; seen from its left, it faces
     // left.
     let views = [("from the front", left), ("from its left", -facing)];
@@ -165,4 +152,22 @@ fn draw(model: &Model, body: Option<&Humanoid>, file: &Path) -> Result<(), Strin
         }
     }
     area.present().map_err(|error| failed(&error))
+}
+
+/// The labels of the drawing: the roles of the body's joints, or the names of all joints if there is no body.
+fn labels(rig: &clamber_surface::mesh::Rig, body: Option<&Humanoid>) -> Vec<(String, JointId)> {
+    match body {
+        Some(body) => {
+            let joints = body.joints().into_iter();
+            joints
+                .map(|(role, joint)| (role.to_string(), joint))
+                .collect()
+        }
+        None => {
+            let joints = rig.skeleton.joints().iter().zip(0..);
+            joints
+                .map(|(joint, id)| (joint.name.clone(), JointId(id)))
+                .collect()
+        }
+    }
 }

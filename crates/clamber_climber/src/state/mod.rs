@@ -90,10 +90,10 @@ pub struct ClimberState {
 pub const MEMORY: usize = 8;
 
 /// Largest difference of the heading's length from 1, so that a state can be saved with rounded decimals.
-const UNIT: f64 = 1e-6;
+const UNIT_TOLERANCE: f64 = 1e-6;
 
 /// Names of the state's numbers, in the order of [`ClimberState::numbers`].
-const NAMES: [&str; 13] = [
+const NUMBER_NAMES: [&str; 13] = [
     "stamina",
     "hit_points",
     "hanging.arm",
@@ -149,7 +149,7 @@ impl ClimberState {
         if !is_consistent && !self.mode.is_custom() {
             return Err(ClimberError::Support(self.mode));
         }
-        for (name, found) in NAMES.into_iter().zip(self.numbers()) {
+        for (name, found) in NUMBER_NAMES.into_iter().zip(self.numbers()) {
             let is_share = matches!(name, "stamina" | "hit_points" | "ledge_hanging.pull_up");
             let (range, most) = if is_share {
                 ("from 0 to 1", 1.0)
@@ -161,7 +161,7 @@ impl ClimberState {
             }
         }
         let length = self.heading.length();
-        if (length - 1.0).abs() > UNIT {
+        if (length - 1.0).abs() > UNIT_TOLERANCE {
             return Err(ClimberError::OutOfRange {
                 name: "length of heading",
                 range: "1",
@@ -199,8 +199,8 @@ impl ClimberState {
         ]
     }
 
-    /// Every number, in the order of [`NAMES`].
-    fn numbers(&self) -> [f64; NAMES.len()] {
+    /// Every number, in the order of [`NUMBER_NAMES`].
+    fn numbers(&self) -> [f64; NUMBER_NAMES.len()] {
         [
             self.stamina,
             self.hit_points,

@@ -8,10 +8,10 @@ use glam::DVec3;
 use super::Tick;
 
 /// Time for which a body that touches nothing keeps the frame of the last obstacle that it touched, seconds.
-const KEPT: f64 = 1.0;
+const FRAME_KEPT_TIME: f64 = 1.0;
 
 /// Time in which the frame then changes to the velocity of the air, seconds.
-const FADES: f64 = 1.0;
+const FRAME_FADE_TIME: f64 = 1.0;
 
 impl Tick<'_> {
     /// True for a body that no support carries.
@@ -54,9 +54,9 @@ impl Tick<'_> {
         }
         let (before, air) = (self.state.untouched, self.rules.air_velocity);
         let after = before + self.dt();
-        self.state.untouched = after.min(KEPT + FADES);
-        let left = KEPT + FADES - before.max(KEPT);
-        let passed = after - before.max(KEPT);
+        self.state.untouched = after.min(FRAME_KEPT_TIME + FRAME_FADE_TIME);
+        let left = FRAME_KEPT_TIME + FRAME_FADE_TIME - before.max(FRAME_KEPT_TIME);
+        let passed = after - before.max(FRAME_KEPT_TIME);
         if passed >= left {
             self.state.base_velocity = air;
         } else if passed > 0.0 {

@@ -10,7 +10,7 @@ use crate::{ClimberEvent, ClimberMode, Support};
 /// Largest gap, as a share of the radius, between the position that a support had after the last tick and the previous
 /// position that its obstacle reports. Beyond it, the support did not move in one step. Far above rounding, far below
 /// what is visible.
-pub(crate) const CONTINUOUS: f64 = 0.025;
+pub(crate) const CONTINUOUS_GAP: f64 = 0.025;
 
 /// How a support has carried the climber since the last tick.
 #[derive(Clone, Copy, Debug)]
@@ -46,7 +46,7 @@ impl Tick<'_> {
         let Some(mut support) = self.state.support else {
             return;
         };
-        let slack = CONTINUOUS * self.config.body.radius;
+        let slack = CONTINUOUS_GAP * self.config.body.radius;
         let dt = self.dt();
         let attachment = &mut support.attachment;
         let obstacle = self.mover.obstacle(attachment.obstacle);

@@ -11,7 +11,7 @@ use crate::config::StaminaConfig;
 use crate::{ClimberEvent, ClimberMode, Shake};
 
 /// Time for which the climber grips nothing after its stamina was used up, seconds.
-const EXHAUSTED: f64 = 1.0;
+const EXHAUSTED_TIME: f64 = 1.0;
 
 impl Tick<'_> {
     /// Applies the blow of this tick's input.
@@ -175,7 +175,7 @@ impl Tick<'_> {
         if let Some(from) = self.attachment() {
             self.event(ClimberEvent::ShakenOff { shake, from });
         }
-        self.state.open_handed = EXHAUSTED;
+        self.state.open_handed = EXHAUSTED_TIME;
         let next = self.leave(ClimberMode::Falling);
         self.follow_at_once(next);
     }

@@ -3,27 +3,27 @@
 use clamber_mover::{Ground, Touch};
 use glam::DVec3;
 
-use super::ground::GRAZING;
+use super::ground::GRAZING_COSINE;
 use super::moving::{Intent, towards};
-use super::{LEVEL, NextMode, Tick};
+use super::{LEAST_LEVEL_PART, NextMode, Tick};
 use crate::{ClimberConfig, ClimberEvent, ClimberMode};
 
 /// Multiple of the speed that gravity adds in a tick, up to which a contact is no impact.
-const RESTS: f64 = 1.5;
+const REST_SPEED_FACTOR: f64 = 1.5;
 
 /// Time for which a tumbling body that does not come to rest stays down after it first touched ground, in addition to
 /// the recovery time, seconds. Otherwise a body without friction would slide on endlessly.
 const STAYS_DOWN: f64 = 6.0;
 
 /// Largest share of gravity along a steep slope that friction takes away.
-const BRAKES: f64 = 0.9;
+const MAX_SLOPE_BRAKE: f64 = 0.9;
 
 /// Cosine from up of the normal of refused ground, above which the ground is too level for steering to keep off it: 4
 /// degrees.
-const UPRIGHT: f64 = 0.9975;
+const LEVEL_NORMAL_COSINE: f64 = 0.9975;
 
 /// Factor of [`slow_speed`] on the square root of gravity times radius: slower contacts do not bounce.
-const SLOW: f64 = 0.25;
+const SLOW_SPEED_FACTOR: f64 = 0.25;
 
 /// Memory of a climber that is in the air or slides: whether it rises from a jump. The climber's step sets this memory;
 /// a game only stores it.
@@ -48,7 +48,7 @@ pub struct TumblingMemory {
 
 /// A speed that is slow for a body of this size under this gravity, metres a second: 0.5 for a radius of 0.4 m.
 pub(crate) fn slow_speed(config: &ClimberConfig) -> f64 {
-    SLOW * libm::sqrt(config.gravity.length() * config.body.radius)
+    SLOW_SPEED_FACTOR * libm::sqrt(config.gravity.length() * config.body.radius)
 }
 
 impl Tick<'_> {
@@ -104,9 +104,9 @@ impl Tick<'_> {
         let here = self.state.position + self.state.base_velocity * self.dt();
         self.mover.overlap(&body, here, body.margin);
         let is_steep =
-            |normal: DVec3| self.config.slope(normal) > limit && normal.dot(up) > GRAZING;
+            |normal: DVec3| self.config.slope(normal) > limit && normal.dot(up) > GRAZING_COSINE;
         // Ground that the rule refuses counts as a slope as well, where it is not level.
-        let leans = |normal: DVec3| (GRAZING..UPRIGHT).contains(&normal.dot(up));
+        let leans = |normal: DVec3| (GRAZING_COSINE..LEVEL_NORMAL_COSINE).contains(&normal.dot(up));
         let slopes = || {
             // A slope needs two steep normals: the edge of a step is no slope.
             let touches = self.mover.overlaps().iter();
@@ -121,7 +121,7 @@ impl Tick<'_> {
             kept - level * kept.dot(level).min(0.0)
         });
         // Between two slopes, a change along one leads into the other.
-        let leads_into = |level: DVec3| kept.dot(level) < -LEVEL * change.length();
+        let leads_into = |level: DVec3| kept.dot(level) < -LEAST_LEVEL_PART * change.length();
         if slopes().any(leads_into) {
             DVec3::ZERO
         } else {
@@ -194,7 +194,7 @@ impl Tick<'_> {
                 best
             }
         });
-        let Some(touch) = slope.filter(|touch| touch.normal.dot(up) > GRAZING) else {
+        let Some(touch) = slope.filter(|touch| touch.normal.dot(up) > GRAZING_COSINE) else {
             return;
         };
         let friction = usual * self.friction_of(&touch);
@@ -205,7 +205,7 @@ impl Tick<'_> {
         let pull = gravity - touch.normal * gravity.dot(touch.normal);
         let leads_down = along.dot(pull) > 0.0;
         let braked = if leads_down {
-            (friction * pressed).min(BRAKES * pull.length())
+            (friction * pressed).min(MAX_SLOPE_BRAKE * pull.length())
         } else {
             friction * pressed
         };
@@ -227,7 +227,7 @@ impl Tick<'_> {
             });
         let speed = speeds.fold(0.0, f64::max);
         // A body that rests or slides meets its ground at the speed that gravity adds in a tick.
-        if speed > RESTS * self.config.gravity.length() * self.dt() {
+        if speed > REST_SPEED_FACTOR * self.config.gravity.length() * self.dt() {
             self.hurt_by_fall(speed);
         }
     }
@@ -254,8 +254,8 @@ impl Tick<'_> {
         }
         let up = self.config.up();
         let mut touched = self.mover.touched().iter();
-        let is_steep =
-            touched.any(|touch| touch.normal.dot(up) > GRAZING && !self.leaves(touch, falling));
+        let is_steep = touched
+            .any(|touch| touch.normal.dot(up) > GRAZING_COSINE && !self.leaves(touch, falling));
         let was_sliding = self.state.mode == ClimberMode::Sliding;
         let is_sliding = is_steep || was_sliding && self.is_beside_slope(self.state.position);
         match (is_sliding, was_sliding) {
@@ -340,7 +340,7 @@ impl Tick<'_> {
         let speed = -(falling - base).dot(touch.normal);
         let slow = self
             .slow()
-            .max(RESTS * self.config.gravity.length() * self.dt());
+            .max(REST_SPEED_FACTOR * self.config.gravity.length() * self.dt());
         if speed > slow {
             self.bounce(touch, speed * tumble.restitution);
         }

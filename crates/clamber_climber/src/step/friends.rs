@@ -10,19 +10,19 @@ use crate::config::Others;
 use crate::obstacle::{SAME_PLACE, between};
 
 /// Maximum speed at which climbers part, radii a second: 2 m/s for a radius of 0.4 m.
-const PARTS: f64 = 5.0;
+const MAX_PARTING_SPEED: f64 = 5.0;
 
 /// Maximum speed at which climbers that push each other part, as a multiple of the walking speed.
-const PUSHES: f64 = 2.0;
+const PUSH_PARTING_FACTOR: f64 = 2.0;
 
 /// Maximum speed at which climbers that pass each other part, radii a second.
-const PASSES: f64 = 1.25;
+const PASS_PARTING_SPEED: f64 = 1.25;
 
-/// Share of the speed [`PASSES`] up to which a climber stands still.
-const STILL: f64 = 0.1;
+/// Share of the speed [`PASS_PARTING_SPEED`] up to which a climber stands still.
+const STILL_SPEED_SHARE: f64 = 0.1;
 
 /// Smallest level part of the unit direction between two bodies at which they part levelly.
-const ASIDE: f64 = 0.1;
+const LEAST_LEVEL_PART: f64 = 0.1;
 
 /// A climber as a character among others.
 pub(crate) fn among_others(config: &ClimberConfig) -> IntoOthers {
@@ -54,19 +54,19 @@ impl Tick<'_> {
 
     /// Maximum displacement in a tick by which the climber parts from others, metres.
     fn parting_at_most(&self, others: Others) -> f64 {
-        let slow = PARTS * self.config.body.radius;
+        let slow = MAX_PARTING_SPEED * self.config.body.radius;
         let speed = match others {
             Others::Block => slow,
             // As fast as two climbers can walk against each other.
-            Others::Push => slow.max(PUSHES * self.config.ground.walk_speed),
-            Others::Pass => PASSES * self.config.body.radius,
+            Others::Push => slow.max(PUSH_PARTING_FACTOR * self.config.ground.walk_speed),
+            Others::Pass => PASS_PARTING_SPEED * self.config.body.radius,
         };
         speed * self.dt()
     }
 
     /// True if this climber or the other one moves on its own.
     fn is_passing(&self, other: &CharacterBody) -> bool {
-        let slow = PASSES * STILL * self.config.body.radius;
+        let slow = PASS_PARTING_SPEED * STILL_SPEED_SHARE * self.config.body.radius;
         let own = self.was - self.base_was;
         self.input.walk != DVec3::ZERO || own.length().max(other.own_velocity.length()) > slow
     }
@@ -115,7 +115,7 @@ impl Tick<'_> {
         let away = if is_beside || apart.distance < least {
             let level = apart.away - up * apart.away.dot(up);
             let is_apart = apart.distance > SAME_PLACE * capsule.radius;
-            if is_apart && level.length() > ASIDE {
+            if is_apart && level.length() > LEAST_LEVEL_PART {
                 level.normalize_or_zero()
             } else {
                 let otherwise = if is_apart { apart.away } else { DVec3::ZERO };

@@ -68,7 +68,8 @@ impl Tick<'_> {
             level.any(|touch| touch.contact.point.distance(slope.contact.point) <= margin)
         };
         let mut touched = self.mover.touched().iter();
-        touched.any(|touch| touch.normal.dot(up) > GRAZING && is_steep(touch) && !ends(touch))
+        touched
+            .any(|touch| touch.normal.dot(up) > GRAZING_COSINE && is_steep(touch) && !ends(touch))
     }
 
     /// True if a slope, of any steepness up to nearly vertical, is within the margin.
@@ -76,9 +77,11 @@ impl Tick<'_> {
         let up = self.config.up();
         let body = self.body();
         let touches = self.mover.overlap(&body, position, body.margin);
-        touches.iter().any(|touch| touch.normal.dot(up) > GRAZING)
+        touches
+            .iter()
+            .any(|touch| touch.normal.dot(up) > GRAZING_COSINE)
     }
 }
 
 /// Cosine from up of a contact normal above which a face is a slope, and not a wall.
-pub(super) const GRAZING: f64 = 0.05;
+pub(super) const GRAZING_COSINE: f64 = 0.05;

@@ -12,21 +12,21 @@ use crate::pendulum::{Pendulum, PendulumTick};
 use crate::{ClimberEvent, ClimberMode};
 
 /// Speed at which the climber pulls itself in once its hold is calm, as a multiple of the climbing speed.
-const PULL: f64 = 4.0 / 3.0;
+const PULL_IN_SPEED: f64 = 4.0 / 3.0;
 
 /// Share of the shake that makes the climber hang, up to which its hold counts as calm.
-const CALM: f64 = 0.7;
+const CALM_SHAKE_SHARE: f64 = 0.7;
 
 /// Speed at which stretched arms shorten again, in arm lengths a second: 4.5 m/s for arms of 0.9 m. The speed is at
-/// least the speed of [`PULL`], or short arms would pull more slowly than they climb.
-const SHORTEN: f64 = 5.0;
+/// least the speed of [`PULL_IN_SPEED`], or short arms would pull more slowly than they climb.
+const ARM_SHORTENING_SPEED: f64 = 5.0;
 
 /// Multiple of their length to which arms can be stretched before they let go.
-const STRETCH: f64 = 1.5;
+const MAX_ARM_STRETCH: f64 = 1.5;
 
 /// Distance from its hands at which the climber climbs again, in radii. Not 1.25: the arms of the default configuration
 /// get exactly that short in a whole number of ticks, and rounding would decide.
-const CLOSE: f64 = 1.27;
+const CLIMB_AGAIN_DISTANCE: f64 = 1.27;
 
 /// Memory of a climber that hangs by its hands from a grip.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -77,7 +77,7 @@ impl Tick<'_> {
     /// Stretches the arms, or pulls the climber in once the hold has been calm for long enough.
     fn reach_or_pull(&mut self, carried: &Carried, grip: &GripConfig) {
         let leans_over = self.config.slope(carried.normal()) > grip.max_overhang;
-        let shakes = self.state.shake.length() > CALM * grip.hang_acceleration;
+        let shakes = self.state.shake.length() > CALM_SHAKE_SHARE * grip.hang_acceleration;
         let dt = self.dt();
         let is_calm = !shakes && !leans_over && !self.has_entered;
         self.state.hanging.calm = if is_calm {
@@ -87,7 +87,7 @@ impl Tick<'_> {
         };
         if is_calm && self.state.hanging.calm >= grip.calm_time {
             let reach = self.began.distance(carried.motion.previous_position);
-            let pulled = PULL * grip.climb_speed * dt;
+            let pulled = PULL_IN_SPEED * grip.climb_speed * dt;
             self.state.hanging.arm = (self.state.hanging.arm.min(reach) - pulled).max(0.0);
         }
         if self.state.hanging.calm == 0.0 {
@@ -103,7 +103,8 @@ impl Tick<'_> {
         let radius = self.config.body.radius;
         let arm = carried.start - carried.motion.previous_position;
         let climb_speed = self.config.grip.map_or(0.0, |grip| grip.climb_speed);
-        let pulled = (SHORTEN * hang.arm_length).max(PULL * climb_speed) * self.dt();
+        let pulled =
+            (ARM_SHORTENING_SPEED * hang.arm_length).max(PULL_IN_SPEED * climb_speed) * self.dt();
         let length = self.state.hanging.arm.max(radius);
         let length = length.max(arm.length() - pulled);
         let mut pendulum = Pendulum {
@@ -141,14 +142,14 @@ impl Tick<'_> {
         };
         // After a blow, the climber swings although the hold is calm: the swing ends only after `calm_time`.
         let calm_time = self.config.grip.map_or(0.0, |grip| grip.calm_time);
-        let longest = hang.arm_length.max(radius) * STRETCH;
+        let longest = hang.arm_length.max(radius) * MAX_ARM_STRETCH;
         let reach = moved.position.distance(pivot);
         if reach > longest {
             // An obstacle in the way has torn the climber off.
             self.state.open_handed = OPEN_HANDED;
             return self.lose_footing();
         }
-        if self.state.hanging.calm >= calm_time && reach <= CLOSE * radius {
+        if self.state.hanging.calm >= calm_time && reach <= CLIMB_AGAIN_DISTANCE * radius {
             return NextMode::Change(ClimberMode::Holding);
         }
         NextMode::Stay

@@ -11,7 +11,7 @@ use clamber_mover::Touch;
 use glam::DVec3;
 
 use super::Tick;
-use super::pushing::JITTER;
+use super::pushing::SUPPORT_JITTER;
 use crate::ClimberMode;
 use crate::event::Push;
 
@@ -19,17 +19,17 @@ use crate::event::Push;
 const SAME_SIDE: f64 = 0.5;
 
 /// Share of the expected change of velocity below which an obstacle has not given way, and counts as held.
-const HELD: f64 = 0.1;
+const HELD_CHANGE_SHARE: f64 = 0.1;
 
 /// Share of its way below which a climber that slides on ice counts as stopped.
-const STOPPED: f64 = 0.5;
+const STOPPED_WAY_SHARE: f64 = 0.5;
 
 /// Largest speed at which a body that rests on another one meets it, as a multiple of the speed that gravity adds in a
 /// tick: also in a lift that speeds up by as much as gravity.
-const LIES: f64 = 4.0;
+const LYING_SPEED_FACTOR: f64 = 4.0;
 
 /// Distance at the start of the tick, as a multiple of the margin, within which an obstacle was touched then.
-const TOUCHED: f64 = 2.0;
+const TOUCHED_DISTANCE: f64 = 2.0;
 
 impl Tick<'_> {
     /// Pushes the obstacles that kept the body from moving at the velocity `wanted`, except the obstacles that the
@@ -99,7 +99,8 @@ impl Tick<'_> {
         let normal = touch.normal;
         // The last hit should have slowed the obstacle to the climber's velocity.
         let asked = before - self.was.dot(normal);
-        let stays = self.slips() || asked <= self.jitter() || before - now < HELD * asked;
+        let stays =
+            self.slips() || asked <= self.jitter() || before - now < HELD_CHANGE_SHARE * asked;
         let (wanted, air) = (self.wanted.dot(normal), self.rules.air_velocity.dot(normal));
         let rests = now - wanted <= self.rests_at();
         stays && (rests || now - air <= air - wanted)
@@ -125,11 +126,11 @@ impl Tick<'_> {
 
     /// Largest contact speed of a body at rest on another one that may speed up, metres a second.
     fn rests_at(&self) -> f64 {
-        LIES * self.config.gravity.length() * self.dt()
+        LYING_SPEED_FACTOR * self.config.gravity.length() * self.dt()
     }
 
     fn jitter(&self) -> f64 {
-        JITTER * self.config.gravity.length() * self.dt()
+        SUPPORT_JITTER * self.config.gravity.length() * self.dt()
     }
 
     /// True if the climber stands on ice.
@@ -143,7 +144,7 @@ impl Tick<'_> {
         if self.carried.is_some() {
             let went_on = -self.state.own_way.dot(normal);
             let own = (self.base_was - self.was).dot(normal) * self.dt();
-            return own > 0.0 && went_on < STOPPED * own;
+            return own > 0.0 && went_on < STOPPED_WAY_SHARE * own;
         }
         let pressed = self.was_pressed.dot(normal);
         pressed > SAME_SIDE * self.was_pressed.length() * normal.length()
@@ -154,7 +155,8 @@ impl Tick<'_> {
         let body = self.body();
         self.mover.path_of(touch).is_some_and(|path| {
             let axis = body.at(self.began).nearest_on_axis(path.previous_position);
-            (axis - path.previous_position).dot(touch.normal) <= body.radius + TOUCHED * body.margin
+            (axis - path.previous_position).dot(touch.normal)
+                <= body.radius + TOUCHED_DISTANCE * body.margin
         })
     }
 

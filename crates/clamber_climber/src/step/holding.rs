@@ -10,7 +10,7 @@ use crate::config::GripConfig;
 use crate::{ClimberEvent, ClimberInput, ClimberMode};
 
 /// Speed at which arms draw the body to its hold, as a multiple of the climbing speed.
-const DRAW: f64 = 8.0 / 3.0;
+const DRAW_SPEED_FACTOR: f64 = 8.0 / 3.0;
 
 /// Longest time in which arms draw the body over the length of its radius, seconds: at least 1 m/s for a radius of 0.4
 /// m. It counts for a climber that climbs slowly or not at all.
@@ -20,24 +20,24 @@ const DRAW_TIME: f64 = 0.4;
 pub(super) const OPEN_HANDED: f64 = 0.3;
 
 /// Angle between the normals of two faces, above which they meet in a corner, radians: 40 degrees.
-const CORNER: f64 = 0.7;
+const CORNER_ANGLE: f64 = 0.7;
 
 /// Cosine of the largest angle between a face's normal and the separation normal at which the climber lies flat on the
 /// face: 10 degrees.
-const FLAT: f64 = 0.985;
+const FLAT_ON_FACE_COSINE: f64 = 0.985;
 
 /// Share of an upward step below which a climber is at the top of its hold, and looks for a ledge.
-const STUCK: f64 = 0.25;
+const STUCK_STEP_SHARE: f64 = 0.25;
 
 /// Share of the input along the hold above which the climber climbs at full speed. Below, it climbs more slowly.
-const FULL: f64 = 0.1;
+const FULL_SPEED_INPUT: f64 = 0.1;
 
 /// Cosine from up of a hold's normal, below which the hold is a ceiling: it leans over by more than 45 degrees.
-const CEILING: f64 = -0.707;
+const CEILING_COSINE: f64 = -0.707;
 
 /// Length of the sum of a hold's normal and up, below which a jump goes straight away from the hold: off ceilings
 /// within 6 degrees of level. There, rounding and bumps decide the direction of the sum.
-const STRAIGHT: f64 = 0.1;
+const STRAIGHT_JUMP_LENGTH: f64 = 0.1;
 
 /// Cosine of the angle by which a held stick may turn before its direction is taken anew: 20 degrees.
 const HELD_STILL: f64 = 0.939_692_620_785_908_4;
@@ -60,7 +60,7 @@ pub struct HoldingMemory {
 }
 
 /// Cosine by which a face has to oppose the input's direction for the climber to climb onto it, not along it.
-const AHEAD: f64 = 0.3;
+const AHEAD_COSINE: f64 = 0.3;
 
 impl Tick<'_> {
     /// Takes hold of the best grip in reach, or catches a ledge, if the input asks for it, stamina is left and the
@@ -161,7 +161,7 @@ impl Tick<'_> {
     pub(super) fn jump_off(&mut self, normal: DVec3, speed: f64) -> NextMode {
         let up = self.config.up();
         let between = normal + up;
-        let direction = if between.length() < STRAIGHT {
+        let direction = if between.length() < STRAIGHT_JUMP_LENGTH {
             normal
         } else {
             between.normalize_or(normal)
@@ -201,7 +201,7 @@ impl Tick<'_> {
         self.state.position = position;
         let wanted = carried.velocity() + velocity;
         let made = (position - carried.position).dot(wish.normalize_or_zero());
-        let is_stuck = made < STUCK * step.length();
+        let is_stuck = made < STUCK_STEP_SHARE * step.length();
         if is_stuck
             && wish.dot(self.config.up()) > 0.0
             && let Some(next) = self.catch_ledge(position)
@@ -240,7 +240,7 @@ impl Tick<'_> {
     /// Speed at which arms draw the body, metres a second.
     pub(super) fn draw_speed(&self) -> f64 {
         let climb_speed = self.config.grip.map_or(0.0, |grip| grip.climb_speed);
-        (DRAW * climb_speed).max(self.config.body.radius / DRAW_TIME)
+        (DRAW_SPEED_FACTOR * climb_speed).max(self.config.body.radius / DRAW_TIME)
     }
 
     /// Largest distance of the body's centre from its hold, metres: arms at full stretch, and some give.
@@ -303,7 +303,7 @@ impl Tick<'_> {
     fn climb_on_to(&mut self, carried: &Carried, touch: &Touch, position: DVec3) {
         let face = carried.support.attachment.frame * carried.support.face;
         self.attach(touch, position);
-        let lies_flat = touch.normal.dot(touch.contact.normal) > FLAT;
+        let lies_flat = touch.normal.dot(touch.contact.normal) > FLAT_ON_FACE_COSINE;
         let Some(support) = &mut self.state.support else {
             return;
         };
@@ -312,7 +312,7 @@ impl Tick<'_> {
             return;
         }
         let angle = libm::acos(face.dot(touch.contact.normal).clamp(-1.0, 1.0));
-        if angle > CORNER {
+        if angle > CORNER_ANGLE {
             self.event(ClimberEvent::TurnedCorner { angle });
         }
     }
@@ -323,7 +323,7 @@ fn projected(wanted: DVec3, normal: DVec3) -> DVec3 {
     let share = wanted.length().min(1.0);
     let along = wanted - normal * wanted.dot(normal);
     // Input straight into the hold does not move the climber: rounding would decide the direction.
-    let fade = (along.length() / (FULL * wanted.length())).min(1.0);
+    let fade = (along.length() / (FULL_SPEED_INPUT * wanted.length())).min(1.0);
     along.normalize_or_zero() * if fade.is_finite() { share * fade } else { 0.0 }
 }
 
@@ -333,7 +333,7 @@ fn projected(wanted: DVec3, normal: DVec3) -> DVec3 {
 /// On walls, the stick is turned with the hold from level ground, so that towards the wall is up. Under ceilings, the
 /// axis of this turn changes from one bump to the next, so the stick's own direction is taken.
 fn pressed(up: DVec3, normal: DVec3, stick: DVec3) -> DVec3 {
-    if normal.dot(up) > CEILING {
+    if normal.dot(up) > CEILING_COSINE {
         turn_to(up, normal) * stick
     } else {
         (stick - normal * stick.dot(normal)).normalize_or_zero()
@@ -347,11 +347,11 @@ fn leads_on(input: &ClimberInput, (held, wish): (DVec3, DVec3), face: DVec3) -> 
         DVec3::ZERO => turn_to(held, face) * wish,
         climb => projected(climb, face),
     };
-    let leads_back = beyond.dot(held) < -AHEAD;
+    let leads_back = beyond.dot(held) < -AHEAD_COSINE;
     if leads_back {
         0.0
     } else {
-        (-face.dot(wish) - AHEAD).max(0.0)
+        (-face.dot(wish) - AHEAD_COSINE).max(0.0)
     }
 }
 

@@ -14,7 +14,7 @@ use crate::config::LedgeConfig;
 use crate::{ClimberEvent, ClimberMode};
 
 /// Speed at which arms draw the body into place below the ledge, radii a second: 3 m/s for a radius of 0.4 m.
-const DRAW: f64 = 7.5;
+const DRAW_SPEED: f64 = 7.5;
 
 /// Distance from its place, as a fraction of the radius, above which a climber is drawn there before it pulls itself
 /// up.
@@ -22,18 +22,18 @@ const OUT_OF_PLACE: f64 = 0.1;
 
 /// Largest distance of the hands to the side of where the body hangs, as a fraction of the radius. At a sharp corner,
 /// hands hold the edge up to 0.45 aside, plus the distance that a hand leans over an edge.
-const BESIDE: f64 = 0.6;
+const MAX_HANDS_ASIDE: f64 = 0.6;
 
 /// Share of the input towards the wall above which the climber pulls itself up. With as much input away from the wall,
 /// it climbs down.
-const UPWARD: f64 = 0.5;
+const PULL_UP_INPUT: f64 = 0.5;
 
 /// Smallest share of the input along the ledge that moves the climber. Less is the rounding of a wall's normal.
-const ASIDE: f64 = 1e-3;
+const LEAST_SHIMMY_INPUT: f64 = 1e-3;
 
 /// Cosine of the largest angle by which a stick that has led the climber around a corner may turn and still lead on: 20
 /// degrees. It is more than a thumb wavers, and less than a player turns the stick to change the direction.
-const HELD: f64 = 0.94;
+const HELD_STICK_COSINE: f64 = 0.94;
 
 /// Memory of a climber that hangs from a ledge.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -129,7 +129,7 @@ impl Tick<'_> {
             wish.up = wish.up.min(0.0);
         }
         let pulls_up = self.is_pulling_up(wish.up);
-        if wish.up < -UPWARD
+        if wish.up < -PULL_UP_INPUT
             && !pulls_up
             && let Some(next) = self.grip_at(carried.position)
         {
@@ -169,8 +169,8 @@ impl Tick<'_> {
         let stick = self.stick();
         let rises = self.input.climb.dot(up);
         let right = &mut self.state.ledge_hanging.right;
-        let is_kept = stick.dot(*right).abs() > HELD * stick.length();
-        if !is_kept || rises.abs() > UPWARD {
+        let is_kept = stick.dot(*right).abs() > HELD_STICK_COSINE * stick.length();
+        if !is_kept || rises.abs() > PULL_UP_INPUT {
             *right = DVec3::ZERO;
         }
         let (over, along) = if *right == DVec3::ZERO {
@@ -178,7 +178,7 @@ impl Tick<'_> {
         } else {
             (rises, stick.dot(*right))
         };
-        let is_aside = along.abs() > ASIDE * stick.length();
+        let is_aside = along.abs() > LEAST_SHIMMY_INPUT * stick.length();
         let along = if is_aside { along } else { 0.0 };
         LedgeWish {
             up: over,
@@ -197,13 +197,13 @@ impl Tick<'_> {
     fn way_to(&self, place: DVec3, position: DVec3) -> DVec3 {
         let side = self.state.heading.cross(self.config.up());
         let way = place - position;
-        let beside = BESIDE * self.config.body.radius;
+        let beside = MAX_HANDS_ASIDE * self.config.body.radius;
         way - side * way.dot(side).clamp(-beside, beside)
     }
 
     /// The part of a displacement that the arms make in a tick.
     fn drawn(&self, way: DVec3) -> DVec3 {
-        way.clamp_length_max(DRAW * self.config.body.radius * self.dt())
+        way.clamp_length_max(DRAW_SPEED * self.config.body.radius * self.dt())
     }
 
     fn is_out_of_place(&self, way: DVec3) -> bool {

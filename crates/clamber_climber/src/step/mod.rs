@@ -39,7 +39,7 @@ use crate::{
     ClimberConfig, ClimberContact, ClimberError, ClimberEvent, ClimberInput, ClimberMode,
     ClimberState, ContactRule, StepReport,
 };
-pub(crate) use carrying::CONTINUOUS;
+pub(crate) use carrying::CONTINUOUS_GAP;
 use carrying::Carried;
 
 /// Maximum number of mode changes in a tick. Further changes follow in the next tick.
@@ -47,7 +47,7 @@ const MOST_CHANGES: u32 = 4;
 
 /// Smallest level part of a direction, as a fraction of its length, for the climber to turn to it. A smaller part is
 /// rounding, for example of the normal of level skin.
-const LEVEL: f64 = 1e-6;
+const LEAST_LEVEL_PART: f64 = 1e-6;
 
 /// Memory that a climber reuses from tick to tick. Only the contacts of the last tick are read later.
 #[derive(Clone, Debug, Default)]
@@ -63,7 +63,7 @@ impl Scratch {
 }
 
 /// Number of contacts for which memory is reserved from the first tick on.
-const CONTACTS: usize = 64;
+const RESERVED_CONTACTS: usize = 64;
 
 /// The arguments of a tick.
 #[derive(Clone, Copy)]
@@ -168,7 +168,7 @@ impl<'a> Tick<'a> {
             DVec3::ZERO
         };
         scratch.contacts.clear();
-        scratch.contacts.reserve(CONTACTS);
+        scratch.contacts.reserve(RESERVED_CONTACTS);
         Ok(Self {
             config,
             input,
@@ -353,7 +353,7 @@ impl<'a> Tick<'a> {
     fn face(&mut self, direction: DVec3) {
         let up = self.config.up();
         let level = direction - up * direction.dot(up);
-        if level.length() > LEVEL * direction.length() {
+        if level.length() > LEAST_LEVEL_PART * direction.length() {
             self.state.heading = level.normalize_or(self.state.heading);
         }
     }

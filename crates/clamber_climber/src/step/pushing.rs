@@ -12,12 +12,12 @@ use crate::event::Push;
 
 /// Acceleration of a support, as a multiple of gravity, up to which it carries all of the climber's weight. From twice
 /// this on, its whole acceleration counts. Physics engines let bodies at rest jitter by a part of this.
-pub(super) const JITTER: f64 = 0.03;
+pub(super) const SUPPORT_JITTER: f64 = 0.03;
 
 /// Largest square of the angle, radians, by which a light hold may swing in a tick under the pull of the arms. A hold
 /// that would swing farther gets less of the pull. At twice this value, the pull, which lags behind by a tick, drives
 /// the swing.
-const STIFFEST: f64 = 0.15;
+const MAX_HOLD_SWING: f64 = 0.15;
 
 impl Tick<'_> {
     /// Gives the climber's support the reaction to an impulse, if the support can be pushed. Without the reaction, a
@@ -211,7 +211,7 @@ impl Tick<'_> {
         let dt = self.dt();
         let length = self.state.hanging.arm.max(self.config.body.radius);
         let stiffness = relative * self.config.gravity.length() * dt * dt / length;
-        let given = -pull * (STIFFEST / stiffness).min(1.0) / (1.0 + relative);
+        let given = -pull * (MAX_HOLD_SWING / stiffness).min(1.0) / (1.0 + relative);
         self.push_support(attachment, given - weight);
     }
 
@@ -314,8 +314,8 @@ impl Tick<'_> {
 
 /// The acceleration of a support, in multiples of gravity, without a solver's possible jitter.
 fn without_jitter(acceleration: f64) -> f64 {
-    let beyond = (acceleration.abs() - JITTER).clamp(0.0, JITTER) * 2.0;
-    if beyond < 2.0 * JITTER {
+    let beyond = (acceleration.abs() - SUPPORT_JITTER).clamp(0.0, SUPPORT_JITTER) * 2.0;
+    if beyond < 2.0 * SUPPORT_JITTER {
         beyond.copysign(acceleration)
     } else {
         acceleration

@@ -10,21 +10,21 @@ use crate::{ClimberEvent, ClimberMode};
 
 /// Distance from the upright position on the material point, as a fraction of the radius, beyond which a climber that
 /// was pushed, at once or over many ticks, looks for new ground.
-const SHOVED: f64 = 0.1;
+const SHOVED_DISTANCE: f64 = 0.1;
 
 /// Speed at which a climber above its material point sinks towards it, radii a second, after an obstacle pushed it up
 /// or it let go of a hold. It stops sinking when its height above the point is at most the margin plus its distance to
 /// the side. It does not go back to the side: the obstacle that pushed it may still be there.
-const SETTLES: f64 = 0.5;
+const SETTLE_SPEED: f64 = 0.5;
 
 /// Depth, as a fraction of its radius, to which a climber may be crushed into its ground and still stands on it.
-const SUNK: f64 = 0.5;
+const MAX_SUNK_DEPTH: f64 = 0.5;
 
 /// Depth to which a walking climber is pressed onto its ground, as a fraction of the margin.
-const PRESS: f64 = 0.5;
+const PRESS_DEPTH: f64 = 0.5;
 
 /// Multiple of the walking speed above which friction brakes the climber; a smaller excess may be rounding.
-const EXCESS: f64 = 1.05;
+const BRAKED_SPEED_FACTOR: f64 = 1.05;
 
 /// Memory of a climber that stands.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -113,7 +113,7 @@ impl Tick<'_> {
         let above = off.dot(carried.normal());
         let aside = (off - carried.normal() * above).length();
         let too_far = (above - aside - self.config.body.margin).max(0.0);
-        let settles = too_far.min(SETTLES * radius * self.dt());
+        let settles = too_far.min(SETTLE_SPEED * radius * self.dt());
         let down = carried.normal() * -settles;
         let path = self.path(carried.position + down);
         // The velocity excludes settling, which neither hits nor pushes obstacles.
@@ -125,8 +125,10 @@ impl Tick<'_> {
         self.state.position = moved.position;
         let apart = moved.position - upright;
         // An obstacle that crushes it into its ground does not push it off.
-        let into = apart.dot(carried.normal()).clamp(-SUNK * radius, 0.0);
-        let is_shoved = (apart - carried.normal() * into).length() > SHOVED * radius;
+        let into = apart
+            .dot(carried.normal())
+            .clamp(-MAX_SUNK_DEPTH * radius, 0.0);
+        let is_shoved = (apart - carried.normal() * into).length() > SHOVED_DISTANCE * radius;
         if is_shoved && moved.missing_room > self.config.body.margin {
             // Crushed away from its ground: the climber does not stand on the obstacle that is below it now.
             self.state.velocity = carried.velocity();
@@ -181,7 +183,7 @@ impl Tick<'_> {
         } else {
             normal
         };
-        let press = onto * (PRESS * self.config.body.margin);
+        let press = onto * (PRESS_DEPTH * self.config.body.margin);
         let target = carried.position + mean * self.dt();
         let path = Path {
             walking: Some(Walking {
@@ -325,7 +327,7 @@ impl Tick<'_> {
         let fastest = ground.walk_speed / self.slowness();
         let wanted = along * (share * fastest);
         let mut own = own - normal * own.dot(normal);
-        let is_fast = own.length() > fastest * EXCESS;
+        let is_fast = own.length() > fastest * BRAKED_SPEED_FACTOR;
         let friction = self.on.usable_friction();
         let mut change = if is_fast || self.state.standing.shoved {
             ground.friction * friction.max(1.0)

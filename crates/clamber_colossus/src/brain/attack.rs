@@ -6,15 +6,15 @@ use super::BrainProblem;
 use super::compile::{check_seconds, out_of_range};
 
 /// The longest flight of a shot, and the longest time in which a wave reaches its radius, seconds.
-const LONGEST: f64 = 60.0;
+const LONGEST_FLIGHT: f64 = 60.0;
 
 /// The largest speed of a shot when it leaves the limb, metres a second. With a larger one, a saved shot could exceed
 /// the 62,000 m/s up to which saved states are accepted.
-const FASTEST: f64 = 1_000.0;
+const FASTEST_SHOT: f64 = 1_000.0;
 
-/// The largest gravity of a shot, metres a second squared. It adds 60,000 m/s in [`LONGEST`] seconds; with more, a
-/// saved shot could exceed the 62,000 m/s up to which saved states are accepted.
-const STRONGEST: f64 = 1_000.0;
+/// The largest gravity of a shot, metres a second squared. It adds 60,000 m/s in [`LONGEST_FLIGHT`] seconds; with more,
+/// a saved shot could exceed the 62,000 m/s up to which saved states are accepted.
+const STRONGEST_GRAVITY: f64 = 1_000.0;
 
 /// A clip in which a limb strikes: with its skin, by a wave from where it comes down, by a shot, by a beam, or by
 /// several of these.
@@ -146,7 +146,7 @@ impl Attack {
         check_seconds("aim", self.aim)?;
         check_seconds("follows", self.follows)?;
         if let Some(wave) = &self.wave {
-            wave.check(&WAVE)?;
+            wave.check(&WAVE_FIELDS)?;
         }
         if let Some(shot) = &self.shot {
             shot.check()?;
@@ -154,7 +154,7 @@ impl Attack {
         if let Some(beam) = &self.beam {
             check_blow(["beam.damage", "beam.throw"], beam.damage, beam.throw)?;
             check_seconds("beam.radius", beam.radius)?;
-            check_above("beam.length", beam.length, 1e6, MILLION)?;
+            check_above("beam.length", beam.length, 1e6, UP_TO_MILLION)?;
         }
         Ok(())
     }
@@ -184,7 +184,7 @@ pub(crate) enum WaveOf {
 type WaveNames = [&'static str; 5];
 
 /// Names of the fields of [`Attack::wave`].
-const WAVE: WaveNames = [
+const WAVE_FIELDS: WaveNames = [
     "wave.radius",
     "wave.speed",
     "wave.height",
@@ -201,7 +201,7 @@ const SHOT_WAVE: WaveNames = [
 ];
 
 /// The range of lengths and speeds up to 1e6, for error messages.
-const MILLION: &str = "more than 0 and at most 1,000,000";
+const UP_TO_MILLION: &str = "more than 0 and at most 1,000,000";
 
 impl Wave {
     pub(crate) fn strikes(&self) -> bool {
@@ -211,15 +211,15 @@ impl Wave {
     fn check(&self, names: &WaveNames) -> Result<(), BrainProblem> {
         let [radius, speed, height, damage, throw] = *names;
         check_blow([damage, throw], self.damage, self.throw)?;
-        check_above(radius, self.radius, 1e6, MILLION)?;
+        check_above(radius, self.radius, 1e6, UP_TO_MILLION)?;
         if let Some(found) = self.speed {
-            check_above(speed, found, 1e6, MILLION)?;
-            if found * LONGEST < self.radius {
+            check_above(speed, found, 1e6, UP_TO_MILLION)?;
+            if found * LONGEST_FLIGHT < self.radius {
                 return Err(out_of_range(speed, "at least its radius / 60", found));
             }
         }
         match self.height {
-            Some(found) => check_above(height, found, 1e6, MILLION),
+            Some(found) => check_above(height, found, 1e6, UP_TO_MILLION),
             None => Ok(()),
         }
     }
@@ -240,14 +240,14 @@ impl Shot {
         check_blow(["shot.damage", "shot.throw"], self.damage, self.throw)?;
         check_seconds("shot.radius", self.radius)?;
         let speeds = "more than 0 and at most 1,000";
-        check_above("shot.speed", self.speed, FASTEST, speeds)?;
+        check_above("shot.speed", self.speed, FASTEST_SHOT, speeds)?;
         check_above(
             "shot.lasts",
             self.lasts,
-            LONGEST,
+            LONGEST_FLIGHT,
             "more than 0 and at most 60",
         )?;
-        if !(0.0..=STRONGEST).contains(&self.gravity) {
+        if !(0.0..=STRONGEST_GRAVITY).contains(&self.gravity) {
             return Err(out_of_range(
                 "shot.gravity",
                 "from 0 to 1,000",

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::condition::Condition;
 use super::locate::{Lines, state_on};
 use super::{
-    After, Brain, BrainError, BrainFile, BrainProblem, FADE, Gaze, MOST_DEPTH, MOST_MOODS,
+    After, Brain, BrainError, BrainFile, BrainProblem, DEFAULT_FADE, Gaze, MOST_DEPTH, MOST_MOODS,
     MOST_REGIONS, MOST_STATES, MOST_TRANSITIONS, MOST_WEIGHT, Mood, State, StateFile, StateId,
     Transition, TransitionFile,
 };
@@ -135,7 +135,7 @@ impl<'a> Compiler<'a> {
             if !is_outer && file.start.is_some() {
                 return Err(here(BrainProblem::Leaf));
             }
-            let fade = file.fade.unwrap_or(FADE);
+            let fade = file.fade.unwrap_or(DEFAULT_FADE);
             let cooldown = file.cooldown.unwrap_or(0.0);
             for (what, found) in [("fade", fade), ("cooldown", cooldown)] {
                 check_seconds(what, found).map_err(here)?;

@@ -52,7 +52,7 @@ const MOST_REGIONS: usize = 64;
 const MOST_WEIGHT: f64 = 1e9;
 
 /// Default time in which an act fades in, seconds.
-const FADE: f64 = 0.6;
+const DEFAULT_FADE: f64 = 0.6;
 
 /// A brain: states, moods, and the transitions between states. It never changes; [`BrainState`] holds all that changes.
 #[derive(Clone, Debug, PartialEq)]
@@ -187,7 +187,7 @@ impl Brain {
 
     /// Seconds in which a state's act fades in.
     pub fn fade(&self, state: StateId) -> f64 {
-        self.state(state).map_or(FADE, |state| state.fade)
+        self.state(state).map_or(DEFAULT_FADE, |state| state.fade)
     }
 
     /// Weak points that a state exposes, by name.

@@ -1,35 +1,111 @@
 //! Moving ground carries a creature: a ship that turns, a lift that rises.
 
-use clamber_world::PointMotion;
+use clamber_surface::geometry::{Similarity, rotation_from_axis_angle};
+use clamber_world::{MaterialPoint, PointMotion};
 use glam::{DQuat, DVec3};
+use serde::{Deserialize, Serialize};
 
-use super::move_on::{LOOKS, SELDOM};
-use super::state::{Drift, GroundPoint, NO_GROUND};
+use super::check_way::{CHECK_INTERVAL, FREE_WAY_FACTOR};
+use super::state::{is_far, is_fast};
 use super::{Creature, Surroundings};
 use crate::angle::nearest_turn;
 use crate::feet::Carried;
 
 /// Ground carries the creature if it is within this distance above or below the creature's origin, as a share of the
 /// creature's height.
-const NEAR: f64 = 0.15;
+const CARRYING_DISTANCE: f64 = 0.15;
 
 /// Distance ahead of the origin, and behind and to both sides of it, at which the motion of the ground is compared with
 /// that below the origin, as a share of the creature's height.
-const BROAD: f64 = 0.12;
+const COMPARED_DISTANCE: f64 = 0.12;
 
 /// Largest difference between these motions for ground that moves as one, as a share of the distance that the ground
 /// moved.
-const ALIKE: f64 = 0.1;
+const ALIKE_MOTION_SHARE: f64 = 0.1;
 
 /// How near the previous position of the remembered ground point must be to the place where it was, as a share of the
 /// creature's height. Farther away, it is another point.
-const SAME: f64 = 1e-6;
+const SAME_POINT_DISTANCE: f64 = 1e-6;
+
+/// The point of the ground that carries a creature, and its motion in the last tick.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct MovingGround {
+    /// The remembered point of the ground, whose motion carries the creature.
+    point: Option<GroundPoint>,
+    /// How the ground carried the creature in the last tick.
+    drift: Drift,
+}
+
+/// A point of the ground.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+struct GroundPoint {
+    /// Index of the obstacle in the terrain of the last step.
+    obstacle: u32,
+    /// Number of obstacles in that terrain.
+    among: u32,
+    material: MaterialPoint,
+    /// Position of the point at the end of the last step, in world space.
+    at: DVec3,
+}
+
+/// Velocity with which moving ground carries a creature.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct Drift {
+    /// Metres a second, in world space.
+    velocity: DVec3,
+    /// Radians a second, positive to the left.
+    yaw_rate: f64,
+}
+
+impl MovingGround {
+    /// Where a place is after some seconds if the ground goes on as in the last tick; the creature is at `origin`.
+    pub(super) fn carry(&self, place: Similarity, origin: DVec3, seconds: f64) -> Similarity {
+        self.drift.carry(place, origin, seconds)
+    }
+
+    /// True if the point and its motion are numbers that a creature reaches.
+    pub(super) fn is_within_range(&self) -> bool {
+        let drift = &self.drift;
+        !self.point.is_some_and(|point| is_far(point.at))
+            && !is_fast(drift.yaw_rate)
+            && !is_fast(drift.velocity.length())
+    }
+}
+
+impl Drift {
+    /// Where a place is after some seconds if it moves with ground that drifts like this at `origin`: on a circle, if
+    /// the ground turns.
+    fn carry(&self, place: Similarity, origin: DVec3, seconds: f64) -> Similarity {
+        if *self == Self::default() {
+            return place;
+        }
+        let angle = self.yaw_rate * seconds;
+        let half = 0.5 * angle;
+        // Length of an arc's chord relative to the arc.
+        let chord = if half == 0.0 {
+            1.0
+        } else {
+            libm::sin(half) / half
+        };
+        let way = rotation_from_axis_angle(DVec3::Y, half) * self.velocity.with_y(0.0) * chord;
+        let way = way.with_y(self.velocity.y) * seconds;
+        let turn = rotation_from_axis_angle(DVec3::Y, angle);
+        Similarity {
+            rotation: turn * place.rotation,
+            translation: origin + way + turn * (place.translation - origin),
+            ..place
+        }
+    }
+}
 
 impl Creature {
     /// Moves the creature with the ground, by the ground's motion in this tick: position and heading, feet, and the
     /// places that the creature knows. Returns true if the ground carried it.
     pub(super) fn be_carried(&mut self, around: &Surroundings<'_>, dt: f64) -> bool {
-        let went = std::mem::take(&mut self.state.carried).velocity.length() * dt;
+        let went = std::mem::take(&mut self.state.moving_ground.drift)
+            .velocity
+            .length()
+            * dt;
         let Some(motion) = self.ground_motion(around, dt, went) else {
             return false;
         };
@@ -43,38 +119,24 @@ impl Creature {
             return false;
         }
         let state = &mut self.state;
-        let before = state.position;
-        state.position = carried.place(before);
-        state.carried = Drift {
-            velocity: (state.position - before) / dt,
+        let before = state.position();
+        // The stored ground heights rise with the ground.
+        let rise = motion.position.y - motion.previous_position.y;
+        state.on_ground.be_carried(&carried, rise);
+        state.moving_ground.drift = Drift {
+            velocity: (state.position() - before) / dt,
             yaw_rate: carried.yaw / dt,
         };
-        // These places may be far away: the ground's yaw turns them, but not its pitch and roll.
-        let known = [&mut state.home, &mut state.patrol, &mut state.noise];
-        let prey = state.prey.iter_mut().map(|(_, place)| place);
-        let known = known.into_iter().chain(prey);
-        let walked = &mut state.walked;
-        let way = walked.corners.iter_mut().chain([&mut walked.stuck_at]);
-        for place in known.chain(way) {
-            *place = carried.level_place(*place);
-        }
-        state.gaze.value = carried.place(state.gaze.value);
-        state.gaze.velocity = carried.vector(state.gaze.velocity);
-        state.aim = carried.vector(state.aim);
-        let lean = &mut state.lean.spring;
-        (lean.value, lean.velocity) = (carried.vector(lean.value), carried.vector(lean.velocity));
+        state.motion.turn_by(carried.yaw);
+        state.territory.be_carried(&carried);
+        state.perceived.be_carried(&carried);
+        state.walked.be_carried(&carried);
+        state.head.be_carried(&carried);
+        state.striking.be_carried(&carried);
         state.ranged.be_carried(&carried);
-        state.yaw = nearest_turn(state.yaw + carried.yaw);
         state.hips.turn(&carried);
         for foot in &mut state.feet {
             foot.be_carried(&carried);
-        }
-        // The stored ground heights rise with the ground.
-        let rise = motion.position.y - motion.previous_position.y;
-        for level in &mut state.ground {
-            if *level < NO_GROUND {
-                *level += rise;
-            }
         }
         true
     }
@@ -90,13 +152,17 @@ impl Creature {
         dt: f64,
         went: f64,
     ) -> Option<PointMotion> {
-        let often = if self.state.speed != 0.0 { 1 } else { SELDOM };
-        let looks = self.state.ticks.is_multiple_of(often * LOOKS);
+        let often = if self.state.speed() != 0.0 {
+            1
+        } else {
+            FREE_WAY_FACTOR
+        };
+        let looks = self.state.ticks().is_multiple_of(often * CHECK_INTERVAL);
         let among = around.terrain.len() as u32;
-        let known = self.state.stands_on.take();
+        let known = self.state.moving_ground.point.take();
         // When the ray found the point, the ground had already moved in that tick, but the creature had not.
-        let reach = 2.0 * NEAR * self.size.height + went;
-        let is_near = |point: &GroundPoint| point.at.distance(self.state.position) <= reach;
+        let reach = 2.0 * CARRYING_DISTANCE * self.size.height + went;
+        let is_near = |point: &GroundPoint| point.at.distance(self.state.position()) <= reach;
         let known = known.filter(|point| point.among == among && is_near(point));
         let found = if looks || known.is_none() {
             self.ground_point(around)
@@ -111,12 +177,12 @@ impl Creature {
             obstacle.is_some_and(|obstacle| obstacle.rests(&point.material))
         };
         if rests(&point) {
-            self.state.stands_on = Some(point);
+            self.state.moving_ground.point = Some(point);
             return None;
         }
         let mut motion = point_motion(around, &point, dt);
         let is_it = motion.as_ref().is_some_and(|motion| {
-            motion.previous_position.distance(point.at) <= SAME * self.size.height
+            motion.previous_position.distance(point.at) <= SAME_POINT_DISTANCE * self.size.height
         });
         if known.is_some() && !is_it {
             // The index now belongs to another obstacle.
@@ -125,25 +191,25 @@ impl Creature {
         }
         let motion = motion.filter(PointMotion::is_finite)?;
         let at = motion.position;
-        self.state.stands_on = Some(GroundPoint { at, ..point });
+        self.state.moving_ground.point = Some(GroundPoint { at, ..point });
         let moves = at != motion.previous_position || motion.turn != DQuat::IDENTITY;
         (moves && !motion.placed).then_some(motion)
     }
 
     /// The point of the ground below the creature.
     fn ground_point(&self, around: &Surroundings<'_>) -> Option<GroundPoint> {
-        self.ground_point_at(around, self.state.position)
+        self.ground_point_at(around, self.state.position())
     }
 
     /// True if the ground moves the same way ahead of the creature and behind it on both sides, wherever there is
     /// ground. This tells a ship from a rock that rolls between the feet.
     fn is_broad(&self, carried: &Carried, around: &Surroundings<'_>, dt: f64) -> bool {
-        let ahead = self.state.heading() * (BROAD * self.size.height);
+        let ahead = self.state.heading() * (COMPARED_DISTANCE * self.size.height);
         let left = DVec3::new(ahead.z, 0.0, -ahead.x);
         [ahead, left - ahead, -left - ahead]
             .into_iter()
             .all(|aside| {
-                let place = self.state.position + aside;
+                let place = self.state.position() + aside;
                 let Some(point) = self.ground_point_at(around, place) else {
                     return true;
                 };
@@ -151,13 +217,14 @@ impl Creature {
                 motion.is_some_and(|motion| {
                     let alike = carried.place(motion.previous_position);
                     let moved = carried.to.distance(carried.from);
-                    alike.distance(motion.position) <= ALIKE * (moved + self.size.height * 1e-3)
+                    alike.distance(motion.position)
+                        <= ALIKE_MOTION_SHARE * (moved + self.size.height * 1e-3)
                 })
             })
     }
 
     fn ground_point_at(&self, around: &Surroundings<'_>, place: DVec3) -> Option<GroundPoint> {
-        let reach = NEAR * self.size.height;
+        let reach = CARRYING_DISTANCE * self.size.height;
         let from = place + DVec3::Y * reach;
         let among = around.terrain.len() as u32;
         let hits = (0..).zip(around.terrain).filter_map(|(obstacle, terrain)| {

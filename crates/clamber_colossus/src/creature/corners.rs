@@ -4,46 +4,47 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 use pathfinding::directed::astar::astar;
+use serde::{Deserialize, Serialize};
 
-use super::state::Wide;
 use super::way::Way;
 use super::{Creature, Surroundings};
+use crate::feet::Carried;
 use crate::kind::{Extent, Extents};
 
 /// Width of the grid's cells, as a share of the creature's height.
-const CELL: f64 = 0.35;
+const CELL_WIDTH: f64 = 0.35;
 
 /// Number of steps between cells that a search tries at most. It bounds the time of a search.
 const MOST_STEPS: usize = 500;
 
 /// Straight lines are checked in pieces of this length, as a share of the creature's height.
-const PIECE: f64 = 1.0;
+const LINE_PIECE_LENGTH: f64 = 1.0;
 
 /// Straight lines are checked up to this distance, in heights. The creature knows no obstacles farther away.
-const FARTHEST: f64 = 16.0;
+const FARTHEST_LINE: f64 = 16.0;
 
 /// A shortcut along the path leads fewer than this many places ahead.
-const SKIPPED: usize = 12;
+const MOST_SKIPPED: usize = 12;
 
 /// Distance from both ends of a wide way within which it may be narrow, in heights. It is at least the distance of the
 /// body's outermost corner from the origin.
-const NEAR: f64 = 1.2;
+const NARROW_END_DISTANCE: f64 = 1.2;
 
 /// Distance within which the creature has passed a corner, as a share of its height.
-const PASSED: f64 = 0.12;
+const PASSED_DISTANCE: f64 = 0.12;
 
-/// Time until the next search after one that found corners, seconds for a creature of `GIANT` height.
-const ANEW: f64 = 1.0;
+/// Time until the next search after one that found corners, seconds for a creature of `GIANT_HEIGHT`.
+const WAIT_AFTER_CORNERS: f64 = 1.0;
 
-/// Time until the next search after one that found the straight line free, seconds for a creature of `GIANT` height.
-const FAR: f64 = 4.0;
+/// Time until the next search after one that found the straight line free, seconds for a creature of `GIANT_HEIGHT`.
+const WAIT_AFTER_FREE_LINE: f64 = 4.0;
 
-/// Time until the next search after one that found no way, seconds for a creature of `GIANT` height. It doubles with
+/// Time until the next search after one that found no way, seconds for a creature of `GIANT_HEIGHT`. It doubles with
 /// each failure in a row, up to eight times this.
-const AGAIN: f64 = 4.0;
+const WAIT_AFTER_FAILURE: f64 = 4.0;
 
 /// Shortest time until the next search, seconds. It applies to small creatures.
-const LEAST: f64 = 0.5;
+const SHORTEST_WAIT: f64 = 0.5;
 
 /// A place on the grid: steps from the creature's place along X and Z, and how much higher the ground is there, in
 /// thousandths of the creature's height. The height distinguishes storeys.
@@ -51,22 +52,84 @@ type Cell = [i32; 3];
 
 /// Offsets to the four neighbours of a cell, in order around it. A step to one neighbour and a step in the direction of
 /// the next one lead to the diagonal cell between both.
-const SIDES: [[i32; 2]; 4] = [[1, 0], [0, 1], [-1, 0], [0, -1]];
+const NEIGHBOUR_OFFSETS: [[i32; 2]; 4] = [[1, 0], [0, 1], [-1, 0], [0, -1]];
 
 /// Cost of a step to a neighbour.
-const STEP: u32 = 10;
+const STRAIGHT_STEP_COST: u32 = 10;
 
-/// Cost of a diagonal step: about `STEP` times the square root of 2.
-const ACROSS: u32 = 14;
+/// Cost of a diagonal step: about `STRAIGHT_STEP_COST` times the square root of 2.
+const DIAGONAL_STEP_COST: u32 = 14;
 
 /// Largest difference between the ground heights at the end of both ways round to a diagonal cell, in thousandths of
 /// the creature's height. With more, the ways lead to different storeys, and there is no diagonal step.
 const SAME_STOREY: i32 = 100;
 
+/// Most corners of a way in a restored state.
+const MOST_CORNERS: usize = 512;
+
+/// The corners of a way, and when the creature searches for them again.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Corners {
+    /// Corners on the way to the goal, the next one first; empty if the way is straight.
+    places: Vec<DVec3>,
+    /// Ticks until the next search for corners.
+    ticks_left: u32,
+    /// Number of searches in a row that found no way.
+    failed: u32,
+}
+
+impl Corners {
+    /// The next corner; `None` if the way is straight.
+    pub(super) fn next(&self) -> Option<DVec3> {
+        self.places.first().copied()
+    }
+
+    /// True if the last search found no way.
+    pub(super) fn has_failed(&self) -> bool {
+        self.failed != 0
+    }
+
+    /// No corners, with the same time until the next search.
+    pub(super) fn forgotten(&self) -> Self {
+        Self {
+            places: Vec::new(),
+            ..*self
+        }
+    }
+
+    /// Removes the next corner.
+    pub(super) fn skip(&mut self) {
+        self.places.remove(0);
+    }
+
+    /// Makes a search due now.
+    pub(super) fn search_now(&mut self) {
+        self.ticks_left = 0;
+    }
+
+    /// Counts a tick of the time until the next search.
+    pub(super) fn wait(&mut self) {
+        self.ticks_left = self.ticks_left.saturating_sub(1);
+    }
+
+    /// Moves the corners with the ground that carries the creature.
+    pub(super) fn be_carried(&mut self, carried: &Carried) {
+        for place in &mut self.places {
+            *place = carried.level_place(*place);
+        }
+    }
+
+    /// True if all numbers are within the range that a creature reaches.
+    pub(super) fn is_within(&self, most: f64) -> bool {
+        let mut numbers = self.places.iter().flat_map(|corner| corner.to_array());
+        self.places.len() <= MOST_CORNERS && numbers.all(|number| number.abs() <= most)
+    }
+}
+
 impl Creature {
     /// Searches for the corners of the way to the goal, if a search is due.
     pub(super) fn find_corners(&mut self, around: &Surroundings<'_>, way: &Way) {
-        if self.state.walked.ticks_left > 0 {
+        if self.state.walked.corners.ticks_left > 0 {
             return;
         }
         let kind = std::sync::Arc::clone(&self.kind);
@@ -81,61 +144,62 @@ impl Creature {
             near: 0.0,
         };
         let mut found = None;
-        if self.state.walked.wide == Wide::Looks {
+        if self.state.walked.retreats.looks_for_wide_way() {
             let stout = on_spot.stout().and(&slim);
             let wide = Width {
                 stout: Some(&stout),
-                near: (NEAR * self.size.height).max(on_spot.farthest() * self.size.scale),
+                near: (NARROW_END_DISTANCE * self.size.height)
+                    .max(on_spot.farthest() * self.size.scale),
                 ..narrow
             };
             found = self.corners(around, &wide, way);
             if found.is_none() {
-                self.state.walked.wide = Wide::Failed;
+                self.state.walked.retreats.fail_wide_way();
             }
         }
         let found = found.or_else(|| self.corners(around, &narrow, way));
-        let walked = &mut self.state.walked;
-        walked.failed = match found {
+        let corners = &mut self.state.walked.corners;
+        corners.failed = match found {
             Some(_) => 0,
-            None => walked.failed.saturating_add(1),
+            None => corners.failed.saturating_add(1),
         };
         // Wait longer after each failure: a failed search is expensive, since it has tried all cells that it can reach.
-        walked.corners = found.unwrap_or_default();
-        let seconds = match (walked.failed, walked.corners.is_empty()) {
-            (0, true) => FAR,
-            (0, false) => ANEW,
-            (failed, _) => AGAIN * f64::from(1u32 << (failed - 1).min(3)),
+        corners.places = found.unwrap_or_default();
+        let seconds = match (corners.failed, corners.places.is_empty()) {
+            (0, true) => WAIT_AFTER_FREE_LINE,
+            (0, false) => WAIT_AFTER_CORNERS,
+            (failed, _) => WAIT_AFTER_FAILURE * f64::from(1u32 << (failed - 1).min(3)),
         };
-        self.state.walked.ticks_left = self.ticks_of(seconds);
+        self.state.walked.corners.ticks_left = self.ticks_of(seconds);
     }
 
     /// Removes the next corners that the creature has reached.
     pub(super) fn pass_corners(&mut self) {
-        let passed = PASSED * self.size.height;
-        let position = self.state.position;
+        let passed = PASSED_DISTANCE * self.size.height;
+        let position = self.state.position();
         let is_there = |corner: &DVec3| (*corner - position).with_y(0.0).length() < passed;
-        let corners = &mut self.state.walked.corners;
+        let corners = &mut self.state.walked.corners.places;
         let count = corners.iter().take_while(|corner| is_there(corner)).count();
         corners.drain(..count);
     }
 
     /// Brings the next search forward because of an obstacle ahead, unless the last search found no way.
     pub(super) fn doubt_corners(&mut self) {
-        if self.state.walked.failed == 0 {
+        if !self.state.walked.corners.has_failed() {
             self.look_soon();
         }
     }
 
-    /// Brings the next search forward to `ANEW` from now, if it is not due sooner.
+    /// Brings the next search forward to `WAIT_AFTER_CORNERS` from now, if it is not due sooner.
     pub(super) fn look_soon(&mut self) {
-        let soon = self.ticks_of(ANEW);
-        let walked = &mut self.state.walked;
-        walked.ticks_left = walked.ticks_left.min(soon);
+        let soon = self.ticks_of(WAIT_AFTER_CORNERS);
+        let corners = &mut self.state.walked.corners;
+        corners.ticks_left = corners.ticks_left.min(soon);
     }
 
-    /// Converts seconds for a creature of `GIANT` height to ticks of this one.
+    /// Converts seconds for a creature of `GIANT_HEIGHT` to ticks of this one.
     fn ticks_of(&self, seconds: f64) -> u32 {
-        let seconds = (seconds * self.size.pace).max(LEAST);
+        let seconds = (seconds * self.size.pace).max(SHORTEST_WAIT);
         (seconds / self.kind.brain().tick()).clamp(1.0, 1e6) as u32
     }
 
@@ -146,17 +210,17 @@ impl Creature {
         width: &Width<'_>,
         way: &Way,
     ) -> Option<Vec<DVec3>> {
-        let start = self.state.position;
+        let start = self.state.position();
         let end = |from: DVec3| {
             let to = (way.goal - from).with_y(0.0);
-            let left = (to.length() - way.within).clamp(0.0, FARTHEST * self.size.height);
+            let left = (to.length() - way.within).clamp(0.0, FARTHEST_LINE * self.size.height);
             from + to.normalize_or_zero() * left
         };
         if self.passes(around, width, start, end(start)).is_some() {
             return Some(Vec::new());
         }
         // The known corners are kept as long as the way along them is free.
-        let known = &self.state.walked.corners;
+        let known = &self.state.walked.corners.places;
         if let Some(last) = known.last() {
             let from = core::iter::once(start).chain(known.iter().copied());
             let to = known.iter().copied().chain([end(*last)]);
@@ -170,7 +234,7 @@ impl Creature {
             around,
             width,
             start,
-            cell: CELL * self.size.height,
+            cell: CELL_WIDTH * self.size.height,
         };
         let places = grid.search(way)?;
         // Leave out places wherever the straight line past them is free.
@@ -181,7 +245,7 @@ impl Creature {
                 let [from, to] = [places[index], places[*next]];
                 self.passes(around, width, from, to).is_some()
             };
-            let far = places.len().min(index + SKIPPED);
+            let far = places.len().min(index + MOST_SKIPPED);
             let far = (index + 2..far).rev().find(passes);
             index = far.unwrap_or(index + 1);
             corners.push(places[index]);
@@ -199,10 +263,10 @@ impl Creature {
     ) -> Option<f64> {
         let way = (to - from).with_y(0.0);
         let heights = way.length() / self.size.height;
-        if heights.is_nan() || heights > 2.0 * FARTHEST {
+        if heights.is_nan() || heights > 2.0 * FARTHEST_LINE {
             return None;
         }
-        let pieces = (heights / PIECE).ceil().max(1.0);
+        let pieces = (heights / LINE_PIECE_LENGTH).ceil().max(1.0);
         let step = way / pieces;
         let mut origin = from;
         for _ in 0..pieces as u32 {
@@ -220,7 +284,7 @@ impl Creature {
         let is_far = |from: DVec3| (place - from).with_y(0.0).length() > width.near;
         let stout = width
             .stout
-            .filter(|_| is_far(self.state.position) && is_far(width.goal));
+            .filter(|_| is_far(self.state.position()) && is_far(width.goal));
         stout.unwrap_or(width.slim)
     }
 }
@@ -255,7 +319,7 @@ impl Grid<'_> {
         let is_there = |at: &Cell| to_goal(at) <= way.within.max(0.75 * self.cell);
         let guess = |at: &Cell| {
             let left = (to_goal(at) - way.within).max(0.0) / self.cell;
-            (f64::from(STEP) * left).min(1e9) as u32
+            (f64::from(STRAIGHT_STEP_COST) * left).min(1e9) as u32
         };
         let mut known = Known::default();
         let next = |at: &Cell| {
@@ -263,14 +327,14 @@ impl Grid<'_> {
             let sides: [Option<Cell>; 4] =
                 core::array::from_fn(|side| self.beside(*at, side, &mut known));
             for side in 0..4 {
-                reached.extend(sides[side].map(|to| (to, STEP)));
+                reached.extend(sides[side].map(|to| (to, STRAIGHT_STEP_COST)));
                 let other = (side + 1) % 4;
                 if let (Some(a), Some(b)) = (sides[side], sides[other])
                     && let Some(to) = self.beside(a, other, &mut known)
                     && let Some(same) = self.beside(b, side, &mut known)
                     && (to[2] - same[2]).abs() <= SAME_STOREY
                 {
-                    reached.push((to, ACROSS));
+                    reached.push((to, DIAGONAL_STEP_COST));
                 }
             }
             reached
@@ -288,9 +352,12 @@ impl Grid<'_> {
             return None;
         }
         known.tried += 1;
-        let [x, z] = SIDES[side];
+        let [x, z] = NEIGHBOUR_OFFSETS[side];
         let to = self.place([at[0] + x, at[1] + z, 0]);
-        let (home, is_sent) = (self.creature.state.home, self.creature.sent_to().is_some());
+        let (home, is_sent) = (
+            self.creature.state.territory.home(),
+            self.creature.sent_to().is_some(),
+        );
         let far = |place: DVec3| (place - home).with_y(0.0).length();
         // A creature that was sent may leave its arena.
         let is_inside = is_sent || far(to) <= self.creature.config.arena.max(far(self.start));

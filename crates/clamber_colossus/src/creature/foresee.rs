@@ -6,13 +6,13 @@ use clamber_surface::geometry::{Similarity, rotation_from_axis_angle};
 use glam::DVec3;
 
 use super::Creature;
+use super::clips::Playing;
 use super::course::Course;
-use super::state::{Drift, Playing};
 use crate::error::ColossusError;
 
-/// Time step of a prediction, seconds for a creature of `GIANT` height. Steps are longer if a prediction would need
+/// Time step of a prediction, seconds for a creature of `GIANT_HEIGHT`. Steps are longer if a prediction would need
 /// more than `MOST_STEPS`.
-const STEP: f64 = 0.1;
+const PREDICTION_STEP: f64 = 0.1;
 
 /// Most steps of a prediction.
 const MOST_STEPS: f64 = 100.0;
@@ -46,16 +46,16 @@ impl Creature {
         let (kind, state) = (&self.kind, &self.state);
         let animator = memory
             .animator
-            .get_or_insert_with(|| state.animator.clone());
-        animator.clone_from(&state.animator);
+            .get_or_insert_with(|| state.animator().clone());
+        animator.clone_from(state.animator());
         memory.events.clear();
         let mut course = Course::of(state);
         // The creature looks again before it has used up the free turn, so this is a limit only if the creature is
         // blocked. The free distance is a limit only if it was measured, which needs the goal ahead.
-        if !state.walked.is_blocked {
+        if !state.walked.progress.is_blocked() {
             course.turn = None;
         }
-        if !state.walked.faces {
+        if !state.walked.free.faces() {
             course.ahead = f64::INFINITY;
         }
         let way = self.current_way();
@@ -64,7 +64,7 @@ impl Creature {
             // Returns the error.
             animator.advance(kind.clips(), seconds, &mut memory.events)?;
         }
-        let step = STEP * self.size.pace.max(1e-3);
+        let step = PREDICTION_STEP * self.size.pace.max(1e-3);
         let steps = (seconds / step).ceil().clamp(1.0, MOST_STEPS);
         let dt = seconds / steps;
         for _ in 0..steps as u32 {
@@ -83,10 +83,10 @@ impl Creature {
                 (course.position, course.yaw) = (position, yaw);
                 course.ahead -= speed * dt;
                 course.back = (course.back + speed.min(0.0) * dt).max(0.0);
-                let sleeps = self.is_put_to_sleep() && state.playing == Playing::Idle;
-                let plays = !matches!(state.playing, Playing::Act(_)) && !sleeps;
+                let sleeps = self.is_put_to_sleep() && state.clips.playing() == Playing::Idle;
+                let plays = !matches!(state.clips.playing(), Playing::Act(_)) && !sleeps;
                 if let Some(layer) = animator.layers_mut().first_mut().filter(|_| plays) {
-                    layer.speed = self.clip_speed(gait, state.playing, &course);
+                    layer.speed = self.clip_speed(gait, state.clips.playing(), &course);
                 }
             }
             let step = animator.advance(kind.clips(), dt, &mut memory.events)?;
@@ -99,40 +99,14 @@ impl Creature {
         let by_clips = (now.rotation * moved.translation) * scale;
         let translation = course.position + by_clips;
         let turn = rotation_from_axis_angle(DVec3::Y, course.yaw + moved.yaw);
-        Ok(self.state.carried.carry(
+        Ok(state.moving_ground.carry(
             Similarity {
                 translation,
                 rotation: turn,
                 ..now
             },
-            state.position,
+            state.position(),
             seconds,
         ))
-    }
-}
-
-impl Drift {
-    /// Where a place is after some seconds if it moves with ground that drifts like this at `origin`: on a circle, if
-    /// the ground turns.
-    fn carry(&self, place: Similarity, origin: DVec3, seconds: f64) -> Similarity {
-        if *self == Self::default() {
-            return place;
-        }
-        let angle = self.yaw_rate * seconds;
-        let half = 0.5 * angle;
-        // Length of an arc's chord relative to the arc.
-        let chord = if half == 0.0 {
-            1.0
-        } else {
-            libm::sin(half) / half
-        };
-        let way = rotation_from_axis_angle(DVec3::Y, half) * self.velocity.with_y(0.0) * chord;
-        let way = way.with_y(self.velocity.y) * seconds;
-        let turn = rotation_from_axis_angle(DVec3::Y, angle);
-        Similarity {
-            rotation: turn * place.rotation,
-            translation: origin + way + turn * (place.translation - origin),
-            ..place
-        }
     }
 }

@@ -8,19 +8,19 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use super::Creature;
+use super::clips::Playing;
 use super::legs::PutLeg;
-use super::state::Playing;
 use crate::feet::Carried;
 
 /// Largest vertical acceleration of the hips, metres a second squared. Riders feel it in addition to the acceleration
 /// from following the ground.
-const DROPS: f64 = 0.4;
+const MAX_DROP_ACCELERATION: f64 = 0.4;
 
 /// Largest horizontal acceleration of the hips along each axis, metres a second squared. Riders feel it, too.
-const SHIFTS: f64 = 0.4;
+const MAX_SHIFT_ACCELERATION: f64 = 0.4;
 
 /// Largest distance from hip to ankle, as a share of the leg's length.
-const STRETCH: f64 = 0.985;
+const MAX_LEG_STRETCH: f64 = 0.985;
 
 /// Largest drop of the hips, as a share of the leg's length.
 const MOST_DROP: f64 = 0.35;
@@ -29,16 +29,16 @@ const MOST_DROP: f64 = 0.35;
 /// tangent.
 const SLOPE_DROP: f64 = 0.32;
 
-/// Half time in which the hips rise again once they need not be low, seconds for a creature of `GIANT` height. It is
+/// Half time in which the hips rise again once they need not be low, seconds for a creature of `GIANT_HEIGHT`. It is
 /// longer than a step.
-const RISES: f64 = 3.0;
+const RISE_HALF_TIME: f64 = 3.0;
 
 /// How far the hips shift towards the standing foot before the other foot steps, as a share of the horizontal vector
 /// from that leg's hip to the ball of its foot.
-const SHIFT: f64 = 0.35;
+const SHIFT_SHARE: f64 = 0.35;
 
 /// Share of this shift after which the other foot may step.
-const SHIFTED: f64 = 0.7;
+const SHIFTED_ENOUGH_SHARE: f64 = 0.7;
 
 /// Angular frequency of the tremor after an impact for a leg of 1 m, radians a second. It falls with the square root of
 /// the leg's length.
@@ -111,7 +111,7 @@ impl Hips {
             let (value, velocity) = approach(
                 [self.offset[axis], self.velocity[axis]],
                 to[axis],
-                [most[axis], NEARS],
+                [most[axis], APPROACH_RATE],
                 dt,
             );
             (self.offset[axis], self.velocity[axis]) = (value, velocity);
@@ -120,7 +120,7 @@ impl Hips {
 }
 
 /// Largest speed near a goal, as a share of the remaining distance in a second.
-pub(super) const NEARS: f64 = 2.0;
+pub(super) const APPROACH_RATE: f64 = 2.0;
 
 /// Moves a number towards a goal with an acceleration of at most `most`. The speed is at most the speed from which it
 /// can still stop at the goal, and at most `nears` times the remaining distance a second. Returns the number and its
@@ -149,13 +149,13 @@ impl Creature {
         let scale = world.scale;
         let length = legs.iter().map(|leg| leg.reach).fold(0.0, f64::max) * scale;
         let before = self.state.hips.drop;
-        let steep = SLOPE_DROP * self.state.steepness * length;
+        let steep = SLOPE_DROP * self.state.motion.steepness() * length;
         let needed = (legs.iter().map(drop_of).fold(0.0, f64::max) * scale).max(steep);
         // The hips rise slowly, so that they do not bob with each step. They do not rise at all unless the creature
         // walks or turns: a clip that made the legs too short once does so again in each round.
-        let moves = matches!(self.state.playing, Playing::Walk | Playing::Turn(_));
+        let moves = matches!(self.state.clips.playing(), Playing::Walk | Playing::Turn(_));
         let rises = if moves {
-            RISES * self.size.pace.max(1e-3)
+            RISE_HALF_TIME * self.size.pace.max(1e-3)
         } else {
             f64::INFINITY
         };
@@ -174,20 +174,26 @@ impl Creature {
                 waits = true;
                 let level = world.transform_vector(leg.ball - leg.hip);
                 // Only a share of the way, since the hips are between the two legs.
-                shift = DVec3::new(level.x, 0.0, level.z) * SHIFT;
+                shift = DVec3::new(level.x, 0.0, level.z) * SHIFT_SHARE;
             }
         }
         to += shift;
-        if self.state.ticks <= 1 {
+        if self.state.clock.is_first() {
             // The creature was just placed.
             self.state.hips.offset = to;
         }
-        self.state
-            .hips
-            .go(to, DVec3::new(SHIFTS, DROPS, SHIFTS), dt);
+        self.state.hips.go(
+            to,
+            DVec3::new(
+                MAX_SHIFT_ACCELERATION,
+                MAX_DROP_ACCELERATION,
+                MAX_SHIFT_ACCELERATION,
+            ),
+            dt,
+        );
         let at = self.state.hips.offset;
         let left = DVec3::new(at.x - shift.x, 0.0, at.z - shift.z).length();
-        self.state.hips.waits = waits && left > (1.0 - SHIFTED) * shift.length();
+        self.state.hips.waits = waits && left > (1.0 - SHIFTED_ENOUGH_SHARE) * shift.length();
         let rate = TREMOR_RATE / length.max(1e-3).sqrt();
         self.tremble(rate);
         self.state.hips.ring(rate, dt);
@@ -225,7 +231,7 @@ impl Creature {
 /// How far a leg's hip has to drop so that the leg reaches its ankle, in the model's units.
 fn drop_of(leg: &PutLeg) -> f64 {
     let way = leg.hip - leg.ankle;
-    let reach = STRETCH * leg.reach;
+    let reach = MAX_LEG_STRETCH * leg.reach;
     let level = (way.x * way.x + way.z * way.z).min(reach * reach);
     way.y - (reach * reach - level).sqrt()
 }

@@ -3,10 +3,142 @@
 use clamber_surface::mesh::TriangleId;
 use clamber_world::MaterialPoint;
 use glam::DVec3;
+use serde::{Deserialize, Serialize};
 
 use super::report::CreatureEvent;
-use super::state::Felt;
 use super::{Creature, Wound};
+use crate::kind::{CreatureKind, Plate};
+
+/// The damage to a creature, and the wounds and events that the next step senses and reports.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Damage {
+    /// Hit points left of each weak point.
+    hit_points: Vec<f64>,
+    /// State of each plate.
+    plates: Vec<PlateState>,
+    /// Plates that staggered since the last step.
+    staggered: u32,
+    /// Events since the last step, for the next report.
+    told: Vec<CreatureEvent>,
+    /// Wounds since the last step.
+    wounds: Vec<Felt>,
+}
+
+/// State of a plate.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+struct PlateState {
+    /// Damage since the last stagger.
+    strain: f64,
+    /// Number of staggers until the plate breaks; 0 if it is broken.
+    left: u32,
+}
+
+/// A hit on the creature: the joint of the skin, and the damage done.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Felt {
+    pub(super) joint: u32,
+    pub(super) damage: f64,
+}
+
+impl Damage {
+    /// All weak points and plates of a new creature.
+    pub(super) fn none(kind: &CreatureKind) -> Self {
+        let points = kind.weak_points().iter();
+        let plates = kind.plates().iter();
+        Self {
+            hit_points: points.map(|point| point.hit_points).collect(),
+            plates: plates
+                .map(|plate| PlateState {
+                    strain: 0.0,
+                    left: plate.count,
+                })
+                .collect(),
+            staggered: 0,
+            told: Vec::new(),
+            wounds: Vec::new(),
+        }
+    }
+
+    /// The same damage to a creature of the kind `to`, whose weak points and plates are matched by name.
+    pub(super) fn carry_over(&self, from: &CreatureKind, to: &CreatureKind) -> Self {
+        let fresh = Self::none(to);
+        let mut told = self.told.clone();
+        // The ids of states differ between brains.
+        told.retain(|event| !matches!(event, CreatureEvent::Entered { .. }));
+        Self {
+            hit_points: kept(
+                (from.weak_points(), to.weak_points()),
+                |point| point.name.as_str(),
+                &self.hit_points,
+                fresh.hit_points,
+                |left, most| left.min(most),
+            ),
+            plates: kept(
+                (from.plates(), to.plates()),
+                |plate| plate.name.as_str(),
+                &self.plates,
+                fresh.plates,
+                |had, fresh| PlateState {
+                    left: had.left.min(fresh.left),
+                    ..had
+                },
+            ),
+            staggered: self.staggered,
+            told,
+            wounds: self.wounds.clone(),
+        }
+    }
+
+    pub(super) fn hit_points(&self) -> &[f64] {
+        &self.hit_points
+    }
+
+    /// Number of staggers until a plate breaks; 0 if it is broken or does not exist.
+    pub(super) fn plate(&self, index: usize) -> u32 {
+        self.plates.get(index).map_or(0, |plate| plate.left)
+    }
+
+    /// Number of plates that are not broken.
+    pub(super) fn whole_plates(&self) -> usize {
+        self.plates.iter().filter(|plate| plate.left > 0).count()
+    }
+
+    /// Adds an event to the report of the next step.
+    pub(super) fn tell(&mut self, event: CreatureEvent) {
+        self.told.push(event);
+    }
+
+    /// Moves the events since the last step to a report.
+    pub(super) fn report(&mut self, events: &mut Vec<CreatureEvent>) {
+        events.append(&mut self.told);
+    }
+
+    /// Takes the wounds since the last step.
+    pub(super) fn take_wounds(&mut self) -> Vec<Felt> {
+        std::mem::take(&mut self.wounds)
+    }
+
+    /// Takes the number of plates that staggered since the last step.
+    pub(super) fn take_staggered(&mut self) -> u32 {
+        std::mem::take(&mut self.staggered)
+    }
+
+    /// True if hit points and wounds are numbers, and not negative.
+    pub(super) fn is_valid(&self) -> bool {
+        let is_left = |left: &f64| (0.0..=f64::MAX).contains(left);
+        let is_hurt = |felt: &Felt| (0.0..=f64::MAX).contains(&felt.damage);
+        self.hit_points.iter().all(is_left) && self.wounds.iter().all(is_hurt)
+    }
+
+    /// True if a creature of this kind can have these plates.
+    pub(super) fn fits_plates(&self, kind: &CreatureKind) -> bool {
+        let fits = |state: &PlateState, plate: &Plate| {
+            state.left <= plate.count && (0.0..=f64::MAX).contains(&state.strain)
+        };
+        let mut plates = self.plates.iter().zip(kind.plates());
+        self.plates.len() == kind.plates().len() && plates.all(|(state, plate)| fits(state, plate))
+    }
+}
 
 impl Creature {
     /// Applies a wound. Returns the damage done to a weak point: 0 if there is no open weak point at that place, or if
@@ -28,7 +160,7 @@ impl Creature {
             (Some(weak_point), None) => self.wound(weak_point, wound.damage),
             (None, None) => 0.0,
         };
-        self.state.wounds.push(Felt {
+        self.state.damage.wounds.push(Felt {
             joint: joint.0,
             damage: done,
         });
@@ -38,7 +170,8 @@ impl Creature {
     /// Applies a blow to a plate, which staggers and may break.
     fn strain(&mut self, plate: usize, damage: f64) {
         let stagger = self.kind.plates()[plate].stagger;
-        let state = &mut self.state.plates[plate];
+        let damaged = &mut self.state.damage;
+        let state = &mut damaged.plates[plate];
         state.strain += damage;
         // Damage beyond the threshold is lost, so that one blow causes one stagger at most.
         if state.strain < stagger {
@@ -47,10 +180,8 @@ impl Creature {
         state.strain = 0.0;
         state.left -= 1;
         let breaks = state.left == 0;
-        self.state.staggered += 1;
-        self.state
-            .told
-            .push(CreatureEvent::Staggered { plate, breaks });
+        damaged.staggered += 1;
+        damaged.tell(CreatureEvent::Staggered { plate, breaks });
         if breaks {
             self.show_plate(plate, false);
         }
@@ -62,7 +193,7 @@ impl Creature {
         let triangle = u32::try_from(at.key).ok().map(TriangleId);
         let plate = triangle
             .and_then(|triangle| self.kind.plate_of(triangle))
-            .filter(|plate| self.state.plates[*plate].left > 0);
+            .filter(|plate| self.state.plate(*plate) > 0);
         // The weak points are where they are at the end of the tick, so take the struck point where it is then.
         let place = self.skin_at(at).unwrap_or(place);
         let points = self.kind.weak_points().iter().enumerate();
@@ -84,12 +215,12 @@ impl Creature {
 
     /// Applies damage to a weak point and returns the damage done. Damage beyond its hit points is lost.
     pub(super) fn wound(&mut self, weak_point: usize, damage: f64) -> f64 {
-        let left = &mut self.state.hit_points[weak_point];
+        let left = &mut self.state.damage.hit_points[weak_point];
         let damage = damage.min(*left);
         *left -= damage;
         let used_up = *left <= 0.0;
         if damage > 0.0 {
-            self.state.told.push(CreatureEvent::Hurt {
+            self.state.damage.tell(CreatureEvent::Hurt {
                 weak_point,
                 damage,
                 used_up,
@@ -100,7 +231,7 @@ impl Creature {
 
     /// The remaining share of the hit points of all weak points: 0 once a major one is used up, 1 without weak points.
     pub fn health(&self) -> f64 {
-        let points = self.kind.weak_points().iter().zip(&self.state.hit_points);
+        let points = self.kind.weak_points().iter().zip(self.state.hit_points());
         let (mut full, mut left) = (0.0, 0.0);
         for (point, hit_points) in points {
             if point.major && *hit_points <= 0.0 {
@@ -124,7 +255,7 @@ impl Creature {
     /// all weak points of lower order must be used up.
     pub fn is_open(&self, weak_point: usize) -> bool {
         let points = self.kind.weak_points();
-        let hit_points = &self.state.hit_points;
+        let hit_points = self.state.hit_points();
         let (Some(point), Some(left)) = (points.get(weak_point), hit_points.get(weak_point)) else {
             return false;
         };
@@ -139,7 +270,7 @@ impl Creature {
     /// Hides the broken plates and shows the others, where the skin does not do so yet.
     pub(super) fn hide_broken_plates(&mut self) {
         for plate in 0..self.kind.plates().len() {
-            let shows = self.state.plates[plate].left > 0;
+            let shows = self.state.plate(plate) > 0;
             if self.shows_plate[plate] != shows {
                 self.show_plate(plate, shows);
             }
@@ -157,4 +288,25 @@ impl Creature {
             };
         }
     }
+}
+
+/// Carries values over to the parts with the same names, limited by `limit`. Parts without a namesake get their fresh
+/// value. Names need not be unique: the second part of a name matches the second part of that name.
+fn kept<T, S: Copy>(
+    (from, to): (&[T], &[T]),
+    name: impl Fn(&T) -> &str,
+    had: &[S],
+    fresh: Vec<S>,
+    limit: impl Fn(S, S) -> S,
+) -> Vec<S> {
+    let find = |index: usize| {
+        let ours = name(&to[index]);
+        let before = to[..index].iter().filter(|part| name(part) == ours);
+        let mut same = (0..from.len()).filter(|old| name(&from[*old]) == ours);
+        had.get(same.nth(before.count())?).copied()
+    };
+    let parts = fresh.into_iter().enumerate();
+    parts
+        .map(|(index, fresh)| find(index).map_or(fresh, |had| limit(had, fresh)))
+        .collect()
 }

@@ -7,36 +7,38 @@ use clamber_world::Obstacle;
 use glam::{DQuat, DVec3};
 
 use super::Creature;
+use super::clips::Playing;
 use super::report::CreatureEvent;
-use super::state::Playing;
-use crate::feet::{Foot, FootGoal, Ground, MOST_ASIDE, MOST_UP, SHARES, Sole};
+use crate::feet::{
+    Foot, FootGoal, Ground, MOST_ASIDE_ACCELERATION, MOST_UP_ACCELERATION, SWING_SHARES, Sole,
+};
 use crate::kind::{Contacts, Leg, rotation_of};
 
 /// A leg in flight stretches softly beyond this share of its length.
-const SOFT: f64 = 0.93;
+const SOFT_STRETCH: f64 = 0.93;
 
 /// Interval between a foot's checks of the ground, in ticks.
-const LOOKS: u64 = 8;
+const GROUND_CHECK_INTERVAL: u64 = 8;
 
 /// A leg lets go of the ground beyond this share of its length, before it is straight.
-const STRETCHED: f64 = 0.994;
+const RELEASE_STRETCH: f64 = 0.994;
 
 /// Ground higher than this above a foot is a wall, as a share of the leg's length. Feet do not step on walls.
-const WALL: f64 = 0.25;
+const WALL_HEIGHT: f64 = 0.25;
 
 /// Largest acceleration of a foot towards the target that it strikes, and of a vertical correction while the clip of an
 /// act plays, metres a second squared.
-const BLOW: f64 = 40.0;
+const STRIKE_ACCELERATION: f64 = 40.0;
 
 /// Additional weight of a foot in the choice of a clip's start time, if the foot stands for the whole clip. It is
 /// proportional to the time for which the foot still stands.
-const STANDING: f64 = 8.0;
+const STANDING_FOOT_WEIGHT: f64 = 8.0;
 
 /// Start times whose costs differ by at most this fit equally well.
-const AS_GOOD: f64 = 1e-4;
+const EQUAL_COST_MARGIN: f64 = 1e-4;
 
 /// Number of start times that are compared when a clip begins.
-const PHASES: u32 = 48;
+const START_TIMES: u32 = 48;
 
 /// A leg as its clip poses it.
 struct ClipLeg {
@@ -114,10 +116,10 @@ impl Creature {
                 shape: &leg.sole,
                 turn: rotation_from_axis_angle(DVec3::Y, goal.heading + foot.yaw()),
                 scale: world.scale,
-                wall: WALL * leg.length * world.scale,
+                wall: WALL_HEIGHT * leg.length * world.scale,
             };
             let foot = &mut self.state.feet[index];
-            if self.state.ticks <= 1 && goal.stands {
+            if self.state.clock.is_first() && goal.stands {
                 foot.place(&goal, &sole);
             }
             if foot.step(&goal, &sole, dt) {
@@ -134,7 +136,7 @@ impl Creature {
             self.press_foot(world, leg, put);
             // All legs move with the hips.
             let distance = (put.hip + moved).distance(put.ankle);
-            let is_stretched = distance > STRETCHED * put.reach;
+            let is_stretched = distance > RELEASE_STRETCH * put.reach;
             self.state.feet[index].set_stretched(is_stretched);
         }
         self.legs = legs;
@@ -149,7 +151,7 @@ impl Creature {
             reach: 0.5 * self.size.height,
         };
         let shape = self.kind.legs().get(leg)?;
-        let wall = WALL * shape.length * self.size.scale;
+        let wall = WALL_HEIGHT * shape.length * self.size.scale;
         let above = |place: DVec3| {
             let height = place.y - ground.below(place)?.0;
             (height > -wall).then_some(height)
@@ -198,6 +200,8 @@ impl Creature {
         })
     }
 
+    /// The goal of a foot in this tick. `others_stand` is true if enough other feet stand, `aims` is the leg that
+    /// strikes.
     fn foot_goal(
         &self,
         world: &Similarity,
@@ -212,12 +216,9 @@ impl Creature {
     ) -> FootGoal {
         let leg = &self.kind.legs()[index];
         let scale = world.scale;
-        let layer = self.state.animator.layers().first();
-        let (time, speed) = layer.map_or((0.0, 0.0), |layer| {
-            (layer.time, layer.speed * self.state.animator.rate())
-        });
+        let (time, speed) = self.state.clips.time_and_speed();
         let contacts = self.contacts(index);
-        let is_idle = self.state.playing == Playing::Idle;
+        let is_idle = self.state.clips.playing() == Playing::Idle;
         let stands = is_idle || contacts.is_none_or(|contacts| contacts.stands(time));
         let stands_for = match contacts {
             Some(contacts) if !is_idle => contacts.stands_for(time) / speed.max(1e-3),
@@ -236,55 +237,62 @@ impl Creature {
             clip
         } else {
             // The creature moves on until the foot lands.
-            at + forward * (self.state.speed * lands_in)
+            at + forward * (self.state.speed() * lands_in)
         };
-        let is_walk = self.state.playing == Playing::Walk;
-        let aside = match landing {
-            _ if aims == Some(index) => self.state.aim,
-            Some((_, place)) if is_walk => forward * (place.z * scale * (self.stride() - 1.0)),
-            _ => DVec3::ZERO,
-        };
-        let aside = if stands {
-            aside
+        let is_aimed = aims == Some(index);
+        let aside = if is_aimed {
+            self.state.striking.aim()
         } else {
-            aside + self.past_others(index, forward)
+            self.stride_offset(landing.map(|(_, place)| place), scale)
         };
-        // The clip of a strike or a fall may lift a standing foot faster than `MOST_UP` allows.
-        let most_up = match self.state.playing {
-            Playing::Act(_) => BLOW,
-            _ => MOST_UP,
-        };
-        // A blow is intended: the limit for corrections does not apply.
-        let most_aside = if aims == Some(index) {
-            BLOW
-        } else {
-            MOST_ASIDE
-        };
-        let ahead = SHARES.map(|share| {
-            let Some((contacts, (wait, _))) = contacts.zip(landing) else {
-                return clip.y;
-            };
-            let ball = contacts.ball((time + wait * share).rem_euclid(contacts.duration()));
-            world.transform_point(ball).y
+        let past = (!stands).then(|| self.past_others(index, forward));
+        let aside = past.map_or(aside, |past| aside + past);
+        let ahead = SWING_SHARES.map(|share| {
+            let place = contacts.zip(landing).map(|(contacts, (wait, _))| {
+                let time = (time + wait * share).rem_euclid(contacts.duration());
+                world.transform_point(contacts.ball(time))
+            });
+            place.unwrap_or(clip).y
         });
         FootGoal {
             clip,
             settled,
             ahead,
             aside,
-            most_aside,
-            most_up,
+            // A blow is intended: the limit for corrections does not apply.
+            most_aside: if is_aimed {
+                STRIKE_ACCELERATION
+            } else {
+                MOST_ASIDE_ACCELERATION
+            },
+            // The clip of a strike or a fall may lift a standing foot faster than `MOST_UP_ACCELERATION` allows.
+            most_up: if matches!(self.state.clips.playing(), Playing::Act(_)) {
+                STRIKE_ACCELERATION
+            } else {
+                MOST_UP_ACCELERATION
+            },
             stands,
             stands_for,
             lands_in,
-            lands_at: lands_at.with_y(self.state.position.y + leg.sole.ball_height * scale),
-            heading: self.state.yaw + heading,
+            lands_at: lands_at.with_y(self.state.position().y + leg.sole.ball_height * scale),
+            heading: self.state.yaw() + heading,
             ball_height: leg.sole.ball_height * scale,
             leg: leg.length * scale,
             may_step: others_stand && self.state.hips.has_shifted(),
-            looks: (self.state.ticks + index as u64).is_multiple_of(LOOKS),
-            is_gait: matches!(self.state.playing, Playing::Walk | Playing::Turn(_)),
+            looks: (self.state.ticks() + index as u64).is_multiple_of(GROUND_CHECK_INTERVAL),
+            is_gait: matches!(self.state.clips.playing(), Playing::Walk | Playing::Turn(_)),
             is_lifted: !is_idle && contacts.is_some_and(|contacts| contacts.lifts_after(time)),
+        }
+    }
+
+    /// Offset of a foot's landing place in the model from the one in the clip, in world space, because the steps of a
+    /// walk are shorter on slopes.
+    fn stride_offset(&self, landing: Option<DVec3>, scale: f64) -> DVec3 {
+        match landing {
+            Some(place) if self.state.clips.playing() == Playing::Walk => {
+                self.state.heading() * (place.z * scale * (self.stride() - 1.0))
+            }
+            _ => DVec3::ZERO,
         }
     }
 
@@ -320,24 +328,28 @@ impl Creature {
                 let left = contacts
                     .left(time)
                     .map_or(0.0, |left| left / duration.max(1e-9));
-                way.length_squared() * (1.0 + STANDING * left) + f64::from(u8::from(is_other))
+                way.length_squared() * (1.0 + STANDING_FOOT_WEIGHT * left)
+                    + f64::from(u8::from(is_other))
             });
             costs.sum()
         };
-        let times = (0..PHASES).map(|phase| f64::from(phase) / f64::from(PHASES) * duration);
+        let times =
+            (0..START_TIMES).map(|phase| f64::from(phase) / f64::from(START_TIMES) * duration);
         let costs: Vec<(f64, f64)> = times.map(|time| (cost(time), time)).collect();
         let least = costs
             .iter()
             .map(|(cost, _)| *cost)
             .fold(f64::INFINITY, f64::min);
         // The first of the times that fit equally well: rounding, which depends on the unit of a file, must not decide.
-        let mut best = costs.iter().filter(|(cost, _)| *cost <= least + AS_GOOD);
+        let mut best = costs
+            .iter()
+            .filter(|(cost, _)| *cost <= least + EQUAL_COST_MARGIN);
         best.next().map_or(0.0, |(_, time)| *time)
     }
 
     fn contacts(&self, leg: usize) -> Option<&Contacts> {
         let gait = self.kind.gait();
-        match self.state.playing {
+        match self.state.clips.playing() {
             Playing::Walk => gait?.walk_contacts.get(leg),
             Playing::Turn(side) => gait?.turn_contacts[usize::from(side.min(1))].get(leg),
             Playing::Idle => gait?.idle_contacts.get(leg),
@@ -347,11 +359,11 @@ impl Creature {
 
     /// The leg that aims, until its strike is over.
     fn aimed_leg(&self) -> Option<usize> {
-        let Playing::Act(state) = self.state.playing else {
+        let Playing::Act(state) = self.state.clips.playing() else {
             return None;
         };
         let strike = self.kind.act(state).strike.as_ref()?;
-        let time = self.state.animator.layers().first()?.time;
+        let time = self.state.animator().layers().first()?.time;
         strike.leg.filter(|_| time < strike.active[1])
     }
 
@@ -359,7 +371,7 @@ impl Creature {
     pub(super) fn bend_leg(&mut self, leg: &Leg, put: &PutLeg) {
         let skeleton = self.kind.skeleton();
         // A leg in flight does not stretch fully, so that its knee does not snap.
-        let soft = SOFT + (1.0 - SOFT) * put.firm;
+        let soft = SOFT_STRETCH + (1.0 - SOFT_STRETCH) * put.firm;
         let pose = &mut self.state.pose;
         // A leg that cannot be bent keeps the pose of its clip.
         if leg.limb.bend(skeleton, pose, put.ankle, soft) {

@@ -1,7 +1,10 @@
 //! A creature: a value that its owner steps once a tick.
 
+mod act;
 mod back;
 mod carry;
+mod check_way;
+mod clips;
 mod config;
 mod corners;
 mod course;
@@ -22,6 +25,8 @@ mod size;
 mod state;
 mod step;
 mod strike;
+mod think;
+mod walked;
 mod way;
 mod world;
 
@@ -96,8 +101,9 @@ impl Creature {
             state,
         };
         let clips = Arc::clone(&creature.kind);
-        let CreatureState { animator, pose, .. } = &mut creature.state;
-        animator.pose_into(clips.clips(), pose, &mut creature.buffers)?;
+        let state = &mut creature.state;
+        let animator = state.clips.animator();
+        animator.pose_into(clips.clips(), &mut state.pose, &mut creature.buffers)?;
         creature.place()?;
         Ok(creature)
     }

@@ -5,19 +5,30 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use super::report::CreatureEvent;
-use super::state::Walked;
+use super::walked::Walked;
 use super::way::Way;
 use super::{Creature, CreatureConfig, CreatureState};
 use crate::error::ColossusError;
 
 /// Distance within which a sent creature has arrived, as a share of its height.
-const WITHIN: f64 = 0.1;
+const ARRIVAL_DISTANCE: f64 = 0.1;
 
 /// The place to which the game has sent a creature.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Errand {
-    pub(super) to: DVec3,
-    pub(super) has_begun: bool,
+    to: DVec3,
+    has_begun: bool,
+}
+
+impl Errand {
+    pub(super) fn to(&self) -> DVec3 {
+        self.to
+    }
+
+    /// Lets the creature go.
+    pub(super) fn begin(&mut self) {
+        self.has_begun = true;
+    }
 }
 
 /// Largest coordinate of a place to which a creature can be sent, metres.
@@ -41,31 +52,20 @@ impl Creature {
         let fresh = CreatureState::new(&self.kind, &config, self.size.rate);
         let mut ranged = self.state.ranged.clone();
         ranged.be_put(position + fresh.heading() * self.size.height);
+        let turn = rotation_from_axis_angle(DVec3::Y, fresh.yaw() - self.state.yaw());
         let mut state = CreatureState {
-            ranged,
-            position: fresh.position,
-            yaw: fresh.yaw,
-            speed: fresh.speed,
-            yaw_rate: fresh.yaw_rate,
-            climb: fresh.climb,
-            steepness: fresh.steepness,
-            ground: fresh.ground,
-            stands_on: fresh.stands_on,
-            carried: fresh.carried,
+            on_ground: fresh.on_ground,
+            moving_ground: fresh.moving_ground,
             walked: fresh.walked,
-            walls: fresh.walls,
+            motion: fresh.motion,
             feet: fresh.feet,
             hips: fresh.hips,
-            look: fresh.look,
-            gaze: fresh.gaze,
-            gaze_weight: fresh.gaze_weight,
-            lean: fresh.lean,
-            aim: rotation_from_axis_angle(DVec3::Y, fresh.yaw - self.state.yaw) * self.state.aim,
-            home: fresh.home,
-            rides: fresh.rides,
-            patrol: fresh.patrol,
-            sleeps: fresh.sleeps,
-            ticks: fresh.ticks,
+            head: fresh.head,
+            territory: fresh.territory,
+            perceived: self.state.perceived.elsewhere(),
+            striking: self.state.striking.elsewhere(turn),
+            ranged,
+            clock: fresh.clock,
             ..self.state.clone()
         };
         self.swap_state(&mut state)
@@ -86,42 +86,37 @@ impl Creature {
         if cannot || to.is_some_and(is_far) {
             return false;
         }
-        match (&mut self.state.errand, to) {
+        match (self.state.acting.errand(), to) {
             (None, None) => {}
-            (Some(errand), Some(to)) => {
-                let moved = (to - errand.to).with_y(0.0).length();
-                errand.to = to;
-                self.state.walked.is_blocked = false;
-                if moved > WITHIN * self.size.height {
-                    let known = &self.state.walked;
-                    self.state.walked = Walked {
-                        ticks_left: known.ticks_left,
-                        failed: known.failed,
-                        is_known: known.is_known,
-                        ahead: known.ahead,
-                        turn: known.turn,
-                        faces: known.faces,
-                        tried: known.tried,
-                        ..Walked::default()
-                    };
-                    self.look_soon();
-                }
-            }
+            (Some(errand), Some(to)) => self.send_elsewhere(errand, to),
             _ => {
-                self.state.errand = None;
+                self.state.acting.replace_errand(None);
                 self.leave_act();
-                self.state.errand = to.map(|to| Errand {
+                let errand = to.map(|to| Errand {
                     to,
                     has_begun: false,
                 });
+                self.state.acting.replace_errand(errand);
             }
         }
         true
     }
 
+    /// Changes the goal of a creature on its way.
+    fn send_elsewhere(&mut self, errand: Errand, to: DVec3) {
+        let moved = (to - errand.to).with_y(0.0).length();
+        let errand = Errand { to, ..errand };
+        self.state.acting.replace_errand(Some(errand));
+        self.state.walked.progress.set_blocked(false);
+        if moved > ARRIVAL_DISTANCE * self.size.height {
+            self.state.walked = self.state.walked.to_another_goal();
+            self.look_soon();
+        }
+    }
+
     /// The place to which the creature was sent; `None` once it has arrived or given up.
     pub fn sent_to(&self) -> Option<DVec3> {
-        self.state.errand.map(|errand| errand.to)
+        self.state.acting.errand().map(|errand| errand.to)
     }
 
     /// Puts the brain into a state, by the state's name in the file, as an interrupting transition would. Returns false
@@ -135,12 +130,14 @@ impl Creature {
         brain.go_to(&mut self.state.brain, to);
         let to = self.state.brain.current();
         self.leave_act();
-        self.state.halts = true;
-        self.state.told.push(CreatureEvent::Entered { from, to });
-        let is_final = self.kind.brain().is_final(to);
-        if let Some(errand) = self.state.errand.take_if(|_| is_final) {
+        self.state.acting.halt(true);
+        let (acting, damage) = (&mut self.state.acting, &mut self.state.damage);
+        damage.tell(CreatureEvent::Entered { from, to });
+        if self.kind.brain().is_final(to)
+            && let Some(errand) = acting.replace_errand(None)
+        {
             let place = errand.to;
-            self.state.told.push(CreatureEvent::Stopped { place });
+            damage.tell(CreatureEvent::Stopped { place });
         }
         true
     }
@@ -149,7 +146,7 @@ impl Creature {
     /// damage done, which is at most the hit points that were left. Returns `None` and changes nothing if there is no
     /// such weak point, or if the damage is negative or not finite.
     pub fn harm(&mut self, weak_point: usize, damage: f64) -> Option<f64> {
-        let left = *self.state.hit_points.get(weak_point)?;
+        let left = *self.state.hit_points().get(weak_point)?;
         if !(0.0..=f64::MAX).contains(&damage) {
             return None;
         }
@@ -161,12 +158,11 @@ impl Creature {
     }
 
     fn leave_act(&mut self) {
-        self.state.acting = None;
-        self.state.struck.clear();
+        self.state.acting.end();
+        self.state.striking.begin();
         self.state.ranged.begin();
-        self.state.aim = DVec3::ZERO;
         // An errand keeps its way.
-        if self.state.errand.is_none() {
+        if self.state.acting.errand().is_none() {
             self.state.walked = Walked::default();
         }
         self.state.senses.begin_act();
@@ -174,29 +170,31 @@ impl Creature {
 
     /// The way that the creature goes: to the place where it was sent, or as its act leads it.
     pub(super) fn current_way(&self) -> Option<Way> {
-        if let Some(errand) = self.state.errand {
+        if let Some(errand) = self.state.acting.errand() {
             return errand.has_begun.then_some(Way {
                 goal: errand.to,
                 bearing: None,
-                within: WITHIN * self.size.height,
+                within: ARRIVAL_DISTANCE * self.size.height,
                 within_angle: 0.0,
                 walks: true,
             });
         }
         let state = self.state.brain.current();
-        self.way(state).filter(|_| self.state.acting == Some(state))
+        self.way(state)
+            .filter(|_| self.state.acting.has_begun(state))
     }
 
     /// Ends the errand if the creature has arrived or is blocked.
     pub(super) fn end_errand(&mut self, is_there: bool, is_blocked: bool) {
-        let Some(errand) = self.state.errand.filter(|errand| errand.has_begun) else {
+        let errand = self.state.acting.errand();
+        let Some(errand) = errand.filter(|errand| errand.has_begun) else {
             return;
         };
         let place = errand.to;
         if is_blocked {
             self.drop_errand();
-        } else if is_there && !self.state.walked.is_blocked {
-            self.state.errand = None;
+        } else if is_there && !self.state.walked.progress.is_blocked() {
+            self.state.acting.replace_errand(None);
             self.state.walked = Walked::default();
             self.report.events.push(CreatureEvent::Arrived { place });
         }
@@ -204,7 +202,7 @@ impl Creature {
 
     /// Gives the errand up, if there is one.
     pub(super) fn drop_errand(&mut self) {
-        if let Some(errand) = self.state.errand.take() {
+        if let Some(errand) = self.state.acting.replace_errand(None) {
             let place = errand.to;
             self.state.walked = Walked::default();
             self.report.events.push(CreatureEvent::Stopped { place });

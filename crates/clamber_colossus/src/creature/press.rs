@@ -8,10 +8,10 @@ use super::legs::PutLeg;
 use crate::kind::Leg;
 
 /// Most iterations in which a foot is moved until its skin is on the ground.
-const ROUNDS: u32 = 4;
+const MOST_PRESS_ROUNDS: u32 = 4;
 
 /// Distance from the ground at which the iterations end, as a share of the leg's length.
-const NEAR: f64 = 2e-4;
+const PRESSED_DISTANCE: f64 = 2e-4;
 
 impl Creature {
     /// Moves a planted foot of the pose along the ground's normal, until its lowest skin is at the height of the sole
@@ -25,11 +25,11 @@ impl Creature {
         let ground = put.ball.dot(normal) - leg.sole.ball_height;
         let mut places = std::mem::take(&mut self.sole);
         let mut put = *put;
-        for _ in 0..ROUNDS {
+        for _ in 0..MOST_PRESS_ROUNDS {
             blended.skin(self.kind.skeleton(), &self.state.pose, &mut places);
             let heights = places.iter().map(|place: &DVec3| place.dot(normal));
             let off = heights.fold(f64::INFINITY, f64::min) - ground;
-            if off.abs() < NEAR * leg.length || !off.is_finite() {
+            if off.abs() < PRESSED_DISTANCE * leg.length || !off.is_finite() {
                 break;
             }
             put.ankle -= normal * (off * put.flat);

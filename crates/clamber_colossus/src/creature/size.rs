@@ -5,7 +5,7 @@ use crate::kind::CreatureKind;
 
 /// Reference height for the durations and angular accelerations in this module, metres. They were tuned on a giant of
 /// this height.
-pub(super) const GIANT: f64 = 41.0;
+pub(super) const GIANT_HEIGHT: f64 = 41.0;
 
 /// Size of a creature, and how its size scales rates and durations.
 #[derive(Clone, Copy, Debug)]
@@ -18,7 +18,7 @@ pub(super) struct Size {
     pub(super) girth: f64,
     /// Playback rate of the clips.
     pub(super) rate: f64,
-    /// Factor on durations that are given for a creature of [`GIANT`] height: the square root of the height ratio, by
+    /// Factor on durations that are given for a creature of [`GIANT_HEIGHT`]: the square root of the height ratio, by
     /// Froude's law.
     pub(super) pace: f64,
 }
@@ -37,7 +37,7 @@ impl Size {
             height,
             girth: kind.girth() * scale,
             rate: known.map_or(1.0, |made_for| (made_for / height).sqrt()),
-            pace: (height / GIANT).sqrt(),
+            pace: (height / GIANT_HEIGHT).sqrt(),
         }
     }
 }

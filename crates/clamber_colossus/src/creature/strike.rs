@@ -1,52 +1,137 @@
 //! Strikes with limbs: an attack strikes people that the skin of its limb touches in the active phase.
 
+use clamber_animation::Spring;
 use clamber_animation::rig::JointId;
 use clamber_surface::geometry::{Similarity, WorldCapsule};
 use clamber_surface::mesh::TriangleId;
 use clamber_surface::surface::TargetMotion;
 use clamber_world::{Contact, MaterialPoint, Obstacle, SweepContact};
-use glam::DVec3;
+use glam::{DQuat, DVec3};
+use serde::{Deserialize, Serialize};
 
+use super::clips::Playing;
 use super::report::{AttackPhase, Blow};
-use super::room::STEEP;
-use super::state::{Lean, Playing};
+use super::room::LEAST_GROUND_NORMAL;
+use super::state::{is_far, is_large};
 use super::{Creature, Person, Surroundings};
 use crate::brain::{Act, StateId};
+use crate::feet::Carried;
 use crate::kind::Strike;
 
 /// Distance from the skin within which a limb strikes, metres. A climber that the limb pushes stays at about this
 /// distance.
-const REACH: f64 = 0.05;
+const STRIKE_DISTANCE: f64 = 0.05;
 
 /// Half time in which a neck or an arm leans towards its target, as a share of the time until the active phase. More
 /// than nine tenths of the lean are done by then.
-const SETTLED: f64 = 0.3;
+const LEAN_HALF_TIME_SHARE: f64 = 0.3;
 
 /// Lower bound for that time, seconds of the clip.
-const QUICKEST: f64 = 0.15;
+const SHORTEST_WIND_UP: f64 = 0.15;
 
-/// Half time in which a neck or an arm leans back, seconds for a creature of `GIANT` height.
-const RETURNS: f64 = 0.4;
+/// Half time in which a neck or an arm leans back, seconds for a creature of `GIANT_HEIGHT`.
+const LEAN_BACK_HALF_TIME: f64 = 0.4;
 
 /// A lean is over when its offset is below this, in heights of the creature, and its speed is below this a second.
-const LEAST: f64 = 1e-4;
+const LEAST_LEAN: f64 = 1e-4;
+
+/// Where the current attack strikes, and the people that it has struck.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Striking {
+    /// Ids of the people that the current attack has already struck: by its limb, its beam, or the wave of its limb.
+    struck: Vec<u64>,
+    /// Vector from the place where the clip strikes to the place where this attack does, in world space.
+    aim: DVec3,
+    lean: Lean,
+}
+
+/// How far a neck or an arm leans towards the target that it strikes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct Lean {
+    /// Offset from the end of the limb in the clip, in world space.
+    spring: Spring<DVec3>,
+    /// State whose attack leans; `None` if no limb leans.
+    with: Option<StateId>,
+}
+
+impl Striking {
+    /// Begins an act that has struck nobody, without an aim. A lean of the last attack goes on.
+    pub(super) fn begin(&mut self) {
+        self.struck.clear();
+        self.aim = DVec3::ZERO;
+    }
+
+    /// The same attack after the creature was put elsewhere, turned by `turn`.
+    pub(super) fn elsewhere(&self, turn: DQuat) -> Self {
+        Self {
+            struck: self.struck.clone(),
+            aim: turn * self.aim,
+            lean: Lean::default(),
+        }
+    }
+
+    pub(super) fn aim(&self) -> DVec3 {
+        self.aim
+    }
+
+    /// Ids of the people that the current attack has already struck.
+    pub(super) fn struck(&self) -> &[u64] {
+        &self.struck
+    }
+
+    /// Records that the current attack has struck a person.
+    pub(super) fn mark_struck(&mut self, person: u64) {
+        self.struck.push(person);
+    }
+
+    /// Turns the aim and the lean with the ground that carries the creature.
+    pub(super) fn be_carried(&mut self, carried: &Carried) {
+        self.aim = carried.vector(self.aim);
+        let lean = &mut self.lean.spring;
+        (lean.value, lean.velocity) = (carried.vector(lean.value), carried.vector(lean.velocity));
+    }
+
+    /// The same for a creature with another brain. `same` converts a state.
+    pub(super) fn carry_over(&self, same: impl Fn(StateId) -> Option<StateId>) -> Self {
+        Self {
+            lean: match self.lean.with {
+                Some(state) if same(state).is_some() => Lean {
+                    with: same(state),
+                    ..self.lean
+                },
+                _ => Lean::default(),
+            },
+            ..self.clone()
+        }
+    }
+
+    /// True if a brain with `states` states can have this lean.
+    pub(super) fn fits(&self, states: usize) -> bool {
+        self.lean.with.is_none_or(|state| state.index() < states)
+    }
+
+    /// True if aim and lean are numbers that a creature reaches.
+    pub(super) fn is_within_range(&self) -> bool {
+        let lean = &self.lean.spring;
+        !(is_far(lean.value) || is_far(lean.velocity) || is_large(self.aim.length()))
+    }
+}
 
 impl Creature {
     /// State and phase of the current attack; `None` while the creature does not attack.
     pub fn attack(&self) -> Option<(StateId, AttackPhase)> {
-        let Playing::Act(state) = self.state.playing else {
+        let Playing::Act(state) = self.state.clips.playing() else {
             return None;
         };
         let Some(Act::Attack(_)) = self.kind.brain().act(state) else {
             return None;
         };
         // The clip may still play when the creature already does something else.
-        if self.state.acting != Some(state) {
+        if !self.state.acting.has_begun(state) {
             return None;
         }
         let strike = self.kind.act(state).strike.as_ref()?;
-        let layer = self.state.animator.layers().first();
-        let time = layer.map_or(0.0, |layer| layer.time);
+        let time = self.state.clips.time();
         let phase = if time < strike.active[0] {
             AttackPhase::WindUp
         } else if time < strike.active[1] {
@@ -60,7 +145,7 @@ impl Creature {
     /// Records that the attack has struck a person. No other part of it strikes this person again, nor does the wave
     /// that its limb has sent out.
     pub(super) fn mark_struck(&mut self, person: u64) {
-        self.state.struck.push(person);
+        self.state.striking.mark_struck(person);
         self.state.ranged.mark_struck(person);
     }
 
@@ -76,11 +161,11 @@ impl Creature {
             return;
         }
         for person in around.people {
-            if self.state.struck.contains(&person.id) || !person.body.is_valid() {
+            if self.state.striking.struck.contains(&person.id) || !person.body.is_valid() {
                 continue;
             }
             let body = WorldCapsule {
-                radius: person.body.radius + REACH,
+                radius: person.body.radius + STRIKE_DISTANCE,
                 ..person.body
             };
             let hit = self.touch(strike, &body);
@@ -159,9 +244,9 @@ impl Creature {
             .attack()
             .filter(|(state, phase)| *phase != AttackPhase::Recovery && chain_of(*state).is_some());
         let (rate, pace) = (self.size.rate.max(1e-3), self.size.pace);
-        let least = LEAST * self.size.height;
-        let aim = self.state.aim;
-        let Lean { spring, with } = &mut self.state.lean;
+        let least = LEAST_LEAN * self.size.height;
+        let aim = self.state.striking.aim;
+        let Lean { spring, with } = &mut self.state.striking.lean;
         // A lean ends before another attack leans.
         if let Some((state, _)) = strikes.filter(|_| with.is_none()) {
             *with = Some(state);
@@ -169,13 +254,13 @@ impl Creature {
         let Some(state) = *with else { return };
         let goes = strikes.is_some_and(|(striking, _)| striking == state);
         let active = kind.act(state).strike.as_ref().map(|strike| strike.active);
-        let winds_up = active.map_or(0.0, |[from, _]| from).max(QUICKEST);
+        let winds_up = active.map_or(0.0, |[from, _]| from).max(SHORTEST_WIND_UP);
         if goes {
-            spring.step(aim, SETTLED * winds_up / rate, dt);
+            spring.step(aim, LEAN_HALF_TIME_SHARE * winds_up / rate, dt);
         } else {
-            spring.step(DVec3::ZERO, RETURNS * pace, dt);
+            spring.step(DVec3::ZERO, LEAN_BACK_HALF_TIME * pace, dt);
             if spring.value.length() < least && spring.velocity.length() < least {
-                self.state.lean = Lean::default();
+                self.state.striking.lean = Lean::default();
                 return;
             }
         }
@@ -191,7 +276,7 @@ impl Creature {
 
     /// Decides where this attack strikes: at the prey, if it is near enough to the place where the clip strikes.
     pub(super) fn aim(&mut self, strike: &Strike) {
-        let Some((_, prey)) = self.state.prey.filter(|_| self.state.unseen == 0) else {
+        let Some(prey) = self.state.perceived.visible_prey() else {
             return;
         };
         let world = self.state.world_from_model(self.size.scale);
@@ -210,7 +295,7 @@ impl Creature {
             way
         };
         let in_model = world.rotation.conjugate() * aim / self.size.scale;
-        self.state.aim = aim * strike.reach(in_model);
+        self.state.striking.aim = aim * strike.reach(in_model);
     }
 }
 
@@ -223,7 +308,7 @@ fn is_free(from: DVec3, to: DVec3, skips: f64, around: &Surroundings<'_>) -> boo
     };
     let from = from + along * skips;
     // Terrain in which the ray begins is ground, or the ray before has already met it.
-    let mut is_rock = |hit: &Contact| hit.normal.y < STEEP && hit.distance > 0.0;
+    let mut is_rock = |hit: &Contact| hit.normal.y < LEAST_GROUND_NORMAL && hit.distance > 0.0;
     let mut rocks = around.terrain.iter();
     let mut others = around.creatures.iter();
     !rocks.any(|rock| {

@@ -1,10 +1,45 @@
 //! Ways of a creature: the goals of its walks and turns.
 
 use glam::DVec3;
+use serde::{Deserialize, Serialize};
 
 use super::Creature;
-use super::state::{NO_WALL, WALLS, Walked};
+use super::state::is_far;
+use super::walked::Walked;
 use crate::brain::{Act, Place, StateId, Walk};
+use crate::feet::Carried;
+
+/// The places that a creature comes back to.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Territory {
+    /// Middle of the arena.
+    home: DVec3,
+    /// Place to which the creature walks on patrol.
+    patrol: DVec3,
+}
+
+impl Territory {
+    /// The territory of a creature that has its home at a place.
+    pub(super) fn around(home: DVec3) -> Self {
+        Self { home, patrol: home }
+    }
+
+    pub(super) fn home(&self) -> DVec3 {
+        self.home
+    }
+
+    /// Moves the places with the ground that carries the creature. They may be far away: the ground's yaw turns them,
+    /// but not its pitch and roll.
+    pub(super) fn be_carried(&mut self, carried: &Carried) {
+        self.home = carried.level_place(self.home);
+        self.patrol = carried.level_place(self.patrol);
+    }
+
+    /// True if both places are numbers that a creature reaches.
+    pub(super) fn is_within_range(&self) -> bool {
+        !is_far(self.home) && !is_far(self.patrol)
+    }
+}
 
 /// A goal, and when the creature has arrived there.
 pub(super) struct Way {
@@ -21,7 +56,7 @@ pub(super) struct Way {
 
 /// Shortest distance within which a walk arrives, in heights. With less, the creature would walk to and fro over the
 /// place.
-const NEAREST: f64 = 0.015;
+const LEAST_ARRIVAL_DISTANCE: f64 = 0.015;
 
 impl Creature {
     /// Begins a walk or a turn, and draws a new place for patrols.
@@ -31,7 +66,7 @@ impl Creature {
         let (angle, share) = (core::f64::consts::TAU * lot(), lot().sqrt());
         let aside = DVec3::new(libm::sin(angle), 0.0, libm::cos(angle));
         self.state.walked = Walked::default();
-        self.state.patrol = self.state.home + aside * (0.9 * reach * share);
+        self.state.territory.patrol = self.state.territory.home + aside * (0.9 * reach * share);
     }
 
     pub(super) fn way(&self, state: StateId) -> Option<Way> {
@@ -42,7 +77,7 @@ impl Creature {
                     return Some(Way {
                         goal,
                         bearing: None,
-                        within: within.max(NEAREST * self.size.height),
+                        within: within.max(LEAST_ARRIVAL_DISTANCE * self.size.height),
                         within_angle: 0.0,
                         walks: true,
                     });
@@ -69,36 +104,34 @@ impl Creature {
     }
 
     fn place_of(&self, place: Place) -> DVec3 {
+        let territory = &self.state.territory;
         match place {
-            Place::Prey => self.state.prey.map_or(self.state.home, |(_, place)| place),
-            Place::Home => self.state.home,
-            Place::Patrol => self.state.patrol,
-            Place::Noise => self.state.noise,
+            Place::Prey => self.state.perceived.prey().unwrap_or(territory.home),
+            Place::Home => territory.home,
+            Place::Patrol => territory.patrol,
+            Place::Noise => self.state.perceived.noise(),
             Place::Wall => self.wall(),
         }
     }
 
     /// A place beside the nearest wall; the creature's own place if no wall is in reach.
     fn wall(&self) -> DVec3 {
-        let walls = self.state.walls.iter().enumerate();
-        let Some((index, distance)) = walls.min_by(|a, b| a.1.total_cmp(b.1)) else {
-            return self.state.position;
+        let nearest = self.state.perceived.nearest_wall(self.state.yaw());
+        let Some((angle, distance)) = nearest else {
+            return self.state.position();
         };
-        if *distance >= NO_WALL {
-            return self.state.position;
-        }
-        let angle = self.state.yaw + index as f64 * core::f64::consts::TAU / WALLS as f64;
         let direction = DVec3::new(libm::sin(angle), 0.0, libm::cos(angle));
         let room = self.size.girth;
-        self.state.position + direction * (f64::from(*distance) - room).max(0.0)
+        self.state.position() + direction * (distance - room).max(0.0)
     }
 
     fn within_arena(&self, place: DVec3) -> DVec3 {
-        let way = place - self.state.home;
+        let home = self.state.territory.home;
+        let way = place - home;
         let level = DVec3::new(way.x, 0.0, way.z).length();
         if level <= self.config.arena {
             return place;
         }
-        self.state.home + way * (self.config.arena / level)
+        home + way * (self.config.arena / level)
     }
 }

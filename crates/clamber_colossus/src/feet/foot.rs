@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use clamber_animation::Spring;
 
 use super::arrive::{arrive, pull, unhurried};
-use super::{Carried, Footing, Sole};
+use super::{Carried, FootGoal, Footing, SWING_SHARES, Sole};
 use crate::angle::nearest_turn;
 
 /// Whether a foot stands, or how it moves.
@@ -80,113 +80,62 @@ pub(crate) struct Foot {
     is_stretched: bool,
 }
 
-/// The goal of a foot in a tick, in world space.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct FootGoal {
-    /// Position of the ball in the clip.
-    pub(crate) clip: DVec3,
-    /// Position of the ball in the clip once the clip has faded in.
-    pub(crate) settled: DVec3,
-    /// True if the foot stands in the clip.
-    pub(crate) stands: bool,
-    /// Seconds for which the foot still stands in the clip.
-    pub(crate) stands_for: f64,
-    /// Seconds until the foot next stands in the clip.
-    pub(crate) lands_in: f64,
-    /// Position of the ball in the clip at that time, for ground at the height of the creature's origin.
-    pub(crate) lands_at: DVec3,
-    /// Horizontal vector from `lands_at` to the place where the foot is to land.
-    pub(crate) aside: DVec3,
-    /// Largest horizontal acceleration of the offset, metres a second squared.
-    pub(crate) most_aside: f64,
-    /// Largest vertical acceleration of the offset in a swing, metres a second squared.
-    pub(crate) most_up: f64,
-    /// Height of the ball in the clip at [`SHARES`] of the time until it lands.
-    pub(crate) ahead: [f64; 3],
-    /// Yaw of the foot in the clip, radians.
-    pub(crate) heading: f64,
-    /// Height of the ball of a standing foot above the ground, metres.
-    pub(crate) ball_height: f64,
-    /// Length of the leg, metres.
-    pub(crate) leg: f64,
-    /// True if the foot may take a step of its own.
-    pub(crate) may_step: bool,
-    /// True if the foot checks in this tick whether its ground is still there.
-    pub(crate) looks: bool,
-    /// True if the clip walks or turns, so that it has steps of its own.
-    pub(crate) is_gait: bool,
-    /// True if the clip lifts the foot before it ends.
-    pub(crate) is_lifted: bool,
-}
-
 /// Distance from its place in the clip beyond which a standing foot takes a step, as a share of the leg's length.
-const STEPS_BEYOND: f64 = 0.12;
+const STEP_DISTANCE: f64 = 0.12;
 
 /// Yaw relative to the clip beyond which a standing foot takes a step, radians.
-const STEPS_TURNED: f64 = 0.45;
+const STEP_ANGLE: f64 = 0.45;
 
 /// Distance to its place in the clip up to which a foot takes no step although its leg is stretched, as a share of the
 /// leg's length. The hips come down instead.
-const NO_STEP: f64 = 0.02;
-
-/// Shortest duration of a step that is not in a clip, as a multiple of `sqrt(leg / g)`.
-pub(crate) const STEP_TIME: f64 = 1.5;
+const NO_STEP_DISTANCE: f64 = 0.02;
 
 /// Least height of a step that is not in a clip, as a share of the leg's length.
 const STEP_HEIGHT: f64 = 0.04;
 
-/// Largest vertical acceleration of an offset, metres a second squared. The vector sum with `MOST_ASIDE` is 5.6, below
-/// the limit of 6 for skin below the knee in a swing.
-pub(crate) const MOST_UP: f64 = 4.4;
+/// Largest vertical acceleration of an offset, metres a second squared. The vector sum with `MOST_ASIDE_ACCELERATION`
+/// is 5.6, below the limit of 6 for skin below the knee in a swing.
+pub(crate) const MOST_UP_ACCELERATION: f64 = 4.4;
 
 /// Largest horizontal acceleration of an offset, metres a second squared.
-pub(crate) const MOST_ASIDE: f64 = 3.4;
+pub(crate) const MOST_ASIDE_ACCELERATION: f64 = 3.4;
 
 /// Largest angular acceleration of a foot's yaw, radians a second squared.
-const MOST_TURN: f64 = 3.0;
-
-/// Shares of a swing at which the ground on its way is checked.
-pub(crate) const SHARES: [f64; 3] = [0.25, 0.5, 0.75];
+const MOST_TURN_ACCELERATION: f64 = 3.0;
 
 /// Shortest time in which an offset reaches its target, seconds.
-const LEAST: f64 = 0.15;
+const SHORTEST_WAY_TIME: f64 = 0.15;
 
 /// Time constant with which a foot leans to the ground, seconds.
-const LEANS: f64 = 0.1;
+const LEAN_TIME: f64 = 0.1;
 
 /// A foot higher than this above the ground comes down before it is planted, as a share of the leg's length.
-const HIGH: f64 = 0.03;
+const HIGH_FOOT: f64 = 0.03;
 
 /// Height by which the ground below a foot may change and still carry it, as a share of the leg's length.
-const GONE: f64 = 0.003;
+const GROUND_GONE_HEIGHT: f64 = 0.003;
 
 /// Distance from its place in the clip beyond which a standing foot lifts in a walk or a turn although its clip stands,
 /// as a share of the leg's length.
-const LEFT_BEHIND: f64 = 0.3;
+const LEFT_BEHIND_DISTANCE: f64 = 0.3;
 
 /// Distance from its place in the clip beyond which a foot is left behind, as a share of the leg's length.
-const LATE: f64 = 0.06;
-
-/// A swinging foot does not come down if its clip stands for less than this, as a share of the duration of a step.
-const TOO_SHORT: f64 = 0.2;
+const LATE_FOOT_DISTANCE: f64 = 0.06;
 
 /// Distance from its landing place within which a foot has come down, as a share of the leg's length.
-const ARRIVED: f64 = 0.01;
+const ARRIVED_DISTANCE: f64 = 0.01;
 
 /// Height that stands for no ground below, because JSON has no infinity.
 const NO_GROUND: f64 = f64::MIN;
 
 /// Distance by which a landing place may move before the ground is looked for again, as a share of the leg's length.
-const SAME: f64 = 0.03;
+const SAME_LANDING_DISTANCE: f64 = 0.03;
 
 /// Half time in which a foot that has come down reaches its exact place, seconds.
-const SETTLES: f64 = 0.08;
+const SETTLE_HALF_TIME: f64 = 0.08;
 
 /// Half time in which a lifted foot loses its hold, as a share of the duration of a step.
-const LETS_GO: f64 = 0.25;
-
-/// Gravitational acceleration, metres a second squared. It sets the duration of steps.
-pub(crate) const GRAVITY: f64 = 9.81;
+const RELEASE_HALF_TIME_SHARE: f64 = 0.25;
 
 impl Foot {
     /// A foot at its place in the clip.
@@ -345,16 +294,16 @@ impl Foot {
         match self.hold {
             Hold::Planted { at, heading, .. } => self.stand(goal, &at, heading, dt),
             Hold::Swings if goal.stands => self.catch_up(goal, sole, dt),
-            Hold::Swings => self.swing(goal, sole, goal.lands_in.max(LEAST), dt),
+            Hold::Swings => self.swing(goal, sole, goal.lands_in.max(SHORTEST_WAY_TIME), dt),
             Hold::Lands { ball, to, left } => self.land(goal, sole, (ball, to, left), dt),
             Hold::Steps(step) => self.take_step(goal, sole, step, dt),
         }
         let flat = f64::from(u8::from(self.is_planted()));
-        self.flat.step(flat, SETTLES, dt);
+        self.flat.step(flat, SETTLE_HALF_TIME, dt);
         let time = if self.is_planted() {
-            SETTLES
+            SETTLE_HALF_TIME
         } else {
-            LETS_GO * goal.step_time()
+            RELEASE_HALF_TIME_SHARE * goal.step_time()
         };
         self.firm.step(flat, time, dt);
         self.clip = goal.clip;
@@ -368,11 +317,11 @@ impl Foot {
             Hold::Planted { at, below, .. } if goal.stands => {
                 let gap = goal.settled - at.ball;
                 let level = DVec3::new(gap.x, 0.0, gap.z).length();
-                let is_off = level > STEPS_BEYOND * goal.leg || self.yaw.value.abs() > STEPS_TURNED;
+                let is_off = level > STEP_DISTANCE * goal.leg || self.yaw.value.abs() > STEP_ANGLE;
                 self.wants_step = is_off && !goal.is_gait && !goal.is_lifted;
                 let is_gone = goal.looks
                     && match sole.below(at.ball) {
-                        Some(now) => (now - below).abs() > GONE * goal.leg,
+                        Some(now) => (now - below).abs() > GROUND_GONE_HEIGHT * goal.leg,
                         None => below != NO_GROUND,
                     };
                 if is_gone && sole.has_ground() {
@@ -381,11 +330,13 @@ impl Foot {
                         to: sole.at(goal.settled),
                         left: goal.step_time(),
                     };
-                } else if goal.is_gait && (self.is_stretched || level > LEFT_BEHIND * goal.leg) {
+                } else if goal.is_gait
+                    && (self.is_stretched || level > LEFT_BEHIND_DISTANCE * goal.leg)
+                {
                     self.hold = Hold::Swings;
                     self.path.left = 0.0;
                 } else if self.wants_step && goal.may_step
-                    || self.is_stretched && level > NO_STEP * goal.leg
+                    || self.is_stretched && level > NO_STEP_DISTANCE * goal.leg
                 {
                     self.hold =
                         Hold::Steps(self.step_from(at.ball + self.settling.value, goal, sole));
@@ -397,12 +348,12 @@ impl Foot {
             }
             Hold::Swings if goal.stands && !self.is_late(goal) && !goal.is_lifted_soon() => {
                 let ball = self.clip + self.offset.value;
-                if ball.y - sole.at(ball).ball.y > HIGH * goal.leg {
+                if ball.y - sole.at(ball).ball.y > HIGH_FOOT * goal.leg {
                     let velocity = (goal.clip - self.clip) / dt + self.offset.velocity;
                     let to = sole.at(goal.settled);
                     // The end of a kick stops the clip's foot at once. The remaining speed must not carry this foot
                     // past its landing place.
-                    let most = (MOST_UP * ball.distance(to.ball)).sqrt();
+                    let most = (MOST_UP_ACCELERATION * ball.distance(to.ball)).sqrt();
                     self.hold = Hold::Lands {
                         ball: Spring {
                             value: ball,
@@ -423,7 +374,7 @@ impl Foot {
     fn step_from(&mut self, from: DVec3, goal: &FootGoal, sole: &Sole<'_>) -> Step {
         let to = sole.at(goal.settled);
         let level = (to.ball - from).with_y(0.0).length();
-        let over = SHARES.into_iter().filter_map(|share| {
+        let over = SWING_SHARES.into_iter().filter_map(|share| {
             let place = from.lerp(to.ball, share);
             // At this share of its way, the foot is raised by the step's lift times the cube of `hump`.
             let hump = 4.0 * share * (1.0 - share);
@@ -434,8 +385,8 @@ impl Foot {
             .fold(STEP_HEIGHT * goal.leg, f64::max)
             .min(0.5 * goal.leg);
         // The peak accelerations of a quintic from rest to rest, and of the hump: 5.77 d / T^2, 24 h / T^2.
-        let lasts = (5.77 * level / MOST_ASIDE)
-            .max(24.0 * lift / MOST_UP)
+        let lasts = (5.77 * level / MOST_ASIDE_ACCELERATION)
+            .max(24.0 * lift / MOST_UP_ACCELERATION)
             .sqrt();
         Step {
             from,
@@ -448,7 +399,7 @@ impl Foot {
 
     /// True if the foot was left behind in a walk or a turn: it is too far from its place in the clip.
     fn is_late(&self, goal: &FootGoal) -> bool {
-        goal.is_gait && self.offset.value.with_y(0.0).length() > LATE * goal.leg
+        goal.is_gait && self.offset.value.with_y(0.0).length() > LATE_FOOT_DISTANCE * goal.leg
     }
 
     /// Moves the foot quickly towards its place in the clip, above the ground.
@@ -478,14 +429,14 @@ impl Foot {
     }
 
     fn stand(&mut self, goal: &FootGoal, at: &Footing, heading: f64, dt: f64) {
-        self.settling.step(DVec3::ZERO, SETTLES, dt);
+        self.settling.step(DVec3::ZERO, SETTLE_HALF_TIME, dt);
         self.set(at.ball + self.settling.value - goal.clip, dt);
         let yaw = nearest_turn(heading - goal.heading);
         self.yaw = Spring {
             value: yaw,
             velocity: (yaw - self.yaw.value) / dt,
         };
-        self.lean(at.normal, LEANS, dt);
+        self.lean(at.normal, LEAN_TIME, dt);
     }
 
     /// Swings with the clip and an offset, which reaches the landing place in `left` seconds and clears the ground on
@@ -504,7 +455,7 @@ impl Foot {
         arrive(
             &mut up,
             self.path.offset,
-            (self.path.left + dt).max(LEAST),
+            (self.path.left + dt).max(SHORTEST_WAY_TIME),
             goal.most_up,
             dt,
         );
@@ -517,8 +468,8 @@ impl Foot {
             value: level.value.with_y(up.value),
             velocity: level.velocity.with_y(up.velocity),
         };
-        arrive(&mut self.yaw, 0.0, left, MOST_TURN, dt);
-        self.lean(lands.normal, LEANS.min(0.3 * left), dt);
+        arrive(&mut self.yaw, 0.0, left, MOST_TURN_ACCELERATION, dt);
+        self.lean(lands.normal, LEAN_TIME.min(0.3 * left), dt);
         // A foot in the ground moves up, as fast as the limit of the acceleration allows.
         let ball = goal.clip.y + self.offset.value.y;
         let least = self.path.floor + goal.ball_height;
@@ -542,11 +493,14 @@ impl Foot {
             floor: sole.below(ball).unwrap_or(NO_GROUND),
         };
         let mut hardest = pull(now, path.offset, left);
-        for (share, clip) in SHARES.into_iter().zip(goal.ahead) {
+        for (share, clip) in SWING_SHARES.into_iter().zip(goal.ahead) {
             let Some(height) = sole.highest(ball + way * share, lands.normal) else {
                 continue;
             };
-            let (offset, time) = (height + goal.ball_height - clip, (left * share).max(LEAST));
+            let (offset, time) = (
+                height + goal.ball_height - clip,
+                (left * share).max(SHORTEST_WAY_TIME),
+            );
             let pull = pull(now, offset, time);
             if offset > now[0] && pull > hardest {
                 (hardest, path.left, path.offset) = (pull, time, offset);
@@ -564,17 +518,24 @@ impl Foot {
         dt: f64,
     ) {
         // A foot that is too fast takes longer than planned.
-        let left = unhurried(&ball, to.ball, left.max(LEAST), MOST_UP);
-        arrive(&mut ball, to.ball, left, MOST_UP, dt);
+        let left = unhurried(
+            &ball,
+            to.ball,
+            left.max(SHORTEST_WAY_TIME),
+            MOST_UP_ACCELERATION,
+        );
+        arrive(&mut ball, to.ball, left, MOST_UP_ACCELERATION, dt);
         self.set(ball.value - goal.clip, dt);
-        arrive(&mut self.yaw, 0.0, left, MOST_TURN, dt);
-        self.lean(to.normal, LEANS, dt);
+        arrive(&mut self.yaw, 0.0, left, MOST_TURN_ACCELERATION, dt);
+        self.lean(to.normal, LEAN_TIME, dt);
         self.hold = Hold::Lands {
             ball,
             to,
             left: left - dt,
         };
-        if left <= LEAST && (ball.value - to.ball).length() < ARRIVED * goal.leg {
+        if left <= SHORTEST_WAY_TIME
+            && (ball.value - to.ball).length() < ARRIVED_DISTANCE * goal.leg
+        {
             self.plant(goal, sole);
         }
     }
@@ -591,9 +552,9 @@ impl Foot {
         let lift = step.lift * hump * hump * hump;
         let ball = step.from.lerp(to.ball, share) + DVec3::Y * lift;
         self.set(ball - goal.clip, dt);
-        let left = (step.lasts - step.passed).max(LEAST);
-        arrive(&mut self.yaw, 0.0, left, MOST_TURN, dt);
-        self.lean(to.normal, LEANS, dt);
+        let left = (step.lasts - step.passed).max(SHORTEST_WAY_TIME);
+        arrive(&mut self.yaw, 0.0, left, MOST_TURN_ACCELERATION, dt);
+        self.lean(to.normal, LEAN_TIME, dt);
         self.hold = Hold::Steps(step);
         if s >= 1.0 {
             self.plant(goal, sole);
@@ -604,7 +565,7 @@ impl Foot {
     fn landing(&mut self, place: DVec3, goal: &FootGoal, sole: &Sole<'_>) -> Footing {
         let is_near = |known: &Footing| {
             let way = place - known.ball;
-            way.with_y(0.0).length() < SAME * goal.leg
+            way.with_y(0.0).length() < SAME_LANDING_DISTANCE * goal.leg
         };
         let known = self
             .landing
@@ -626,18 +587,6 @@ impl Foot {
     fn lean(&mut self, normal: DVec3, time: f64, dt: f64) {
         let share = 1.0 - libm::exp(-dt / time.max(1e-3));
         self.normal = (self.normal + (normal - self.normal) * share).normalize_or(DVec3::Y);
-    }
-}
-
-impl FootGoal {
-    /// True if the clip lifts the foot so soon that the foot need not come down before.
-    fn is_lifted_soon(&self) -> bool {
-        self.is_gait && self.stands_for < TOO_SHORT * self.step_time()
-    }
-
-    /// Shortest duration of a step that is not in the clip, seconds.
-    fn step_time(&self) -> f64 {
-        STEP_TIME * (self.leg / GRAVITY).sqrt()
     }
 }
 

@@ -10,13 +10,13 @@ pub(crate) struct Ground<'a> {
 }
 
 /// Sideways offset of the rays that are cast if the first one finds no ground, as a share of the reach.
-const SLIPS: f64 = 1e-4;
+const SIDE_RAY_OFFSET: f64 = 1e-4;
 
 impl Ground<'_> {
     /// Height of the ground below a place, and its normal, which points up; `None` if no ground is in reach.
     pub(crate) fn below(&self, place: DVec3) -> Option<(f64, DVec3)> {
         // Rapier's rays may slip through the edge between two triangles.
-        let aside = SLIPS * self.reach;
+        let aside = SIDE_RAY_OFFSET * self.reach;
         // The offset is along neither the sides nor the diagonals of a height field's cells.
         let places = [0.0, aside, -aside].map(|aside| place + DVec3::new(aside, 0.0, 0.6 * aside));
         places.into_iter().find_map(|place| self.cast(place))
@@ -50,8 +50,12 @@ mod tests {
     #[test]
     fn no_ray_slips_through_the_ground() {
         /// Number of heights along each side of the height field.
-        const LINES: usize = 401;
-        let heights = Array2::new(LINES, LINES, vec![0.0; LINES * LINES]);
+        const FIELD_LINES: usize = 401;
+        let heights = Array2::new(
+            FIELD_LINES,
+            FIELD_LINES,
+            vec![0.0; FIELD_LINES * FIELD_LINES],
+        );
         let field = ColliderBuilder::heightfield(heights, Vector::new(400.0, 1.0, 400.0));
         let mut world = PhysicsWorld::default();
         world.insert_collider(field, None);

@@ -7,10 +7,12 @@
 
 mod arrive;
 mod foot;
+mod goal;
 mod ground;
 mod sole;
 
-pub(crate) use foot::{Foot, FootGoal, GRAVITY, MOST_ASIDE, MOST_UP, SHARES, STEP_TIME};
+pub(crate) use foot::{Foot, MOST_ASIDE_ACCELERATION, MOST_UP_ACCELERATION};
+pub(crate) use goal::{FootGoal, GRAVITY, STEP_TIME, SWING_SHARES};
 pub(crate) use ground::Ground;
 pub(crate) use sole::{Footing, Sole};
 

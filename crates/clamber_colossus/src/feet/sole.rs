@@ -8,7 +8,7 @@ use crate::kind::SoleShape;
 const MOST_LEAN: f64 = 0.577;
 
 /// Number of a sole's points that are enough to predict where it will stand.
-const FEW: usize = 12;
+const FEW_POINTS: usize = 12;
 
 /// The sole of a foot above the ground.
 pub(crate) struct Sole<'a> {
@@ -68,7 +68,9 @@ impl Sole<'_> {
         let points = &self.shape.points;
         self.lowered(
             place,
-            points.iter().step_by(points.len().div_ceil(FEW).max(1)),
+            points
+                .iter()
+                .step_by(points.len().div_ceil(FEW_POINTS).max(1)),
         )
     }
 

@@ -49,7 +49,7 @@ pub(crate) fn changed(clips: Vec<Clip>, body: &BodyFile) -> Result<Vec<Clip>, Br
         let Some(seconds) = file.close else {
             return Ok(marked);
         };
-        if !(seconds > 0.0 && seconds <= LONGEST) {
+        if !(seconds > 0.0 && seconds <= LONGEST_CLOSE) {
             let (what, range) = ("close", "more than 0 and at most 10 s");
             return Err(whole(BrainProblem::OutOfRange {
                 what,
@@ -63,7 +63,7 @@ pub(crate) fn changed(clips: Vec<Clip>, body: &BodyFile) -> Result<Vec<Clip>, Br
 }
 
 /// The longest time that [`ClipFile::close`](super::ClipFile::close) may add to a clip, seconds.
-const LONGEST: f64 = 10.0;
+const LONGEST_CLOSE: f64 = 10.0;
 
 /// Extends a clip by `seconds`, in which it returns from its end to its first pose.
 fn closed(clip: &Clip, seconds: f64) -> Result<Clip, RigError> {

@@ -10,19 +10,19 @@ use crate::error::ColossusError;
 
 /// Edges of the bands of height, as shares of the creature's height. Skin below the first edge belongs to the first
 /// band, skin above the last edge to the last one.
-pub(crate) const EDGES: [f64; BANDS + 1] = [0.08, 0.16, 0.32, 0.56, 0.8, 1.04];
+pub(crate) const BAND_EDGES: [f64; BAND_COUNT + 1] = [0.08, 0.16, 0.32, 0.56, 0.8, 1.04];
 /// Number of bands of height.
-pub(crate) const BANDS: usize = 5;
+pub(crate) const BAND_COUNT: usize = 5;
 
 /// Number of evenly spread times at which a clip is measured.
-const PHASES: u32 = 16;
+const MEASURED_PHASES: u32 = 16;
 
 /// The room around its origin that a kind of creature takes up in some clips, in model space. Per band of height it is
 /// a box around the origin and the band's skin at all measured times of these clips.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Extent {
     /// From low to high. The box of a band without skin has no width.
-    pub(crate) bands: [Band; BANDS],
+    pub(crate) bands: [Band; BAND_COUNT],
 }
 
 /// The box of one band: from right to left along X, and from back to front along Z.
@@ -74,15 +74,15 @@ impl Extent {
             left: 0.0,
             back: 0.0,
             front: 0.0,
-        }; BANDS];
+        }; BAND_COUNT];
         let (mut pose, mut buffers) = (Pose::default(), PoseBuffers::default());
         let (mut palette, mut positions) = (Palette::default(), Vec::new());
         let height = rest.height();
         for id in played {
             let duration = clips.clip(id)?.duration();
-            for phase in 0..PHASES {
+            for phase in 0..MEASURED_PHASES {
                 let mut layer = Layer::new(id);
-                layer.time = duration * f64::from(phase) / f64::from(PHASES);
+                layer.time = duration * f64::from(phase) / f64::from(MEASURED_PHASES);
                 Animator::new(vec![layer]).pose_into(clips, &mut pose, &mut buffers)?;
                 skeleton.palette_into(&pose, &mut palette)?;
                 skin_into(mesh, palette.matrices(), &mut positions).map_err(SurfaceError::from)?;
@@ -116,7 +116,7 @@ impl Extent {
             front: 0.0,
         };
         Self {
-            bands: [band; BANDS],
+            bands: [band; BAND_COUNT],
         }
     }
 }
@@ -179,7 +179,7 @@ impl Band {
 
 /// The band at a height, which is a share of the creature's height.
 fn band_of(share: f64) -> usize {
-    let inner = &EDGES[1..BANDS];
+    let inner = &BAND_EDGES[1..BAND_COUNT];
     inner.iter().filter(|edge| share > **edge).count()
 }
 

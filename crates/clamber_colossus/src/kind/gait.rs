@@ -8,7 +8,7 @@ use crate::brain::BrainProblem;
 use crate::error::ColossusError;
 
 /// Below this speed of the feet, in heights a second, the direction of the walk is unknown.
-const STILL: f64 = 0.02;
+const STILL_SPEED: f64 = 0.02;
 
 /// The clips of a kind of creature that stand, walk and turn.
 #[derive(Clone, Debug)]
@@ -92,7 +92,7 @@ impl Gait {
             speed,
             is_measured: told.is_none(),
             walks_aside: ground
-                .filter(|ground| ground.length() > STILL * height)
+                .filter(|ground| ground.length() > STILL_SPEED * height)
                 .map(|ground| libm::atan2(-ground.x, -ground.z).to_degrees()),
             turn,
             turn_rate,

@@ -16,12 +16,12 @@ const STANDS_BELOW: f64 = 0.012;
 const STANDS_SLOWER: f64 = 0.2;
 
 /// A foot's joint that is higher above the lowest skin than this share of the leg's length is not the ball of the foot.
-const HIGH: f64 = 0.2;
+const HIGH_BALL_JOINT: f64 = 0.2;
 
 /// Samples a second in which a clip is searched for contacts.
-const SAMPLES: f64 = 60.0;
+const CONTACT_SAMPLE_RATE: f64 = 60.0;
 
-/// Most samples of a clip, an hour at [`SAMPLES`]: a file may claim that a clip lasts for years.
+/// Most samples of a clip, an hour at [`CONTACT_SAMPLE_RATE`]: a file may claim that a clip lasts for years.
 const MOST_SAMPLES: f64 = 216_000.0;
 
 /// A leg of a kind of creature, in the model's units.
@@ -85,7 +85,7 @@ impl Leg {
         let mut ball_at = DVec3::ZERO;
         if let Some(high) = found
             .as_ref()
-            .filter(|sole| sole.ball_height > HIGH * length)
+            .filter(|sole| sole.ball_height > HIGH_BALL_JOINT * length)
         {
             at += high.middle();
             let frame = joint_in_model(skeleton, &rest, ball).unwrap_or_default();
@@ -125,7 +125,9 @@ impl Leg {
         playback: Playback,
     ) -> Result<(Vec<DVec3>, f64), ColossusError> {
         let duration = clip.duration();
-        let count = (duration * SAMPLES).round().clamp(1.0, MOST_SAMPLES) as usize;
+        let count = (duration * CONTACT_SAMPLE_RATE)
+            .round()
+            .clamp(1.0, MOST_SAMPLES) as usize;
         let mut pose = Pose::default();
         let mut at = |time: f64| -> Result<DVec3, ColossusError> {
             pose.transforms.clone_from(&names.clips.rest().transforms);
@@ -243,7 +245,7 @@ impl Contacts {
 
     /// True if the foot stands at a time, and is lifted before the clip ends.
     pub(crate) fn lifts_after(&self, time: f64) -> bool {
-        let end = self.duration - 2.0 / SAMPLES;
+        let end = self.duration - 2.0 / CONTACT_SAMPLE_RATE;
         self.left(time).is_some_and(|left| time + left < end)
     }
 

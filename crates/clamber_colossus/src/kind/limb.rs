@@ -14,11 +14,11 @@ use crate::error::ColossusError;
 const LEAST_KNEE: f64 = 0.349;
 
 /// Scales along the axes that differ by more than this share of the largest one are uneven.
-const UNEVEN: f32 = 1e-5;
+const UNEVEN_SCALE: f32 = 1e-5;
 
 /// A knee is bent at rest if its distance from the line between hip and foot is more than this share of the leg's
 /// length.
-const BENT: f64 = 0.02;
+const BENT_KNEE: f64 = 0.02;
 
 /// The bones of a leg, from its hip to its foot.
 #[derive(Clone, Debug)]
@@ -117,7 +117,7 @@ impl Limb {
         let side = match knee {
             Some(Knee::Forward) => DVec3::Z,
             Some(Knee::Backward) => DVec3::NEG_Z,
-            None if out.length() > BENT * length => out,
+            None if out.length() > BENT_KNEE * length => out,
             None => DVec3::Z,
         };
         let end = if is_beside {
@@ -149,7 +149,7 @@ impl Limb {
     /// bake legs that were stretched along their bones, and the solvers turn only rigid bones.
     pub(crate) fn make_rigid(&self, skeleton: &Skeleton, pose: &mut Pose) {
         let is_even = |scale: &Vec3| {
-            scale.max_element() - scale.min_element() <= UNEVEN * scale.max_element()
+            scale.max_element() - scale.min_element() <= UNEVEN_SCALE * scale.max_element()
         };
         for joint in &self.path {
             let scale = &mut pose.transforms[joint.index()].scale;

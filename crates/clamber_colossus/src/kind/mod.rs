@@ -1,5 +1,6 @@
 //! The data that all creatures of one kind share.
 
+mod act;
 mod additions;
 mod blended;
 mod extent;
@@ -18,15 +19,16 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use clamber_animation::ik::{IkError, LookAt, LookLimits};
-use clamber_animation::rig::{Channel, Clip, JointId, Keyframes, Playback, Skeleton, WeakPoint};
+use clamber_animation::rig::{Channel, Clip, JointId, Keyframes, Skeleton, WeakPoint};
 use clamber_animation::{AnimationSet, ClipId, joint_in_model};
 use clamber_surface::Fingerprint;
 use clamber_surface::mesh::{ColliderMesh, Rig, TriangleId};
 use clamber_surface::surface::creature_fingerprint;
 use glam::{DAffine3, DVec3};
 
+use act::CompiledAct;
 pub(crate) use blended::BlendedSole;
-pub(crate) use extent::{BANDS, Band, EDGES, Extent, Extents};
+pub(crate) use extent::{BAND_COUNT, BAND_EDGES, Band, Extent, Extents};
 pub use file::{
     BodyFile, ClipFile, Facing, FurFile, GaitFile, HeadFile, Knee, LegFile, PlateFile, Times,
     WeakPointFile,
@@ -39,7 +41,7 @@ pub use plate::Plate;
 pub(crate) use sole::SoleShape;
 pub(crate) use strikes::{Strike, Swept};
 
-use crate::brain::{Act, Attack, Brain, BrainError, BrainProblem, BrainReport, StateId, list};
+use crate::brain::{Brain, BrainError, BrainProblem, BrainReport, StateId};
 use crate::error::ColossusError;
 
 /// Gravity, metres a second squared. The speed up to which a foot counts as standing depends on it.
@@ -47,7 +49,7 @@ const GRAVITY: f64 = 9.81;
 
 /// Height of a human, metres. If a brain file gives neither `made_for` nor `height`, standing feet are found in clips
 /// as for a creature of this height. The unit of a file tells no height, since many files are in centimetres.
-pub(crate) const HUMAN: f64 = 1.75;
+pub(crate) const HUMAN_HEIGHT: f64 = 1.75;
 
 /// A kind of creature: its skeleton, clips, skin and brain, and the use of its body. It never changes, and many
 /// creatures share it.
@@ -84,16 +86,7 @@ pub struct CreatureKind {
 }
 
 /// The `number` of the next kind.
-static NEXT: AtomicU64 = AtomicU64::new(1);
-
-/// The clip of a state's act, and its strike.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct CompiledAct {
-    pub(crate) clip: Option<ClipId>,
-    pub(crate) strike: Option<Strike>,
-    /// Per leg, when it stands in the clip.
-    pub(crate) contacts: Vec<Contacts>,
-}
+static NEXT_NUMBER: AtomicU64 = AtomicU64::new(1);
 
 impl CreatureKind {
     /// Combines a creature with a brain.
@@ -109,36 +102,16 @@ impl CreatureKind {
             facing::turned(rig.skeleton.clone(), rig.clips.clone(), body.facing)?;
         let mut clips = additions::changed(clips, body)?;
         let mut weak_points = rig.weak_points.clone();
-        // A copy, since the clip itself may be played as well.
-        let breath = brain.file().body.breathe.as_ref();
-        let breath = breath.and_then(|name| clips.iter().find(|clip| clip.name == *name));
-        let breath = breath.map(breath_of).map(|breath| {
-            clips.push(breath);
-            ClipId(clips.len() as u32 - 1)
-        });
+        let breath = add_breath(&mut clips, body);
         let clips = AnimationSet::new(&skeleton, clips)?;
         let rest = RestSkin::new(&skeleton, &mesh)?;
         let height = rest.height();
-        let body = &brain.file().body;
-        if !(0.0..=20.0).contains(&body.tremor) {
-            let (what, range, found) = ("tremor", "from 0 to 20", body.tremor);
-            return Err(whole(BrainProblem::OutOfRange { what, range, found }).into());
-        }
-        for (what, found) in [("height", body.height), ("made_for", body.made_for)] {
-            let Some(found) = found else { continue };
-            let range = "from 0.001 to 100,000 m";
-            if !(1e-3..=1e5).contains(&found) {
-                return Err(whole(BrainProblem::OutOfRange { what, range, found }).into());
-            }
-            if height <= 0.0 {
-                return Err(whole(BrainProblem::NoHeight { what }).into());
-            }
-        }
+        check_body(body, height)?;
         let known = body.made_for.or(body.height);
         let names = Names {
             skeleton: &skeleton,
             clips: &clips,
-            gravity: GRAVITY * height / known.unwrap_or(HUMAN),
+            gravity: GRAVITY * height / known.unwrap_or(HUMAN_HEIGHT),
         };
         let mesh = additions::furred(&names, &body.fur, mesh, materials)?;
         for file in &body.weak_points {
@@ -158,35 +131,10 @@ impl CreatureKind {
             .map(|gait| Extents::new(&skeleton, &clips, &mesh, &rest, gait))
             .transpose()?;
         let balls = rest.balls(&skeleton, &mesh);
-        let mut acts = Vec::new();
-        for state in brain.states() {
-            acts.push(compile(
-                &brain,
-                state,
-                &names,
-                &legs,
-                gait.as_ref(),
-                &weak_points,
-                &balls,
-            )?);
-        }
-        let mut regions = vec![0; skeleton.joints().len()];
-        for (bit, (_, patterns)) in brain.regions().enumerate() {
-            for pattern in patterns {
-                for joint in names.joints(pattern).map_err(whole)? {
-                    regions[joint.index()] |= 1u64 << bit;
-                }
-            }
-        }
-        let mut plates = Vec::new();
-        for file in &body.plates {
-            plates.push(Plate::new(file, &mesh)?);
-        }
-        let mut plate_of: Vec<(TriangleId, u32)> = Vec::new();
-        for (index, plate) in plates.iter().enumerate() {
-            plate_of.extend(plate.triangles.iter().map(|one| (*one, index as u32)));
-        }
-        plate_of.sort_unstable();
+        let acts = act::compile_all(&brain, &names, &legs, gait.as_ref(), &weak_points, &balls)?;
+        let regions = regions_of(&names, &brain)?;
+        let plates = body.plates.iter().map(|file| Plate::new(file, &mesh));
+        let plates = plates.collect::<Result<Vec<_>, _>>()?;
         let breathe = body
             .breathe
             .as_ref()
@@ -200,7 +148,7 @@ impl CreatureKind {
             .transpose()?
             .unzip();
         Ok(Self {
-            number: NEXT.fetch_add(1, Ordering::Relaxed),
+            number: NEXT_NUMBER.fetch_add(1, Ordering::Relaxed),
             acts,
             regions,
             hips: common_parent(&skeleton, &legs),
@@ -210,8 +158,8 @@ impl CreatureKind {
             look,
             head,
             breathe,
+            plate_of: plate_of(&plates),
             plates,
-            plate_of,
             girth: rest.girth,
             height,
             skeleton,
@@ -406,6 +354,56 @@ pub(crate) fn whole(problem: BrainProblem) -> BrainError {
     }
 }
 
+/// Refuses a tremor or heights out of range, and heights for a skin without height.
+fn check_body(body: &BodyFile, height: f64) -> Result<(), BrainError> {
+    if !(0.0..=20.0).contains(&body.tremor) {
+        let (what, range, found) = ("tremor", "from 0 to 20", body.tremor);
+        return Err(whole(BrainProblem::OutOfRange { what, range, found }));
+    }
+    for (what, found) in [("height", body.height), ("made_for", body.made_for)] {
+        let Some(found) = found else { continue };
+        let range = "from 0.001 to 100,000 m";
+        if !(1e-3..=1e5).contains(&found) {
+            return Err(whole(BrainProblem::OutOfRange { what, range, found }));
+        }
+        if height <= 0.0 {
+            return Err(whole(BrainProblem::NoHeight { what }));
+        }
+    }
+    Ok(())
+}
+
+/// Per joint, the regions that it belongs to, one bit each.
+fn regions_of(names: &Names<'_>, brain: &Brain) -> Result<Vec<u64>, BrainError> {
+    let mut regions = vec![0; names.skeleton.joints().len()];
+    for (bit, (_, patterns)) in brain.regions().enumerate() {
+        for pattern in patterns {
+            for joint in names.joints(pattern).map_err(whole)? {
+                regions[joint.index()] |= 1u64 << bit;
+            }
+        }
+    }
+    Ok(regions)
+}
+
+/// The triangles of plates in ascending order, each with its plate's index.
+fn plate_of(plates: &[Plate]) -> Vec<(TriangleId, u32)> {
+    let mut plate_of: Vec<(TriangleId, u32)> = Vec::new();
+    for (index, plate) in plates.iter().enumerate() {
+        plate_of.extend(plate.triangles.iter().map(|one| (*one, index as u32)));
+    }
+    plate_of.sort_unstable();
+    plate_of
+}
+
+/// Adds the clip of breathing to the clips, if there is one: a copy, since the clip itself may be played as well.
+fn add_breath(clips: &mut Vec<Clip>, body: &BodyFile) -> Option<ClipId> {
+    let name = body.breathe.as_ref()?;
+    let breath = breath_of(clips.iter().find(|clip| clip.name == *name)?);
+    clips.push(breath);
+    Some(ClipId(clips.len() as u32 - 1))
+}
+
 /// A clip of breathing without its constant channels, since it is added to other clips in every tick.
 fn breath_of(clip: &Clip) -> Clip {
     let moves = |channel: &&Channel| match channel.values() {
@@ -428,92 +426,10 @@ fn common_parent(skeleton: &Skeleton, legs: &[Leg]) -> Option<JointId> {
     })
 }
 
-fn compile(
-    brain: &Brain,
-    state: StateId,
-    names: &Names<'_>,
-    legs: &[Leg],
-    gait: Option<&Gait>,
-    weak_points: &[WeakPoint],
-    balls: &[JointBall],
-) -> Result<CompiledAct, ColossusError> {
-    let here = |problem| brain.error_in(state, problem);
-    for name in brain.exposes(state) {
-        if !weak_points.iter().any(|point| point.name == *name) {
-            return Err(here(BrainProblem::Unknown {
-                what: "weak point",
-                name: name.clone(),
-                known: list(weak_points.iter().map(|point| &point.name)),
-            })
-            .into());
-        }
-    }
-    let Some(act) = brain.act(state) else {
-        return Ok(CompiledAct::default());
-    };
-    let clip = act
-        .clip()
-        .map(|name| names.clip(name))
-        .transpose()
-        .map_err(here)?;
-    let strike = match act {
-        Act::Attack(attack) => Some(strike(names, attack, legs, balls).map_err(here)?),
-        Act::Walk(walk) => match &walk.strike {
-            Some(clip) => {
-                let (owner, attack) = attack_with(brain, clip)
-                    .ok_or_else(|| here(BrainProblem::NoAttack { clip: clip.clone() }))?;
-                let there = |problem| brain.error_in(owner, problem);
-                // A walk does not strike, so it needs no balls.
-                Some(strike(names, attack, legs, &[]).map_err(there)?)
-            }
-            None => None,
-        },
-        _ => None,
-    };
-    if matches!(act, Act::Walk(_) | Act::Turn(_)) && gait.is_none() {
-        return Err(here(BrainProblem::NoGait).into());
-    }
-    let mut contacts = Vec::new();
-    if let Some(clip) = clip {
-        let playback = match act {
-            Act::Play(_) => Playback::Loop,
-            _ => Playback::Clamp,
-        };
-        for leg in legs {
-            contacts.push(leg.contacts(names, names.clips.clip(clip)?, playback, [0.0; 2])?);
-        }
-    }
-    Ok(CompiledAct {
-        clip,
-        strike,
-        contacts,
-    })
-}
-
-fn strike(
-    names: &Names<'_>,
-    attack: &Attack,
-    legs: &[Leg],
-    balls: &[JointBall],
-) -> Result<Strike, BrainProblem> {
-    let mut limb = Vec::new();
-    for pattern in &attack.limb {
-        limb.extend(names.joints(pattern)?);
-    }
-    Strike::new(names, attack, limb, legs, balls)
-}
-
-fn attack_with<'a>(brain: &'a Brain, clip: &str) -> Option<(StateId, &'a Attack)> {
-    brain.states().find_map(|state| match brain.act(state) {
-        Some(Act::Attack(attack)) if attack.clip == clip => Some((state, attack.as_ref())),
-        _ => None,
-    })
-}
-
 /// Largest angular acceleration of the head, radians a second squared, for a creature of human height. Larger creatures
 /// turn the head slower: times grow with the square root of the height. At any size a rider on the head feels two
 /// fifths of this number in metres a second squared.
-const TURNS_HEAD: f64 = 20.0;
+const HEAD_TURN_ACCELERATION: f64 = 20.0;
 
 fn look(
     names: &Names<'_>,
@@ -539,7 +455,7 @@ fn look(
         look.with_limits(LookLimits {
             yaw,
             pitch,
-            acceleration: TURNS_HEAD,
+            acceleration: HEAD_TURN_ACCELERATION,
         })
     });
     let joints = file.joints.iter().map(|(name, _)| name);

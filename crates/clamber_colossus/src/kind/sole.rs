@@ -5,29 +5,29 @@ use glam::DVec3;
 use super::{BlendedSole, RestSkin};
 
 /// Thickness of a sole above the lowest skin of its foot, as a share of the leg's length.
-const THICK: f64 = 0.03;
+const SOLE_THICKNESS: f64 = 0.03;
 
 /// A sole is skinned in each tick if less than this share of its low vertices follow the foot alone.
-const MOST: f64 = 0.6;
+const RIGID_VERTEX_SHARE: f64 = 0.6;
 
 /// Height above the lowest skin at rest up to which vertices that also follow the shin may become the lowest ones in
 /// another pose, as a share of the leg's length.
-const FOOT: f64 = 0.15;
+const BLENDED_HEIGHT: f64 = 0.15;
 
 /// Lower bounds of the foot's weight in a vertex of the sole, from the strictest to the laxest. A vertex that also
 /// follows the shin leaves the ground with the shin, but in a coarse mesh most vertices may do so. The strictest bound
-/// is taken with which the lowest skin is within [`AS_LOW`] of the lowest skin with the laxest bound.
-const RIGID: [f32; 3] = [0.99, 0.9, 0.5];
-/// Heights that differ by no more than this share of the leg's length count as equally low; see [`RIGID`].
-const AS_LOW: f64 = 0.01;
+/// is taken with which the lowest skin is within [`EQUALLY_LOW`] of the lowest skin with the laxest bound.
+const RIGID_WEIGHTS: [f32; 3] = [0.99, 0.9, 0.5];
+/// Heights that differ by no more than this share of the leg's length count as equally low; see [`RIGID_WEIGHTS`].
+const EQUALLY_LOW: f64 = 0.01;
 
 /// Rows along X and columns along Z of the grid of points on a sole.
-const POINTS: [usize; 2] = [17, 25];
+const GRID_POINTS: [usize; 2] = [17, 25];
 /// Distance of the grid from the edge of the sole, as a share of the sole's size.
-const EDGE: f64 = 0.01;
+const GRID_EDGE_DISTANCE: f64 = 0.01;
 
 /// Points along the rim are at most the sole's diagonal divided by this apart.
-const RIM: f64 = 50.0;
+const RIM_POINTS: f64 = 50.0;
 
 /// The sole of a foot at rest, level, relative to the ball of the foot, in the model's axes and units.
 #[derive(Clone, Debug)]
@@ -38,8 +38,8 @@ pub(crate) struct SoleShape {
     pub(crate) points: Vec<DVec3>,
     /// Height of the ball above the lowest skin.
     pub(crate) ball_height: f64,
-    /// All low vertices of the foot, if many of the lowest also follow the shin ([`MOST`]); empty if most follow the
-    /// foot alone.
+    /// All low vertices of the foot, if many of the lowest also follow the shin ([`RIGID_VERTEX_SHARE`]); empty if most
+    /// follow the foot alone.
     pub(crate) blended: BlendedSole,
 }
 
@@ -67,9 +67,10 @@ impl SoleShape {
                 .map(|(place, _)| f64::from(place.y))
                 .fold(f64::INFINITY, f64::min)
         };
-        let least = low_of(RIGID[2]);
-        let is_as_low = |rigid: &f32| least.is_finite() && low_of(*rigid) <= least + AS_LOW * leg;
-        let rigid = RIGID.into_iter().find(is_as_low)?;
+        let least = low_of(RIGID_WEIGHTS[2]);
+        let is_as_low =
+            |rigid: &f32| least.is_finite() && low_of(*rigid) <= least + EQUALLY_LOW * leg;
+        let rigid = RIGID_WEIGHTS.into_iter().find(is_as_low)?;
         let places: Vec<Option<DVec3>> = (skin.positions.iter().zip(&shares))
             .map(|(place, share)| (*share > rigid).then(|| place.as_dvec3() - ball))
             .collect();
@@ -78,7 +79,7 @@ impl SoleShape {
             .flatten()
             .map(|p| p.y)
             .fold(f64::INFINITY, f64::min);
-        let is_low = |p: &DVec3| p.y < lowest + THICK * leg;
+        let is_low = |p: &DVec3| p.y < lowest + SOLE_THICKNESS * leg;
         let (mut low, mut high) = (DVec3::splat(f64::INFINITY), DVec3::splat(f64::NEG_INFINITY));
         for p in places.iter().flatten().filter(|p| is_low(p)) {
             (low, high) = (low.min(*p), high.max(*p));
@@ -86,23 +87,7 @@ impl SoleShape {
         if !low.is_finite() {
             (low, high) = (DVec3::ZERO, DVec3::ZERO);
         }
-        let half = (0..skin.positions.len()).filter(|index| {
-            let height = f64::from(skin.positions[*index].y);
-            shares[*index] > RIGID[2] && height < least + FOOT * leg
-        });
-        let half: Vec<VertexId> = half.map(|index| VertexId(index as u32)).collect();
-        let low_half = half.iter().map(|vertex| vertex.index());
-        let low_half =
-            low_half.filter(|index| f64::from(skin.positions[*index].y) < least + THICK * leg);
-        let (all, alone) = low_half.fold((0.0, 0.0), |(all, alone), index| {
-            (
-                all + 1.0,
-                alone + f64::from(u8::from(shares[index] > RIGID[0])),
-            )
-        });
-        let is_blended = alone < MOST * all;
-        let ours = half.into_iter().filter(|_| is_blended);
-        let blended = BlendedSole::new(skeleton, mesh, ours);
+        let blended = blended_sole((skeleton, mesh, skin), &shares, least, leg);
         let triangles: Vec<[DVec3; 3]> = (mesh.triangles().iter())
             .filter_map(|triangle| {
                 let corners = triangle.map(|vertex| places[vertex.0 as usize].filter(is_low));
@@ -139,6 +124,33 @@ impl SoleShape {
     }
 }
 
+/// The low vertices of a foot, if many of the lowest also follow the shin ([`RIGID_VERTEX_SHARE`]). `shares` has the
+/// foot's weight in each vertex, `least` the height of the lowest skin, `leg` the leg's length.
+fn blended_sole(
+    (skeleton, mesh, skin): (&Skeleton, &ColliderMesh, &RestSkin),
+    shares: &[f32],
+    least: f64,
+    leg: f64,
+) -> BlendedSole {
+    let half = (0..skin.positions.len()).filter(|index| {
+        let height = f64::from(skin.positions[*index].y);
+        shares[*index] > RIGID_WEIGHTS[2] && height < least + BLENDED_HEIGHT * leg
+    });
+    let half: Vec<VertexId> = half.map(|index| VertexId(index as u32)).collect();
+    let low_half = half.iter().map(|vertex| vertex.index());
+    let low_half =
+        low_half.filter(|index| f64::from(skin.positions[*index].y) < least + SOLE_THICKNESS * leg);
+    let (all, alone) = low_half.fold((0.0, 0.0), |(all, alone), index| {
+        (
+            all + 1.0,
+            alone + f64::from(u8::from(shares[index] > RIGID_WEIGHTS[0])),
+        )
+    });
+    let is_blended = alone < RIGID_VERTEX_SHARE * all;
+    let ours = half.into_iter().filter(|_| is_blended);
+    BlendedSole::new(skeleton, mesh, ours)
+}
+
 /// The vertices of a sole, and points of its triangles on a grid over X and Z. Where triangles overlap, the point is on
 /// the lowest one.
 fn spread(
@@ -146,13 +158,14 @@ fn spread(
     vertices: impl Iterator<Item = DVec3>,
     [low, high]: [DVec3; 2],
 ) -> Vec<DVec3> {
-    let share =
-        |index: usize, count: usize| EDGE + (1.0 - 2.0 * EDGE) * index as f64 / (count - 1) as f64;
+    let share = |index: usize, count: usize| {
+        GRID_EDGE_DISTANCE + (1.0 - 2.0 * GRID_EDGE_DISTANCE) * index as f64 / (count - 1) as f64
+    };
     let mut points = Vec::new();
-    for row in 0..POINTS[0] {
-        for column in 0..POINTS[1] {
-            let x = low.x + (high.x - low.x) * share(row, POINTS[0]);
-            let z = low.z + (high.z - low.z) * share(column, POINTS[1]);
+    for row in 0..GRID_POINTS[0] {
+        for column in 0..GRID_POINTS[1] {
+            let x = low.x + (high.x - low.x) * share(row, GRID_POINTS[0]);
+            let z = low.z + (high.z - low.z) * share(column, GRID_POINTS[1]);
             let heights = triangles
                 .iter()
                 .filter_map(|corners| height_at(corners, x, z));
@@ -164,9 +177,9 @@ fn spread(
     }
     // Vertices may be lower than the grid's points beside them, and the rim is outside the grid.
     points.extend(vertices);
-    let gap = (high - low).with_y(0.0).length() / RIM;
+    let gap = (high - low).with_y(0.0).length() / RIM_POINTS;
     for [from, to] in rim(triangles) {
-        let cuts = (from.distance(to) / gap.max(1e-9)).ceil().min(RIM);
+        let cuts = (from.distance(to) / gap.max(1e-9)).ceil().min(RIM_POINTS);
         points.extend((1..cuts as u32).map(|cut| from.lerp(to, f64::from(cut) / cuts)));
     }
     points.sort_by(|a, b| {

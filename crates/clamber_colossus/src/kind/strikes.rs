@@ -1,6 +1,6 @@
 use clamber_animation::ik::Chain;
 use clamber_animation::joint_in_model;
-use clamber_animation::rig::{JointId, Playback};
+use clamber_animation::rig::{Clip, JointId, Playback, Pose};
 use glam::DVec3;
 
 use super::{JointBall, Leg, Names};
@@ -44,18 +44,18 @@ pub(crate) struct Swept {
 }
 
 /// Number of steps in which the path of a ball is sampled.
-const SWEPT: u32 = 16;
+const SWEEP_STEPS: u32 = 16;
 
 /// Largest length to which a striking leg, neck or arm is stretched, as a share of its length.
-const STRETCH: f64 = 0.97;
+const MAX_STRETCH: f64 = 0.97;
 
 /// Samples of the hip and the ankle of a striking leg a second.
-const LOOKS: f64 = 20.0;
+const SAMPLE_RATE: f64 = 20.0;
 /// A foot has left its place when its ankle is further from it than this share of the leg's length.
-const LEFT: f64 = 0.03;
+const LEFT_PLACE_DISTANCE: f64 = 0.03;
 
 /// Most bones of a neck or an arm that aims: with more bones the body would bend as well.
-const BONES: usize = 3;
+const MOST_BONES: usize = 3;
 
 impl Strike {
     pub(crate) fn new(
@@ -89,61 +89,16 @@ impl Strike {
         let spot = joint_in_model(names.skeleton, &pose, end)
             .map_or(DVec3::ZERO, |frame| frame.translation);
         let leg = legs.iter().position(|leg| limb.contains(&leg.ankle));
-        let mut reaches = Vec::new();
-        let mut length = leg.map_or(0.0, |leg| legs[leg].length);
+        let timed = Timed { names, clip, to };
         let chain = chain_to(names, end, legs).filter(|_| leg.is_none() && attack.aim > 0.0);
-        if let Some(chain) = &chain {
-            let place = |joint: &JointId| {
-                joint_in_model(names.skeleton, &pose, *joint)
-                    .map_or(DVec3::ZERO, |frame| frame.translation)
-            };
-            let places: Vec<DVec3> = chain.joints().iter().map(place).collect();
-            length = places
-                .windows(2)
-                .map(|bone| bone[0].distance(bone[1]))
-                .sum();
-            reaches.push(spot - places[0]);
-        }
-        if let Some(leg) = leg.map(|leg| &legs[leg]) {
-            let at = |time: f64| {
-                let pose = clip
-                    .sample(names.clips.rest(), time, Playback::Clamp)
-                    .ok()?;
-                let place = |joint| Some(joint_in_model(names.skeleton, &pose, joint)?.translation);
-                Some([place(leg.hip)?, place(leg.ankle)?])
-            };
-            // The foot stands from some time before `to` until some time after it.
-            let step = |steps: f64, way: f64| {
-                let steps = (steps * LOOKS).max(0.0) as u32;
-                (0..=steps).map(move |step| to + way * f64::from(step) / LOOKS)
-            };
-            let down = at(to).map(|[_, ankle]| ankle);
-            let stands = |[hip, ankle]: [DVec3; 2]| {
-                let down = down.filter(|down| ankle.distance(*down) <= LEFT * length)?;
-                Some(down - hip)
-            };
-            let before = step(to - from, -1.0).map_while(|time| stands(at(time)?));
-            let after = step(clip.duration() - to, 1.0).map_while(|time| stands(at(time)?));
-            reaches.extend(before.chain(after));
-        }
+        let (reaches, length) = match (leg.map(|leg| &legs[leg]), &chain) {
+            (Some(leg), _) => (timed.reaches_of_leg(leg, from), leg.length),
+            (None, Some(chain)) => timed.reach_of_chain(chain, &pose, spot),
+            (None, None) => (Vec::new(), 0.0),
+        };
         let goes = leg.is_some() || chain.is_some();
         let aims = |ball: &JointBall| goes && limb.contains(&ball.joint);
-        let new = |ball: &JointBall| Swept {
-            radius: ball.radius,
-            aims: aims(ball),
-            way: Vec::new(),
-        };
-        let mut swept: Vec<Swept> = balls.iter().map(new).collect();
-        for phase in 0..=SWEPT {
-            let time = to * f64::from(phase) / f64::from(SWEPT);
-            let pose = clip.sample(names.clips.rest(), time, Playback::Clamp);
-            let pose = pose.map_err(|_| phases())?;
-            for (ball, swept) in balls.iter().zip(&mut swept) {
-                let frame = joint_in_model(names.skeleton, &pose, ball.joint);
-                let place = frame.map(|frame| frame.transform_point3(ball.middle));
-                swept.way.extend(place);
-            }
-        }
+        let swept = timed.swept(balls, aims).ok_or_else(phases)?;
         Ok(Self {
             swept,
             reaches,
@@ -160,7 +115,7 @@ impl Strike {
 
     /// The share of a displacement of the spot, in model space, that the leg or the chain can reach: from 0 to 1.
     pub(crate) fn reach(&self, way: DVec3) -> f64 {
-        let length = STRETCH * self.length;
+        let length = MAX_STRETCH * self.length;
         let share = |from: &DVec3| {
             // The share at which |from + share * way| is the leg's length.
             let (a, b) = (way.length_squared(), from.dot(way));
@@ -183,7 +138,78 @@ impl Strike {
     }
 }
 
-/// The neck or arm above the end of a limb: at most [`BONES`] bones, from joints that no leg hangs from.
+/// A clip with the time at which its strike is over.
+struct Timed<'a> {
+    names: &'a Names<'a>,
+    clip: &'a Clip,
+    /// Time of the marker `recovery`, seconds.
+    to: f64,
+}
+
+impl Timed<'_> {
+    /// The vector that a chain has to span, and the chain's length. `pose` is the clip's pose at `to`.
+    fn reach_of_chain(&self, chain: &Chain, pose: &Pose, spot: DVec3) -> (Vec<DVec3>, f64) {
+        let place = |joint: &JointId| {
+            joint_in_model(self.names.skeleton, pose, *joint)
+                .map_or(DVec3::ZERO, |frame| frame.translation)
+        };
+        let places: Vec<DVec3> = chain.joints().iter().map(place).collect();
+        let length = places
+            .windows(2)
+            .map(|bone| bone[0].distance(bone[1]))
+            .sum();
+        (vec![spot - places[0]], length)
+    }
+
+    /// The vectors that a leg has to span, from the hip to the place where the ankle comes down. The foot stands from
+    /// some time before `to`, but not before `from`, until some time after it.
+    fn reaches_of_leg(&self, leg: &Leg, from: f64) -> Vec<DVec3> {
+        let Self { names, clip, to } = *self;
+        let at = |time: f64| {
+            let pose = clip
+                .sample(names.clips.rest(), time, Playback::Clamp)
+                .ok()?;
+            let place = |joint| Some(joint_in_model(names.skeleton, &pose, joint)?.translation);
+            Some([place(leg.hip)?, place(leg.ankle)?])
+        };
+        let step = |steps: f64, way: f64| {
+            let steps = (steps * SAMPLE_RATE).max(0.0) as u32;
+            (0..=steps).map(move |step| to + way * f64::from(step) / SAMPLE_RATE)
+        };
+        let down = at(to).map(|[_, ankle]| ankle);
+        let stands = |[hip, ankle]: [DVec3; 2]| {
+            let down =
+                down.filter(|down| ankle.distance(*down) <= LEFT_PLACE_DISTANCE * leg.length)?;
+            Some(down - hip)
+        };
+        let before = step(to - from, -1.0).map_while(|time| stands(at(time)?));
+        let after = step(clip.duration() - to, 1.0).map_while(|time| stands(at(time)?));
+        before.chain(after).collect()
+    }
+
+    /// The paths of balls from the clip's beginning to `to`; `None` if the clip cannot be sampled.
+    fn swept(&self, balls: &[JointBall], aims: impl Fn(&JointBall) -> bool) -> Option<Vec<Swept>> {
+        let new = |ball: &JointBall| Swept {
+            radius: ball.radius,
+            aims: aims(ball),
+            way: Vec::new(),
+        };
+        let mut swept: Vec<Swept> = balls.iter().map(new).collect();
+        for phase in 0..=SWEEP_STEPS {
+            let time = self.to * f64::from(phase) / f64::from(SWEEP_STEPS);
+            let rest = self.names.clips.rest();
+            let pose = self.clip.sample(rest, time, Playback::Clamp).ok()?;
+            for (ball, swept) in balls.iter().zip(&mut swept) {
+                let frame = joint_in_model(self.names.skeleton, &pose, ball.joint);
+                let place = frame.map(|frame| frame.transform_point3(ball.middle));
+                swept.way.extend(place);
+            }
+        }
+        Some(swept)
+    }
+}
+
+/// The neck or arm above the end of a limb: at most [`MOST_BONES`] bones, from joints that no leg hangs from.
 fn chain_to(names: &Names<'_>, end: JointId, legs: &[Leg]) -> Option<Chain> {
     let skeleton = names.skeleton;
     let parent = |joint: &JointId| skeleton.joints()[joint.index()].parent;
@@ -192,6 +218,6 @@ fn chain_to(names: &Names<'_>, end: JointId, legs: &[Leg]) -> Option<Chain> {
         parent(joint).is_some() && !legs.iter().any(holds)
     };
     let above = core::iter::successors(Some(end), parent);
-    let first = above.take_while(is_free).take(BONES + 1).last()?;
+    let first = above.take_while(is_free).take(MOST_BONES + 1).last()?;
     Chain::new(skeleton, first, end).ok()
 }

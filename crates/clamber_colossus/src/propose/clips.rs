@@ -3,7 +3,7 @@
 use clamber_animation::rig::Clip;
 
 /// Words in the names of clips that can serve as the idle clip. Earlier words are preferred.
-const WAITS: [&str; 13] = [
+const IDLE_WORDS: [&str; 13] = [
     "idle",
     "survey",
     "stand",
@@ -19,30 +19,30 @@ const WAITS: [&str; 13] = [
     "flying",
 ];
 /// Words in the names of clips that can serve as the walk. Earlier words are preferred.
-const WALKS: [&str; 7] = [
+const WALK_WORDS: [&str; 7] = [
     "walk", "walks", "walking", "move", "moves", "run", "running",
 ];
 /// Words in the names of clips that can serve for shaking off riders. Earlier words are preferred.
-const SHAKES: [&str; 11] = [
+const SHAKE_WORDS: [&str; 11] = [
     "shake", "shrug", "hit", "react", "recieve", "impact", "hurt", "roar", "dance", "jump",
     "attack",
 ];
 /// Words in the names of clips that can serve as the attack. Earlier words are preferred.
-const ATTACKS: [&str; 9] = [
+const ATTACK_WORDS: [&str; 9] = [
     "headbutt", "bite", "attack", "stomp", "swipe", "punch", "kick", "slash", "strike",
 ];
 /// Words in the names of clips that can serve as the death. Earlier words are preferred.
-const DIES: [&str; 5] = ["death", "die", "dies", "dying", "dead"];
+const DEATH_WORDS: [&str; 5] = ["death", "die", "dies", "dying", "dead"];
 
 /// A clip with one of these words in its name is neither the idle clip nor the walk.
-const ACTS: [&str; 22] = [
+const ACT_WORDS: [&str; 22] = [
     "death", "die", "dies", "dying", "dead", "attack", "headbutt", "bite", "punch", "kick",
     "slash", "shoot", "hit", "jump", "hold", "holding", "gun", "sword", "sit", "sitting", "fast",
     "impulse",
 ];
 
 /// Longest clip that is used, seconds.
-const LONGEST: f64 = 600.0;
+const LONGEST_CLIP: f64 = 600.0;
 
 /// The clips of a creature by their use, as far as their names tell.
 pub(super) struct Clips {
@@ -58,7 +58,7 @@ impl Clips {
         // A name refers to the first clip that has it.
         let is_first = |index: usize, clip: &Clip| {
             let same = clips.iter().position(|other| other.name == clip.name);
-            same == Some(index) && clip.duration() <= LONGEST
+            same == Some(index) && clip.duration() <= LONGEST_CLIP
         };
         let known = clips
             .iter()
@@ -66,13 +66,13 @@ impl Clips {
             .filter(|(index, clip)| is_first(*index, clip));
         let known: Vec<(&Clip, Vec<String>)> =
             known.map(|(_, clip)| (clip, words(&clip.name))).collect();
-        let is_act = |words: &[String]| words.iter().any(|word| ACTS.contains(&word.as_str()));
+        let is_act = |words: &[String]| words.iter().any(|word| ACT_WORDS.contains(&word.as_str()));
         // The clip with the shortest name: longer names tell of something else that the clip does.
         let plainest = |wanted: &[&str], is_calm: bool| {
             wanted.iter().find_map(|word| {
                 let fits = known.iter().filter(|(clip, words)| {
                     // A standing clip may be a single pose.
-                    let lasts = clip.duration() > 0.0 || is_calm && WAITS.contains(word);
+                    let lasts = clip.duration() > 0.0 || is_calm && IDLE_WORDS.contains(word);
                     let is_named = words.iter().any(|own| own == word);
                     lasts && is_named && !(is_calm && is_act(words))
                 });
@@ -84,11 +84,11 @@ impl Clips {
             .iter()
             .find(|(clip, words)| clip.duration() > 0.0 && !is_act(words));
         Self {
-            idle: plainest(&WAITS, true).or(calm.map(|(clip, _)| clip.name.clone())),
-            walk: plainest(&WALKS, true),
-            shake: plainest(&SHAKES, false),
-            attack: plainest(&ATTACKS, false),
-            death: plainest(&DIES, false),
+            idle: plainest(&IDLE_WORDS, true).or(calm.map(|(clip, _)| clip.name.clone())),
+            walk: plainest(&WALK_WORDS, true),
+            shake: plainest(&SHAKE_WORDS, false),
+            attack: plainest(&ATTACK_WORDS, false),
+            death: plainest(&DEATH_WORDS, false),
         }
     }
 }

@@ -9,31 +9,31 @@ use super::look::Look;
 use crate::kind::LegFile;
 
 /// Skin touches the ground if it is no higher above the lowest skin than this share of the creature's height.
-const LOW: f64 = 0.04;
+const GROUND_SKIN_HEIGHT: f64 = 0.04;
 /// A joint is no foot if the mean X of its skin is nearer to 0 than this share of the creature's height. [`is_aside`]
 /// tests the joint's own X by it.
-const MIDDLE: f64 = 0.01;
+const MIDDLE_WIDTH: f64 = 0.01;
 
 /// An ankle is no higher above the lowest skin than this share of the creature's height.
-const ANKLE: f64 = 0.15;
+const MOST_ANKLE_HEIGHT: f64 = 0.15;
 
 /// Largest gap between the skin of a detached foot and the skin of its leg, as a share of the creature's height.
-const NEAR: f64 = 0.1;
+const MOST_FOOT_GAP: f64 = 0.1;
 
-/// The top joint of a leg is dropped if it moves less than this share of the leg's skin, and the condition of [`INNER`]
-/// holds: it only connects the leg to the body.
-const LIGHT: f64 = 0.15;
-/// See [`LIGHT`]: the top joint is nearer to the plane X = 0 than this share of the next joint's distance.
-const INNER: f64 = 0.75;
+/// The top joint of a leg is dropped if it moves less than this share of the leg's skin, and the condition of
+/// [`INNER_JOINT_SHARE`] holds: it only connects the leg to the body.
+const LIGHT_SKIN_SHARE: f64 = 0.15;
+/// See [`LIGHT_SKIN_SHARE`]: the top joint is nearer to the plane X = 0 than this share of the next joint's distance.
+const INNER_JOINT_SHARE: f64 = 0.75;
 
 /// Largest difference between the distances of a pair's feet from the plane X = 0, as a share of the creature's height.
-const ASIDE: f64 = 0.1;
+const MOST_PAIR_DIFFERENCE: f64 = 0.1;
 /// Weight of the feet's distance along Z in the cost of a pair, against 1 for other distances: the feet may be in a
 /// stride. Pairs of the least cost are taken first.
-const STRIDE: f64 = 0.3;
+const STRIDE_WEIGHT: f64 = 0.3;
 
 /// Most joints of a leg, the limit of [`LegFile::joints`].
-const MOST: usize = 5;
+const MOST_LEG_JOINTS: usize = 5;
 
 /// Most ends of chains on the ground. A creature with more of them gets no legs.
 const MOST_LEGS: usize = 64;
@@ -92,10 +92,10 @@ fn paired(look: &Look<'_>, mut found: Vec<Found>) -> Vec<Found> {
         for (other, right) in found.iter().enumerate().skip(index + 1) {
             let (a, b) = (place(left), place(right));
             let aside = (a.x + b.x).abs();
-            if a.x * b.x < 0.0 && aside < ASIDE * look.height {
+            if a.x * b.x < 0.0 && aside < MOST_PAIR_DIFFERENCE * look.height {
                 // The feet may be in the middle of a stride.
                 pairs.push((
-                    aside + (a.y - b.y).abs() + STRIDE * (a.z - b.z).abs(),
+                    aside + (a.y - b.y).abs() + STRIDE_WEIGHT * (a.z - b.z).abs(),
                     index,
                     other,
                 ));
@@ -121,7 +121,8 @@ fn feet(look: &Look<'_>) -> Vec<Found> {
         let aside = look.skin(*joint).iter().map(|place| place.x).sum::<f64>();
         let aside = aside / look.skin(*joint).len().max(1) as f64;
         let lowest = heights.fold(f64::INFINITY, f64::min);
-        lowest < look.low + LOW * look.height && aside.abs() > MIDDLE * look.height
+        lowest < look.low + GROUND_SKIN_HEIGHT * look.height
+            && aside.abs() > MIDDLE_WIDTH * look.height
     };
     let low: Vec<JointId> = look.joints().filter(is_low).collect();
     let above: BTreeSet<JointId> = low
@@ -141,7 +142,7 @@ fn feet(look: &Look<'_>) -> Vec<Found> {
     for end in &ends {
         let is_foot = |joint: &JointId| {
             !look.skin(*joint).is_empty()
-                && look.place(*joint).y < look.low + ANKLE * look.height
+                && look.place(*joint).y < look.low + MOST_ANKLE_HEIGHT * look.height
                 && is_aside(look, *joint)
         };
         let path: Vec<JointId> = look.upward(*end).skip(1).take_while(is_foot).collect();
@@ -169,9 +170,9 @@ fn feet(look: &Look<'_>) -> Vec<Found> {
     found.collect()
 }
 
-/// True if a joint is further from the plane X = 0 than [`MIDDLE`].
+/// True if a joint is further from the plane X = 0 than [`MIDDLE_WIDTH`].
 fn is_aside(look: &Look<'_>, joint: JointId) -> bool {
-    look.place(joint).x.abs() > MIDDLE * look.height
+    look.place(joint).x.abs() > MIDDLE_WIDTH * look.height
 }
 
 /// The joint that carries a detached foot, among joints with skin on the same side that are neither detached feet nor
@@ -203,7 +204,7 @@ fn nearest(look: &Look<'_>, foot: JointId, feet: &BTreeSet<JointId>) -> Option<J
         return None;
     }
     let others = look.joints().filter(is_elsewhere);
-    let near = (NEAR * look.height) * (NEAR * look.height);
+    let near = (MOST_FOOT_GAP * look.height) * (MOST_FOOT_GAP * look.height);
     let gaps = others
         .map(|joint| (gap(joint), joint))
         .filter(|(gap, _)| *gap < near);
@@ -211,14 +212,15 @@ fn nearest(look: &Look<'_>, foot: JointId, feet: &BTreeSet<JointId>) -> Option<J
         .map(|(_, joint)| joint)
 }
 
-/// Removes joints from the top of a leg that only connect it to the body, and joints over [`MOST`].
+/// Removes joints from the top of a leg that only connect it to the body, and joints over [`MOST_LEG_JOINTS`].
 fn trim(look: &Look<'_>, chain: &mut Vec<JointId>) {
     let count = |joint: &JointId| look.skin(*joint).len() as f64;
     let all: f64 = chain.iter().map(count).sum();
     let aside = |joint: JointId| look.place(joint).x.abs();
     while let [top, next, _, ..] = chain[..] {
-        let is_light = count(&top) < LIGHT * all && aside(top) < INNER * aside(next);
-        if !(is_light || chain.len() > MOST) {
+        let is_light =
+            count(&top) < LIGHT_SKIN_SHARE * all && aside(top) < INNER_JOINT_SHARE * aside(next);
+        if !(is_light || chain.len() > MOST_LEG_JOINTS) {
             break;
         }
         chain.remove(0);

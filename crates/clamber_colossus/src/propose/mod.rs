@@ -15,8 +15,8 @@ use glam::DVec3;
 use crate::brain::{Brain, BrainFile, StateFile};
 use crate::error::ColossusError;
 use crate::kind::{
-    BodyFile, ClipFile, CreatureKind, Facing, FurFile, GaitFile, HUMAN, HeadFile, LegFile, Times,
-    WeakPointFile,
+    BodyFile, ClipFile, CreatureKind, Facing, FurFile, GaitFile, HUMAN_HEIGHT, HeadFile, LegFile,
+    Times, WeakPointFile,
 };
 use clips::Clips;
 use look::{Look, rounded};
@@ -25,31 +25,32 @@ use look::{Look, rounded};
 const TICK: f64 = 1.0 / 60.0;
 
 /// Proposed rate of turning on the spot, degrees a second at the height for which the clips were made.
-const TURNS: f64 = 90.0;
+const PROPOSED_TURN_RATE: f64 = 90.0;
 /// Proposed rate of turning while walking, degrees a second at the height for which the clips were made.
-const STEERS: f64 = 40.0;
+const PROPOSED_STEER_RATE: f64 = 40.0;
 
-/// If the measured speed of the feet is below this, in heights a second of the clip, [`STROLLS`] is proposed.
-const SLOWEST: f64 = 0.1;
+/// If the measured speed of the feet is below this, in heights a second of the clip, [`PROPOSED_WALK_SPEED`] is
+/// proposed.
+const SLOWEST_MEASURED_WALK: f64 = 0.1;
 /// Proposed speed of a walk if the feet give none, heights a second of the clip.
-const STROLLS: f64 = 0.4;
+const PROPOSED_WALK_SPEED: f64 = 0.4;
 
 /// Proposed `aim` of an attack, in heights.
-const AIM: f64 = 0.1;
+const PROPOSED_AIM: f64 = 0.1;
 
 /// A limb that stays higher than this share of a human's height passes over people, and gets a shock wave.
-const HIGH: f64 = 0.8;
+const HIGH_LIMB_SHARE: f64 = 0.8;
 
 /// Proposed `within` of a walk to the prey before an attack, in heights.
-const NEAR: f64 = 0.15;
-/// If [`NEAR`] is more than this in metres, the limb is taken to pass beside people, and gets a shock wave.
-const ASIDE: f64 = 5.0;
+const PROPOSED_WITHIN: f64 = 0.15;
+/// If [`PROPOSED_WITHIN`] is more than this in metres, the limb is taken to pass beside people, and gets a shock wave.
+const BESIDE_PEOPLE_DISTANCE: f64 = 5.0;
 
 /// Proposed radius of a limb's shock wave beyond the height of the limb's end, in heights.
-const WAVE: f64 = 0.3;
+const PROPOSED_WAVE_RADIUS: f64 = 0.3;
 
 /// Proposed radius of the weak point, in heights.
-const WEAK: f64 = 0.05;
+const PROPOSED_WEAK_RADIUS: f64 = 0.05;
 /// Proposed hit points of the weak point: three charged stabs of a sword.
 const HIT_POINTS: f64 = 3.0;
 
@@ -73,7 +74,7 @@ impl BrainFile {
             clips: Clips::of(&rig.clips),
             body: BodyFile {
                 height: Some(height),
-                made_for: Some(HUMAN),
+                made_for: Some(HUMAN_HEIGHT),
                 ..BodyFile::default()
             },
         };
@@ -169,10 +170,10 @@ impl Proposal<'_> {
         let gait = GaitFile {
             idle,
             walk,
-            speed: Some(STROLLS),
+            speed: Some(PROPOSED_WALK_SPEED),
             turn: None,
-            turn_deg: TURNS,
-            steer_deg: STEERS,
+            turn_deg: PROPOSED_TURN_RATE,
+            steer_deg: PROPOSED_STEER_RATE,
         };
         let kind = self.take(|body| body.gait = Some(gait.clone()));
         if let Some(aside) = kind.and_then(|kind| kind.walks_aside()) {
@@ -196,7 +197,7 @@ impl Proposal<'_> {
         };
         let kind = self.take(|body| body.gait = Some(measured));
         let speed = kind.and_then(|kind| Some(kind.walking_speed()? / kind.height()));
-        if speed.is_some_and(|speed| speed < SLOWEST) {
+        if speed.is_some_and(|speed| speed < SLOWEST_MEASURED_WALK) {
             self.take(|body| body.gait = Some(gait));
         }
         Ok(())
@@ -249,12 +250,12 @@ impl Proposal<'_> {
         let Ok(above) = strike::above(&look, clip, &found.limb, [from, to]) else {
             return Ok(None);
         };
-        let passes_over = above.lowest * self.height() > HIGH * HUMAN;
-        let passes_by = NEAR * self.height() > ASIDE;
+        let passes_over = above.lowest * self.height() > HIGH_LIMB_SHARE * HUMAN_HEIGHT;
+        let passes_by = PROPOSED_WITHIN * self.height() > BESIDE_PEOPLE_DISTANCE;
         let strikes = Strikes {
             clip: name.clone(),
             limb: found.limb,
-            wave: (passes_over || passes_by).then_some(above.end + WAVE),
+            wave: (passes_over || passes_by).then_some(above.end + PROPOSED_WAVE_RADIUS),
         };
         if own.is_some() {
             return Ok(Some(strikes));
@@ -317,7 +318,7 @@ impl Proposal<'_> {
         let look = Look::at(&kind)?;
         // Prefers a point between the ears to one on an ear.
         let is_middle = |joint: JointId, place: &DVec3| {
-            (place.x - look.place(joint).x).abs() < WEAK * look.height
+            (place.x - look.place(joint).x).abs() < PROPOSED_WEAK_RADIUS * look.height
         };
         let top = |joint: JointId| {
             let skin = || look.skin(joint).iter();
@@ -341,7 +342,7 @@ impl Proposal<'_> {
             name: "weak point".to_owned(),
             joint: look.name(joint).to_owned(),
             at: at.to_array().map(|x| look.in_heights(x)),
-            radius: WEAK,
+            radius: PROPOSED_WEAK_RADIUS,
             hit_points: HIT_POINTS,
             major: true,
             order: None,

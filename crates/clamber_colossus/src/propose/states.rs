@@ -2,10 +2,10 @@
 
 use serde_json::{Map, Value, json};
 
-use super::{AIM, NEAR, Proposal, Strikes};
+use super::{PROPOSED_AIM, PROPOSED_WITHIN, Proposal, Strikes};
 use crate::brain::{BrainFile, BrainProblem};
 use crate::error::ColossusError;
-use crate::kind::{HUMAN, whole};
+use crate::kind::{HUMAN_HEIGHT, whole};
 
 /// The brain file with the proposed body and states.
 pub(super) fn file(
@@ -46,7 +46,7 @@ fn metres(proposal: &Proposal<'_>, heights: f64) -> f64 {
 
 /// A time in whole seconds for a time at human height, by Froude's law: larger creatures take more time.
 fn seconds(proposal: &Proposal<'_>, human: f64) -> u32 {
-    let seconds = human * (proposal.height() / HUMAN).sqrt();
+    let seconds = human * (proposal.height() / HUMAN_HEIGHT).sqrt();
     seconds.round().clamp(1.0, 3600.0) as u32
 }
 
@@ -85,7 +85,7 @@ fn alert(proposal: &Proposal<'_>, strikes: Option<&Strikes>) -> Value {
     let walks = proposal.body.gait.is_some();
     let start = if walks { "turns" } else { "watches" };
     if let Some(Strikes { clip, limb, wave }) = strikes {
-        let aim = metres(proposal, AIM);
+        let aim = metres(proposal, PROPOSED_AIM);
         let mut attack =
             json!({ "clip": clip, "limb": limb, "damage": 0.4, "throw": 8, "aim": aim });
         if let Some(radius) = wave {
@@ -104,7 +104,7 @@ fn alert(proposal: &Proposal<'_>, strikes: Option<&Strikes>) -> Value {
         );
         let (walk, next) = match strikes {
             Some(Strikes { clip, .. }) => {
-                let within = metres(proposal, NEAR);
+                let within = metres(proposal, PROPOSED_WITHIN);
                 (
                     json!({ "to": "prey", "within": within, "strike": clip }),
                     "strikes",

@@ -90,7 +90,7 @@ fn who_falls_asleep_comes_to_rest_first() {
         assert!(worst < 0.3, "{setting:?}, {before}: {worst}");
         assert_eq!(life.yaw_rate(), 0.0, "{setting:?}, {before}");
         assert!(
-            life.number("/gaze_weight/value") < 0.02,
+            life.number("/head/weight/value") < 0.02,
             "{setting:?}, {before}"
         );
         let state = life.one.state();
@@ -163,7 +163,7 @@ fn who_attacks_has_ended_its_turn() {
             let mut state: Value = serde_json::to_value(life.one.state()).unwrap();
             let stomps = life.one.kind().brain().find("stomps").unwrap();
             state["brain"]["current"] = serde_json::to_value(stomps).unwrap();
-            state["acting"] = Value::Null;
+            state["acting"]["state"] = Value::Null;
             life.one
                 .restore(serde_json::from_value(state).unwrap())
                 .unwrap();
@@ -189,10 +189,10 @@ fn who_wakes_has_to_look_first() {
     for setting in SETTINGS {
         let mut life = giant_in(setting, &ground);
         life.live(&[at(0.1, 30.0)], 3.0, |_| {});
-        assert!(life.number("/unseen") < 1.0, "{setting:?}");
+        assert!(life.number("/perceived/unseen") < 1.0, "{setting:?}");
         assert!(life.one.enter("dozes"));
         life.live(&[], 12.0, |_| {});
-        assert!(life.number("/unseen") > 100.0, "{setting:?}");
+        assert!(life.number("/perceived/unseen") > 100.0, "{setting:?}");
     }
 }
 

@@ -314,10 +314,10 @@ fn a_forged_state_is_refused_or_steps() {
         numbers(saved, String::new(), &mut places);
         for (index, place) in places.iter().enumerate() {
             // A pose has many numbers, so only some of them are changed.
-            let many = ["/pose", "/animator/offsets"]
+            let many = ["/pose", "/clips/animator/offsets"]
                 .iter()
                 .any(|many| place.starts_with(many));
-            if many && index % 47 != 0 || which == 1 && !place.starts_with("/animator") {
+            if many && index % 47 != 0 || which == 1 && !place.starts_with("/clips/animator") {
                 continue;
             }
             for value in [-1.0, 0.0, 1e3, 1e9, 1e30, 1e300, f64::MAX, f64::MIN] {

@@ -509,10 +509,10 @@ fn forged_wounds_are_refused() {
     let saved = serde_json::to_value(one.state()).unwrap();
     let not = serde_json::json!(f64::NAN.to_bits());
     for (place, value) in [
-        ("/hit_points/0", serde_json::json!(-1.0)),
-        ("/walls/0", serde_json::json!(-1.0)),
+        ("/damage/hit_points/0", serde_json::json!(-1.0)),
+        ("/perceived/walls/0", serde_json::json!(-1.0)),
         ("/senses/numbers/3", not),
-        ("/carried/yaw_rate", serde_json::json!(1e9)),
+        ("/moving_ground/drift/yaw_rate", serde_json::json!(1e9)),
     ] {
         let mut forged = saved.clone();
         *forged
@@ -537,19 +537,24 @@ fn put_in_an_attack_it_aims_as_before() {
         go(&mut one, &deck(f64::from(tick) * TICK), 1);
     }
     let mut saved = serde_json::to_value(one.state()).unwrap();
-    assert!(saved["carried"]["velocity"][0].as_f64().unwrap() > 2.9);
-    saved["aim"] = serde_json::json!([1.0, 0.5, 2.0]);
+    assert!(
+        saved["moving_ground"]["drift"]["velocity"][0]
+            .as_f64()
+            .unwrap()
+            > 2.9
+    );
+    saved["striking"]["aim"] = serde_json::json!([1.0, 0.5, 2.0]);
     one.restore(serde_json::from_value(saved).unwrap()).unwrap();
     let yaw = one.state().yaw();
     one.put(DVec3::X * 50.0, yaw + core::f64::consts::FRAC_PI_2)
         .unwrap();
     let saved = serde_json::to_value(one.state()).unwrap();
-    let aim: Vec<f64> = serde_json::from_value(saved["aim"].clone()).unwrap();
+    let aim: Vec<f64> = serde_json::from_value(saved["striking"]["aim"].clone()).unwrap();
     for (found, expected) in aim.iter().zip([2.0, 0.5, -1.0]) {
         assert!((found - expected).abs() < 1e-9, "{aim:?}");
     }
     assert_eq!(
-        saved["carried"]["velocity"],
+        saved["moving_ground"]["drift"]["velocity"],
         serde_json::json!([0.0, 0.0, 0.0])
     );
 }

@@ -7,15 +7,15 @@ use super::{Arena, CreatureId};
 use crate::fighter::FighterId;
 
 /// Number of rays of a sword's light.
-const RAYS: usize = 12;
+const LIGHT_RAYS: usize = 12;
 
 /// Half angle of the rays' cone while the sword points directly away from the weak point, radians.
-const WIDE: f64 = 0.6;
+const WIDE_CONE_ANGLE: f64 = 0.6;
 /// Half angle of the rays' cone while the sword points at the weak point, radians.
-const NARROW: f64 = 0.005;
+const NARROW_CONE_ANGLE: f64 = 0.005;
 
 /// Length of the ray towards the sun, metres. Obstacles farther away cast no shade on the sword.
-const SHADE: f64 = 2000.0;
+const SHADE_DISTANCE: f64 = 2000.0;
 
 /// The light of a sword.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,7 +32,7 @@ pub struct SwordLight {
     pub spread: f64,
     /// The rays: unit vectors around a direction between the sword's and the weak point's. At the smallest spread all
     /// of them lead to the weak point.
-    pub rays: [DVec3; RAYS],
+    pub rays: [DVec3; LIGHT_RAYS],
 }
 
 impl Arena {
@@ -58,14 +58,15 @@ impl Arena {
             .chain(creatures);
         if all
             .into_iter()
-            .any(|one| one.cast_ray(origin, sun, SHADE).is_some())
+            .any(|one| one.cast_ray(origin, sun, SHADE_DISTANCE).is_some())
         {
             return None;
         }
         let (creature, weak_point, place) = self.next_weak_point(origin)?;
         let to = (place - origin).try_normalize()?;
         let off = libm::atan2(aim.cross(to).length(), aim.dot(to));
-        let spread = NARROW + (WIDE - NARROW) * (off / core::f64::consts::PI);
+        let spread = NARROW_CONE_ANGLE
+            + (WIDE_CONE_ANGLE - NARROW_CONE_ANGLE) * (off / core::f64::consts::PI);
         // The closer the sword points to the weak point, the more the cone's axis leans towards it.
         let (aside, along) = (aim.any_orthonormal_vector(), aim);
         let other = along.cross(aside);
@@ -73,7 +74,7 @@ impl Arena {
         let middle = (aim * (1.0 - gathered) + to * gathered).normalize_or(aim);
         let (sin, cos) = libm::sincos(spread);
         let rays = core::array::from_fn(|ray| {
-            let (y, x) = libm::sincos(ray as f64 / RAYS as f64 * core::f64::consts::TAU);
+            let (y, x) = libm::sincos(ray as f64 / LIGHT_RAYS as f64 * core::f64::consts::TAU);
             let radial = aside * x + other * y;
             let radial = (radial - middle * radial.dot(middle)).normalize_or(aside);
             middle * cos + radial * sin

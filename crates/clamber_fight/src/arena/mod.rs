@@ -36,26 +36,26 @@ use crate::fighter::{Fighter, FighterConfig, FighterId};
 use crate::projectile::{Projectile, ProjectileId, ProjectileMotion, ProjectilePlace, place_on};
 
 /// Numbers of creatures and fighters are below this, so that the counters do not overflow.
-const LAST: u32 = u32::MAX - 1024;
+const LAST_NUMBER: u32 = u32::MAX - 1024;
 
 /// Smallest obstacle id of a creature. Terrain ids, for example the bits of an engine's entities, have to be below it.
-const CREATURES: u64 = 1 << 62;
+const FIRST_CREATURE_ID: u64 = 1 << 62;
 /// Smallest obstacle id of a fighter.
-const FIGHTERS: u64 = 1 << 63;
+const FIRST_FIGHTER_ID: u64 = 1 << 63;
 
 /// The obstacle id of a creature. Climbers' states and contacts refer to the creature by it.
 pub const fn creature_obstacle(creature: CreatureId) -> ObstacleId {
-    ObstacleId(CREATURES + creature.0 as u64)
+    ObstacleId(FIRST_CREATURE_ID + creature.0 as u64)
 }
 
 /// The obstacle id under which the other fighters see a fighter.
 pub const fn fighter_obstacle(fighter: FighterId) -> ObstacleId {
-    ObstacleId(FIGHTERS + fighter.0 as u64)
+    ObstacleId(FIRST_FIGHTER_ID + fighter.0 as u64)
 }
 
 /// The creature with an obstacle id; `None` for terrain and fighters.
 pub(crate) fn creature_of(obstacle: ObstacleId) -> Option<CreatureId> {
-    let number = obstacle.0.checked_sub(CREATURES)?;
+    let number = obstacle.0.checked_sub(FIRST_CREATURE_ID)?;
     Some(CreatureId(u32::try_from(number).ok()?))
 }
 
@@ -156,7 +156,7 @@ impl Arena {
         if self.tick > 0 {
             return Err(ArenaError::Begun);
         }
-        if self.next_fighter.max(self.next_creature) >= LAST {
+        if self.next_fighter.max(self.next_creature) >= LAST_NUMBER {
             return Err(ArenaError::OutOfRange {
                 name: "the next number",
                 range: "one that is left: this many were never given",

@@ -6,7 +6,9 @@ use clamber_world::{Obstacle, ObstacleId};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::{Arena, ArenaEvent, CreatureId, KindId, LAST, Member, Outcome, creature_obstacle};
+use super::{
+    Arena, ArenaEvent, CreatureId, KindId, LAST_NUMBER, Member, Outcome, creature_obstacle,
+};
 use crate::error::ArenaError;
 use crate::fighter::{Fighter, FighterConfig, FighterId, Room};
 use crate::projectile::ProjectileId;
@@ -198,14 +200,14 @@ impl Joining {
         })?;
         let next = |given: u32, joining: usize| u64::from(given) + joining as u64;
         let next = next(arena.next_fighter, fighters).max(next(arena.next_creature, creatures));
-        check(next < u64::from(LAST), || {
+        check(next < u64::from(LAST_NUMBER), || {
             "all numbers were given".to_owned()
         })
     }
 }
 
 /// Greatest coordinate of a position in an order, metres.
-const FARTHEST: f64 = 1e12;
+const FARTHEST_PLACE: f64 = 1e12;
 
 /// Greatest absolute heading in an order, radians.
 const MOST_YAW: f64 = 1e6;
@@ -239,16 +241,6 @@ impl Arena {
     }
 
     fn check_order(&self, order: &Order, joining: &Joining) -> Result<(), String> {
-        let share = |what: &str, found: f64| {
-            let is_share = (0.0..=1.0).contains(&found);
-            check(is_share, || format!("{what} {found} is not from 0 to 1"))
-        };
-        let place = |place: DVec3| {
-            let is_near = place.is_finite() && place.abs().max_element() <= FARTHEST;
-            check(is_near, || {
-                format!("the place {place} is not finite, or beyond 1e12 m")
-            })
-        };
         match order {
             Order::Hurt { damage, .. } => share("damage", *damage),
             Order::Heal {
@@ -267,11 +259,7 @@ impl Arena {
             }
             Order::PlaceFighter { fighter, position } => {
                 place(*position)?;
-                // `Climber::new` decides whether a climber with this configuration can be at the position.
-                let climber = self.fighter(*fighter).map(|one| one.config().climber);
-                let there = climber.map(|config| Climber::new(config, *position));
-                there.transpose().map_err(|error| error.to_string())?;
-                Ok(())
+                self.check_position(*fighter, *position)
             }
             Order::Checkpoint { position, .. } => place(*position),
             Order::Noise(noise) => {
@@ -290,15 +278,7 @@ impl Arena {
                 check(value.is_finite(), || {
                     format!("the sense `{name}` is not finite")
                 })?;
-                self.check_creature((*creature, joining), |creature| {
-                    let senses = creature.kind().brain().own_senses();
-                    check(senses.contains(name), || {
-                        format!(
-                            "no own sense is called `{name}`; there are {}",
-                            listed(senses)
-                        )
-                    })
-                })
+                self.check_creature((*creature, joining), |one| check_sense(one, name))
             }
             Order::Send { creature, to } => {
                 to.map_or(Ok(()), place)?;
@@ -309,14 +289,7 @@ impl Arena {
                 })
             }
             Order::Enter { creature, state } => {
-                self.check_creature((*creature, joining), |creature| {
-                    let brain = creature.kind().brain();
-                    check(brain.find(state).is_some(), || {
-                        let paths: Vec<&str> =
-                            brain.states().map(|state| brain.path(state)).collect();
-                        format!("no state is called `{state}`; there are {}", listed(&paths))
-                    })
-                })
+                self.check_creature((*creature, joining), |one| check_state(one, state))
             }
             Order::PlaceCreature { position, yaw, .. } => {
                 place(*position)?;
@@ -334,11 +307,8 @@ impl Arena {
                 check(is_damage, || {
                     format!("damage {damage} is negative, or not finite")
                 })?;
-                self.check_creature((*creature, joining), |creature| {
-                    let count = creature.kind().weak_points().len();
-                    check(*weak_point < count, || {
-                        format!("there is no weak point {weak_point}: there are {count}")
-                    })
+                self.check_creature((*creature, joining), |one| {
+                    check_weak_point(one, *weak_point)
                 })
             }
             Order::AddFighter { .. }
@@ -349,6 +319,15 @@ impl Arena {
             | Order::Rise { .. }
             | Order::AddArrows { .. } => Ok(()),
         }
+    }
+
+    /// Refuses a position where a climber with a fighter's configuration cannot be: `Climber::new` decides. An order to
+    /// a fighter that is not there passes.
+    fn check_position(&self, fighter: FighterId, position: DVec3) -> Result<(), String> {
+        let climber = self.fighter(fighter).map(|one| one.config().climber);
+        let there = climber.map(|config| Climber::new(config, position));
+        there.transpose().map_err(|error| error.to_string())?;
+        Ok(())
     }
 
     /// Runs a check on a creature that is there or joins earlier in the list. An order to any other creature passes.
@@ -518,6 +497,48 @@ impl Arena {
         self.events.append(&mut outcome.events);
         true
     }
+}
+
+/// Refuses a share that is not from 0 to 1.
+fn share(what: &str, found: f64) -> Result<(), String> {
+    let is_share = (0.0..=1.0).contains(&found);
+    check(is_share, || format!("{what} {found} is not from 0 to 1"))
+}
+
+/// Refuses a place that is too far away.
+fn place(place: DVec3) -> Result<(), String> {
+    let is_near = place.is_finite() && place.abs().max_element() <= FARTHEST_PLACE;
+    check(is_near, || {
+        format!("the place {place} is not finite, or beyond 1e12 m")
+    })
+}
+
+/// Refuses an own sense that a creature does not have.
+fn check_sense(creature: &Creature, name: &String) -> Result<(), String> {
+    let senses = creature.kind().brain().own_senses();
+    check(senses.contains(name), || {
+        format!(
+            "no own sense is called `{name}`; there are {}",
+            listed(senses)
+        )
+    })
+}
+
+/// Refuses a state that a creature's brain does not have.
+fn check_state(creature: &Creature, state: &str) -> Result<(), String> {
+    let brain = creature.kind().brain();
+    check(brain.find(state).is_some(), || {
+        let paths: Vec<&str> = brain.states().map(|state| brain.path(state)).collect();
+        format!("no state is called `{state}`; there are {}", listed(&paths))
+    })
+}
+
+/// Refuses a weak point that a creature does not have.
+fn check_weak_point(creature: &Creature, weak_point: usize) -> Result<(), String> {
+    let count = creature.kind().weak_points().len();
+    check(weak_point < count, || {
+        format!("there is no weak point {weak_point}: there are {count}")
+    })
 }
 
 fn check(holds: bool, reason: impl FnOnce() -> String) -> Result<(), String> {

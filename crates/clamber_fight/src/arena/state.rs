@@ -1,7 +1,7 @@
 use clamber_colossus::{CreatureConfig, CreatureState, Noise};
 use serde::{Deserialize, Serialize};
 
-use super::{Arena, CreatureId, KindId, LAST, Member};
+use super::{Arena, CreatureId, KindId, LAST_NUMBER, Member};
 use crate::error::ArenaError;
 use crate::fighter::{Fighter, FighterConfig, FighterId, FighterState};
 use crate::projectile::Projectile;
@@ -180,7 +180,7 @@ impl Arena {
         let other = |reason| Err(ArenaError::OtherArena(reason));
         // No run counts this far, and the limit leaves room to count on without an overflow.
         let far = state.tick.max(state.next_projectile) > u64::MAX / 2;
-        if far || state.next_creature.max(state.next_fighter) > LAST {
+        if far || state.next_creature.max(state.next_fighter) > LAST_NUMBER {
             return other("its counters are further than an arena counts");
         }
         let creatures = state.creatures.iter().map(|one| one.id.0);

@@ -6,7 +6,7 @@ use clamber_world::{Obstacle, ObstacleId};
 
 use super::member::skins_of;
 use super::{
-    Arena, ArenaEvent, CREATURES, Member, Order, Outcome, Skins, creature_obstacle,
+    Arena, ArenaEvent, FIRST_CREATURE_ID, Member, Order, Outcome, Skins, creature_obstacle,
     fighter_obstacle,
 };
 use crate::error::ArenaError;
@@ -28,7 +28,7 @@ pub(super) struct Scratch {
 
 /// Part of a fighter's reach that grows with its size, in radii of its ball. Its height and its displacement in the
 /// tick are added to it. If it is too small, climbers that touch are not obstacles to each other.
-const APART: f64 = 20.0;
+const REACH_IN_RADII: f64 = 20.0;
 
 impl Arena {
     /// Advances the arena by one tick. `inputs` has one input for each fighter, by ascending number. The rules are the
@@ -130,8 +130,12 @@ impl Arena {
         ids.clear();
         ids.extend(terrain.iter().map(|(id, _)| *id));
         ids.sort_unstable();
-        if let Some(ObstacleId(found)) = ids.last().copied().filter(|last| last.0 >= CREATURES) {
-            let below = CREATURES;
+        if let Some(ObstacleId(found)) = ids
+            .last()
+            .copied()
+            .filter(|last| last.0 >= FIRST_CREATURE_ID)
+        {
+            let below = FIRST_CREATURE_ID;
             return Err(ArenaError::TerrainId { found, below });
         }
         match ids.windows(2).find(|pair| pair[0] == pair[1]) {
@@ -450,7 +454,7 @@ fn person(fighter: &Fighter, creature: ObstacleId) -> Person {
 fn are_near(ours: &Fighter, other: &Fighter, dt: f64) -> bool {
     let [a, b] = [ours, other].map(|fighter| {
         let (state, body) = (fighter.climber().state(), fighter.config().climber.body);
-        let reach = APART * body.radius + body.height + state.velocity.length() * dt;
+        let reach = REACH_IN_RADII * body.radius + body.height + state.velocity.length() * dt;
         (state.position, reach)
     });
     a.0.distance(b.0) <= a.1 + b.1

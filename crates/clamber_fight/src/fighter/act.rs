@@ -13,17 +13,17 @@ use crate::arena::{ArenaEvent, CreatureId, Hit, Outcome, Weapon, creature_obstac
 const DRAWN_WALK: f64 = 0.5;
 
 /// Seconds after which a fighter without room looks for room again.
-const LOOKS: f64 = 0.5;
+const ROOM_SEARCH_INTERVAL: f64 = 0.5;
 
 /// Ticks after which a living fighter without room looks for room again.
 pub(crate) fn looks_every(tick: f64) -> u64 {
-    (LOOKS / tick).ceil().max(1.0) as u64
+    (ROOM_SEARCH_INTERVAL / tick).ceil().max(1.0) as u64
 }
 
 /// True in the ticks in which a dead fighter looks for room, `waited` seconds after the time of its respawn: in the
-/// first one, then every [`LOOKS`] seconds.
+/// first one, then every [`ROOM_SEARCH_INTERVAL`] seconds.
 fn looks(waited: f64, dt: f64) -> bool {
-    let round = |seconds: f64| (seconds / LOOKS).floor();
+    let round = |seconds: f64| (seconds / ROOM_SEARCH_INTERVAL).floor();
     waited < dt || round(waited) > round(waited - dt)
 }
 

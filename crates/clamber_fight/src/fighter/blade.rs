@@ -15,24 +15,24 @@ pub struct Blade {
 }
 
 /// Angle of a cut below the horizontal, radians.
-const DOWN: f64 = 0.25;
+const CUT_DOWN_ANGLE: f64 = 0.25;
 
 /// Hilt of a raised sword, from the centre of the climber's ball: right, up, and ahead, metres.
-const RAISED: DVec3 = DVec3::new(0.1, 1.5, 0.1);
+const RAISED_HILT: DVec3 = DVec3::new(0.1, 1.5, 0.1);
 /// Direction of a raised blade: right, up, and ahead, about a unit vector. It points up and backwards.
-const POINTS: DVec3 = DVec3::new(0.0, 0.94, -0.34);
+const RAISED_DIRECTION: DVec3 = DVec3::new(0.0, 0.94, -0.34);
 
 /// Hilt of a carried sword, from the centre of the climber's ball, beside the hip: right, up, and ahead, metres.
-const CARRIED: DVec3 = DVec3::new(0.35, 0.5, 0.0);
+const CARRIED_HILT: DVec3 = DVec3::new(0.35, 0.5, 0.0);
 /// Direction of a carried blade: right, up, and ahead, a unit vector. It points down and backwards.
-const HANGS: DVec3 = DVec3::new(0.0, -0.5, -0.866);
+const CARRIED_DIRECTION: DVec3 = DVec3::new(0.0, -0.5, -0.866);
 
 impl SwordConfig {
     /// The blade in a cut. `angle` is 0 at the right and grows to the left, radians.
     pub(super) fn in_cut(&self, frame: &BodyFrame, angle: f64) -> Blade {
         let from_ahead = angle - 0.5 * self.angle;
         let (sin, cos) = libm::sincos(from_ahead);
-        let (fall, level) = libm::sincos(DOWN);
+        let (fall, level) = libm::sincos(CUT_DOWN_ANGLE);
         let along = frame.direction(DVec3::new(-sin * level, -fall, cos * level));
         let shoulder = frame.at(self.shoulder);
         Blade {
@@ -43,10 +43,10 @@ impl SwordConfig {
 
     /// The blade of a sword that is raised for a stab.
     pub(super) fn raised(&self, frame: &BodyFrame) -> Blade {
-        let hilt = frame.at(RAISED);
+        let hilt = frame.at(RAISED_HILT);
         Blade {
             hilt,
-            tip: hilt + frame.direction(POINTS) * self.blade,
+            tip: hilt + frame.direction(RAISED_DIRECTION) * self.blade,
         }
     }
 
@@ -60,10 +60,10 @@ impl SwordConfig {
     }
 
     fn carried(&self, frame: &BodyFrame) -> Blade {
-        let hilt = frame.at(CARRIED);
+        let hilt = frame.at(CARRIED_HILT);
         Blade {
             hilt,
-            tip: hilt + frame.direction(HANGS) * self.blade,
+            tip: hilt + frame.direction(CARRIED_DIRECTION) * self.blade,
         }
     }
 }

@@ -8,10 +8,10 @@ use super::{Blade, BodyFrame, SwordConfig};
 use crate::arena::{CreatureId, Skins, creature_obstacle};
 
 /// Greatest distance of a coarse chord from the blade's arc, metres. The blade is thickened by it for the coarse test.
-const ARC: f64 = 0.004;
+const MOST_ARC_ERROR: f64 = 0.004;
 
 /// Number of fine chords into which a coarse chord is divided where a creature is near.
-const FINER: u32 = 8;
+const FINE_CHORDS: u32 = 8;
 
 /// Greatest number of coarse chords in a tick. It bounds the cost of an extremely fast cut.
 const MOST_CHORDS: f64 = 1e4;
@@ -37,9 +37,9 @@ impl SwordConfig {
     ///
     /// The blade's arc is swept in chords. A chord that spans at most `2 acos(1 - e / r)` of an arc of radius r stays
     /// within e of it. A blade that is thicker by e then covers the arc, so no contact is missed. Coarse chords, for
-    /// which e is [`ARC`], only tell whether a creature is near. Where one is, fine chords find the contacts: they have
-    /// an eighth of the length, and are 64 times nearer to the arc. A contact is early by at most the time in which the
-    /// blade comes nearer by 0.06 mm and the sweep's tolerance.
+    /// which e is [`MOST_ARC_ERROR`], only tell whether a creature is near. Where one is, fine chords find the
+    /// contacts: they have an eighth of the length, and are 64 times nearer to the arc. A contact is early by at most
+    /// the time in which the blade comes nearer by 0.06 mm and the sweep's tolerance.
     pub(crate) fn cut_through(
         &self,
         [from, to]: [f64; 2],
@@ -60,7 +60,7 @@ impl SwordConfig {
         };
         let turn = self.cut_angle(to) - self.cut_angle(from) + frames[0].angle_to(&frames[1]);
         let reach = self.arm + self.blade;
-        let chord = 2.0 * libm::acos(1.0 - (ARC / reach).min(1.0));
+        let chord = 2.0 * libm::acos(1.0 - (MOST_ARC_ERROR / reach).min(1.0));
         let parts = (turn / chord).ceil().clamp(1.0, MOST_CHORDS) as u32;
         let mut sweeps = Sweeps {
             struck,
@@ -72,7 +72,7 @@ impl SwordConfig {
                 if !sweeps.is_near(skin, creature, chord, chord.map(blade)) {
                     continue;
                 }
-                for fine in chords(chord, FINER) {
+                for fine in chords(chord, FINE_CHORDS) {
                     sweeps.strike(skin, creature, fine, fine.map(blade));
                 }
             }
@@ -104,7 +104,8 @@ impl Sweeps<'_> {
         span: [f64; 2],
         blades: [Blade; 2],
     ) -> bool {
-        self.first(skin, creature, span, blades, ARC).is_some()
+        self.first(skin, creature, span, blades, MOST_ARC_ERROR)
+            .is_some()
     }
 
     /// Records the contacts on a fine chord.
@@ -115,7 +116,7 @@ impl Sweeps<'_> {
         span: [f64; 2],
         blades: [Blade; 2],
     ) {
-        let thicker = ARC / f64::from(FINER * FINER);
+        let thicker = MOST_ARC_ERROR / f64::from(FINE_CHORDS * FINE_CHORDS);
         while let Some(hit) = self.first(skin, creature, span, blades, thicker) {
             self.struck
                 .push((creature_obstacle(creature), hit.hit.part.0));

@@ -14,7 +14,7 @@ pub struct BodyFrame {
 
 /// Weight of the heading in the up direction of a body on a hold; the climber's own up has weight 1. On level skin,
 /// where that up has no component along the surface, the heading decides.
-const HEADING: f64 = 0.5;
+const HEADING_WEIGHT: f64 = 0.5;
 
 impl BodyFrame {
     /// The centre of the climber's ball and the rotation of its body after its last step, in world space.
@@ -27,7 +27,7 @@ impl BodyFrame {
         let (up, ahead) = match out {
             None => (up, state.heading),
             Some(out) => {
-                let wanted = up + state.heading * HEADING;
+                let wanted = up + state.heading * HEADING_WEIGHT;
                 let along = wanted - out * wanted.dot(out);
                 (along.normalize_or(out.any_orthonormal_vector()), -out)
             }

@@ -9,30 +9,30 @@ use super::Fighter;
 use crate::arena::creature_of;
 
 /// Number of rings of candidate places around a place.
-const RINGS: u32 = 16;
+const RING_COUNT: u32 = 16;
 /// Places on the innermost ring. Each further ring has this many more, so that the distance along a ring stays the
 /// same.
-const MORE: u32 = 6;
+const PLACES_PER_RING: u32 = 6;
 /// Distance between rings, in radii of the body. Equal bodies at neighbouring places do not touch.
-const APART: f64 = 2.5;
+const RING_DISTANCE: f64 = 2.5;
 
 /// Number of further rings for a place inside a creature, since the creature may be larger than the inner rings.
 const FAR_RINGS: u32 = 9;
 /// Places on each further ring.
 const FAR_PLACES: u32 = 24;
 /// Ratio of the radii of consecutive further rings.
-const FARTHER: f64 = 1.5;
+const FARTHER_RING_RATIO: f64 = 1.5;
 
 /// A body has no room if an obstacle is nearer to its segment than this share of its radius, or if it overlaps another
 /// body that is thinned likewise. Below 1, so that a body that stands on the ground has room.
-const SHARE: f64 = 0.8;
+const THINNED_BODY_SHARE: f64 = 0.8;
 
 /// Radius of a body's core, as a share of its radius. A body whose core overlaps terrain is in rock.
-const CORE: f64 = 0.3;
+const CORE_SHARE: f64 = 0.3;
 
 /// Greatest depth of the ground below a place, in heights of the body. If the wanted place has ground, places without
 /// ground are refused.
-const GROUND: f64 = 2.0;
+const DEEPEST_GROUND: f64 = 2.0;
 
 /// Obstacles and bodies that take up room.
 pub(crate) struct Room<'a> {
@@ -49,7 +49,7 @@ impl Fighter {
         let size = self.config.climber.body.radius;
         let body = |place: DVec3| Climber::new(self.config.climber, place).map(|new| new.body());
         let has_ground = |place: DVec3| {
-            let depth = GROUND * self.config.climber.body.height;
+            let depth = DEEPEST_GROUND * self.config.climber.body.height;
             let from = place + DVec3::Y * size;
             let mut all = room.obstacles.iter();
             all.any(|(_, obstacle)| {
@@ -67,7 +67,7 @@ impl Fighter {
             creature_of(*id).is_some() && is_inside(*obstacle, near + DVec3::Y * size)
         });
         let rings = if in_creature { FAR_RINGS } else { 0 };
-        places(near, APART * size, rings).find(is_free)
+        places(near, RING_DISTANCE * size, rings).find(is_free)
     }
 }
 
@@ -75,7 +75,7 @@ impl Room<'_> {
     /// True if the core of a body overlaps terrain. Terrain pushes out only bodies that overlap it a little.
     pub(crate) fn is_in_rock(&self, body: &WorldCapsule) -> bool {
         let core = WorldCapsule {
-            radius: CORE * body.radius,
+            radius: CORE_SHARE * body.radius,
             ..*body
         };
         let mut contacts: Vec<Contact> = Vec::new();
@@ -96,7 +96,7 @@ impl Room<'_> {
         let clear = self.obstacles.iter().all(|(id, obstacle)| {
             contacts.clear();
             let slim = WorldCapsule {
-                radius: SHARE * body.radius,
+                radius: THINNED_BODY_SHARE * body.radius,
                 ..*body
             };
             obstacle.overlap_capsule(&slim, &mut contacts);
@@ -126,15 +126,15 @@ fn overlap(one: &WorldCapsule, other: &WorldCapsule) -> bool {
     let ([low, high], [other_low, other_high]) = (span(one), span(other));
     let [a, b] = [one, other].map(|body| 0.5 * (body.ends[0] + body.ends[1]));
     let level = (a - b).with_y(0.0).length();
-    low < other_high && other_low < high && level < SHARE * (one.radius + other.radius)
+    low < other_high && other_low < high && level < THINNED_BODY_SHARE * (one.radius + other.radius)
 }
 
 /// Candidate places: the middle, then the rings around it from the inside out, then `far_rings` further rings.
 fn places(middle: DVec3, apart: f64, far_rings: u32) -> impl Iterator<Item = DVec3> {
-    let near = (1..=RINGS).map(move |ring| (MORE * ring, apart * f64::from(ring)));
-    let last = apart * f64::from(RINGS);
+    let near = (1..=RING_COUNT).map(move |ring| (PLACES_PER_RING * ring, apart * f64::from(ring)));
+    let last = apart * f64::from(RING_COUNT);
     let far = (0..far_rings).scan(last, |radius, _| {
-        *radius *= FARTHER;
+        *radius *= FARTHER_RING_RATIO;
         Some((FAR_PLACES, *radius))
     });
     let rings = near.chain(far).flat_map(move |(count, radius)| {

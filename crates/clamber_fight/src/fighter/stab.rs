@@ -10,9 +10,9 @@ use crate::arena::{CreatureId, creature_obstacle, creature_of};
 
 /// Distance from the centre of the climber's ball along the surface at which a stab looks for skin, in radii of the
 /// ball: ahead of a standing climber, above one on a hold.
-const ALONG: f64 = 0.9;
+const SKIN_SEARCH_DISTANCE: f64 = 0.9;
 /// Distance from the ball's centre away from the surface at which the ray for skin begins, in radii of the ball.
-const ABOVE: f64 = 1.0;
+const RAY_START_HEIGHT: f64 = 1.0;
 
 impl SwordConfig {
     /// The blade with its tip at the stab's target.
@@ -82,7 +82,7 @@ impl Fighter {
             (DVec3::Z, DVec3::NEG_Y)
         };
         let radius = self.config.climber.body.radius;
-        let from = frame.at((along * ALONG - into * ABOVE) * radius);
+        let from = frame.at((along * SKIN_SEARCH_DISTANCE - into * RAY_START_HEIGHT) * radius);
         (frame.origin, from, frame.direction(into))
     }
 

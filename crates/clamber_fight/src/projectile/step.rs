@@ -19,7 +19,7 @@ const LONGEST_FALL: f64 = 10.0;
 
 /// Slack of [`Attachment::follow`](clamber_world::Attachment::follow) for arrows in terrain, metres: the distance by
 /// which terrain may be displaced, beside its motion, without losing the arrow.
-const SLACK: f64 = 0.01;
+const FOLLOW_SLACK: f64 = 0.01;
 
 /// The obstacles and forces that projectiles meet in a tick.
 #[derive(Clone, Copy)]
@@ -203,7 +203,7 @@ impl Projectile {
             // Terrain does not tell whether its material is there. It is gone if the attachment cannot follow it.
             None => air
                 .obstacle(at.obstacle)
-                .is_some_and(|obstacle| at.follow(obstacle, air.dt, SLACK).is_some()),
+                .is_some_and(|obstacle| at.follow(obstacle, air.dt, FOLLOW_SLACK).is_some()),
         };
         if !is_there {
             let _ = direction;

@@ -65,11 +65,11 @@ pub enum AdvanceError {
 
 /// Greatest number of calls for which a peer waits for the others' reports on a player that left: ten seconds at 60
 /// ticks a second.
-const LONGEST: u32 = 600;
+const LONGEST_WAIT: u32 = 600;
 
 /// Index of ggrs's message with inputs among its kinds of messages. It begins with the connection states of all
 /// players. Valid for ggrs 0.13.
-const INPUT: u32 = 2;
+const INPUT_MESSAGE: u32 = 2;
 
 impl<A: Clone + PartialEq + Eq + Hash + Debug + 'static> Watch<A> {
     /// Wraps a socket. Returns the socket for the session, and the watch that reads its messages.
@@ -152,7 +152,7 @@ impl<A: Clone + PartialEq + Eq + Hash + Debug + 'static> Watch<A> {
             return Ok(());
         };
         self.waited += 1;
-        if self.waited > LONGEST {
+        if self.waited > LONGEST_WAIT {
             return Err(AdvanceError::LeftBadly { player });
         }
         Err(AdvanceError::Wait)
@@ -197,7 +197,7 @@ fn told(message: &Message) -> Option<(u16, Vec<(bool, Frame)>)> {
     let bytes = postcard::to_stdvec(message).ok()?;
     // The number of the sender's session, and the kind of the message.
     let ((session, kind), rest) = postcard::take_from_bytes::<(u16, u32)>(&bytes).ok()?;
-    if kind != INPUT {
+    if kind != INPUT_MESSAGE {
         return None;
     }
     let (players, _) = postcard::take_from_bytes(rest).ok()?;

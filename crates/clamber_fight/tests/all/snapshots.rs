@@ -175,23 +175,29 @@ fn each_field_that_is_left_out_is_noticed_within_a_second() {
         ("arrows", &["projectiles"]),
         ("number of the next arrow", &["next_projectile"]),
         ("noises", &["noises"]),
-        ("plates", &["creatures", "1", "state", "plates"]),
+        ("plates", &["creatures", "1", "state", "damage", "plates"]),
         (
             "hit points of weak points",
-            &["creatures", "1", "state", "hit_points"],
+            &["creatures", "1", "state", "damage", "hit_points"],
         ),
         ("brain", &["creatures", "0", "state", "brain"]),
-        ("clips", &["creatures", "0", "state", "animator"]),
+        ("clips", &["creatures", "0", "state", "clips", "animator"]),
         ("feet", &["creatures", "0", "state", "feet"]),
-        ("rides", &["creatures", "0", "state", "rides"]),
+        ("rides", &["creatures", "0", "state", "perceived", "rides"]),
         ("pose", &["creatures", "0", "state", "pose"]),
         ("way", &["creatures", "0", "state", "walked"]),
-        ("wounds", &["creatures", "0", "state", "wounds"]),
-        ("gaze", &["creatures", "0", "state", "gaze"]),
-        ("prey", &["creatures", "0", "state", "prey"]),
-        ("whom it struck", &["creatures", "0", "state", "struck"]),
-        ("place", &["creatures", "0", "state", "position"]),
-        ("speed", &["creatures", "0", "state", "speed"]),
+        ("wounds", &["creatures", "0", "state", "damage", "wounds"]),
+        ("gaze", &["creatures", "0", "state", "head", "target"]),
+        ("prey", &["creatures", "0", "state", "perceived", "prey"]),
+        (
+            "whom it struck",
+            &["creatures", "0", "state", "striking", "struck"],
+        ),
+        (
+            "place",
+            &["creatures", "0", "state", "on_ground", "position"],
+        ),
+        ("speed", &["creatures", "0", "state", "motion", "speed"]),
         ("hips", &["creatures", "0", "state", "hips"]),
     ];
     let mut melee = Melee::new(&giant());
@@ -210,7 +216,7 @@ fn each_field_that_is_left_out_is_noticed_within_a_second() {
         // Prey in view is sensed anew in each tick. The remembered prey matters only while it is out of view.
         let is_remembered = |from: &usize| {
             let mut state = value(*from);
-            let unseen = &["creatures", "0", "state", "unseen"];
+            let unseen = &["creatures", "0", "state", "perceived", "unseen"];
             let hides = at(&mut state, unseen).as_u64() > Some(0);
             name != "prey" || hides && !at(&mut state, path).is_null()
         };

@@ -7,9 +7,9 @@ use crate::graph::Spot;
 use crate::{ClimbGraph, Footing, Plan};
 
 /// Number of steps before the last known one among which the bot searches its present step.
-const BACK: usize = 3;
+const STEPS_BACK: usize = 3;
 /// Number of steps after the last known one among which the bot searches its present step.
-const ON: usize = 8;
+const STEPS_AHEAD: usize = 8;
 
 /// A plan, and how far it has been followed.
 #[derive(Clone, Debug)]
@@ -74,8 +74,8 @@ impl Progress {
         let here = view.climber.state().position;
         let radius = view.climber.config().body.radius;
         let steps = &self.plan.steps;
-        let from = self.at.saturating_sub(BACK);
-        let to = (self.at + ON).min(steps.len() - 1);
+        let from = self.at.saturating_sub(STEPS_BACK);
+        let to = (self.at + STEPS_AHEAD).min(steps.len() - 1);
         let apart = |index: &usize| {
             let step = &steps[*index];
             let apart = view.spot(&graph.patches()[step.patch]).seat.distance(here);
@@ -153,13 +153,13 @@ impl Progress {
         // The way that it has moved. Where an obstacle blocks it, this is less than its velocity says.
         let passed = seconds - self.seen.0;
         let made = state.position - self.seen.1 - state.base_velocity * passed;
-        if passed > 0.0 && made.length() > SLOW * climbs * passed {
+        if passed > 0.0 && made.length() > RESTING_SPEED_SHARE * climbs * passed {
             self.moved = seconds;
         }
         self.seen = (seconds, state.position);
-        let is_at_rest = seconds - self.moved.max(self.since) > RESTS;
+        let is_at_rest = seconds - self.moved.max(self.since) > REST_BEFORE_TRY;
         if is_at_rest && seconds > self.tries_until {
-            (self.tries_until, self.moved) = (seconds + TRIES, seconds + TRIES);
+            (self.tries_until, self.moved) = (seconds + TRY_TIME, seconds + TRY_TIME);
         }
         seconds < self.tries_until
     }
@@ -211,11 +211,13 @@ impl Progress {
                 .filter(|_| index > self.at);
             if let Some(corner) = corner
                 && step.footing == Footing::Holds
-                && normal.dot(held) < CORNER
-                && (place - here).dot(held) > RISES * radius
+                && normal.dot(held) < CORNER_COSINE
+                && (place - here).dot(held) > CORNER_RISE * radius
             {
                 let place = view.corner(corner).unwrap_or(place);
-                if target.is_none() || is_straight(here, place, &self.passed, ASIDE * radius) {
+                if target.is_none()
+                    || is_straight(here, place, &self.passed, MOST_CORNER_CUT * radius)
+                {
                     return Some(Target {
                         place,
                         normal,
@@ -225,7 +227,8 @@ impl Progress {
                 }
                 break;
             }
-            if target.is_some() && !is_straight(here, place, &self.passed, ASIDE * radius) {
+            if target.is_some() && !is_straight(here, place, &self.passed, MOST_CORNER_CUT * radius)
+            {
                 break;
             }
             // The bot's present place is no target if a later step gives one.
@@ -237,7 +240,7 @@ impl Progress {
                     in_corner: false,
                 });
                 // If the patch is on another side, the target stays here: the bot takes hold of that side first.
-                let turns = normal.dot(held) < CORNER;
+                let turns = normal.dot(held) < CORNER_COSINE;
                 if turns && index > self.at {
                     break;
                 }
@@ -268,20 +271,20 @@ fn is_straight(from: DVec3, to: DVec3, between: &[DVec3], aside: f64) -> bool {
 }
 
 /// If the way rises off the skin that the bot holds by more than this share of its radius, the bot goes by the corner.
-const RISES: f64 = 0.5;
+const CORNER_RISE: f64 = 0.5;
 
 /// A bot on a patch counts as no farther from its middle than this many radii.
 const ON_IT: f64 = 0.5;
 
 /// The bot counts as at rest below this share of its climbing speed.
-const SLOW: f64 = 0.2;
+const RESTING_SPEED_SHARE: f64 = 0.2;
 /// The bot has to be at rest for this time before it tries another direction, seconds.
-const RESTS: f64 = 0.3;
+const REST_BEFORE_TRY: f64 = 0.3;
 /// The bot tries another direction for this time, seconds.
-const TRIES: f64 = 0.5;
+const TRY_TIME: f64 = 0.5;
 
 /// Two sides whose normals have a lower cosine than this meet in a corner.
-const CORNER: f64 = 0.7;
+const CORNER_COSINE: f64 = 0.7;
 
 /// The bot cuts corners by at most this many radii.
-const ASIDE: f64 = 0.5;
+const MOST_CORNER_CUT: f64 = 0.5;

@@ -11,45 +11,45 @@ use crate::plan::Around;
 use crate::{ClimbGraph, Footing, Start};
 
 /// The bot jumps within this many radii of the place where it gets on, seen from above.
-const NEAR: f64 = 2.2;
+const JUMP_DISTANCE: f64 = 2.2;
 
-/// The bot counts as blocked if it wants to walk, but stays below this share of its walking speed for [`PUZZLED`]
+/// The bot counts as blocked if it wants to walk, but stays below this share of its walking speed for [`BLOCKED_TIME`]
 /// seconds.
-const KEPT: f64 = 0.15;
+const BLOCKED_SPEED_SHARE: f64 = 0.15;
 /// Time after which a bot that does not move counts as blocked, seconds.
-const PUZZLED: f64 = 0.3;
+const BLOCKED_TIME: f64 = 0.3;
 
 /// Tolerance of the distance that the bot keeps, radii.
-const SWAY: f64 = 0.5;
+const KEPT_DISTANCE_TOLERANCE: f64 = 0.5;
 
 /// Least time between two jumps, seconds.
 const BETWEEN_JUMPS: f64 = 1.2;
 
 /// Number of jumps at an entry before the bot tries another one.
-const TRIES: u32 = 3;
+const JUMPS_PER_ENTRY: u32 = 3;
 /// Time for which the bot avoids an entry that did not work, seconds.
-const AVOIDS: f64 = 20.0;
+const ENTRY_AVOIDED_TIME: f64 = 20.0;
 
 /// A bot that falls within this time after it got on avoids the limb by which it got on, seconds.
-const SOON: f64 = 8.0;
+const EARLY_FALL_TIME: f64 = 8.0;
 
 /// An entry that moves faster than this share of the speed at which hands catch counts as swinging.
-const SWINGS: f64 = 0.4;
+const SWINGING_SPEED_SHARE: f64 = 0.4;
 
 /// The bot chooses an entry anew once in this time, seconds.
-const CHOOSES: f64 = 0.5;
+const CHOICE_INTERVAL: f64 = 0.5;
 
 /// Time from the ground to the first patch, seconds.
-const GETS_ON: f64 = 0.5;
+const GET_ON_TIME: f64 = 0.5;
 /// The longest time that the bot waits for a good time to get on, seconds.
-const WAITS: f64 = 60.0;
+const LONGEST_WAIT: f64 = 60.0;
 
 /// The longest pause between two searches for such a time while they find none, seconds. The searches take long.
-const PAUSE: f64 = 2.0;
+const LONGEST_PAUSE: f64 = 2.0;
 
 /// Another entry has to be better by this time to replace the present one, seconds. It keeps the bot from switching
 /// back and forth.
-const BETTER: f64 = 1.5;
+const BETTER_ENTRY_TIME: f64 = 1.5;
 
 /// State of a bot on the ground.
 #[derive(Clone, Debug)]
@@ -100,9 +100,9 @@ impl Default for Approach {
             seen: None,
             waits: None,
             lasts: false,
-            repeats: WAITS,
+            repeats: LONGEST_WAIT,
             looked: f64::NEG_INFINITY,
-            pause: 0.5 * CHOOSES,
+            pause: 0.5 * CHOICE_INTERVAL,
             drops: false,
         }
     }
@@ -126,7 +126,7 @@ impl Approach {
     /// Avoids the present entry for a while, and chooses another one.
     pub(super) fn gives_up(&mut self, seconds: f64) {
         if let Some(entry) = self.entry.take() {
-            self.avoided.push((entry, seconds + AVOIDS));
+            self.avoided.push((entry, seconds + ENTRY_AVOIDED_TIME));
         }
         self.tries = 0;
         self.chosen = f64::NEG_INFINITY;
@@ -177,7 +177,7 @@ impl Approach {
                 ..ClimberInput::IDLE
             };
         }
-        if seconds - self.chosen >= CHOOSES && state.mode == ClimberMode::Standing {
+        if seconds - self.chosen >= CHOICE_INTERVAL && state.mode == ClimberMode::Standing {
             self.choose(graph, config, view);
         }
         let Some(entry) = self.entry else {
@@ -192,25 +192,25 @@ impl Approach {
             _ => config.keeps_away * view.climber.config().body.radius,
         };
         let away = toward.length() - keeps;
-        let ahead = if away.abs() > SWAY * view.climber.config().body.radius {
+        let ahead = if away.abs() > KEPT_DISTANCE_TOLERANCE * view.climber.config().body.radius {
             away.signum()
         } else {
             0.0
         };
         let walk = toward.normalize_or_zero() * ahead;
-        let kept = KEPT * view.climber.config().ground.walk_speed;
+        let kept = BLOCKED_SPEED_SHARE * view.climber.config().ground.walk_speed;
         if walk == DVec3::ZERO || state.velocity.length() > kept {
             self.free = seconds;
         }
         let is_ready = is_rested(config, view) && self.is_time(view);
-        let near = toward.length() < NEAR * view.climber.config().body.radius;
+        let near = toward.length() < JUMP_DISTANCE * view.climber.config().body.radius;
         let swings = self.swings(entry, view.spot(patch).point, view);
-        let is_blocked = seconds - self.free > PUZZLED;
+        let is_blocked = seconds - self.free > BLOCKED_TIME;
         let wants = keeps == 0.0 && !swings && is_ready && (near || is_blocked);
         let jump = state.mode == ClimberMode::Standing && wants && self.jumps(seconds);
         if jump {
             self.tries += 1;
-            if self.tries >= TRIES {
+            if self.tries >= JUMPS_PER_ENTRY {
                 self.gives_up(seconds);
             }
         }
@@ -228,7 +228,7 @@ impl Approach {
         let Some((entry, since)) = self.rode.take() else {
             return;
         };
-        if view.seconds - since > SOON {
+        if view.seconds - since > EARLY_FALL_TIME {
             return;
         }
         let mesh = view.surface.mesh();
@@ -237,7 +237,7 @@ impl Approach {
             mesh.joint_of(graph.patches().get(entry.patch)?.triangle)
         };
         let limb = joint(entry);
-        let until = view.seconds + AVOIDS;
+        let until = view.seconds + ENTRY_AVOIDED_TIME;
         let all = 0..graph.entries().len();
         let same = all.filter(|other| *other == entry || limb.is_some() && joint(*other) == limb);
         self.avoided.extend(same.map(|entry| (entry, until)));
@@ -249,7 +249,7 @@ impl Approach {
         (self.rode, self.drops) = (None, true);
         self.gives_up(view.seconds);
         let reached = graph.region([patch]);
-        let until = view.seconds + AVOIDS;
+        let until = view.seconds + ENTRY_AVOIDED_TIME;
         let all = graph.entries().iter().enumerate();
         let same = all.filter(|(_, entry)| reached.has(entry.patch));
         self.avoided.extend(same.map(|(entry, _)| (entry, until)));
@@ -279,7 +279,7 @@ impl Approach {
         // A climber without a grip catches nothing, so no entry is too fast for its hands.
         let grip = view.climber.config().grip;
         let catches = grip.map_or(f64::INFINITY, |grip| grip.catch_speed);
-        lasted > 0.0 && place.distance(from) > SWINGS * catches * lasted
+        lasted > 0.0 && place.distance(from) > SWINGING_SPEED_SHARE * catches * lasted
     }
 
     /// True if it is time to get on: the bot's stamina is enough for the forecast from now on, or the bot has waited
@@ -327,7 +327,7 @@ impl Approach {
             .filter_map(|start| {
                 let comes = known.get(&start.patch)?.1;
                 let is_calm = view.forecast.is_calm_from(graph, start.patch, comes, most);
-                let seconds = comes + GETS_ON;
+                let seconds = comes + GET_ON_TIME;
                 is_calm.then_some(Start { seconds, ..start })
             })
             .collect();
@@ -344,29 +344,8 @@ impl Approach {
         let seconds = view.seconds;
         self.chosen = seconds;
         self.avoided.retain(|(_, until)| *until > seconds);
-        let (state, climber) = (view.climber.state(), view.climber.config());
-        let feet = state.position.dot(climber.up()) - climber.body.radius;
-        let highest = highest_entry(graph.config());
-        let footings = [Footing::Stands, Footing::Holds];
-        let place = |entry: usize| {
-            view.spot(&graph.patches()[graph.entries()[entry].patch])
-                .point
-        };
-        // Seconds until the bot arrives at an entry. `None` for an entry that is too high, did not work, or is gone, as
-        // on a plate that broke.
-        let comes = |entry: usize| {
-            let is_avoided = self.avoided.iter().any(|(other, _)| *other == entry);
-            if is_avoided || !graph.is_there(graph.entries()[entry].patch, view.surface) {
-                return None;
-            }
-            let place = place(entry);
-            if place.dot(climber.up()) - feet > highest {
-                return None;
-            }
-            let way = place - state.position;
-            let way = (way - climber.up() * way.dot(climber.up())).length();
-            Some(way / climber.ground.walk_speed.max(1e-3))
-        };
+        let avoided = &self.avoided;
+        let comes = |entry: usize| comes(graph, view, avoided, entry);
         self.lasts = false;
         if !view.forecast.is_still()
             && view.danger == Danger::None
@@ -375,12 +354,12 @@ impl Approach {
         {
             let lasting = self.lasting(graph, config, view, comes);
             self.lasts = lasting.is_some();
-            self.repeats = view.forecast.repeats_after().min(WAITS);
+            self.repeats = view.forecast.repeats_after().min(LONGEST_WAIT);
             // A search that finds nothing takes long, so it is repeated less and less often.
             self.pause = if self.lasts {
-                CHOOSES
+                CHOICE_INTERVAL
             } else {
-                (2.0 * self.pause).min(PAUSE)
+                (2.0 * self.pause).min(LONGEST_PAUSE)
             };
             self.looked = seconds;
             if lasting.is_some() {
@@ -390,6 +369,7 @@ impl Approach {
             }
         }
         let (strength, most) = (strength(config, view), Self::shake(config, view));
+        let footings = [Footing::Stands, Footing::Holds];
         // The cost of an entry: whether the bot tires on the way to the goal, then the seconds to the goal. If it
         // tires, it gets as far as its stamina lasts.
         let cost = |entry: usize| {
@@ -413,7 +393,9 @@ impl Approach {
             all.min_by(|((tires, cost), _), ((a, b), _)| tires.cmp(a).then(cost.total_cmp(b)));
         let now = self.entry.and_then(cost);
         let is_better = |(tires, seconds): (bool, f64)| {
-            now.is_none_or(|(now, left)| (!tires && now) || tires == now && seconds + BETTER < left)
+            now.is_none_or(|(now, left)| {
+                (!tires && now) || tires == now && seconds + BETTER_ENTRY_TIME < left
+            })
         };
         match best {
             Some((cost, entry)) if is_better(cost) => {
@@ -429,6 +411,30 @@ impl Approach {
             _ => {}
         }
     }
+}
+
+/// Seconds until the bot arrives at an entry. `None` for an entry that is too high, did not work, or is gone, as on a
+/// plate that broke.
+fn comes(
+    graph: &ClimbGraph,
+    view: &View<'_>,
+    avoided: &[(usize, f64)],
+    entry: usize,
+) -> Option<f64> {
+    let is_avoided = avoided.iter().any(|(other, _)| *other == entry);
+    let patch = graph.entries()[entry].patch;
+    if is_avoided || !graph.is_there(patch, view.surface) {
+        return None;
+    }
+    let (state, climber) = (view.climber.state(), view.climber.config());
+    let feet = state.position.dot(climber.up()) - climber.body.radius;
+    let place = view.spot(&graph.patches()[patch]).point;
+    if place.dot(climber.up()) - feet > highest_entry(graph.config()) {
+        return None;
+    }
+    let way = place - state.position;
+    let way = (way - climber.up() * way.dot(climber.up())).length();
+    Some(way / climber.ground.walk_speed.max(1e-3))
 }
 
 /// The stamina that the bot counts on when it gets on: it rests before that.

@@ -67,14 +67,14 @@ impl Jumps {
         let (up, radius) = (climber.up(), climber.body.radius);
         let off = from - state.position;
         let height = off.dot(up);
-        let is_there =
-            (off - up * height).length() <= ASIDE * radius && height.abs() <= HIGHER * radius;
+        let is_there = (off - up * height).length() <= TAKE_OFF_DISTANCE * radius
+            && height.abs() <= TAKE_OFF_HEIGHT * radius;
         if !is_there {
             return None;
         }
         let way = to - from;
         let ready = before
-            .filter(|ready| (ready.way - way).length() <= TOGETHER * radius)
+            .filter(|ready| (ready.way - way).length() <= MOST_CHANGE_IN_JUMP * radius)
             .unwrap_or(Ready {
                 ends,
                 since: view.seconds,
@@ -92,7 +92,7 @@ impl Jumps {
         };
         let is_sure = if view.forecast.is_still() {
             // Without a forecast, the present motion of both ends decides.
-            let keeps_still = (ready.last - way).length() <= STILL * radius;
+            let keeps_still = (ready.last - way).length() <= MOST_CHANGE_BETWEEN_LOOKS * radius;
             keeps_still || view.seconds - ready.since >= leap.seconds()
         } else {
             view.forecast.lands(graph, number, 0.0)
@@ -120,7 +120,7 @@ impl Jumps {
             ends,
             aim,
             since: view.seconds,
-            until: view.seconds + LATE * lasts.max(aim.seconds),
+            until: view.seconds + LATE_LANDING_FACTOR * lasts.max(aim.seconds),
         });
         aim.input(view.climber.config(), 0.0)
     }
@@ -154,7 +154,8 @@ impl Jumps {
         let climber = view.climber;
         let apart = to.distance(climber.state().position);
         let ends = self.flight.take()?.ends;
-        (!view.is_on_creature() || apart > MISSES * climber.config().body.radius).then_some(ends)
+        (!view.is_on_creature() || apart > MISS_DISTANCE * climber.config().body.radius)
+            .then_some(ends)
     }
 
     /// For each jump, whether a plan may use it. With a forecast of clips, the jump has to land in one of them. Without
@@ -167,40 +168,40 @@ impl Jumps {
                 return view.forecast.ever_lands(graph, number);
             }
             // After a pause no velocities are known, and the take-off decides.
-            if !(dt > 0.0 && dt < LOOKS) {
+            if !(dt > 0.0 && dt < LONGEST_LOOK_GAP) {
                 return true;
             }
             let [Some(from), Some(to)] = [leap.from, leap.aimed].map(velocity) else {
                 return false;
             };
-            (to - from).length() * leap.seconds() <= PARTS * radius
+            (to - from).length() * leap.seconds() <= MOST_PARTING_IN_PLAN * radius
         };
         graph.leaps.iter().enumerate().map(may_land).collect()
     }
 }
 
 /// The bot jumps within this many radii of the place where a jump begins, seen from above.
-const ASIDE: f64 = 0.25;
+const TAKE_OFF_DISTANCE: f64 = 0.25;
 /// The bot jumps within this many radii of the height at which a jump begins.
-const HIGHER: f64 = 0.5;
+const TAKE_OFF_HEIGHT: f64 = 0.5;
 
 /// The ends of a jump keep together if their distance vector changes by no more than this many radii in the time of the
 /// jump. If they keep their acceleration, also through a turning point, they come apart by at most nine times as much
 /// in the jump. Proof: a motion of constant acceleration `a` that stays within `d` for a time `T` has `a T² <= 8 d`,
 /// and in the next `T` it moves by `a T²` at most.
-const TOGETHER: f64 = 0.1;
+const MOST_CHANGE_IN_JUMP: f64 = 0.1;
 
 /// The ends of a jump keep still if their distance vector changes by no more than this many radii between two looks.
-const STILL: f64 = 1e-6;
+const MOST_CHANGE_BETWEEN_LOOKS: f64 = 1e-6;
 
 /// A plan uses a jump if its ends come apart by no more than this many radii during it, at their present velocities.
-const PARTS: f64 = 0.5;
+const MOST_PARTING_IN_PLAN: f64 = 0.5;
 
 /// The latest time at which a jump may land, as a multiple of its expected time.
-const LATE: f64 = 1.3;
+const LATE_LANDING_FACTOR: f64 = 1.3;
 
 /// A bot that comes down farther than this many radii from the place to which it jumped has missed.
-const MISSES: f64 = 4.0;
+const MISS_DISTANCE: f64 = 4.0;
 
 /// The longest time between two looks from which velocities are taken, seconds.
-const LOOKS: f64 = 0.1;
+const LONGEST_LOOK_GAP: f64 = 0.1;

@@ -6,10 +6,10 @@ use super::{BotConfig, View};
 use crate::ClimbGraph;
 
 /// Time for which a limb is avoided, seconds.
-const AVOIDS: f64 = 60.0;
+const LIMB_AVOIDED_TIME: f64 = 60.0;
 
 /// A look at most this long ago, seconds, counts as the tick before.
-const JUST: f64 = 0.1;
+const LAST_TICK_AGE: f64 = 0.1;
 
 /// The limbs that threw the bot off lately. Its plans go round them where possible.
 #[derive(Clone, Debug, Default)]
@@ -26,7 +26,7 @@ impl Limbs {
         // `seconds` may have been set back, as in a new fight.
         self.avoided.retain(|(_, until)| {
             let left = until - view.seconds;
-            left > 0.0 && left <= AVOIDS
+            left > 0.0 && left <= LIMB_AVOIDED_TIME
         });
         let before = self.shaken_on.take();
         let state = view.climber.state();
@@ -36,10 +36,10 @@ impl Limbs {
             let limb = view.surface.mesh().joint_of(triangle);
             self.shaken_on = limb.filter(|_| is_shaken).map(|limb| (limb, view.seconds));
         } else if let Some((limb, since)) = before
-            && view.seconds - since <= JUST
+            && view.seconds - since <= LAST_TICK_AGE
         {
             self.avoided.retain(|(other, _)| *other != limb);
-            self.avoided.push((limb, view.seconds + AVOIDS));
+            self.avoided.push((limb, view.seconds + LIMB_AVOIDED_TIME));
         }
     }
 

@@ -7,10 +7,10 @@ use super::View;
 use crate::graph::Patch;
 
 /// Only patches within this many radii of the climber are tested: the creature moves on before the bot comes to others.
-const LOOKS: f64 = 12.5;
+const TESTED_RADIUS: f64 = 12.5;
 
 /// A ball that is deeper in skin than this share of its radius has no room.
-const DEEP: f64 = 0.6;
+const MOST_DEPTH_IN_SKIN: f64 = 0.6;
 
 /// The patches near the climber that were tested so far, and whether they have room.
 pub(super) struct Room<'a> {
@@ -32,9 +32,9 @@ impl<'a> Room<'a> {
         }
         let seat = self.view.spot(patch).seat;
         let climber = self.view.climber;
-        let looks = LOOKS * climber.config().body.radius;
+        let looks = TESTED_RADIUS * climber.config().body.radius;
         let is_far = seat.distance(climber.state().position) > looks;
-        let is_there = is_far || self.view.has_room(seat, DEEP);
+        let is_there = is_far || self.view.has_room(seat, MOST_DEPTH_IN_SKIN);
         self.known.borrow_mut().insert(index, is_there);
         is_there
     }

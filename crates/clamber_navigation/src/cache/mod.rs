@@ -118,20 +118,21 @@ const MAGIC: &[u8; 16] = b"clamber graph 1\n";
 
 /// Largest file of a graph that is read, bytes. The giant's graph has some megabytes; the limit keeps a wrong file from
 /// filling the memory.
-const LARGEST: u64 = 1 << 30;
+const LARGEST_FILE: u64 = 1 << 30;
 
 /// The most names that are tried for a file that is being written.
 const MOST_PARTS: u32 = 1000;
 
-/// The content of a regular file of at most [`LARGEST`] bytes; `None` for anything else, such as a device or a pipe.
+/// The content of a regular file of at most [`LARGEST_FILE`] bytes; `None` for anything else, such as a device or a
+/// pipe.
 fn contents(file: &Path) -> Option<Vec<u8>> {
     let about = std::fs::metadata(file).ok()?;
-    if !about.is_file() || about.len() > LARGEST {
+    if !about.is_file() || about.len() > LARGEST_FILE {
         return None;
     }
     let mut bytes = Vec::new();
     let opened = File::open(file).ok()?;
-    opened.take(LARGEST).read_to_end(&mut bytes).ok()?;
+    opened.take(LARGEST_FILE).read_to_end(&mut bytes).ok()?;
     Some(bytes)
 }
 

@@ -11,29 +11,29 @@ use crate::progress::{Stage, Tell};
 use crate::{GraphConfig, NavigationError};
 
 /// Length of a slice of a clip, seconds. Clips and forecasts are stored in slices. Shorter slices take more memory.
-pub(crate) const SLICE: f64 = 0.5;
+pub(crate) const SLICE_SECONDS: f64 = 0.5;
 
 /// Length of the ticks in which clips are played, seconds.
 pub(crate) const TICK: f64 = 1.0 / 60.0;
 
 /// The most slices times patches of all clips. At three bytes each they take 300 MB.
-const MOST: f64 = 1e8;
+const MOST_SLICES_OF_PATCHES: f64 = 1e8;
 
 /// The most slices of a clip, some 14 hours.
-const LONGEST: f64 = 1e5;
+const MOST_SLICES_OF_CLIP: f64 = 1e5;
 
 /// Progress is reported once in this many ticks.
-const TELLS: usize = 256;
+const TICKS_PER_REPORT: usize = 256;
 
 /// Shakes are stored in steps of this size, metres per second squared. The largest stored value stands for all larger
 /// ones.
-const STEP: f64 = 0.25;
+const SHAKE_STEP: f64 = 0.25;
 
 /// Shakes from this on are stored as infinite, metres per second squared.
-pub(crate) const HARDEST: f64 = 255.0 * STEP;
+pub(crate) const HARDEST: f64 = 255.0 * SHAKE_STEP;
 
 /// Size of the steps in which tilts are stored, as cosines of the slope.
-pub(crate) const COSINE: f64 = 1.0 / 127.0;
+pub(crate) const COSINE_STEP: f64 = 1.0 / 127.0;
 
 /// A clip's slices.
 #[derive(Clone, Debug)]
@@ -103,18 +103,18 @@ impl ClipFacts {
         tell: &mut dyn FnMut() -> Result<(), NavigationError>,
     ) -> Result<(), NavigationError> {
         let lasts = clip.duration() / self.rate;
-        let slices = lasts / SLICE + 1.0;
+        let slices = lasts / SLICE_SECONDS + 1.0;
         let all = self.moments.len() as f64 + slices * patches.len() as f64;
-        if !(slices <= LONGEST && all <= MOST) {
+        if !(slices <= MOST_SLICES_OF_CLIP && all <= MOST_SLICES_OF_PATCHES) {
             return Err(NavigationError::TooLong {
                 clip: clip.name.clone(),
                 seconds: lasts,
             });
         }
-        let count = ((lasts / SLICE).ceil() as usize).max(1);
+        let count = ((lasts / SLICE_SECONDS).ceil() as usize).max(1);
         let last = self.clips.last();
         let first = last.map_or(0, |last| last.first + last.count);
-        let per_slice = (SLICE / TICK).round() as usize;
+        let per_slice = (SLICE_SECONDS / TICK).round() as usize;
         let ticks = ((lasts / TICK).ceil() as usize).max(1);
         let rules = Rules::new(config);
         let seats: Vec<Seat> = patches.iter().map(|patch| Seat::new(rig, patch)).collect();
@@ -122,7 +122,7 @@ impl ClipFacts {
         let mut played = Played::new(rig, clip)?;
         // Before its beginning, a loop plays its end.
         let loops = played.is_loop(&seats, lasts, self.rate, tell)?;
-        let lead = if loops { ticks.min(LEAD) } else { 0 };
+        let lead = if loops { ticks.min(LEAD_TICKS) } else { 0 };
         self.clips.push(ClipSlices {
             name: clip.name.clone(),
             first,
@@ -130,7 +130,7 @@ impl ClipFacts {
             loops,
         });
         for tick in 0..=ticks + lead {
-            if tick.is_multiple_of(TELLS) {
+            if tick.is_multiple_of(TICKS_PER_REPORT) {
                 tell()?;
             }
             let seconds = (tick as f64 - lead as f64) * TICK;
@@ -194,7 +194,7 @@ impl ClipFacts {
     pub(crate) fn seconds(&self, clip: usize) -> f64 {
         self.clips
             .get(clip)
-            .map_or(SLICE, |clip| clip.count as f64 * SLICE)
+            .map_or(SLICE_SECONDS, |clip| clip.count as f64 * SLICE_SECONDS)
     }
 
     /// The shake and tilt of a patch in a slice, by the slice's number among the slices of all clips.
@@ -205,10 +205,10 @@ impl ClipFacts {
             shake: if shake == u8::MAX {
                 f64::INFINITY
             } else {
-                f64::from(shake) * STEP
+                f64::from(shake) * SHAKE_STEP
             },
-            excess: f64::from(excess) * STEP,
-            upright: f64::from(upright) * COSINE - 1.0,
+            excess: f64::from(excess) * SHAKE_STEP,
+            upright: f64::from(upright) * COSINE_STEP - 1.0,
         }
     }
 
@@ -231,16 +231,16 @@ impl ClipFacts {
 
 /// Number of ticks for which a loop is played before its beginning: several times as long as shakes last, so that its
 /// first slice starts with the shake of a running loop.
-const LEAD: usize = 60;
+const LEAD_TICKS: usize = 60;
 
 /// A clip is no loop if some skin moves at the seam more than this many times as fast as anywhere within the clip, and
-/// faster than [`SLOW`].
-const JUMP: f64 = 1.5;
+/// faster than [`SLOW_SEAM_SPEED`].
+const SEAM_JUMP_FACTOR: f64 = 1.5;
 /// Skin slower than this at the seam never rules out a loop, heights of the creature per second.
-const SLOW: f64 = 0.01;
+const SLOW_SEAM_SPEED: f64 = 0.01;
 
 /// Speeds within a clip are measured in one of this many ticks, to save time.
-const STRIDE: usize = 4;
+const SPEED_SAMPLE_TICKS: usize = 4;
 
 /// A clip, and the skin in its present pose.
 struct Played<'a> {
@@ -291,8 +291,8 @@ impl<'a> Played<'a> {
         let duration = self.clip.duration();
         let ticks = (lasts / TICK) as usize;
         let mut within = vec![0.0f64; seats.len()];
-        for tick in (1..=ticks).step_by(STRIDE) {
-            if tick % TELLS < STRIDE {
+        for tick in (1..=ticks).step_by(SPEED_SAMPLE_TICKS) {
+            if tick % TICKS_PER_REPORT < SPEED_SAMPLE_TICKS {
                 tell()?;
             }
             let time = |tick: usize| (tick as f64 * TICK * rate).min(duration);
@@ -310,9 +310,9 @@ impl<'a> Played<'a> {
         let [low, high] = tall.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], y| {
             [low.min(y), high.max(y)]
         });
-        let slow = SLOW * (high - low).max(0.0) * TICK;
+        let slow = SLOW_SEAM_SPEED * (high - low).max(0.0) * TICK;
         let mut seams = end.iter().zip(&start).zip(&within);
-        Ok(seams.all(|((a, b), within)| a.distance(*b) <= (JUMP * within).max(slow)))
+        Ok(seams.all(|((a, b), within)| a.distance(*b) <= (SEAM_JUMP_FACTOR * within).max(slow)))
     }
 }
 
@@ -406,12 +406,14 @@ impl Rider {
 
     /// The stored shake and tilt since the last call.
     fn moment(&mut self, rules: &Rules) -> [u8; 3] {
-        let steps = |value: f64| value * rules.scale / STEP;
+        let steps = |value: f64| value * rules.scale / SHAKE_STEP;
         let hardest = steps(self.hardest.sqrt()).ceil().clamp(0.0, 255.0);
         let mean = steps(self.excess / self.ticks.max(1.0))
             .round()
             .clamp(0.0, 255.0);
-        let upright = ((self.lowest + 1.0) / COSINE).floor().clamp(0.0, 254.0);
+        let upright = ((self.lowest + 1.0) / COSINE_STEP)
+            .floor()
+            .clamp(0.0, 254.0);
         (self.hardest, self.excess, self.ticks) = (0.0, 0.0, 0.0);
         [hardest as u8, mean as u8, upright as u8]
     }

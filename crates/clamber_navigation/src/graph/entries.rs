@@ -24,7 +24,7 @@ pub struct Entry {
 
 /// Number of directions in which a jump forwards to a patch is tried. More find more entries between obstacles, and
 /// cost more.
-const DIRECTIONS: u32 = 16;
+const JUMP_DIRECTIONS: u32 = 16;
 
 /// The patches to which a jump leads through free space: straight up to where hands reach, or forwards at walking
 /// speed. Patches on which a climber cannot stand are left out if hands do not catch them.
@@ -90,15 +90,15 @@ pub(crate) fn highest_entry(config: &GraphConfig) -> f64 {
 
 /// Distance between two tests of a ball along a jump, as a share of its radius. Longer steps could pass through thin
 /// skin.
-const STEP: f64 = 0.5;
+const TEST_STEP: f64 = 0.5;
 
 /// Depth in skin up to which a ball on its way still counts as free, as a share of its radius. It is more than the 0.02
 /// that seats allow.
-const TOUCH: f64 = 0.03;
+const FREE_BALL_DEPTH: f64 = 0.03;
 
 /// Near the end of a jump, within this share of the radius, the ball is not tested: it touches the skin of its end
 /// there.
-const ARRIVES: f64 = 0.5;
+const UNTESTED_END: f64 = 0.5;
 
 /// Tests jumps from the ground.
 struct Jumps<'a> {
@@ -132,13 +132,13 @@ impl<'a> Jumps<'a> {
         let hit = self
             .surface
             .in_world()
-            .closest_point(place, self.radius * (1.0 - TOUCH));
+            .closest_point(place, self.radius * (1.0 - FREE_BALL_DEPTH));
         hit.is_none()
     }
 
     fn is_free_below(&self, seat: DVec3) -> bool {
         let way = seat.dot(self.up) - self.ground - self.radius;
-        let steps = (way / (STEP * self.radius)).ceil().max(1.0);
+        let steps = (way / (TEST_STEP * self.radius)).ceil().max(1.0);
         (1..=steps as u32)
             .all(|step| self.is_free(seat - self.up * (way * f64::from(step) / steps)))
     }
@@ -153,8 +153,8 @@ impl<'a> Jumps<'a> {
         let ahead = self.up.any_orthonormal_vector();
         let aside = self.up.cross(ahead);
         let times = [-1.0, 1.0].map(|sign| (self.rise + sign * libm::sqrt(under)) / self.gravity);
-        (0..DIRECTIONS).any(|k| {
-            let angle = core::f64::consts::TAU * f64::from(k) / f64::from(DIRECTIONS);
+        (0..JUMP_DIRECTIONS).any(|k| {
+            let angle = core::f64::consts::TAU * f64::from(k) / f64::from(JUMP_DIRECTIONS);
             let level = ahead * libm::cos(angle) + aside * libm::sin(angle);
             let jump = |time: &f64| *time > 0.0 && self.is_arc_free(seat, level, *time);
             times.iter().any(jump)
@@ -164,14 +164,14 @@ impl<'a> Jumps<'a> {
     /// True if the path of a jump that arrives at `seat` after `time` seconds is free of skin.
     fn is_arc_free(&self, seat: DVec3, level: DVec3, time: f64) -> bool {
         let fastest = self.rise.max(self.rise - self.gravity * time) + self.walk;
-        let steps = (fastest * time / (STEP * self.radius)).ceil().max(1.0);
+        let steps = (fastest * time / (TEST_STEP * self.radius)).ceil().max(1.0);
         (1..=steps as u32).all(|step| {
             // Backwards from the end.
             let before = time * f64::from(step) / steps;
             let rate = self.rise - self.gravity * time;
             let rise = -rate * before - 0.5 * self.gravity * before * before;
             let place = seat - level * (self.walk * before) + self.up * rise;
-            place.distance(seat) < ARRIVES * self.radius || self.is_free(place)
+            place.distance(seat) < UNTESTED_END * self.radius || self.is_free(place)
         })
     }
 }

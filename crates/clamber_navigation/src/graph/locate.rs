@@ -3,7 +3,7 @@
 use clamber_surface::mesh::{ColliderMesh, TriangleId};
 use glam::DVec3;
 
-use super::patch::NONE;
+use super::patch::NO_PATCH;
 use crate::survey::Survey;
 
 /// For each triangle, its bits and their patches.
@@ -32,7 +32,7 @@ impl Locator {
         for bit in &survey.bits {
             let piece = bit.piece as usize;
             let (patch, own) = (nearest[piece], patch_of[piece]);
-            if patch != NONE {
+            if patch != NO_PATCH {
                 of[bit.triangle.index()].push(Place {
                     weights: bit.barycentric,
                     patch,
@@ -80,25 +80,25 @@ impl Locator {
 }
 
 /// Pieces farther from all patches than this get no patch, radii of the climber.
-const FAR: f64 = 5.0;
+const FARTHEST_PATCH: f64 = 5.0;
 
 fn nearest(survey: &Survey, patch_of: &[u32]) -> Vec<u32> {
     // Pieces that have a patch, sorted by their cell in a grid.
-    let far = FAR * survey.config.radius();
+    let far = FARTHEST_PATCH * survey.config.radius();
     let cell = |point: DVec3| (point / far).floor().as_i64vec3().to_array();
     let mut cells: Vec<([i64; 3], usize)> = (0..patch_of.len())
-        .filter(|piece| patch_of[*piece] != NONE)
+        .filter(|piece| patch_of[*piece] != NO_PATCH)
         .map(|piece| (cell(survey.pieces[piece].point), piece))
         .collect();
     cells.sort_unstable();
     let mut all = patch_of.to_vec();
     for (piece, patch) in all.iter_mut().enumerate() {
-        if *patch != NONE {
+        if *patch != NO_PATCH {
             continue;
         }
         let here = &survey.pieces[piece];
         let middle = cell(here.point);
-        let mut best = (far, NONE);
+        let mut best = (far, NO_PATCH);
         for k in 0..27 {
             let beside = [k % 3, k / 3 % 3, k / 9];
             let at: [i64; 3] = std::array::from_fn(|axis| middle[axis] + beside[axis] - 1);

@@ -25,7 +25,7 @@ pub(crate) use flood::Reachable;
 pub(crate) use leaps::{Aim, Leap, Leaps};
 use locate::Locator;
 pub use patch::Patch;
-pub(crate) use patch::{NONE, axes, corners};
+pub(crate) use patch::{NO_PATCH, axes, corners};
 pub(crate) use spot::{Spot, spot_on};
 pub(crate) use ways::{Corner, Ways};
 

@@ -55,7 +55,7 @@ pub(crate) fn axes([a, b, c]: [DVec3; 3]) -> Option<[DVec3; 3]> {
 }
 
 /// The patch of a piece without one: a climber can neither stand nor hold on there. No patch has this number.
-pub(crate) const NONE: u32 = u32::MAX;
+pub(crate) const NO_PATCH: u32 = u32::MAX;
 
 /// Merges pieces into patches, and returns the patch of each piece.
 ///
@@ -67,14 +67,14 @@ pub(super) fn merge(survey: &Survey) -> (Vec<Patch>, Vec<u32>) {
     let kinds: Vec<[bool; 2]> = (0..pieces.len())
         .map(|piece| [survey.can_stand(piece), survey.can_hold(piece, reach)])
         .collect();
-    let mut patch_of = vec![NONE; pieces.len()];
+    let mut patch_of = vec![NO_PATCH; pieces.len()];
     let mut patches = Vec::new();
     let mut members: Vec<usize> = Vec::new();
     for first in 0..pieces.len() {
         let Some(start) = pieces[first].seat else {
             continue;
         };
-        if patch_of[first] != NONE || kinds[first] == [false; 2] {
+        if patch_of[first] != NO_PATCH || kinds[first] == [false; 2] {
             continue;
         }
         let id = patches.len() as u32;
@@ -88,7 +88,7 @@ pub(super) fn merge(survey: &Survey) -> (Vec<Patch>, Vec<u32>) {
                 let seat = pieces[beside].seat;
                 let is_near =
                     seat.is_some_and(|seat| seat.distance(start) <= survey.config.spacing);
-                let is_alike = patch_of[beside] == NONE
+                let is_alike = patch_of[beside] == NO_PATCH
                     && kinds[beside] == kinds[first]
                     && !survey.bends([first, beside])
                     && pieces[beside].below == pieces[first].below
@@ -144,13 +144,13 @@ pub(super) fn ways(survey: &Survey, patches: &[Patch], patch_of: &[u32]) -> Ways
     let mut nearest: BTreeMap<(u32, u32), (f64, [usize; 2])> = BTreeMap::new();
     for piece in 0..survey.pieces.len() {
         let from = patch_of[piece];
-        if from == NONE {
+        if from == NO_PATCH {
             continue;
         }
         for beside in survey.links.of(piece) {
             let to = patch_of[beside];
             // Each way is stored once, for both directions.
-            if to == NONE || to <= from {
+            if to == NO_PATCH || to <= from {
                 continue;
             }
             let [a, b] = [from, to].map(|patch| &patches[patch as usize]);

@@ -1,7 +1,7 @@
 //! Forecasts of the clips that the creature plays.
 
 use crate::ClimbGraph;
-use crate::clips::{Moment, SLICE};
+use crate::clips::{Moment, SLICE_SECONDS};
 use crate::plan::search::slice_of;
 use crate::plan::{slips, throws};
 
@@ -14,13 +14,13 @@ pub struct Forecast {
 }
 
 /// The longest time for which one clip is added, seconds.
-const LONGEST: f64 = 3600.0;
+const LONGEST_CLIP_TIME: f64 = 3600.0;
 
 /// The most slices of a forecast: four hours. It limits the memory and the length of searches.
-const MOST: usize = 28_800;
+const MOST_SLICES: usize = 28_800;
 
 /// Number of slices that a climber which wants to get on looks ahead: a minute.
-const AHEAD: usize = 120;
+const SLICES_AHEAD: usize = 120;
 
 /// Number of slices that getting on takes.
 const GETS_ON: usize = 3;
@@ -43,17 +43,18 @@ impl Forecast {
     /// graph: another graph reads other clips from it.
     #[must_use]
     pub fn then(mut self, graph: &ClimbGraph, clip: &str, from: f64, seconds: f64) -> Self {
-        let in_slices = |seconds: f64| (seconds.min(LONGEST) / SLICE).round() as usize;
+        let in_slices =
+            |seconds: f64| (seconds.min(LONGEST_CLIP_TIME) / SLICE_SECONDS).round() as usize;
         if let Some(clip) = graph.clips.find(clip)
             && (0.0..f64::INFINITY).contains(&from)
             && seconds > 0.0
         {
             // Clips pass at the graph's rate, so seconds of the file are scaled.
             let from = from / graph.clips.rate() % graph.clips.seconds(clip);
-            let first = (from / SLICE).round() as usize;
+            let first = (from / SLICE_SECONDS).round() as usize;
             let slices = first..first + in_slices(seconds).max(1);
             let slices = slices.filter_map(|slice| graph.clips.slice(clip, slice));
-            let room = MOST.saturating_sub(self.slices.len());
+            let room = MOST_SLICES.saturating_sub(self.slices.len());
             self.slices
                 .extend(slices.take(room).map(|slice| slice as u32));
         }
@@ -64,7 +65,7 @@ impl Forecast {
     /// is not thrown, and does not slip.
     pub(crate) fn is_calm_at(&self, graph: &ClimbGraph, patch: usize, seconds: f64) -> bool {
         let climber = &graph.config.climber;
-        let slices = ((seconds / SLICE).ceil() as usize).clamp(1, self.len().max(1));
+        let slices = ((seconds / SLICE_SECONDS).ceil() as usize).clamp(1, self.len().max(1));
         let is_calm = |slice: usize| {
             let moment = self.at(graph, slice, patch);
             moment.excess == 0.0 && !throws(climber, &moment) && !slips(climber, &moment)
@@ -81,12 +82,12 @@ impl Forecast {
         from: f64,
         most: f64,
     ) -> f64 {
-        let longest = self.len().min(AHEAD);
+        let longest = self.len().min(SLICES_AHEAD);
         let is_calm = |waits: &usize| {
-            let from = from + *waits as f64 * SLICE;
+            let from = from + *waits as f64 * SLICE_SECONDS;
             self.is_calm_from(graph, patch, from, most)
         };
-        (0..longest).find(is_calm).unwrap_or(longest) as f64 * SLICE
+        (0..longest).find(is_calm).unwrap_or(longest) as f64 * SLICE_SECONDS
     }
 
     /// True if from a time on a patch shakes no harder than `most` metres per second squared for as long as getting on
@@ -98,7 +99,7 @@ impl Forecast {
         from: f64,
         most: f64,
     ) -> bool {
-        let first = (from / SLICE) as usize;
+        let first = (from / SLICE_SECONDS) as usize;
         let mut while_on = first..first + GETS_ON;
         while_on.all(|slice| self.at(graph, slice, patch).shake <= most)
     }
@@ -119,7 +120,7 @@ impl Forecast {
         }
         let period = slices.len() - borders.last().unwrap_or(&0);
         let goes_round = period > 0 && slices.len().is_multiple_of(period);
-        (if goes_round { period } else { slices.len() }) as f64 * SLICE
+        (if goes_round { period } else { slices.len() }) as f64 * SLICE_SECONDS
     }
 
     /// Number of slices after which the forecast starts over.
@@ -146,7 +147,7 @@ impl Forecast {
     /// True if a jump lands at some time of the forecast.
     pub(crate) fn ever_lands(&self, graph: &ClimbGraph, number: usize) -> bool {
         let mut slices = 0..self.slices.len().max(1);
-        slices.any(|slice| self.lands(graph, number, slice as f64 * SLICE))
+        slices.any(|slice| self.lands(graph, number, slice as f64 * SLICE_SECONDS))
     }
 
     /// The shake and tilt at a patch in a slice of the forecast.

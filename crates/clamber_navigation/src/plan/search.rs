@@ -7,7 +7,7 @@ use clamber_climber::ClimberConfig;
 
 use super::goal::{node, of_node};
 use super::{Forecast, Goal};
-use crate::clips::{COSINE, Moment, SLICE};
+use crate::clips::{COSINE_STEP, Moment, SLICE_SECONDS};
 use crate::graph::Leap;
 use crate::{ClimbGraph, Footing};
 
@@ -65,23 +65,23 @@ impl Plan {
 
 /// Number of levels in which stamina is compared; the topmost one is full stamina. If two ways reach a place on the
 /// same level, the faster one is kept. More levels miss fewer ways, and cost more.
-const LEVELS: usize = 12;
+const STAMINA_LEVELS: usize = 12;
 
 /// Tolerance for sums of seconds or stamina, which differ by less than this in another order.
 const ROUNDING: f64 = 1e-9;
 
 /// The most partial ways of a search. It limits the time of a search that finds nothing.
-const MOST: usize = 2_000_000;
+const MOST_PARTIAL_WAYS: usize = 2_000_000;
 
 /// The latest start that is used, seconds.
-const LATEST: f64 = 1e6;
+const LATEST_START: f64 = 1e6;
 
 /// A partial way, to a node.
 #[derive(Clone, Copy, Debug)]
 struct Label {
     /// The node where the way ends.
     node: u32,
-    /// The label before it; [`NOTHING`] for a start.
+    /// The label before it; [`NO_LABEL`] for a start.
     before: u32,
     /// Time of arrival, seconds.
     seconds: f64,
@@ -90,7 +90,7 @@ struct Label {
 }
 
 /// The label before a start. No label has this number.
-const NOTHING: u32 = u32::MAX;
+const NO_LABEL: u32 = u32::MAX;
 
 impl ClimbGraph {
     /// The fastest way from one of some starts to a goal on which stamina lasts, in the shakes of a forecast; `None` if
@@ -126,7 +126,7 @@ impl ClimbGraph {
             forecast,
             around: *around,
             labels: Vec::new(),
-            best: vec![[f32::INFINITY; LEVELS]; 2 * self.patches.len()],
+            best: vec![[f32::INFINITY; STAMINA_LEVELS]; 2 * self.patches.len()],
             open: BinaryHeap::new(),
             course: Vec::new(),
         };
@@ -135,7 +135,7 @@ impl ClimbGraph {
                 && self
                     .footings(start.patch)
                     .any(|footing| footing == start.footing);
-            if can && (0.0..=LATEST).contains(&start.seconds) && start.stamina.is_finite() {
+            if can && (0.0..=LATEST_START).contains(&start.seconds) && start.stamina.is_finite() {
                 let node = node(start.patch, start.footing);
                 let tires = self.config.climber.stamina.is_some();
                 let stamina = if tires {
@@ -143,7 +143,7 @@ impl ClimbGraph {
                 } else {
                     1.0
                 };
-                search.offer(node, NOTHING, start.seconds, stamina);
+                search.offer(node, NO_LABEL, start.seconds, stamina);
             }
         }
         search.run()
@@ -178,7 +178,7 @@ struct Search<'a> {
     around: Around<'a>,
     labels: Vec<Label>,
     /// For each node and level of stamina, the earliest time at which it is reached with that level or a higher one.
-    best: Vec<[f32; LEVELS]>,
+    best: Vec<[f32; STAMINA_LEVELS]>,
     /// Labels by the earliest time at which they can reach the goal.
     open: BinaryHeap<Reverse<(u64, u32)>>,
     /// The stay at the label that is expanded, slice by slice, as far as it is known: the time and stamina at the
@@ -190,7 +190,7 @@ impl Search<'_> {
     fn offer(&mut self, node: usize, before: u32, seconds: f64, stamina: f64) {
         let (level, time) = (level(stamina), seconds as f32);
         let best = self.best.get(node).map_or(0.0, |best| best[level]);
-        if best <= time || self.labels.len() >= MOST {
+        if best <= time || self.labels.len() >= MOST_PARTIAL_WAYS {
             return;
         }
         let left = self.goal.at(node, stamina);
@@ -288,7 +288,7 @@ impl Search<'_> {
         if refill <= 0.0 {
             return;
         }
-        let next_level = (level(label.stamina) + 1) as f64 / (LEVELS - 1) as f64;
+        let next_level = (level(label.stamina) + 1) as f64 / (STAMINA_LEVELS - 1) as f64;
         let wanted = next_level.min(1.0);
         let (mut time, mut known) = ((label.seconds, label.stamina), Some(first));
         for _ in 0..MOST_SLICES {
@@ -417,7 +417,7 @@ impl Search<'_> {
             lasts: if self.forecast.is_still() {
                 f64::INFINITY
             } else {
-                (slice as f64 + 1.0) * SLICE - seconds
+                (slice as f64 + 1.0) * SLICE_SECONDS - seconds
             },
             moves: if footing == Footing::Holds {
                 moment.shake <= hangs
@@ -431,7 +431,7 @@ impl Search<'_> {
     fn plan(&self, last: u32) -> Plan {
         let mut steps: Vec<PlanStep> = Vec::new();
         let mut index = last;
-        while index != NOTHING {
+        while index != NO_LABEL {
             let label = self.labels[index as usize];
             let (patch, footing) = of_node(label.node as usize);
             if let Some(after) = steps.last_mut() {
@@ -488,11 +488,11 @@ const MOST_SLICES: usize = 256;
 
 /// The slice of a forecast that contains a time.
 pub(super) fn slice_of(seconds: f64) -> usize {
-    (seconds / SLICE + ROUNDING) as usize
+    (seconds / SLICE_SECONDS + ROUNDING) as usize
 }
 
 fn level(stamina: f64) -> usize {
-    ((stamina * (LEVELS - 1) as f64 + ROUNDING) as usize).min(LEVELS - 1)
+    ((stamina * (STAMINA_LEVELS - 1) as f64 + ROUNDING) as usize).min(STAMINA_LEVELS - 1)
 }
 
 /// True if a climber that stands there without holding on is thrown or knocked down. Assumes that the patch shakes
@@ -507,5 +507,5 @@ pub(crate) fn throws(climber: &ClimberConfig, moment: &Moment) -> bool {
 
 /// True if the patch is too steep to stand on, beyond the step size in which slopes are stored.
 pub(crate) fn slips(climber: &ClimberConfig, moment: &Moment) -> bool {
-    moment.upright + COSINE < libm::cos(climber.ground.stays_on_slope())
+    moment.upright + COSINE_STEP < libm::cos(climber.ground.stays_on_slope())
 }

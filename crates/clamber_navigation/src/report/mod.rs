@@ -9,8 +9,8 @@ use glam::DVec3;
 
 use clamber_surface::mesh::Rig;
 
-use crate::clips::{HARDEST, SLICE};
-use crate::graph::{NONE, Reachable};
+use crate::clips::{HARDEST, SLICE_SECONDS};
+use crate::graph::{NO_PATCH, Reachable};
 use crate::plan::{slips, throws};
 use crate::progress::Tell;
 use crate::survey::Survey;
@@ -117,10 +117,10 @@ impl ClipReport {
 }
 
 /// A weak point is reached from seats on pieces within its radius plus this many radii of the climber.
-const NEAR: f64 = 1.0;
+const REACHED_DISTANCE: f64 = 1.0;
 
 /// The steepest slope for rests, as a share of the steepest one that can be stood on.
-pub(crate) const LEVEL: f64 = 0.6;
+pub(crate) const REST_SLOPE_SHARE: f64 = 0.6;
 
 impl ClimbReport {
     /// Builds the graph of a creature and reports on it. `progress` is called repeatedly, and cancels by
@@ -182,7 +182,7 @@ struct View<'a> {
 impl View<'_> {
     fn has(&self, piece: usize) -> bool {
         let patch = self.patch_of[piece];
-        patch != NONE && self.reached.has(patch as usize)
+        patch != NO_PATCH && self.reached.has(patch as usize)
     }
 
     /// Area of the pieces for which `counts` is true, square metres.
@@ -195,7 +195,7 @@ impl View<'_> {
 
     fn look_at(&self, point: &WeakPoint, place: DVec3, config: &GraphConfig) -> PointReport {
         let radius = f64::from(point.radius) * config.world_from_model.scale;
-        let within = radius + NEAR * self.survey.config.radius();
+        let within = radius + REACHED_DISTANCE * self.survey.config.radius();
         let pieces = &self.survey.pieces;
         let is_near = |index: &usize| {
             let piece = &pieces[*index];
@@ -232,7 +232,7 @@ impl View<'_> {
     fn plan(&self, goals: &[usize], strain: f64) -> Option<Plan> {
         let patches = goals.iter().map(|piece| self.patch_of[*piece]);
         let patches: Vec<usize> = patches
-            .filter(|patch| *patch != NONE)
+            .filter(|patch| *patch != NO_PATCH)
             .map(|patch| patch as usize)
             .collect();
         let goal = self.graph.goal_strained(&patches, strain);
@@ -267,7 +267,8 @@ impl View<'_> {
     fn can_rest(&self, piece: usize) -> bool {
         let climber = &self.survey.config.climber;
         let cosine = self.survey.pieces[piece].normal.dot(climber.up());
-        self.survey.can_stand(piece) && cosine >= libm::cos(LEVEL * climber.ground.max_slope)
+        self.survey.can_stand(piece)
+            && cosine >= libm::cos(REST_SLOPE_SHARE * climber.ground.max_slope)
     }
 
     fn ways_on(&self) -> Vec<WayOn> {
@@ -324,7 +325,7 @@ impl View<'_> {
             exhausts_at: None,
         };
         let earlier = |known: &mut Option<f64>, slice: usize| {
-            let at = slice as f64 * SLICE;
+            let at = slice as f64 * SLICE_SECONDS;
             *known = Some(known.map_or(at, |known| known.min(at)));
         };
         for (index, patch) in self.graph.patches().iter().enumerate() {
@@ -354,7 +355,7 @@ impl View<'_> {
             };
             let mut left = 1.0;
             let ends = moments.iter().position(|moment| {
-                left -= SLICE * (costs.hold_drain + costs.shake_drain * moment.excess);
+                left -= SLICE_SECONDS * (costs.hold_drain + costs.shake_drain * moment.excess);
                 left <= 0.0
             });
             if let Some(slice) = ends {

@@ -6,7 +6,7 @@ use glam::DVec3;
 use crate::GraphConfig;
 
 /// A grip is searched within twice the climber's reach and this many of its radii.
-const BEYOND: f64 = 2.5;
+const SEARCH_BEYOND_REACH: f64 = 2.5;
 
 /// How far a hand has to reach from the ball of a seat, metres; infinite if there is no grip within twice the climber's
 /// reach and some of its radii. `holds` is the skin that can be gripped.
@@ -15,20 +15,20 @@ pub(super) fn arm(holds: &SkinnedSurface, seat: DVec3, config: &GraphConfig) -> 
         return f64::INFINITY;
     }
     let radius = config.radius();
-    let longest = radius + 2.0 * config.reach() + BEYOND * radius;
+    let longest = radius + 2.0 * config.reach() + SEARCH_BEYOND_REACH * radius;
     let hit = holds.in_world().closest_point(seat, longest);
     hit.map_or(f64::INFINITY, |hit| (hit.distance - radius).max(0.0))
 }
 
 /// Error up to which the longest reach on a straight way is computed, metres. Smaller values need more closest-point
 /// queries.
-pub(crate) const EXACT: f64 = 0.004;
+pub(crate) const REACH_PRECISION: f64 = 0.004;
 
 /// How far a hand has to reach at most on the straight way between two seats, from the arms at both ends: too long by
-/// at most [`EXACT`], and never too short.
+/// at most [`REACH_PRECISION`], and never too short.
 ///
 /// A hand's reach changes by no more than the ball moves. So the ends give an upper bound for the way between them, and
-/// halving the way narrows the bound. A way whose bound is at most `enough` plus [`EXACT`] is not halved.
+/// halving the way narrows the bound. A way whose bound is at most `enough` plus [`REACH_PRECISION`] is not halved.
 pub(super) fn arm_between(
     seats: [DVec3; 2],
     arms: [f64; 2],
@@ -37,7 +37,7 @@ pub(super) fn arm_between(
 ) -> f64 {
     let most = arms[0].max(arms[1]);
     let bound = longest(seats, arms);
-    if !bound.is_finite() || bound <= enough + EXACT || bound - most <= EXACT {
+    if !bound.is_finite() || bound <= enough + REACH_PRECISION || bound - most <= REACH_PRECISION {
         return bound;
     }
     let middle = seats[0].midpoint(seats[1]);

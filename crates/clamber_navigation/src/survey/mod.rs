@@ -13,26 +13,26 @@ use glam::DVec3;
 
 use crate::progress::{Stage, Tell};
 use crate::{GraphConfig, NavigationError};
-pub(crate) use arms::EXACT;
+pub(crate) use arms::REACH_PRECISION;
 use links::Links;
 use pieces::Division;
 pub(crate) use pieces::{Bit, Piece};
 
 /// Least height of the ball's middle above the ground, as a share of its radius.
-const LOWEST: f64 = 0.98;
+const LOWEST_BALL: f64 = 0.98;
 
 /// Largest gap between the ball and skin that still counts as touching, as a share of its radius. It is not 0 because
 /// skin is rarely flat.
-const OFF: f64 = 0.3;
+const TOUCHING_GAP: f64 = 0.3;
 /// The same gap in a corner. It is smaller because hands let go of one side there.
 const OFF_IN_CORNER: f64 = 0.1;
 
 /// Two sides whose normals have a lower cosine than this meet in a corner.
-const CORNER: f64 = 0.7;
+const CORNER_COSINE: f64 = 0.7;
 
 /// Two sides whose normals have a lower cosine than this are not linked: no input of a climber on one side pushes it
 /// against the other.
-const OPPOSITE: f64 = -0.87;
+const OPPOSITE_COSINE: f64 = -0.87;
 
 /// The survey of the skin at rest, piece by piece.
 #[derive(Clone, Debug)]
@@ -85,7 +85,7 @@ impl Survey {
             others,
         } = pieces::divide(&surface, config, &plate)?;
         let of = pieces.len();
-        let lowest = config.ground + LOWEST * config.radius();
+        let lowest = config.ground + LOWEST_BALL * config.radius();
         let above = |seat: &DVec3| seat.dot(config.climber.up()) >= lowest;
         let find = |surface: &SkinnedSurface, piece: &Piece| {
             seat::seat(surface, piece.point, piece.normal, config.radius()).filter(above)
@@ -127,8 +127,8 @@ impl Survey {
         })
     }
 
-    /// How far a hand has to reach at most on the way between two pieces. Exceeds `enough` plus [`EXACT`] only if the
-    /// reach exceeds `enough`.
+    /// How far a hand has to reach at most on the way between two pieces. Exceeds `enough` plus [`REACH_PRECISION`]
+    /// only if the reach exceeds `enough`.
     pub(crate) fn arm_between(&self, ends: [usize; 2], enough: f64) -> f64 {
         let [Some(from), Some(to)] = ends.map(|piece| self.pieces[piece].seat) else {
             return f64::INFINITY;
@@ -156,7 +156,7 @@ impl Survey {
     /// must be able to hold on at both pieces.
     pub(crate) fn can_climb(&self, ends: [usize; 2]) -> bool {
         let reach = self.config.reach();
-        self.is_along(ends) && self.arm_between(ends, reach) <= reach + EXACT
+        self.is_along(ends) && self.arm_between(ends, reach) <= reach + REACH_PRECISION
     }
 
     /// True if the ball gets between two pieces along the skin: it does not rise off one piece where it does not touch
@@ -173,17 +173,17 @@ impl Survey {
         }
         let radius = self.config.radius();
         let cosine = from.normal.dot(to.normal);
-        if cosine >= CORNER {
-            return leaves.abs().min(arrives.abs()) <= OFF * radius;
+        if cosine >= CORNER_COSINE {
+            return leaves.abs().min(arrives.abs()) <= TOUCHING_GAP * radius;
         }
-        if cosine < OPPOSITE {
+        if cosine < OPPOSITE_COSINE {
             return false;
         }
         // In a corner, the skin of one side extends to where the ball touches the other side.
         let most = OFF_IN_CORNER * radius;
         let goes_on = |seat: DVec3, side: &Piece| {
             let surface = self.surface.in_world();
-            surface.intersects_ray(seat, -side.normal, (1.0 + OFF) * radius)
+            surface.intersects_ray(seat, -side.normal, (1.0 + TOUCHING_GAP) * radius)
         };
         leaves.abs() <= most && goes_on(b, from) || arrives.abs() <= most && goes_on(a, to)
     }
@@ -191,7 +191,7 @@ impl Survey {
     /// True if the normals of two pieces differ by a corner's angle.
     pub(crate) fn bends(&self, ends: [usize; 2]) -> bool {
         let [from, to] = ends.map(|piece| self.pieces[piece].normal);
-        from.dot(to) < CORNER
+        from.dot(to) < CORNER_COSINE
     }
 
     /// True if two pieces between which a climber moves meet in an inner corner.

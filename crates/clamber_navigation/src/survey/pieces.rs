@@ -11,11 +11,11 @@ use super::split;
 use crate::{GraphConfig, NavigationError};
 
 /// The most pieces, and bits, of a graph. It limits its memory and the time of its build.
-const MOST: u64 = 4_000_000;
+const MOST_PIECES: u64 = 4_000_000;
 
 /// Angle between two triangles, radians, above which an outward edge gets seats of its own: the ball rolls over such an
 /// edge.
-const SHARP: f64 = 0.35;
+const SHARP_EDGE_ANGLE: f64 = 0.35;
 
 /// A piece of skin: one or more bits that face the same way. One of them stands for all.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -85,10 +85,10 @@ pub(super) fn divide(
         .iter()
         .map(|face| u64::from(split::parts(&face.corners, config.spacing)).pow(2))
         .sum();
-    if found > MOST {
+    if found > MOST_PIECES {
         return Err(NavigationError::TooManyPatches {
             found,
-            most: MOST,
+            most: MOST_PIECES,
             spacing: config.spacing,
         });
     }
@@ -96,10 +96,10 @@ pub(super) fn divide(
     for face in &there {
         face.add_bits(config.spacing, &mut bits);
         face.add_edges(mesh, &places, config, &mut bits);
-        if bits.len() as u64 > MOST {
+        if bits.len() as u64 > MOST_PIECES {
             return Err(NavigationError::TooManyPatches {
                 found: bits.len() as u64,
-                most: MOST,
+                most: MOST_PIECES,
                 spacing: config.spacing,
             });
         }
@@ -110,18 +110,18 @@ pub(super) fn divide(
     if bits.is_empty() {
         return Err(NavigationError::NoSkin);
     }
-    Ok(gather(bits, CELL * config.spacing))
+    Ok(gather(bits, CELL_SIZE * config.spacing))
 }
 
 /// Size of the cells within which bits are gathered into pieces, as a share of the largest side of a patch.
-const CELL: f64 = 0.5;
+const CELL_SIZE: f64 = 0.5;
 /// Bits of one piece have normals with at least this cosine.
-const ALIKE: f64 = 0.94;
+const ALIKE_COSINE: f64 = 0.94;
 /// Bits of one piece lie at most this far off the first bit's plane, as a share of the cell's size.
-const LEVEL: f64 = 0.3;
+const MOST_OFF_PLANE: f64 = 0.3;
 
 /// The most bits of a piece on which a ball is tried. More find more seats, and cost more.
-const TRIED: usize = 4;
+const MOST_TRIED_BITS: usize = 4;
 
 /// Gathers bits into pieces.
 fn gather(mut bits: Vec<Piece>, size: f64) -> Division {
@@ -143,8 +143,8 @@ fn gather(mut bits: Vec<Piece>, size: f64) -> Division {
                 group.first().is_some_and(|first| {
                     let off = (bit.point - first.point).dot(first.normal);
                     first.tag == bit.tag
-                        && first.normal.dot(bit.normal) >= ALIKE
-                        && off.abs() <= LEVEL * size
+                        && first.normal.dot(bit.normal) >= ALIKE_COSINE
+                        && off.abs() <= MOST_OFF_PLANE * size
                         && first.plate == bit.plate
                 })
             };
@@ -181,7 +181,9 @@ impl Division {
         // The outermost bit first: bits that lie under other skin have no room.
         let out = |bit: &&&Piece| (bit.point - middle).dot(first.normal);
         let outermost = others.iter().max_by(|a, b| out(a).total_cmp(&out(b)));
-        let others = outermost.into_iter().chain(others.iter().take(TRIED - 2));
+        let others = outermost
+            .into_iter()
+            .chain(others.iter().take(MOST_TRIED_BITS - 2));
         let others = others.map(|bit| Piece { area, ..**bit });
         self.others.push(others.collect());
     }
@@ -284,7 +286,7 @@ impl Face {
             let along = to - from;
             let angle = libm::acos(self.normal.dot(other.normal).clamp(-1.0, 1.0));
             let bends_out = self.normal.cross(other.normal).dot(along) > 0.0;
-            if angle <= SHARP || !bends_out {
+            if angle <= SHARP_EDGE_ANGLE || !bends_out {
                 continue;
             }
             let across = (angle * config.radius() / config.spacing).ceil().max(1.0);

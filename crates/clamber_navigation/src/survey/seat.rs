@@ -4,13 +4,13 @@ use clamber_surface::surface::SkinnedSurface;
 use glam::DVec3;
 
 /// The most corrections of a ball's position. A ball that is not free after these has no seat.
-const ROUNDS: u32 = 16;
+const MOST_CORRECTIONS: u32 = 16;
 
 /// Depth in skin up to which a ball still has room, as a share of its radius. A climber's own margin is 1/40.
-const GIVE: f64 = 0.02;
+const ALLOWED_DEPTH: f64 = 0.02;
 
 /// Offset of a ray's start above its piece, as a share of the radius, so that the ray does not hit the piece itself.
-const ABOVE: f64 = 0.01;
+const RAY_START_HEIGHT: f64 = 0.01;
 
 /// Finds where a ball of `radius` rests at a point of the skin: above the point, moved out of the skin around. `None`
 /// if that moves it by more than its radius, or if other skin lies between it and the point.
@@ -22,11 +22,11 @@ pub(super) fn seat(
 ) -> Option<DVec3> {
     let wanted = point + normal * radius;
     let mut center = wanted;
-    for _ in 0..ROUNDS {
+    for _ in 0..MOST_CORRECTIONS {
         let Some((depth, direction)) = deepest(surface, center, radius) else {
             return is_seen(surface, point, normal, center, radius).then_some(center);
         };
-        if depth <= GIVE * radius {
+        if depth <= ALLOWED_DEPTH * radius {
             return is_seen(surface, point, normal, center, radius).then_some(center);
         }
         center += direction * depth;
@@ -57,10 +57,10 @@ fn is_seen(
     center: DVec3,
     radius: f64,
 ) -> bool {
-    let from = point + normal * (ABOVE * radius);
+    let from = point + normal * (RAY_START_HEIGHT * radius);
     let way = center - from;
     let length = way.length();
     !surface
         .in_world()
-        .intersects_ray(from, way, (length - ABOVE * radius).max(0.0))
+        .intersects_ray(from, way, (length - RAY_START_HEIGHT * radius).max(0.0))
 }

@@ -9,15 +9,15 @@ use crate::{ClimberEvent, ClimberMode};
 
 /// Level part of a unit normal, above which the normal tells in which direction an edge leads out. Less is a slope, or
 /// rounding.
-const OUTWARD: f64 = 0.3;
+const LEAST_OUTWARD_PART: f64 = 0.3;
 
 /// Smallest height of the ball's centre above the top of an edge that the climber steps off, as a fraction of the
 /// radius.
-const BELOW: f64 = 0.3;
+const LEAST_EDGE_HEIGHT: f64 = 0.3;
 
 /// Distance by which the wall below an edge may bulge out, as a fraction of the radius: the climber then hangs that
 /// much farther out.
-const BULGES: f64 = 0.25;
+const MAX_WALL_BULGE: f64 = 0.25;
 
 impl Tick<'_> {
     /// Takes hold of the edge that the climber steps off, and turns to the wall below it, if `grip` is held and there
@@ -38,7 +38,7 @@ impl Tick<'_> {
         let level = |v: DVec3| v - up * v.dot(up);
         let going = level(own).try_normalize()?;
         let tilt = level(normal);
-        let out = if tilt.length() > OUTWARD {
+        let out = if tilt.length() > LEAST_OUTWARD_PART {
             tilt.normalize_or(going)
         } else {
             going
@@ -88,7 +88,7 @@ impl Tick<'_> {
         let from = position + out * body.radius - up * deep;
         let ledge = self.mover.find_ledge(&probe, from)?;
         let below = (position - ledge.touch.contact.point).dot(up);
-        let is_edge = below > BELOW * body.radius && self.can_hang_from(&ledge.touch);
+        let is_edge = below > LEAST_EDGE_HEIGHT * body.radius && self.can_hang_from(&ledge.touch);
         is_edge.then_some(ledge)
     }
 
@@ -103,7 +103,7 @@ impl Tick<'_> {
         if deep <= step {
             return false;
         }
-        [0.0, BULGES].into_iter().any(|bulge| {
+        [0.0, MAX_WALL_BULGE].into_iter().any(|bulge| {
             let hung = place - ledge.facing * (bulge * body.radius);
             let beside = hung + up * deep;
             let over = body.core_at(position);

@@ -5,43 +5,43 @@ use glam::DVec3;
 use super::super::carrying::Carried;
 use super::super::moving::Intent;
 use super::super::{NextMode, Tick};
-use super::{DRAW, UPWARD};
+use super::{DRAW_SPEED, PULL_UP_INPUT};
 use crate::config::LedgeConfig;
 use crate::{ClimberEvent, ClimberMode};
 
 /// Share of the pull-up in which the climber goes up. In the rest it goes in over the ledge.
-const OVER: f64 = 0.6;
+const UPWARD_SHARE: f64 = 0.6;
 
 /// Share of the pull-up in a tick, above which the tick stops at the corner between up and in, and does not cut it.
-const LONG: f64 = 0.1;
+const LONG_TICK_SHARE: f64 = 0.1;
 
 /// Distance by which the climber may lag behind a pull-up's path before it counts as blocked, as a fraction of its
 /// radius. It lags below an overhang, where it goes outwards as it goes up.
-const KEPT: f64 = 0.5;
+const MAX_LAG: f64 = 0.5;
 
-/// Lag, as a fraction of its radius, below which a blocked climber counts as free again. It is less than [`KEPT`]:
+/// Lag, as a fraction of its radius, below which a blocked climber counts as free again. It is less than [`MAX_LAG`]:
 /// otherwise a climber that creeps along an obstacle would hardly ever give up.
-const FREED: f64 = 0.25;
+const FREED_LAG: f64 = 0.25;
 
 /// Time without progress after which a pull-up is given up, seconds: longer than a friend takes to step aside from the
 /// edge, shorter than a player takes to call it stuck.
 const GIVES_UP: f64 = 0.3;
 
 /// Share of a tick's draw into place below which a climber is as near to its place as it can get.
-const DRAWN: f64 = 0.5;
+const LEAST_DRAW_SHARE: f64 = 0.5;
 
 /// Share of the planned velocity below which a velocity is rest and rounding.
-const STILL: f64 = 1e-3;
+const STILL_VELOCITY_SHARE: f64 = 1e-3;
 
 /// Difference from the planned velocity, as a share of it, below which the planned velocity is used: more than
 /// rounding, less than is visible.
-const ABOUT: f64 = 0.05;
+const SAME_VELOCITY_SHARE: f64 = 0.05;
 
 impl Tick<'_> {
     /// True if the climber pulls itself up in this tick. A pull-up that is blocked ends at once if the input no longer
     /// asks for it. A pull-up that was given up is not tried again until then.
     pub(super) fn is_pulling_up(&mut self, up: f64) -> bool {
-        let asks = up > UPWARD;
+        let asks = up > PULL_UP_INPUT;
         let memory = &mut self.state.ledge_hanging;
         memory.gave_up &= asks;
         if memory.blocked > 0.0 && !asks {
@@ -77,10 +77,10 @@ impl Tick<'_> {
         let over = carried.motion.position + up * (body.radius + body.margin);
         let level = place + up * (over - place).dot(up);
         let at = |share: f64| {
-            if share < OVER {
-                place.lerp(level, share / OVER)
+            if share < UPWARD_SHARE {
+                place.lerp(level, share / UPWARD_SHARE)
             } else {
-                level.lerp(over, (share - OVER) / (1.0 - OVER))
+                level.lerp(over, (share - UPWARD_SHARE) / (1.0 - UPWARD_SHARE))
             }
         };
         // The climber caught the ledge from farther away: arms first draw it to where the pull-up begins.
@@ -94,15 +94,15 @@ impl Tick<'_> {
         let share = self.dt() / config.pull_up_time;
         let after = if is_out_of_place {
             0.0
-        } else if before < OVER && share > LONG {
+        } else if before < UPWARD_SHARE && share > LONG_TICK_SHARE {
             // Up first: a longer step would cut the edge.
-            (before + share).min(OVER)
+            (before + share).min(UPWARD_SHARE)
         } else {
             (before + share).min(1.0)
         };
         let way = at(after) - carried.position;
         let speed = (at(after) - at(before)).length() / self.dt();
-        let fastest = speed.max(DRAW * body.radius) * self.dt();
+        let fastest = speed.max(DRAW_SPEED * body.radius) * self.dt();
         let target = carried.position + way.clamp_length_max(fastest);
         let moved = self.slide(&self.path(target), Intent::Go);
         // The draw into place is no motion of the climber's own.
@@ -115,7 +115,7 @@ impl Tick<'_> {
         if is_out_of_place {
             self.drawn_up += (moved.position - carried.position).dot(up).max(0.0);
             let made = (moved.position - carried.position).dot(way.normalize_or_zero());
-            if made < DRAWN * (target - carried.position).length() {
+            if made < LEAST_DRAW_SHARE * (target - carried.position).length() {
                 // An obstacle bulges into its place: pull up from where it is.
                 self.state.ledge_hanging.pull_up = share.min(1.0);
             }
@@ -124,10 +124,10 @@ impl Tick<'_> {
         // Bulging walls and ground push the climber ahead or aside. Only obstacles that keep it back are in its way.
         let onwards = (at(after) - at(before)).normalize_or_zero();
         let lag = (at(after) - moved.position).dot(onwards);
-        if lag > KEPT * body.radius {
+        if lag > MAX_LAG * body.radius {
             return self.wait_for_room();
         }
-        if lag <= FREED * body.radius {
+        if lag <= FREED_LAG * body.radius {
             self.state.ledge_hanging.blocked = 0.0;
         }
         self.state.ledge_hanging.pull_up = after;
@@ -164,8 +164,8 @@ impl Tick<'_> {
     ) {
         self.keep_support(carried, position);
         let made = (position - carried.position).clamp_length_max(most) / self.dt();
-        let is_as_planned = made.distance(planned) <= ABOUT * planned.length();
-        let is_still = made.length() <= STILL * planned.length();
+        let is_as_planned = made.distance(planned) <= SAME_VELOCITY_SHARE * planned.length();
+        let is_still = made.length() <= STILL_VELOCITY_SHARE * planned.length();
         let own = if self.state.crushed || is_still {
             DVec3::ZERO
         } else if is_as_planned {

@@ -11,14 +11,14 @@ use crate::config::LedgeConfig;
 /// Share of its way along the ledge below which a climber looks for a wall that stands forward. A wall that stands
 /// forward by a twentieth of the radius hinders it that much at once. With a smaller share, the ball would creep ever
 /// more slowly, and rounding would decide when it is blocked.
-const HINDERED: f64 = 0.9;
+const HINDERED_WAY_SHARE: f64 = 0.9;
 
 /// Share of its way along the ledge below which a climber is blocked, and looks for an inner corner.
-const STUCK: f64 = 0.4;
+const BLOCKED_WAY_SHARE: f64 = 0.4;
 
 /// Distance along the ledge in which a blocked climber looks for a wall that stands forward, as a fraction of the
 /// radius: the ball is at most a radius away from the corner, and the hands go a hand's width beyond it.
-const PAST: f64 = 1.3;
+const FORWARD_WALL_SEARCH: f64 = 1.3;
 
 /// Smallest reach of the hands for the next hold, as a fraction of the radius: past the edge of a step, where a hand
 /// does not lie flat.
@@ -26,32 +26,32 @@ const HAND_OVER: f64 = 0.5;
 
 /// Largest distance from the corner of a climber that goes around it, in radii. A climber that is farther away is kept
 /// off by an obstacle, such as a lower wall beside the corner, and would hang far beside its hands.
-const NEARLY: f64 = 1.05;
+const MAX_CORNER_DISTANCE: f64 = 1.05;
 
 /// Distance, as a fraction of the radius, by which a wall has to be nearer than the climber's wall to stand forward.
-const FORWARD: f64 = 0.02;
+const LEAST_FORWARD_DISTANCE: f64 = 0.02;
 
 /// Cosine of the smallest angle by which the facing turns where a ledge turns, a hundredth of a degree: less is
 /// rounding.
-const TURNS: f64 = 1.0 - 1e-8;
+const LEAST_TURN_COSINE: f64 = 1.0 - 1e-8;
 
 /// Distance, as a fraction of the radius, above which hands that are ahead have gone ahead of the body, across a gap or
 /// past a step.
-const AHEAD: f64 = 0.15;
+const HANDS_AHEAD_DISTANCE: f64 = 0.15;
 
 /// Largest distance, as a fraction of the radius, by which hands ahead of the body go back. Hands that would have to go
 /// back farther stay.
-const BACK: f64 = 0.1;
+const MAX_HANDS_BACK: f64 = 0.1;
 
 /// Error of its distance from the wall, as a fraction of the radius, that a climber keeps while it follows its hands:
 /// hands on an edge are not always equally far beyond it.
-const NEAR: f64 = 0.12;
+const KEPT_WALL_ERROR: f64 = 0.12;
 
 /// Error of its distance from the wall, as a fraction of the radius, with which a climber may rest at a ledge's end.
-const RESTS: f64 = 0.3;
+const REST_WALL_ERROR: f64 = 0.3;
 
 /// Largest factor on the speed along the ledge at which a climber that is far from its place is drawn there.
-const FASTER: f64 = 3.0;
+const MAX_DRAW_FACTOR: f64 = 3.0;
 
 /// The ledge that the hands go on to, and the displacement of the body in this tick.
 struct Next {
@@ -78,7 +78,7 @@ impl Tick<'_> {
             let way = if step == DVec3::ZERO {
                 way
             } else {
-                self.without_ahead(way, RESTS)
+                self.without_ahead(way, REST_WALL_ERROR)
             };
             Next {
                 ledge: None,
@@ -106,8 +106,13 @@ impl Tick<'_> {
         }
         let made = (moved.position - carried.position).dot(step);
         let made = made / step.length_squared();
-        let around = if goes_on && !returns && made < HINDERED {
-            self.way_around(carried.motion.position, moved.position, step, made < STUCK)
+        let around = if goes_on && !returns && made < HINDERED_WAY_SHARE {
+            self.way_around(
+                carried.motion.position,
+                moved.position,
+                step,
+                made < BLOCKED_WAY_SHARE,
+            )
         } else {
             None
         };
@@ -130,12 +135,12 @@ impl Tick<'_> {
         let most = config.shimmy_speed * self.dt();
         let radius = self.config.body.radius;
         let left = (place - from).dot(ahead);
-        let way = self.without_ahead(place - from, NEAR);
+        let way = self.without_ahead(place - from, KEPT_WALL_ERROR);
         let follows = Next {
             ledge: None,
             way: step + self.beside(ahead, way, most),
         };
-        if left > step.length().max(AHEAD * radius) {
+        if left > step.length().max(HANDS_AHEAD_DISTANCE * radius) {
             // The hands are there already.
             return Some(follows);
         }
@@ -150,7 +155,7 @@ impl Tick<'_> {
         let hold = self.ledge_hold(carried.motion.position, self.state.heading);
         let ledge = self.next_ledge(&hold, config, hung, step)?;
         let back = (hold.held - ledge.touch.contact.point).dot(ahead);
-        if left > step.length() && back > BACK * radius && !returns {
+        if left > step.length() && back > MAX_HANDS_BACK * radius && !returns {
             // Hands that went past a step do not go back to its near side.
             return Some(follows);
         }
@@ -179,7 +184,7 @@ impl Tick<'_> {
     fn beside(&self, ahead: DVec3, way: DVec3, most: f64) -> DVec3 {
         let beside = way - ahead * way.dot(ahead);
         let far = beside.length() / (HAND_OVER * self.config.body.radius);
-        beside.clamp_length_max(most * far.clamp(1.0, FASTER))
+        beside.clamp_length_max(most * far.clamp(1.0, MAX_DRAW_FACTOR))
     }
 
     fn ledge_hold(&self, held: DVec3, facing: DVec3) -> LedgeHold {
@@ -203,7 +208,7 @@ impl Tick<'_> {
         let (position, aside) = (from + step, step.normalize_or_zero());
         let radius = hold.body.radius;
         let reach = config.reach.max(HAND_OVER * radius);
-        let within = libm::hypot(NEARLY * radius, step.length());
+        let within = libm::hypot(MAX_CORNER_DISTANCE * radius, step.length());
         let judge = self.judge;
         let hangs = |ledge: &Ledge| judge.rule_of(&ledge.touch).hang;
         let ledge = self
@@ -230,13 +235,13 @@ impl Tick<'_> {
         let (heading, radius) = (self.state.heading, self.config.body.radius);
         let aside = step.try_normalize()?;
         let hold = self.ledge_hold(held, heading);
-        let least = (held - position).dot(heading) - FORWARD * radius;
+        let least = (held - position).dot(heading) - LEAST_FORWARD_DISTANCE * radius;
         let judge = self.judge;
         let stands_forward = |ledge: &Ledge| {
             let ahead = (ledge.touch.contact.point - position).dot(heading);
             ahead < least && judge.rule_of(&ledge.touch).hang
         };
-        let way = aside * (PAST * radius);
+        let way = aside * (FORWARD_WALL_SEARCH * radius);
         let ledge = self
             .mover
             .ledge_beside(&hold, position, way, stands_forward)
@@ -260,7 +265,7 @@ impl Tick<'_> {
     fn hold_ledge(&mut self, ledge: &Ledge, position: DVec3, step: DVec3) {
         let velocity = self.state.velocity;
         self.attach(&ledge.touch, position);
-        let turns = self.state.heading.dot(ledge.facing) < TURNS;
+        let turns = self.state.heading.dot(ledge.facing) < LEAST_TURN_COSINE;
         if turns && self.state.ledge_hanging.right == DVec3::ZERO {
             let side = self.state.heading.cross(self.config.up());
             let stick = self.stick().normalize_or_zero();

@@ -7,7 +7,7 @@ use crate::creature::report::{ActiveBeam, Blow};
 use crate::creature::{Creature, Surroundings};
 
 /// Distance that the end of a beam moves between two checks, metres, in addition to the beam's radius.
-const STEP: f64 = 0.3;
+const BEAM_CHECK_STEP: f64 = 0.3;
 
 /// Most checks in a tick.
 const MOST_STEPS: f64 = 32.0;
@@ -34,7 +34,9 @@ impl Creature {
         let now = Ray { from, direction };
         let was = self.state.ranged.beam.replace(now).unwrap_or(now);
         let moved = was.from.distance(from) + file.length * was.direction.distance(direction);
-        let steps = (moved / (STEP + file.radius)).ceil().clamp(1.0, MOST_STEPS);
+        let steps = (moved / (BEAM_CHECK_STEP + file.radius))
+            .ceil()
+            .clamp(1.0, MOST_STEPS);
         for step in 1..=steps as u32 {
             let share = f64::from(step) / steps;
             let turned = was.direction.lerp(direction, share);
@@ -61,7 +63,7 @@ impl Creature {
         });
         let people = if file.strikes() { around.people } else { &[] };
         for person in people {
-            if self.state.struck.contains(&person.id) {
+            if self.state.striking.struck().contains(&person.id) {
                 continue;
             }
             let touched = line.touch(person, around);

@@ -12,7 +12,7 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use super::report::AttackPhase;
-use super::state::FARTHEST;
+use super::state::FARTHEST_COORDINATE;
 use super::{Creature, Surroundings};
 use crate::brain::{Act, Attack, StateId, WaveOf};
 use crate::feet::Carried;
@@ -25,10 +25,10 @@ pub use shot::ActiveShot;
 pub use wave::ActiveWave;
 
 /// Largest number of waves, and of shots, at a time. One more removes the oldest one.
-const MOST: usize = 64;
+const MOST_AT_A_TIME: usize = 64;
 
 /// Distance from terrain at which a ray begins, metres, so that it does not hit this terrain.
-const TOUCHING: f64 = 1e-3;
+const RAY_START_DISTANCE: f64 = 1e-3;
 
 /// The waves, shots and beam of a creature, and their target.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -91,17 +91,18 @@ impl Ranged {
 
     /// True if a creature of this kind can have these waves, shots and beam.
     pub(super) fn fits(&self, kind: &CreatureKind) -> bool {
-        let is_near = |place: DVec3| place.is_finite() && place.abs().max_element() <= FARTHEST;
+        let is_near =
+            |place: DVec3| place.is_finite() && place.abs().max_element() <= FARTHEST_COORDINATE;
         let beam = self
             .beam
             .is_none_or(|beam| is_near(beam.from) && (beam.direction.length() - 1.0).abs() < 1e-6);
         is_near(self.mark)
             && beam
             && self.next_shot <= u64::MAX / 2
-            && self.waves.len().max(self.shots.len()) <= MOST
+            && self.waves.len().max(self.shots.len()) <= MOST_AT_A_TIME
             && self.waves.iter().all(|wave| {
                 let attack = attack_of(kind, wave.state);
-                let reach = (0.0..=FARTHEST).contains(&wave.reach);
+                let reach = (0.0..=FARTHEST_COORDINATE).contains(&wave.reach);
                 is_near(wave.place)
                     && reach
                     && attack.is_some_and(|one| one.wave_of(wave.of).is_some())
@@ -143,13 +144,13 @@ impl Ranged {
 impl Creature {
     /// Sets the target of the shot or beam of an attack that begins: the visible prey, or else a place ahead.
     pub(super) fn mark_prey(&mut self) {
-        let seen = self.state.prey.filter(|_| self.state.unseen == 0);
-        let mark = seen.map_or_else(|| self.ground_ahead(), |(_, place)| place);
+        let seen = self.state.perceived.visible_prey();
+        let mark = seen.unwrap_or_else(|| self.ground_ahead());
         self.state.ranged.mark = reachable(mark);
     }
 
     fn ground_ahead(&self) -> DVec3 {
-        self.state.position + self.state.heading() * self.size.height
+        self.state.position() + self.state.heading() * self.size.height
     }
 
     /// Advances all waves and shots by a tick, whether their attacks still last or not.
@@ -208,8 +209,7 @@ impl Creature {
         } else {
             self.state.ranged.beam = None;
         }
-        let layer = self.state.animator.layers().first();
-        let time = layer.map_or(0.0, |layer| layer.time);
+        let time = self.state.clips.time();
         if let Some(wave) = &attack.wave
             && time >= strike.impact
             && !self.state.ranged.is_out.wave
@@ -232,8 +232,8 @@ impl Creature {
             AttackPhase::Active => attack.beam.is_some(),
             AttackPhase::Recovery => false,
         };
-        let prey = self.state.prey.filter(|_| self.state.unseen == 0);
-        if let (true, Some((_, place))) = (still_aims, prey) {
+        let prey = self.state.perceived.visible_prey();
+        if let (true, Some(place)) = (still_aims, prey) {
             let way = place - self.state.ranged.mark;
             let mark = self.state.ranged.mark + way.clamp_length_max(attack.follows * dt);
             self.state.ranged.mark = reachable(mark);
@@ -243,7 +243,10 @@ impl Creature {
 
 /// The nearest place that a creature's attacks can reach.
 fn reachable(place: DVec3) -> DVec3 {
-    place.clamp(DVec3::splat(-FARTHEST), DVec3::splat(FARTHEST))
+    place.clamp(
+        DVec3::splat(-FARTHEST_COORDINATE),
+        DVec3::splat(FARTHEST_COORDINATE),
+    )
 }
 
 /// The attack of a state; `None` if its act is no attack.
@@ -257,7 +260,7 @@ fn attack_of(kind: &CreatureKind, state: StateId) -> Option<&Attack> {
 /// Moves a place by a length in a direction, or half way to the terrain in that direction.
 fn moved_off(place: DVec3, out: DVec3, by: f64, around: &Surroundings<'_>) -> DVec3 {
     let hits = around.terrain.iter();
-    let hits = hits.filter_map(|one| one.cast_ray(place + out * TOUCHING, out, by));
+    let hits = hits.filter_map(|one| one.cast_ray(place + out * RAY_START_DISTANCE, out, by));
     let free = hits.map(|hit| 0.5 * hit.distance).fold(by, f64::min);
     place + out * free
 }

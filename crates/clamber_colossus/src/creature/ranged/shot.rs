@@ -5,18 +5,18 @@ use serde::{Deserialize, Serialize};
 
 use super::line::Line;
 use super::wave::{self, WaveState};
-use super::{MOST, attack_of, moved_off, reachable};
+use super::{MOST_AT_A_TIME, attack_of, moved_off, reachable};
 use crate::brain::{Shot, StateId, WaveOf};
 use crate::creature::report::{Blow, CreatureEvent};
 use crate::creature::{Creature, Surroundings};
 
 /// Upper bound for the speed of a shot, metres a second: a little above the fastest possible shot, which has 1,000 m/s
 /// at the start and 60,000 m/s from gravity.
-const FASTEST: f64 = 62_000.0;
+const FASTEST_SHOT: f64 = 62_000.0;
 
 /// Distance behind a shot from which obstacles are looked for, metres, so that its paths in consecutive ticks leave no
 /// gap.
-const BEHIND: f64 = 0.01;
+const SEARCH_BEHIND: f64 = 0.01;
 
 /// A shot in flight, which a creature has thrown, spat or fired.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,7 +45,7 @@ pub(super) struct ShotState {
 
 /// True if a shot can have this velocity.
 pub(super) fn is_reached(velocity: DVec3) -> bool {
-    velocity.is_finite() && velocity.length() <= FASTEST
+    velocity.is_finite() && velocity.length() <= FASTEST_SHOT
 }
 
 impl Creature {
@@ -68,7 +68,7 @@ impl Creature {
         let way = self.state.ranged.mark - end;
         let velocity = direction(way, file).unwrap_or(self.state.heading()) * file.speed;
         let ranged = &mut self.state.ranged;
-        if ranged.shots.len() >= MOST {
+        if ranged.shots.len() >= MOST_AT_A_TIME {
             ranged.shots.remove(0);
         }
         ranged.shots.push(ShotState {
@@ -103,7 +103,7 @@ impl Creature {
             radius: file.radius,
         };
         // In its first tick, a shot has no path behind it.
-        let behind = if shot.ticks > 0 { BEHIND } else { 0.0 };
+        let behind = if shot.ticks > 0 { SEARCH_BEHIND } else { 0.0 };
         let stop = line.meet(behind, around);
         let end = stop.map_or(1.0, |(share, _)| share);
         let touches = around.people.iter().filter_map(|person| {

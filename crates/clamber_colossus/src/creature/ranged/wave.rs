@@ -5,27 +5,27 @@ use clamber_world::Obstacle;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::{MOST, attack_of, moved_off};
+use super::{MOST_AT_A_TIME, attack_of, moved_off};
 use crate::brain::{StateId, Wave, WaveOf};
 use crate::creature::report::{Blow, CreatureEvent};
-use crate::creature::state::FARTHEST;
+use crate::creature::state::FARTHEST_COORDINATE;
 use crate::creature::{Creature, Person, Surroundings};
 
 /// Height above the ground at which a wave begins, metres, so that lower rocks and bumps do not stop it.
-const LIFT: f64 = 0.5;
+const WAVE_START_HEIGHT: f64 = 0.5;
 
 /// The same height as a share of the wave's radius; the larger of both counts.
 const LIFT_SHARE: f64 = 1.0 / 30.0;
 
 /// Distance from a limb's end within which the ground is looked for, as a share of the creature's height: below the
 /// end, or above it if the end is in the ground.
-const NEAR: f64 = 0.2;
+const GROUND_SEARCH_DISTANCE: f64 = 0.2;
 
 /// Smallest vertical component of a normal that counts as ground, in magnitude.
-const LEVEL: f64 = 0.5;
+const LEAST_GROUND_NORMAL: f64 = 0.5;
 
 /// Largest distance between the hits of two rays on the same ground, metres.
-const SAME: f64 = 1e-3;
+const SAME_GROUND_DISTANCE: f64 = 1e-3;
 
 /// A wave that still spreads.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,7 +56,7 @@ pub(super) struct WaveState {
 
 /// How far from the ground, or from the obstacle that a shot met, a wave begins, metres.
 pub(super) fn lift(wave: &Wave) -> f64 {
-    LIFT.max(LIFT_SHARE * wave.radius)
+    WAVE_START_HEIGHT.max(LIFT_SHARE * wave.radius)
 }
 
 impl Creature {
@@ -89,18 +89,19 @@ impl Creature {
             attack: self.state.ranged.attack,
             place: moved_off(ground, DVec3::Y, lift(file), around),
             reach: 0.0,
-            struck: self.state.struck.clone(),
+            struck: self.state.striking.struck().to_vec(),
         };
         self.begin_wave(wave, file, around, dt);
     }
 
     /// The ground nearest to a limb's end: below it, or above it if the limb is in the ground.
     fn ground_at(&self, end: DVec3, around: &Surroundings<'_>) -> Option<DVec3> {
-        let near = NEAR * self.size.height;
+        let near = GROUND_SEARCH_DISTANCE * self.size.height;
         let first = |from: DVec3, direction: DVec3, most: f64| {
             let hits = around.terrain.iter().filter_map(|terrain| {
                 let hit = terrain.cast_ray(from, direction, most)?;
-                (hit.distance > 0.0 && hit.normal.y.abs() >= LEVEL).then_some(hit.distance)
+                (hit.distance > 0.0 && hit.normal.y.abs() >= LEAST_GROUND_NORMAL)
+                    .then_some(hit.distance)
             });
             hits.min_by(f64::total_cmp)
         };
@@ -110,7 +111,7 @@ impl Creature {
         // the underside of a bridge.
         let above = above.filter(|above| {
             let up = first(end, DVec3::Y, *above);
-            up.is_none_or(|up| up > above - SAME)
+            up.is_none_or(|up| up > above - SAME_GROUND_DISTANCE)
         });
         match (below, above) {
             (Some(below), Some(above)) if below < above => Some(-below),
@@ -128,7 +129,7 @@ impl Creature {
         dt: f64,
     ) {
         let (state, place) = (wave.state, wave.place);
-        if !place.is_finite() || place.abs().max_element() > FARTHEST {
+        if !place.is_finite() || place.abs().max_element() > FARTHEST_COORDINATE {
             return;
         }
         self.report.events.push(CreatureEvent::Wave {
@@ -145,7 +146,7 @@ impl Creature {
             return;
         }
         let waves = &mut self.state.ranged.waves;
-        if waves.len() >= MOST {
+        if waves.len() >= MOST_AT_A_TIME {
             waves.remove(0);
         }
         waves.push(wave);
@@ -193,7 +194,7 @@ impl Creature {
             let direction = away.map_or(DVec3::Y, |away| (away + DVec3::Y) * FRAC_1_SQRT_2);
             wave.struck.push(person.id);
             if wave.of == WaveOf::Limb && wave.attack == self.state.ranged.attack {
-                self.state.struck.push(person.id);
+                self.state.striking.mark_struck(person.id);
             }
             self.report.blows.push(Blow {
                 person: person.id,

@@ -3,38 +3,38 @@
 use clamber_surface::geometry::WorldCapsule;
 use glam::DVec3;
 
-use super::{Among, MARGIN, Room, STEPS_OVER, STRAIGHT_FROM};
-use crate::creature::state::NO_GROUND;
-use crate::kind::{BANDS, Band, EDGES};
+use super::{Among, OBSTACLE_MARGIN, Room, STEP_OVER_HEIGHT, STRAIGHT_FROM};
+use crate::creature::ground::NO_GROUND;
+use crate::kind::{BAND_COUNT, BAND_EDGES, Band};
 
 /// Additional distance from other creatures, as a share of the creature's height, because their skin moves while they
 /// stand.
-const SWAYS: f64 = 0.05;
+const SWAYING_DISTANCE: f64 = 0.05;
 
 /// Spacing of the stations where the ground ahead is measured, as a share of the creature's height.
-const SPACING: f64 = 0.08;
+const STATION_SPACING: f64 = 0.08;
 
-/// Most stations ahead. With `SPACING`, the creature sees 20 heights ahead at most.
-const STATIONS: usize = 256;
+/// Most stations ahead. With `STATION_SPACING`, the creature sees 20 heights ahead at most.
+const MOST_STATIONS: usize = 256;
 
 /// Sweeps of the lower bands follow the ground in pieces of this many stations. Sweeps of the bands from
 /// [`STRAIGHT_FROM`] on go straight.
-const PIECE: usize = 3;
+const STATIONS_PER_SWEEP: usize = 3;
 
 /// Largest height difference of ground that is about level, as a share of the creature's height.
-const ABOUT: f64 = 0.04;
+const LEVEL_TOLERANCE: f64 = 0.04;
 
 impl Room<'_> {
     /// How far the creature may walk straight ahead, metres: at most `far`, and at most as far as it sees. Negative if
     /// the creature is in an obstacle or too near to it.
     pub(in crate::creature) fn ahead(&self, far: f64) -> f64 {
-        let margin = MARGIN * self.height;
+        let margin = OBSTACLE_MARGIN * self.height;
         let feet = self.band(0);
-        let spacing = SPACING * self.height;
-        let sees = spacing * STATIONS as f64 - feet.front - margin;
+        let spacing = STATION_SPACING * self.height;
+        let sees = spacing * MOST_STATIONS as f64 - feet.front - margin;
         let far = far.min(sees).max(0.0);
         let reach = feet.front + margin + far;
-        let count = ((reach / spacing).ceil() as usize).clamp(1, STATIONS);
+        let count = ((reach / spacing).ceil() as usize).clamp(1, MOST_STATIONS);
         let spacing = reach / count as f64;
         let lanes = [feet.right, 0.0, feet.left];
         let from = (feet.front / spacing) as usize;
@@ -45,7 +45,7 @@ impl Room<'_> {
         if let Some(last) = ends {
             free = free.min(spacing * last as f64 - feet.front - margin);
         }
-        for index in 0..BANDS {
+        for index in 0..BAND_COUNT {
             if index == STRAIGHT_FROM && self.is_about_level(&levels) && self.is_high_way_free(free)
             {
                 break;
@@ -62,7 +62,7 @@ impl Room<'_> {
             }
             // Another creature may approach at the same speed, so each of them has half of the distance. Its skin also
             // sways.
-            let front = front + SWAYS * self.height;
+            let front = front + SWAYING_DISTANCE * self.height;
             let reach = front + 2.0 * free.max(0.0);
             let hit = self.sweep_ahead(index, &band, reach, spacing, &levels, Among::Creatures);
             if let Some(left) = hit.map(|hit| hit - front) {
@@ -83,9 +83,10 @@ impl Room<'_> {
     /// True if certainly nothing is in the way of the higher bands. One fat capsule around them replaces a sweep for
     /// each.
     fn is_high_way_free(&self, free: f64) -> bool {
-        let high = self.box_of(STRAIGHT_FROM..BANDS);
+        let high = self.box_of(STRAIGHT_FROM..BAND_COUNT);
         let (middle, radius) = self.high_middle();
-        let way = high.front + (MARGIN + SWAYS) * self.height + 2.0 * free.max(0.0);
+        let way =
+            high.front + (OBSTACLE_MARGIN + SWAYING_DISTANCE) * self.height + 2.0 * free.max(0.0);
         let capsule = WorldCapsule {
             ends: [high.right, high.left].map(|aside| middle + self.left * aside),
             radius,
@@ -94,24 +95,33 @@ impl Room<'_> {
     }
 
     /// True if the ground ahead is about as high as the ground where the creature stands.
-    fn is_about_level(&self, levels: &[[f64; STATIONS + 1]; 3]) -> bool {
+    fn is_about_level(&self, levels: &[[f64; MOST_STATIONS + 1]; 3]) -> bool {
         let known = levels.iter().flatten().filter(|level| **level < NO_GROUND);
         let mut rises = known.map(|level| (level - self.origin.y).abs());
-        rises.all(|rise| rise <= ABOUT * self.height)
+        rises.all(|rise| rise <= LEVEL_TOLERANCE * self.height)
     }
 
-    /// Middle of the higher bands, and half their height; the latter includes the tolerance `ABOUT`.
+    /// Middle of the higher bands, and half their height; the latter includes the tolerance `LEVEL_TOLERANCE`.
     fn high_middle(&self) -> (DVec3, f64) {
-        let [low, high] = [EDGES[STRAIGHT_FROM], EDGES[BANDS]].map(|edge| edge * self.height);
+        let [low, high] =
+            [BAND_EDGES[STRAIGHT_FROM], BAND_EDGES[BAND_COUNT]].map(|edge| edge * self.height);
         let up = DVec3::Y * (0.5 * (low + high));
-        (self.origin + up, 0.5 * (high - low) + ABOUT * self.height)
+        (
+            self.origin + up,
+            0.5 * (high - low) + LEVEL_TOLERANCE * self.height,
+        )
     }
 
     /// Heights of the ground along a lane, per station. Under the body, only the ends of pieces are measured.
-    fn lane(&self, aside: f64, spacing: f64, [from, count]: [usize; 2]) -> [f64; STATIONS + 1] {
-        let mut levels = [NO_GROUND; STATIONS + 1];
+    fn lane(
+        &self,
+        aside: f64,
+        spacing: f64,
+        [from, count]: [usize; 2],
+    ) -> [f64; MOST_STATIONS + 1] {
+        let mut levels = [NO_GROUND; MOST_STATIONS + 1];
         let mut level = self.origin.y;
-        let under = (0..from).step_by(PIECE);
+        let under = (0..from).step_by(STATIONS_PER_SWEEP);
         for station in under.chain(from..count + 1) {
             let at = self.forward * (spacing * station as f64) + self.left * aside;
             if let Some(next) = self.below((self.origin + at).with_y(level)) {
@@ -125,13 +135,13 @@ impl Room<'_> {
     /// obstacle is a slope that is too steep, a drop, or a wall; a slope counts from its beginning.
     fn last_ground(
         &self,
-        levels: &[[f64; STATIONS + 1]; 3],
+        levels: &[[f64; MOST_STATIONS + 1]; 3],
         lanes: &[f64; 3],
         station: usize,
         spacing: f64,
         front: f64,
     ) -> Option<usize> {
-        let over = STEPS_OVER * self.height;
+        let over = STEP_OVER_HEIGHT * self.height;
         let is_level = |rise: f64, way: f64| rise.abs() <= self.steepest * way.abs() + over;
         if spacing * station as f64 <= front {
             // The feet already stand there.
@@ -166,15 +176,19 @@ impl Room<'_> {
         band: &Band,
         reach: f64,
         spacing: f64,
-        levels: &[[f64; STATIONS + 1]; 3],
+        levels: &[[f64; MOST_STATIONS + 1]; 3],
         among: Among,
     ) -> Option<f64> {
         let thick = self.thick(index);
         // The capsule with its round ends is as wide as the body.
         let [right, left] = [(band.right + thick).min(0.0), (band.left - thick).max(0.0)];
         let way = (reach - thick).max(0.0);
-        let last = ((way / spacing).ceil() as usize).clamp(1, STATIONS);
-        let step = if index < STRAIGHT_FROM { PIECE } else { last };
+        let last = ((way / spacing).ceil() as usize).clamp(1, MOST_STATIONS);
+        let step = if index < STRAIGHT_FROM {
+            STATIONS_PER_SWEEP
+        } else {
+            last
+        };
         let level = |lane: usize, station: usize| {
             let known = levels[lane][..=station].iter().rev();
             let mut known = known.filter(|level| **level < NO_GROUND);

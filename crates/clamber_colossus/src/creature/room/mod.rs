@@ -15,20 +15,18 @@ use clamber_surface::surface::TargetMotion;
 use clamber_world::{Obstacle, SweepContact};
 use glam::DVec3;
 
-use super::ground::GROUND_SPACING;
-use super::state::NO_GROUND;
 use super::{Creature, Surroundings};
 use crate::feet::Ground;
-use crate::kind::{Band, EDGES, Extent};
+use crate::kind::{BAND_EDGES, Band, Extent};
 
 /// Height above the ground up to which the creature steps over obstacles, as a share of its height.
-pub(super) const STEPS_OVER: f64 = 0.06;
+pub(super) const STEP_OVER_HEIGHT: f64 = 0.06;
 
 /// Smallest vertical component of a unit normal that counts as ground for blows, which may go into ground.
-pub(super) const STEEP: f64 = 0.7;
+pub(super) const LEAST_GROUND_NORMAL: f64 = 0.7;
 
 /// Distance that the creature keeps from obstacles, as a share of its height.
-const MARGIN: f64 = 0.015;
+const OBSTACLE_MARGIN: f64 = 0.015;
 
 /// Index of the first of the higher bands. One straight sweep of all higher bands together replaces their own sweeps if
 /// it finds no obstacle.
@@ -36,7 +34,7 @@ const STRAIGHT_FROM: usize = 2;
 
 /// Sine of the largest angle between a motion and a surface at which the motion goes along the surface. A sweep does
 /// not stop at such a surface.
-const ALONG: f64 = 0.01;
+const ALONG_SURFACE_SINE: f64 = 0.01;
 
 /// The obstacles that a sweep checks.
 #[derive(Clone, Copy)]
@@ -75,7 +73,7 @@ impl Creature {
         Room {
             around,
             extent,
-            origin: self.state.position,
+            origin: self.state.position(),
             forward,
             left: DVec3::new(forward.z, 0.0, -forward.x),
             scale: self.size.scale,
@@ -89,13 +87,8 @@ impl Creature {
         let heading = self.state.heading();
         let left = DVec3::new(heading.z, 0.0, -heading.x);
         let most = libm::tan(self.config.most_slope).min(1.0);
-        let rise = |[from, to]: [usize; 2], steps: f64| {
-            let [from, to] = [from, to].map(|index| self.state.ground[index]);
-            let known = from < NO_GROUND && to < NO_GROUND;
-            let rise = (to - from) / (steps * GROUND_SPACING * self.size.height);
-            if known { rise.clamp(-most, most) } else { 0.0 }
-        };
-        heading * rise([0, 6], 6.0) + left * rise([8, 7], 2.0)
+        let [ahead, aside] = self.state.on_ground.slopes(self.size.height, most);
+        heading * ahead + left * aside
     }
 }
 
@@ -132,12 +125,12 @@ impl Room<'_> {
 
     /// Half the thickness of a band, metres.
     fn thick(&self, index: usize) -> f64 {
-        0.5 * (EDGES[index + 1] - EDGES[index]) * self.height
+        0.5 * (BAND_EDGES[index + 1] - BAND_EDGES[index]) * self.height
     }
 
     /// Height of a band's middle above the ground, metres.
     fn middle(&self, index: usize) -> f64 {
-        0.5 * (EDGES[index + 1] + EDGES[index]) * self.height
+        0.5 * (BAND_EDGES[index + 1] + BAND_EDGES[index]) * self.height
     }
 
     /// Height of the ground below a place.
@@ -157,8 +150,9 @@ impl Room<'_> {
         goes: &dyn Fn(DVec3) -> DVec3,
         among: &[Among],
     ) -> Option<f64> {
-        let mut is_in_the_way =
-            |hit: &SweepContact| hit.separation_normal.dot(goes(hit.contact.point)) < -ALONG;
+        let mut is_in_the_way = |hit: &SweepContact| {
+            hit.separation_normal.dot(goes(hit.contact.point)) < -ALONG_SURFACE_SINE
+        };
         let times = among.iter().filter_map(|among| {
             let obstacles = match among {
                 Among::Terrain => self.around.terrain,

@@ -4,7 +4,7 @@ use clamber_surface::geometry::WorldCapsule;
 use clamber_world::SweepContact;
 use glam::DVec3;
 
-use super::{STEEP, STEPS_OVER, first};
+use super::{LEAST_GROUND_NORMAL, STEP_OVER_HEIGHT, first};
 use crate::creature::{Creature, Surroundings};
 use crate::kind::{Strike, Swept};
 
@@ -17,13 +17,13 @@ impl Creature {
         around: &Surroundings<'_>,
     ) -> bool {
         let world = self.state.world_from_model(self.size.scale);
-        let low = self.state.position.y + STEPS_OVER * self.size.height;
+        let low = self.state.position().y + STEP_OVER_HEIGHT * self.size.height;
         for Swept { radius, aims, way } in &strike.swept {
             let count = way.len().max(2) as f64 - 1.0;
             let places = way.iter().enumerate().map(|(index, place)| {
                 // A limb that aims goes gradually to its target.
                 let share = if *aims { index as f64 / count } else { 0.0 };
-                let place = world.transform_point(*place) + self.state.aim * share;
+                let place = world.transform_point(*place) + self.state.striking.aim() * share;
                 place.with_y(place.y.max(low + radius * self.size.scale))
             });
             let places: Vec<DVec3> = places.collect();
@@ -33,7 +33,7 @@ impl Creature {
                 // An obstacle that the ball starts in, or moves away from, is not in its way.
                 let mut is_rock = |hit: &SweepContact| {
                     let normal = hit.separation_normal;
-                    !hit.started_inside && normal.y < STEEP && normal.dot(way) < 0.0
+                    !hit.started_inside && normal.y < LEAST_GROUND_NORMAL && normal.dot(way) < 0.0
                 };
                 for obstacles in [around.terrain, around.creatures] {
                     if first(obstacles, &ball, [way; 2], &mut is_rock).is_some() {

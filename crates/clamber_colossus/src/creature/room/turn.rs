@@ -5,17 +5,17 @@ use core::ops::Range;
 use clamber_surface::geometry::WorldCapsule;
 use glam::DVec3;
 
-use super::{Among, MARGIN, Room, STEPS_OVER, STRAIGHT_FROM};
-use crate::kind::{BANDS, EDGES};
+use super::{Among, OBSTACLE_MARGIN, Room, STEP_OVER_HEIGHT, STRAIGHT_FROM};
+use crate::kind::{BAND_COUNT, BAND_EDGES};
 
 /// Largest angle of the chords in which the arcs of a turn are checked, radians. Such a chord leaves its arc by 1.1 %
 /// of the radius.
-const MOST_TURN: f64 = 0.3;
+const MOST_CHORD_ANGLE: f64 = 0.3;
 
 impl Room<'_> {
     /// How far the creature may turn on the spot, radians: at most `far` and with its sign, positive to the left.
     pub(in crate::creature) fn turn(&self, far: f64, slope: DVec3) -> f64 {
-        let pieces = (far.abs() / MOST_TURN).ceil().max(1.0);
+        let pieces = (far.abs() / MOST_CHORD_ANGLE).ceil().max(1.0);
         let piece = far / pieces;
         let mut free = 0.0;
         for index in 0..pieces as u32 {
@@ -33,7 +33,7 @@ impl Room<'_> {
     fn turn_piece(&self, from: f64, far: f64, slope: DVec3) -> f64 {
         let mut free = far.abs();
         let feet = self.band(0);
-        let over = STEPS_OVER * self.height;
+        let over = STEP_OVER_HEIGHT * self.height;
         for (aside, along) in [
             (feet.right, feet.back),
             (feet.left, feet.back),
@@ -48,9 +48,9 @@ impl Room<'_> {
                 free = 0.0;
             }
         }
-        for index in 1..BANDS {
+        for index in 1..BAND_COUNT {
             let turn = [from, far];
-            if index == STRAIGHT_FROM && self.is_turn_clear(index..BANDS, turn, slope) {
+            if index == STRAIGHT_FROM && self.is_turn_clear(index..BAND_COUNT, turn, slope) {
                 break;
             }
             if !self.is_turn_clear(index..index + 1, turn, slope) {
@@ -67,7 +67,7 @@ impl Room<'_> {
         let mut free = by;
         let band = self.band(index);
         let thick = self.thick(index);
-        let inner = thick - MARGIN * self.height;
+        let inner = thick - OBSTACLE_MARGIN * self.height;
         let [back, right] = [band.back, band.right].map(|at| (at + inner).min(0.0));
         let [front, left] = [band.front, band.left].map(|at| (at - inner).max(0.0));
         // Along the body, across it, and along both diagonals of its box.
@@ -112,7 +112,7 @@ impl Room<'_> {
         let around = self.box_of(bands.clone());
         // The bands' capsules are round, so their axes end this far inside the bands' boxes.
         let thicks = bands.clone().map(|index| self.thick(index));
-        let inner = thicks.fold(f64::INFINITY, f64::min) - MARGIN * self.height;
+        let inner = thicks.fold(f64::INFINITY, f64::min) - OBSTACLE_MARGIN * self.height;
         let back = (around.back + inner).min(0.0);
         let front = (around.front - inner).max(0.0);
         let wide = (around.left.max(-around.right) - inner).max(0.0);
@@ -121,7 +121,7 @@ impl Room<'_> {
         let along = [back - wide * sine, front + wide * sine];
         let axis = turned(self.forward, from + 0.5 * by);
         let side = DVec3::new(axis.z, 0.0, -axis.x);
-        let [low, high] = [bands.start, bands.end].map(|edge| EDGES[edge] * self.height);
+        let [low, high] = [bands.start, bands.end].map(|edge| BAND_EDGES[edge] * self.height);
         let sloped = |level: DVec3| level + DVec3::Y * level.dot(slope);
         let middle = self.origin + DVec3::Y * (0.5 * (low + high));
         let capsule = WorldCapsule {
@@ -167,7 +167,7 @@ mod tests {
             });
             let extent = Extent { bands };
             let slope = DVec3::new(up_to(1.0) - 0.5, 0.0, up_to(1.0) - 0.5);
-            let turn = [up_to(6.0), up_to(2.0 * MOST_TURN) - MOST_TURN];
+            let turn = [up_to(6.0), up_to(2.0 * MOST_CHORD_ANGLE) - MOST_CHORD_ANGLE];
             let forward = turned(DVec3::Z, up_to(6.0));
             let mut random = || Vec3::from_array(core::array::from_fn(|_| up_to(2.0) as f32 - 1.0));
             let (at, size) = (random() * 1.5, random().x);
@@ -191,8 +191,8 @@ mod tests {
                 height,
                 steepest: 1.0,
             };
-            let single = (0..BANDS).map(|index| index..index + 1);
-            for bands in single.chain(std::iter::once(STRAIGHT_FROM..BANDS)) {
+            let single = (0..BAND_COUNT).map(|index| index..index + 1);
+            for bands in single.chain(std::iter::once(STRAIGHT_FROM..BAND_COUNT)) {
                 let mut ends = bands
                     .clone()
                     .map(|index| room.turn_band(index, turn, slope));

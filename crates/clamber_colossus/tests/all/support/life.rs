@@ -195,7 +195,7 @@ impl<'a> Life<'a> {
 
     /// Yaw rate, radians a second.
     pub(crate) fn yaw_rate(&self) -> f64 {
-        self.number("/yaw_rate") * self.setting.pace()
+        self.number("/motion/yaw_rate") * self.setting.pace()
     }
 
     /// Speed relative to the ground, metres a second.

@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BinaryHeap};
 use clamber_surface::surface::SkinnedSurface;
 use glam::{DVec3, IVec3};
 
-use super::{Aim, ClimbGraph, LONGEST};
+use super::{Aim, ClimbGraph, LONGEST_FLIGHT};
 use crate::NavigationError;
 use crate::graph::Footing;
 
@@ -22,19 +22,19 @@ pub(super) struct Tried {
 }
 
 /// Side of a cube of space, radii of the climber. For each ordered pair of cubes one jump is tried, the shortest one.
-const CELL: f64 = 3.0;
+const CUBE_SIDE: f64 = 3.0;
 
 /// A way is short if it takes no longer than this many times the jump. No jump is tried where a short way leads.
-const SHORT: f64 = 3.0;
+const SHORT_WAY_FACTOR: f64 = 3.0;
 
 /// Jumps lead down by at most this many times the height to which they rise.
-const DOWN: f64 = 2.0;
+const MOST_DROP_FACTOR: f64 = 2.0;
 
 /// Progress is reported once in this many cubes.
-const TELLS: usize = 32;
+const CUBES_PER_REPORT: usize = 32;
 
 /// Number of straight segments that stand in for the parabola when the path of a jump is tested for skin.
-const PIECES: u32 = 6;
+const PATH_SEGMENTS: u32 = 6;
 
 /// The jumps that may be worth it, sorted by the time that they save, most first.
 pub(super) fn tries(
@@ -45,12 +45,12 @@ pub(super) fn tries(
     let climber = &graph.config.climber;
     let (ground, gravity) = (&climber.ground, climber.gravity.length());
     let rises = 0.5 * ground.jump_speed * ground.jump_speed / gravity;
-    let deepest = DOWN * rises;
+    let deepest = MOST_DROP_FACTOR * rises;
     let longest = (ground.jump_speed + libm::sqrt(2.0 * gravity * (rises + deepest))) / gravity;
-    let seconds = longest.min(LONGEST);
+    let seconds = longest.min(LONGEST_FLIGHT);
     let range = ground.walk_speed * seconds;
-    let side = CELL * graph.config.radius();
-    if !(range > side && 2.0 * ground.jump_speed / gravity <= LONGEST) {
+    let side = CUBE_SIDE * graph.config.radius();
+    if !(range > side && 2.0 * ground.jump_speed / gravity <= LONGEST_FLIGHT) {
         return Ok(Vec::new());
     }
     let cell = |seat: DVec3| (seat / side).floor().as_ivec3().to_array();
@@ -66,7 +66,7 @@ pub(super) fn tries(
     let mut beside = Beside::new(graph);
     let mut tries = Vec::new();
     for (done, (at, here)) in cells.iter().enumerate() {
-        if done.is_multiple_of(TELLS) {
+        if done.is_multiple_of(CUBES_PER_REPORT) {
             tell(done, cells.len())?;
         }
         let stands = |patch: &&u32| graph.patches[**patch as usize].can_stand;
@@ -74,7 +74,7 @@ pub(super) fn tries(
         if stands.is_empty() {
             continue;
         }
-        beside.look(graph, &stands, SHORT * seconds);
+        beside.look(graph, &stands, SHORT_WAY_FACTOR * seconds);
         let middle = IVec3::from_array(*at);
         for away in cube(far) {
             let Some(there) = cells.get(&(middle + away).to_array()) else {
@@ -94,7 +94,7 @@ pub(super) fn tries(
                     continue;
                 };
                 let way = beside.seconds(to);
-                if way > SHORT * aim.seconds {
+                if way > SHORT_WAY_FACTOR * aim.seconds {
                     best = Some(Tried {
                         ends: [from, to],
                         saves: way - aim.seconds,
@@ -141,8 +141,9 @@ fn is_free(graph: &ClimbGraph, surface: &SkinnedSurface, ends: [u32; 2]) -> bool
     if !catches && arrives.dot(to.normal) > 0.0 {
         return false;
     }
-    (0..PIECES).all(|piece| {
-        let [start, end] = [piece, piece + 1].map(|piece| at(f64::from(piece) / f64::from(PIECES)));
+    (0..PATH_SEGMENTS).all(|piece| {
+        let [start, end] =
+            [piece, piece + 1].map(|piece| at(f64::from(piece) / f64::from(PATH_SEGMENTS)));
         let length = start.distance(end);
         !surface
             .in_world()
@@ -174,8 +175,8 @@ impl Beside {
 
     /// True if a short way leads from one patch to another, so that a jump of `jump` seconds is not worth it.
     pub(super) fn is_short(&mut self, graph: &ClimbGraph, [from, to]: [u32; 2], jump: f64) -> bool {
-        self.look(graph, &[from], SHORT * jump);
-        self.seconds(to) <= SHORT * jump
+        self.look(graph, &[from], SHORT_WAY_FACTOR * jump);
+        self.seconds(to) <= SHORT_WAY_FACTOR * jump
     }
 
     /// Finds the times from the nearest of some patches to all others, up to `most` seconds: Dijkstra's search (1959).

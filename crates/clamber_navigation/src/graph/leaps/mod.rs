@@ -12,7 +12,7 @@ use super::{ClimbGraph, Footing};
 use clamber_surface::mesh::Rig;
 
 use crate::NavigationError;
-use crate::clips::SLICE;
+use crate::clips::SLICE_SECONDS;
 use crate::progress::{Stage, Tell};
 use play::{Moment, Theatre};
 
@@ -63,7 +63,7 @@ pub(crate) struct Leaps {
 
 /// Offsets from a jump's beginning at which it is played, in radii, along two horizontal axes. A jump that lands only
 /// from the exact place is dropped.
-const OFF: [[f64; 2]; 4] = [[0.25, 0.0], [0.0, 0.25], [-0.25, 0.0], [0.0, -0.25]];
+const START_OFFSETS: [[f64; 2]; 4] = [[0.25, 0.0], [0.0, 0.25], [-0.25, 0.0], [0.0, -0.25]];
 
 /// In each clip a jump is played at least this many times, evenly spread, and at least once per slice.
 const FEWEST_PHASES: f64 = 8.0;
@@ -75,16 +75,16 @@ const AT_ONCE: usize = 64;
 
 /// Two jumps whose beginnings are within this many radii of each other, and whose ends are as well, count as one. The
 /// one that saves most time is kept.
-const SPREAD: f64 = 4.0;
+const SAME_JUMP_DISTANCE: f64 = 4.0;
 
 /// In a clip a jump has to land within this many radii of where it lands at rest.
-const SAME: f64 = 2.0;
+const SAME_LANDING_DISTANCE: f64 = 2.0;
 
 /// The most jumps that are played at rest: those that save most time. It limits the time of the build.
 const MOST_TRIED: usize = 512;
 /// The most jumps that are kept of those that land at rest, and are then played in the clips. It limits the time of the
 /// build.
-const MOST: usize = 64;
+const MOST_JUMPS: usize = 64;
 
 impl Leaps {
     /// Plays jumps, and keeps those that land where no short way leads.
@@ -107,7 +107,7 @@ impl Leaps {
         let mut lands = vec![false; leaps.len() * clips];
         for clip in 0..clips {
             let lasts = theatre.seconds(clip);
-            let phases = (lasts / SLICE).ceil().max(FEWEST_PHASES);
+            let phases = (lasts / SLICE_SECONDS).ceil().max(FEWEST_PHASES);
             if phases > MOST_PHASES {
                 continue;
             }
@@ -117,7 +117,7 @@ impl Leaps {
                     break;
                 }
                 let begins = lasts * f64::from(phase) / phases;
-                let off = OFF[phase as usize % OFF.len()];
+                let off = START_OFFSETS[phase as usize % START_OFFSETS.len()];
                 let when = Moment {
                     clip: Some(clip),
                     begins,
@@ -151,16 +151,16 @@ impl Leaps {
         let mut beside = find::Beside::new(graph);
         let is_known = |leaps: &[Leap], leap: &Leap| {
             leaps.iter().any(|known| {
-                near(graph, (known.from, leap.from), SPREAD)
-                    && near(graph, (known.to, leap.to), SPREAD)
+                near(graph, (known.from, leap.from), SAME_JUMP_DISTANCE)
+                    && near(graph, (known.to, leap.to), SAME_JUMP_DISTANCE)
             })
         };
         for tries in tries[..tries.len().min(MOST_TRIED)].chunks(AT_ONCE) {
-            if leaps.len() == MOST {
+            if leaps.len() == MOST_JUMPS {
                 break;
             }
             let ends: Vec<[u32; 2]> = tries.iter().map(|tried| tried.ends).collect();
-            let landed = theatre.play(&ends, Moment::REST, tell)?;
+            let landed = theatre.play(&ends, Moment::AT_REST, tell)?;
             let mut new: Vec<(usize, Leap)> = Vec::new();
             for ([from, aimed], landed) in ends.into_iter().zip(landed) {
                 let Some(landed) = landed else {
@@ -183,15 +183,15 @@ impl Leaps {
                     new.push((new.len(), leap));
                 }
             }
-            for off in OFF {
+            for off in START_OFFSETS {
                 let when = Moment {
                     off,
-                    ..Moment::REST
+                    ..Moment::AT_REST
                 };
                 Self::keep(graph, theatre, &mut new, when, tell)?;
             }
             for (_, leap) in new {
-                if leaps.len() < MOST && !is_known(&leaps, &leap) {
+                if leaps.len() < MOST_JUMPS && !is_known(&leaps, &leap) {
                     leaps.push(leap);
                 }
             }
@@ -215,7 +215,8 @@ impl Leaps {
         let mut played = theatre.play(&ends, when, tell)?.into_iter();
         leaps.retain_mut(|(_, leap)| {
             let landed = played.next().flatten();
-            let landed = landed.filter(|landed| near(graph, (landed.patch, leap.to), SAME));
+            let landed =
+                landed.filter(|landed| near(graph, (landed.patch, leap.to), SAME_LANDING_DISTANCE));
             landed.is_some_and(|landed| {
                 leap.seconds = leap.seconds.max(landed.seconds);
                 leap.costs = leap.costs.max(landed.costs);
@@ -283,7 +284,7 @@ impl Leaps {
             from.is_some_and(|from| from.can_stand)
                 && lands
                 && aimed.is_some()
-                && (0.0..=2.0 * LONGEST + 1.0).contains(&leap.seconds())
+                && (0.0..=2.0 * LONGEST_FLIGHT + 1.0).contains(&leap.seconds())
                 && leap.costs() >= 0.0
                 && leap.costs().is_finite()
         };
@@ -316,14 +317,14 @@ pub(crate) struct Aim {
 }
 
 /// A jump whose ends are nearer than this many radii horizontally goes straight up.
-const STRAIGHT: f64 = 0.1;
+const STRAIGHT_UP_DISTANCE: f64 = 0.1;
 
 /// The longest time of flight of a jump, seconds. It excludes jumps under nearly no gravity.
-pub(super) const LONGEST: f64 = 10.0;
+pub(super) const LONGEST_FLIGHT: f64 = 10.0;
 
 /// Hands grip again after this share of the time for which the jump rises. Earlier they would hold the skin that the
 /// climber leaves.
-const OPEN: f64 = 0.4;
+const GRIP_AGAIN_SHARE: f64 = 0.4;
 
 impl Aim {
     /// Aims a jump from one place of a climber's ball to another, so that it comes down there or catches it at the
@@ -343,8 +344,8 @@ impl Aim {
             .map_or(0.0, |ledge| ledge.reach_up + climber.body.radius);
         let lacks = -under / (2.0 * gravity);
         let share = level.length() / (ground.walk_speed * seconds);
-        let is_straight = level.length() < STRAIGHT * climber.body.radius;
-        let flies = seconds > 0.0 && seconds <= LONGEST;
+        let is_straight = level.length() < STRAIGHT_UP_DISTANCE * climber.body.radius;
+        let flies = seconds > 0.0 && seconds <= LONGEST_FLIGHT;
         let reaches = flies && lacks <= hands.max(ledge) && (is_straight || share <= 1.0);
         reaches.then(|| Self {
             walk: if is_straight {
@@ -365,7 +366,7 @@ impl Aim {
             jump: seconds == 0.0,
             jump_held: true,
             // An earlier grip would hold the skin that the climber leaves.
-            grip: seconds > OPEN * rises,
+            grip: seconds > GRIP_AGAIN_SHARE * rises,
             ..ClimberInput::IDLE
         }
     }

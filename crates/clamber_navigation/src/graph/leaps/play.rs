@@ -6,7 +6,7 @@ use clamber_surface::surface::SkinnedSurface;
 use clamber_world::{Obstacle, ObstacleId};
 use glam::DVec3;
 
-use super::{Aim, ClimbGraph, Footing, LONGEST};
+use super::{Aim, ClimbGraph, Footing, LONGEST_FLIGHT};
 use clamber_surface::mesh::Rig;
 
 use crate::NavigationError;
@@ -14,16 +14,16 @@ use crate::clips::TICK;
 use crate::graph::Spot;
 
 /// A climber stands for this many ticks before it jumps, and has to be at rest for as many at the end.
-const SETTLES: u32 = 6;
+const SETTLE_TICKS: u32 = 6;
 
 /// The longest time from a take-off until the climber is at rest, as a multiple of the expected flight time. The time
-/// of [`PULLS`] is added.
-const LATE: f64 = 1.5;
+/// of [`PULL_UPS`] is added.
+const LATEST_REST_FACTOR: f64 = 1.5;
 /// Number of pull-ups over a ledge for which a jump has time.
-const PULLS: f64 = 2.0;
+const PULL_UPS: f64 = 2.0;
 
 /// Progress is reported once in this many ticks.
-const TELLS: u32 = 32;
+const TICKS_PER_REPORT: u32 = 32;
 
 /// The landing of a jump that was played.
 #[derive(Clone, Copy, Debug)]
@@ -47,7 +47,7 @@ pub(super) struct Moment {
 
 impl Moment {
     /// A jump on the creature at rest, from its exact place.
-    pub(super) const REST: Self = Self {
+    pub(super) const AT_REST: Self = Self {
         clip: None,
         begins: 0.0,
         off: [0.0; 2],
@@ -81,7 +81,7 @@ struct Jumper {
 }
 
 /// The creature's obstacle id while jumps are played.
-const CREATURE: ObstacleId = ObstacleId(0);
+const CREATURE_ID: ObstacleId = ObstacleId(0);
 
 impl<'a> Theatre<'a> {
     pub(super) fn new(graph: &'a ClimbGraph, rig: &'a Rig) -> Result<Self, NavigationError> {
@@ -155,7 +155,7 @@ impl<'a> Theatre<'a> {
         let up = config.up();
         let along = up.any_orthonormal_vector();
         let off = (along * off[0] + up.cross(along) * off[1]) * config.body.radius;
-        let first = begins - f64::from(SETTLES) * TICK;
+        let first = begins - f64::from(SETTLE_TICKS) * TICK;
         self.show(clip, first - TICK, false)?;
         let seat = |surface: &SkinnedSurface, patch: u32| {
             Spot::of(surface, &graph.patches[patch as usize]).seat
@@ -189,13 +189,13 @@ impl<'a> Theatre<'a> {
         let rules = StepRules::by(&grips);
         let mut tick: u32 = 1;
         while jumpers.iter().any(|jumper| jumper.ended.is_none()) {
-            if tick.is_multiple_of(TELLS) {
+            if tick.is_multiple_of(TICKS_PER_REPORT) {
                 tell()?;
             }
             self.show(clip, first + f64::from(tick) * TICK, true)?;
-            let around: [(ObstacleId, &dyn Obstacle); 1] = [(CREATURE, &self.surface)];
+            let around: [(ObstacleId, &dyn Obstacle); 1] = [(CREATURE_ID, &self.surface)];
             for jumper in jumpers.iter_mut().filter(|jumper| jumper.ended.is_none()) {
-                let after = tick.checked_sub(SETTLES);
+                let after = tick.checked_sub(SETTLE_TICKS);
                 jumper.step(graph, &around, &self.surface, after, &rules)?;
             }
             tick += 1;
@@ -249,7 +249,7 @@ impl Jumper {
         } else {
             0
         };
-        if self.rests >= SETTLES {
+        if self.rests >= SETTLE_TICKS {
             let support = state.support.and_then(|support| {
                 let material = support.attachment.material;
                 let weights = material.coordinates.map(|weight| weight as f32);
@@ -263,8 +263,10 @@ impl Jumper {
             }));
             return Ok(());
         }
-        let pulls = config.ledge.map_or(0.0, |ledge| PULLS * ledge.pull_up_time);
-        let latest = (LATE * aim.seconds + pulls).min(2.0 * LONGEST);
+        let pulls = config
+            .ledge
+            .map_or(0.0, |ledge| PULL_UPS * ledge.pull_up_time);
+        let latest = (LATEST_REST_FACTOR * aim.seconds + pulls).min(2.0 * LONGEST_FLIGHT);
         if seconds > latest || state.mode == ClimberMode::Tumbling {
             self.ended = Some(None);
         }

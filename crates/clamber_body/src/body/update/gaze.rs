@@ -1,0 +1,64 @@
+//! Turns the head and the neck to the point that the climber looks at.
+
+use clamber_animation::Spring;
+use clamber_animation::ik::LookMemory;
+use clamber_surface::rig::Pose;
+use glam::DVec3;
+
+use super::Update;
+use crate::BodyError;
+use crate::body::root::Root;
+
+/// Half time of a change of the gaze's weight, seconds.
+const GAZE_HALF_TIME: f64 = 0.15;
+
+/// Where the head looks.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Gaze {
+    memory: LookMemory,
+    /// Share of the turn, from 0 to 1.
+    weight: Spring<f64>,
+    /// The point that the climber looks at, or looked at last, in world space.
+    at: DVec3,
+}
+
+impl Default for Gaze {
+    fn default() -> Self {
+        Self {
+            memory: LookMemory::default(),
+            weight: Spring::at(0.0),
+            at: DVec3::ZERO,
+        }
+    }
+}
+
+impl Update<'_> {
+    /// Turns the head and the neck to the point that the climber looks at.
+    pub(super) fn look(&self, pose: &mut Pose, root: &Root) -> Result<Gaze, BodyError> {
+        let goal = if self.frame.look_at.is_some() {
+            1.0
+        } else {
+            0.0
+        };
+        let mut gaze = self.memory.map_or_else(Gaze::default, |memory| memory.gaze);
+        if let Some(target) = self.frame.look_at {
+            gaze.at = target;
+        } else {
+            gaze.at = self.carry.point(gaze.at);
+        }
+        if self.memory.is_none() {
+            gaze.weight = Spring::at(goal);
+        } else {
+            gaze.weight.step(goal, GAZE_HALF_TIME, self.dt);
+        }
+        let weight = gaze.weight.value.clamp(0.0, 1.0);
+        if weight > 1e-3 {
+            let target = root.inverse_point(gaze.at) / self.figure.scale();
+            let skeleton = self.figure.skeleton();
+            self.figure
+                .look()
+                .solve(skeleton, pose, target, weight, &mut gaze.memory, self.dt)?;
+        }
+        Ok(gaze)
+    }
+}
