@@ -1,4 +1,4 @@
-//! Writes the seed file for fuzzing imports into a folder: `seeds tests/verify/fuzz/corpus/import`.
+//! Writes the seed file for fuzzing imports into a folder: `seeds fuzz/corpus/import`.
 
 use std::io;
 use std::path::PathBuf;
@@ -6,7 +6,7 @@ use std::path::PathBuf;
 fn main() -> io::Result<()> {
     let Some(folder) = std::env::args_os().nth(1).map(PathBuf::from) else {
         return Err(io::Error::other(
-            "no folder given; usage: seeds tests/verify/fuzz/corpus/import",
+            "no folder given; usage: seeds fuzz/corpus/import",
         ));
     };
     std::fs::create_dir_all(&folder)?;
