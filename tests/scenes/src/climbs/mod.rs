@@ -101,7 +101,7 @@ impl Climbed {
 /// Climbs every model. Calls `watch` after each climb, with the number of climbs done and of all climbs.
 ///
 /// # Errors
-/// [`crate::battle::BattleError::NoModels`]. A model that cannot be climbed is listed among the climbs with its error.
+/// [`crate::battle::BattleError`] if there are no models. A model that cannot be climbed is listed among the climbs with its error.
 pub fn climb_all(
     options: &ClimbsOptions,
     mut watch: impl FnMut(&Climb, usize, usize),

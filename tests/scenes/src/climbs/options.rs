@@ -2,7 +2,8 @@ use std::path::PathBuf;
 
 use clap::Parser;
 
-use crate::battle::{BattleError, RidesOptions};
+use crate::battle::BattleError;
+use crate::test_data;
 
 /// A bot climbs every model of a folder, from the ground to the highest place that the model's graph calls reachable
 /// with the strength that the bot counts on, and a table shows how long it takes.
@@ -55,13 +56,8 @@ impl ClimbsOptions {
     /// The models' files: those of the options, in their order, or all of the default folder, sorted.
     ///
     /// # Errors
-    /// [`BattleError::NoModels`] if the options name no file, and the default folder is not set, cannot be read, or has
-    /// no model.
+    /// As [`test_data::models_or`].
     pub fn files(&self) -> Result<Vec<PathBuf>, BattleError> {
-        let rides = RidesOptions {
-            models: self.models.clone(),
-            ..RidesOptions::default()
-        };
-        rides.files()
+        Ok(test_data::models_or(&self.models)?)
     }
 }

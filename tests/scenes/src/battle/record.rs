@@ -1,34 +1,29 @@
 //! Recording a battle, and replaying a recorded one.
 
-mod scenery;
-
 use std::io::Write;
-use std::path::Path;
 
 use clamber_record::{
     Difference, Ending, FigureView, RecordError, RecordOptions, RecordedTick, Recorder, Recording,
-    RecordingInfo, ReplayError, Replayed, TickView, creature_fingerprint, palette_fingerprint,
+    RecordingInfo, ReplayError, Replayed, SceneryView, TickView, creature_fingerprint,
+    palette_fingerprint,
 };
+use clamber_surface::geometry::Similarity;
+use clamber_world::rapier3d::dynamics::RigidBodyHandle;
 
-use scenery::Scenery;
-
-use super::options::Progress;
-use super::scene::{CREATURE, TERRAIN};
-use super::{Battle, BattleError, BattleOptions, BattleSnapshot, Summary, TICK, fight};
-use crate::hero::{Hero, HeroError};
+use super::rockfall::Triangles;
+use super::{Battle, BattleError, BattleOptions, BattleSnapshot, CREATURE, TERRAIN, TICK, outcrop};
+use crate::hero::Hero;
+use crate::valley;
 
 /// Ticks from one snapshot to the next: one second.
 const SNAPSHOT_EVERY: u64 = 60;
 
+/// Distance between neighbouring corners of the ground, metres.
+const CELL: f64 = 4.0;
+
 impl From<RecordError> for BattleError {
     fn from(error: RecordError) -> Self {
-        Self::Watching(Box::new(error))
-    }
-}
-
-impl From<HeroError> for BattleError {
-    fn from(error: HeroError) -> Self {
-        Self::Watching(Box::new(error))
+        Self::new(error)
     }
 }
 
@@ -36,16 +31,23 @@ impl From<HeroError> for BattleError {
 pub struct BattleRecorder<W: Write> {
     recorder: Recorder<W>,
     hero: Option<Hero>,
-    /// Made at the first tick.
-    scenery: Option<Scenery>,
+    /// Ground, outcrop and rocks; filled at the first tick.
+    scenery: Vec<Scenery>,
+}
+
+/// A mesh, and the rock that moves it.
+struct Scenery {
+    name: String,
+    rock: Option<RigidBodyHandle>,
+    mesh: Triangles,
+    color: [f32; 3],
 }
 
 impl<W: Write + Send + 'static> BattleRecorder<W> {
     /// A recorder for a battle that was made from `options`. It writes to `out`.
     ///
     /// # Errors
-    /// [`BattleError::Settings`] if the path of the creature's file is not UTF-8; [`BattleError::Watching`] with the
-    /// errors of [`Recorder::new`].
+    /// [`BattleError`] with the errors of [`Recorder::new`].
     pub fn new(
         out: W,
         battle: &Battle<'_>,
@@ -58,7 +60,7 @@ impl<W: Write + Send + 'static> BattleRecorder<W> {
             creature_fingerprint: fingerprint(battle),
             tick_seconds: TICK,
             climber: *battle.climber().config(),
-            settings: options.to_settings()?,
+            settings: options.to_settings(),
             version: RecordingInfo::VERSION.to_owned(),
         };
         let mut recorder = Recorder::new(out, &info, &creature.skeleton, how)?;
@@ -67,7 +69,7 @@ impl<W: Write + Send + 'static> BattleRecorder<W> {
         Ok(Self {
             recorder,
             hero: None,
-            scenery: None,
+            scenery: Vec::new(),
         })
     }
 
@@ -82,8 +84,7 @@ impl<W: Write + Send + 'static> BattleRecorder<W> {
     /// every second.
     ///
     /// # Errors
-    /// [`BattleError::Watching`] with the errors of [`Recorder::tick`], [`Recorder::snapshot`] and [`Hero::watch`];
-    /// [`BattleError::Snapshot`].
+    /// [`BattleError`] if the recorder refuses the tick, or the hero cannot be posed.
     pub fn tick(&mut self, battle: &Battle<'_>) -> Result<(), BattleError> {
         self.recorder.tick(&TickView {
             tick: battle.tick(),
@@ -94,8 +95,7 @@ impl<W: Write + Send + 'static> BattleRecorder<W> {
             palette: battle.palette(),
             scene_fingerprint: battle.scene_fingerprint(),
         })?;
-        let scenery = self.scenery.get_or_insert_with(|| Scenery::of(battle));
-        scenery.record(battle, &mut self.recorder)?;
+        self.scenery(battle)?;
         if let Some(life) = battle.life() {
             self.recorder.brain(life)?;
         }
@@ -110,7 +110,37 @@ impl<W: Write + Send + 'static> BattleRecorder<W> {
         }
         if battle.tick().is_multiple_of(SNAPSHOT_EVERY) {
             let snapshot = battle.snapshot();
-            self.recorder.snapshot_with(move || snapshot.to_json())?;
+            self.recorder
+                .snapshot_with(move || serde_json::to_string(&snapshot))?;
+        }
+        Ok(())
+    }
+
+    /// Records all scenery at the first tick, and later the rocks.
+    fn scenery(&mut self, battle: &Battle<'_>) -> Result<(), RecordError> {
+        let is_first = self.scenery.is_empty();
+        if is_first {
+            self.scenery = scenery(battle);
+        } else if !self.recorder.is_due()? {
+            return Ok(());
+        }
+        for Scenery {
+            name,
+            rock,
+            mesh,
+            color,
+        } in &self.scenery
+        {
+            if rock.is_none() && !is_first {
+                continue;
+            }
+            self.recorder.scenery(&SceneryView {
+                name,
+                world_from_own: rock.map_or(Similarity::IDENTITY, |rock| battle.placed(rock)),
+                points: &mesh.0,
+                triangles: &mesh.1,
+                color: *color,
+            })?;
         }
         Ok(())
     }
@@ -118,51 +148,34 @@ impl<W: Write + Send + 'static> BattleRecorder<W> {
     /// Ends the recording and returns its writer.
     ///
     /// # Errors
-    /// [`BattleError::Watching`] with the errors of [`Recorder::finish`].
+    /// [`BattleError`] with the errors of [`Recorder::finish`].
     pub fn finish(self) -> Result<W, BattleError> {
         Ok(self.recorder.finish()?)
     }
 }
 
-/// Runs a battle, calls `watch` for each tick, and records the battle to a file. If the battle fails, the file keeps
-/// what was recorded until then.
-pub(super) fn run(
-    options: &BattleOptions,
-    path: &Path,
-    mut watch: impl FnMut(&Battle<'_>) -> Result<(), BattleError>,
-) -> Result<Summary, BattleError> {
-    let failed = |error: std::io::Error| BattleError::Write {
-        path: path.to_owned(),
-        reason: error.to_string(),
+/// Ground, outcrop and rocks of a battle.
+fn scenery(battle: &Battle<'_>) -> Vec<Scenery> {
+    let still = |name: &str, mesh, color| Scenery {
+        name: name.to_owned(),
+        rock: None,
+        mesh,
+        color,
     };
-    let folder = path
-        .parent()
-        .filter(|folder| !folder.as_os_str().is_empty());
-    folder
-        .map_or(Ok(()), std::fs::create_dir_all)
-        .map_err(failed)?;
-    let file = std::fs::File::create(path).map_err(failed)?;
-    let mut out = Some(std::io::BufWriter::new(file));
-    let mut recorder = None;
-    let progress = Progress::new(options.ticks());
-    let summary = fight(options, &progress, |battle| {
-        watch(battle)?;
-        if let Some(out) = out.take() {
-            let how = RecordOptions::waiting();
-            let plain = BattleRecorder::new(out, battle, options, how)?;
-            recorder = Some(plain.with_hero(Hero::load()?));
-        }
-        recorder
-            .as_mut()
-            .map_or(Ok(()), |recorder| recorder.tick(battle))
-    })?;
-    if let Some(recorder) = recorder {
-        recorder.finish()?;
+    let mut all = vec![still("ground", valley::mesh(CELL), [0.42, 0.47, 0.33])];
+    if battle.arena().is_some() {
+        all.push(still("outcrop", outcrop(), [0.4, 0.38, 0.35]));
     }
-    Ok(summary)
+    for (number, (rock, mesh)) in (0..).zip(battle.rocks().meshes(battle.world())) {
+        all.push(Scenery {
+            rock: Some(rock),
+            ..still(&format!("rock {number}"), mesh, [0.36, 0.34, 0.31])
+        });
+    }
+    all
 }
 
-/// Of the creature, and of its brain.
+/// Fingerprint of the creature, and of its brain.
 fn fingerprint(battle: &Battle<'_>) -> u64 {
     let creature = battle.creature();
     let body = creature_fingerprint(&creature.skeleton, &creature.clips, &creature.collider);
@@ -191,7 +204,7 @@ pub struct Replay {
 /// Runs a recorded battle again with the recorded inputs, and compares every tick.
 ///
 /// It stops at the end of the recording or at the first tick that differs. With a tick `from` it starts at the nearest
-/// snapshot at or before that tick, otherwise at the first tick.
+/// snapshot at or before that tick, otherwise at the first tick. After a gap it goes on from the snapshot there.
 ///
 /// # Errors
 /// [`BattleError`] if the battle cannot be made again, for example because the creature's file is missing or has
@@ -202,7 +215,6 @@ pub fn replay(recording: &Recording, from: Option<u64>) -> Result<Replay, Battle
         .filter(|run| from.is_none_or(|from| *run.end() >= from));
     let last = runs.next().map_or(u64::MAX, |run| *run.end());
     let mut whole = replay_run(recording, from, last)?;
-    // After a gap it goes on from what was saved there.
     for run in runs {
         if whole.difference.is_some() {
             break;
@@ -223,7 +235,7 @@ fn replay_run(recording: &Recording, from: Option<u64>, last: u64) -> Result<Rep
     let rocks = if from.is_some() { 0 } else { options.rocks };
     let mut battle = Battle::new(&creature, &BattleOptions { rocks, ..options })?;
     if fingerprint(&battle) != info.creature_fingerprint {
-        return Err(BattleError::Settings(format!(
+        return Err(BattleError::new(format!(
             "{} is not the creature that was recorded; bring back the files that it and its brain were loaded from",
             creature.name
         )));
@@ -231,7 +243,7 @@ fn replay_run(recording: &Recording, from: Option<u64>, last: u64) -> Result<Rep
     let start = match from {
         Some(from) => {
             let snapshot = recording.snapshot(from)?;
-            let scene = BattleSnapshot::from_json(&snapshot.scene)?;
+            let scene: BattleSnapshot = serde_json::from_str(&snapshot.scene)?;
             battle.restore(&scene, snapshot.tick.state)?;
             snapshot.tick.tick
         }
@@ -255,8 +267,7 @@ fn replay_run(recording: &Recording, from: Option<u64>, last: u64) -> Result<Rep
         Ok(_) => None,
         Err(ReplayError::Differs(difference)) => Some(difference),
         Err(ReplayError::Scene { error, .. }) => return Err(error),
-        Err(ReplayError::Record(error)) => return Err(error.into()),
-        Err(error) => return Err(BattleError::Watching(error.to_string().into())),
+        Err(error) => return Err(BattleError::new(error.to_string())),
     };
     Ok(Replay {
         from: start,

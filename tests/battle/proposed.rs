@@ -1,11 +1,10 @@
 //! A bot fights and kills animals from files that were not made for clamber, with brains that are proposed for them.
 
-#![allow(clippy::unwrap_used, reason = "a test")]
-
 use std::path::PathBuf;
 
 use clamber_colossus::{BrainFile, CreatureParts};
-use clamber_scenes::battle::{BattleOptions, fight_all};
+use clamber_scenes::Creature;
+use clamber_scenes::battle::{Battle, BattleOptions};
 
 /// Number of fights that the bot won against an animal, with the seeds from 1 to `seeds`; `None` without the test data.
 fn won(animal: &str, seeds: u64) -> Option<u64> {
@@ -35,12 +34,29 @@ fn won(animal: &str, seeds: u64) -> Option<u64> {
         seed: 1,
         ..BattleOptions::default()
     };
-    let fights = fight_all(&options, seeds, |_| ()).unwrap();
-    for fight in &fights {
-        println!("{animal:<16} {fight}");
-    }
-    let killed = fights.iter().filter(|fight| fight.tally.killed > 0);
-    Some(killed.count() as u64)
+    let creature = Creature::load(options.creature.as_ref().unwrap()).unwrap();
+    let kills = |seed: u64| {
+        let options = BattleOptions {
+            seed,
+            ..options.clone()
+        };
+        let mut battle = Battle::new(&creature, &options).unwrap();
+        let mut ticks = 0..options.ticks();
+        while battle.counts().killed == 0
+            && let Some(tick) = ticks.next()
+        {
+            battle.step(options.input_at(tick)).unwrap();
+        }
+        println!("{animal:<16} seed {seed}: {:?}", battle.counts());
+        u64::from(battle.counts().killed > 0)
+    };
+    let kills = &kills;
+    std::thread::scope(|scope| {
+        let fights: Vec<_> = (1..=seeds)
+            .map(|seed| scope.spawn(move || kills(seed)))
+            .collect();
+        Some(fights.into_iter().map(|fight| fight.join().unwrap()).sum())
+    })
 }
 
 #[test]

@@ -1,14 +1,14 @@
 //! Each check of a ride fails on its own fault and on no other.
 
-use clamber_climber::{Climber, ClimberState};
-use clamber_surface::rig::Palette;
-use clamber_world::Obstacle;
-use glam::DVec3;
-
-use super::super::bot::Intent;
-use super::super::{Battle, BattleOptions};
-use super::*;
-use crate::beast::beast;
+use clamber::climber::{Climber, ClimberState};
+use clamber::glam::DVec3;
+use clamber::world::Obstacle;
+use clamber_scenes::battle::{
+    Battle, BattleOptions, DRIFT, FALLS, INSIDE, Intent, MAX_DRIFT, MAX_STANDS_OFF, STANDS_OFF,
+    TERRAIN, Watch,
+};
+use clamber_scenes::beast::beast;
+use clamber_scenes::valley;
 
 const HEIGHT: f64 = 20.0;
 
@@ -33,19 +33,7 @@ impl<'a> Scene<'a> {
     fn look(&mut self, state: ClimberState) -> Option<f64> {
         let mut climber: Climber = self.battle.climber().clone();
         climber.restore(state).unwrap();
-        let moment = Moment {
-            performer: self.battle.performer(),
-            height: HEIGHT,
-            tick: self.battle.tick(),
-        };
-        let watched = Watched {
-            climber: &climber,
-            report: self.battle.report(),
-            idle: true,
-            climbs: false,
-        };
-        let palette: &Palette = self.battle.palette();
-        self.watch.tick(&moment, palette, &watched)
+        self.watch.look(self.battle, &climber, true)
     }
 }
 
@@ -87,7 +75,7 @@ fn a_rider_that_stands_where_it_stood_has_no_fault() {
         let watch = &scene.watch;
         assert!(watch.stands_off < 1e-4, "stands off {}", watch.stands_off);
         assert_eq!((watch.pushed_off, watch.falls), (0.0, 0));
-        assert!(watch.faults.first(DRIFT).is_none());
+        assert!(watch.first_fault(DRIFT).is_none());
     });
 }
 
@@ -101,7 +89,7 @@ fn a_contact_off_its_material_point_is_drift() {
             ..state
         });
         assert!(drift.unwrap() > 1.5e-4, "drift {drift:?}");
-        assert!(scene.watch.faults.first(DRIFT).is_some());
+        assert!(scene.watch.first_fault(DRIFT).is_some());
     });
 }
 
@@ -129,7 +117,6 @@ fn a_body_sunk_into_its_point_is_drift() {
     stood(|scene, state| {
         let drift = scene.look(moved(state, normal(&state) * -2e-4));
         assert!(drift.unwrap() > 1.5e-4, "drift {drift:?}");
-        assert!(scene.watch.deepest > 1.5e-4, "{}", scene.watch.deepest);
     });
 }
 
@@ -140,8 +127,8 @@ fn a_body_that_floats_stands_off_and_is_not_pushed() {
         let watch = &scene.watch;
         assert!(watch.stands_off > MAX_STANDS_OFF, "{}", watch.stands_off);
         assert_eq!(watch.pushed_off, 0.0);
-        assert!(watch.faults.first(STANDS_OFF).is_some());
-        assert!(watch.faults.first(DRIFT).is_none());
+        assert!(watch.first_fault(STANDS_OFF).is_some());
+        assert!(watch.first_fault(DRIFT).is_none());
     });
 }
 
@@ -162,7 +149,7 @@ fn a_body_that_slid_along_open_skin_stands_off_and_is_not_pushed() {
 }
 
 #[test]
-fn a_rider_on_the_ground_has_fallen_once_until_it_is_dropped_again() {
+fn a_rider_on_the_ground_has_fallen_once_until_it_rides_again() {
     stood(|scene, state| {
         let mut support = state.support.unwrap();
         support.attachment.obstacle = TERRAIN;
@@ -173,11 +160,11 @@ fn a_rider_on_the_ground_has_fallen_once_until_it_is_dropped_again() {
         scene.look(down);
         scene.look(down);
         assert_eq!(scene.watch.falls, 1);
-        let cause = scene.watch.faults.first(FALLS).unwrap();
+        let cause = scene.watch.first_fault(FALLS).unwrap();
         assert!(cause.contains("left the creature"), "{cause}");
-        scene.watch.dropped();
+        scene.look(state);
         scene.look(down);
-        assert_eq!(scene.watch.falls, 2, "dropped beside it");
+        assert_eq!(scene.watch.falls, 2, "fallen again");
     });
 }
 
@@ -185,10 +172,10 @@ fn a_rider_on_the_ground_has_fallen_once_until_it_is_dropped_again() {
 fn a_rider_below_the_ground_is_a_fault_inside_the_valley_only() {
     stood(|scene, state| {
         scene.look(moved(state, DVec3::Y * -60.0));
-        assert_eq!(scene.watch.fell_through, 1);
-        let cause = scene.watch.faults.first(INSIDE).unwrap();
+        assert_eq!(scene.watch.inside, 1);
+        let cause = scene.watch.first_fault(INSIDE).unwrap();
         assert!(cause.contains("below the ground"), "{cause}");
         scene.look(moved(state, DVec3::new(valley::SIZE, -60.0, 0.0)));
-        assert_eq!(scene.watch.fell_through, 1, "there is no ground outside");
+        assert_eq!(scene.watch.inside, 1, "there is no ground outside");
     });
 }

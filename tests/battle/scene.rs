@@ -1,10 +1,13 @@
 //! Rocks, riders and climbers that get lost are brought back, at rest; brains are read from files.
 
-use clamber_world::rapier3d::prelude::Vector;
-
-use super::super::checks::{FALLS, ROCKS_INSIDE};
-use super::*;
-use crate::beast::beast;
+use clamber::climber::{Climber, ClimberState};
+use clamber::glam::DVec3;
+use clamber::world::rapier3d::prelude::Vector;
+use clamber_scenes::battle::{
+    Battle, BattleOptions, CreatureState, FALLS, Intent, ROCKS_INSIDE, Story, TICK, Watch,
+};
+use clamber_scenes::beast::beast;
+use clamber_scenes::{giant, valley};
 
 fn with_battle<R>(rocks: u32, test: impl FnOnce(&mut Battle<'_>) -> R) -> R {
     let creature = beast(1_000);
@@ -18,13 +21,13 @@ fn with_battle<R>(rocks: u32, test: impl FnOnce(&mut Battle<'_>) -> R) -> R {
 /// Moves the first rock to a place, spinning and fast, and steps once. Returns its speed, its spin and its distance
 /// from the climber.
 fn throw_a_rock(battle: &mut Battle<'_>, to: DVec3) -> [f64; 3] {
-    let rock = battle.rocks.bodies()[0];
-    let body = &mut battle.world.bodies[rock];
+    let rock = battle.rocks().bodies()[0];
+    let body = &mut battle.world_mut().bodies[rock];
     body.set_translation(to.as_vec3(), true);
     body.set_linvel(Vector::new(30.0, -50.0, 0.0), true);
     body.set_angvel(Vector::new(0.0, 200.0, 0.0), true);
     battle.step(Intent::Stand).unwrap();
-    let body = &battle.world.bodies[rock];
+    let body = &battle.world().bodies[rock];
     let place = body.translation().as_dvec3();
     [
         f64::from(body.linvel().length()),
@@ -36,31 +39,32 @@ fn throw_a_rock(battle: &mut Battle<'_>, to: DVec3) -> [f64; 3] {
 #[test]
 fn a_rock_out_of_the_valley_is_counted_apart_and_falls_again_from_rest() {
     with_battle(3, |battle| {
-        let drops = battle.rocks.report().drops;
+        let drops = battle.rocks().drops;
         let out = DVec3::new(valley::SIZE, -20.0, 0.0);
         let [speed, spin, away] = throw_a_rock(battle, out);
-        let report = *battle.rocks.report();
-        assert_eq!((report.left, report.fell_through), (1, 0));
-        assert_eq!(report.drops, drops + 1);
+        let rocks = battle.rocks();
+        assert_eq!((rocks.left, rocks.faults.len()), (1, 0));
+        assert_eq!(rocks.drops, drops + 1);
         assert!(
             speed == 0.0 && spin == 0.0,
             "{speed} m/s, {spin} radians a second"
         );
         assert!(away < 20.0, "{away} m from the rider");
-        assert!(battle.watch.faults.first(ROCKS_INSIDE).is_none());
     });
 }
 
 #[test]
 fn a_rock_under_the_ground_is_a_fault_and_counts_once() {
     with_battle(3, |battle| {
+        let mut watch = Watch::default();
         throw_a_rock(battle, DVec3::new(5.0, -3.0, 5.0));
+        watch.tick(battle);
         for _ in 0..40 {
             battle.step(Intent::Stand).unwrap();
+            watch.tick(battle);
         }
-        let report = *battle.rocks.report();
-        assert_eq!((report.left, report.fell_through), (0, 1));
-        let cause = battle.watch.faults.first(ROCKS_INSIDE).unwrap();
+        assert_eq!((battle.rocks().left, watch.rocks_inside), (0, 1));
+        let cause = watch.first_fault(ROCKS_INSIDE).unwrap();
         assert!(cause.contains("rock 0 below the ground"), "{cause}");
     });
 }
@@ -72,19 +76,29 @@ fn a_rider_out_of_the_valley_is_dropped_again_with_the_velocity_of_the_creature_
         for _ in 0..600 {
             battle.step(Intent::Stand).unwrap();
         }
+        let mut watch = Watch::default();
+        watch.tick(battle);
         let lost = ClimberState {
             position: DVec3::new(valley::SIZE, 80.0, 0.0),
             velocity: DVec3::new(45.0, 0.0, 0.0),
-            ..*rider_above(DVec3::ZERO, 0.0).unwrap().state()
+            support: None,
+            ..*Climber::new(*battle.climber().config(), DVec3::ZERO)
+                .unwrap()
+                .state()
         };
-        battle.performer.put(lost).unwrap();
-        battle.step(Intent::Stand).unwrap();
-        assert_eq!((battle.drops, battle.watch.falls), (2, 1));
-        let state = battle.climber().state();
-        assert_eq!(state.velocity, battle.performer.velocity());
-        let speed = state.velocity.length();
-        assert!((1.0..10.0).contains(&speed), "{speed} m/s");
-        assert!(battle.watch.faults.first(FALLS).is_some());
+        for falls in [1, 2] {
+            battle.restore(&battle.snapshot(), lost).unwrap();
+            let before = battle.surface().world_from_model().translation;
+            battle.step(Intent::Stand).unwrap();
+            watch.tick(battle);
+            assert_eq!((battle.counts().drops, watch.falls), (falls + 1, falls));
+            let state = battle.climber().state();
+            let moved = battle.surface().world_from_model().translation - before;
+            assert_eq!(state.velocity, moved / TICK);
+            let speed = state.velocity.length();
+            assert!((1.0..10.0).contains(&speed), "{speed} m/s");
+            assert!(watch.first_fault(FALLS).is_some());
+        }
     });
 }
 
@@ -99,7 +113,7 @@ fn climb(brain: Option<&str>) -> BattleOptions {
 
 /// Writes a brain file for the giant that has only these states, and begins with `start`.
 fn brain_file(name: &str, states: &str) -> String {
-    let text = std::fs::read_to_string(crate::giant::brain_path()).unwrap();
+    let text = std::fs::read_to_string(giant::brain_path()).unwrap();
     let mut file: serde_json::Value = serde_json::from_str(&text).unwrap();
     file["start"] = "start".into();
     file["states"] = serde_json::from_str(states).unwrap();
@@ -110,7 +124,7 @@ fn brain_file(name: &str, states: &str) -> String {
 
 #[test]
 fn a_climber_that_dies_or_is_lost_begins_again() {
-    let giant = crate::giant::giant().unwrap();
+    let giant = giant::giant().unwrap();
     let mut battle = Battle::new(&giant, &climb(None)).unwrap();
     let start = *battle.climber().state();
     let dead = ClimberState {
@@ -123,14 +137,19 @@ fn a_climber_that_dies_or_is_lost_begins_again() {
     };
     for (deaths, state) in [(1, dead), (2, lost)] {
         for _ in 0..240 {
-            battle.step(Intent::Climb).unwrap();
+            battle.step(Intent::Stand).unwrap();
         }
         assert!(battle.climber().state().position.distance(start.position) > 5.0);
-        battle.performer.put(state).unwrap();
+        let mut snapshot = battle.snapshot();
+        let CreatureState::Fights(arena) = &mut snapshot.creature else {
+            panic!("a ride");
+        };
+        arena.fighters[0].state.climber = state;
+        battle.restore(&snapshot, state).unwrap();
         // It lies for a while first, or falls.
         let begins_again = (0..600).any(|_| {
-            battle.step(Intent::Climb).unwrap();
-            battle.deaths() == deaths
+            battle.step(Intent::Stand).unwrap();
+            battle.counts().deaths == deaths
         });
         assert!(begins_again, "{deaths}");
         assert_eq!(*battle.climber().state(), start);
@@ -139,26 +158,27 @@ fn a_climber_that_dies_or_is_lost_begins_again() {
 
 #[test]
 fn the_brain_of_a_file_decides_what_the_giant_does() {
-    let giant = crate::giant::giant().unwrap();
+    let giant = giant::giant().unwrap();
     let asleep = brain_file("asleep", r#"{ "start": { "act": "sleep" } }"#);
     let options = climb(Some(&asleep));
     let mut battle = Battle::new(&giant, &options).unwrap();
     std::fs::remove_file(asleep).unwrap();
     let mut highest = f64::NEG_INFINITY;
     for _ in 0..60 * 40 {
-        battle.step(Intent::Climb).unwrap();
+        battle.step(Intent::Stand).unwrap();
         let life = battle.life().unwrap();
         assert_eq!(life.kind().brain().path(life.state().current()), "start");
         highest = highest.max(battle.climber().state().position.y);
     }
     // Nothing shakes it off.
     assert!(highest > 15.0, "{highest}");
-    assert_eq!((battle.blows(), battle.deaths()), (0, 0));
+    let counts = battle.counts();
+    assert_eq!((counts.blows, counts.deaths), (0, 0));
 }
 
 #[test]
 fn brains_that_cannot_be_used_say_why() {
-    let giant = crate::giant::giant().unwrap();
+    let giant = giant::giant().unwrap();
     let said = |options: &BattleOptions| Battle::new(&giant, options).err().unwrap().to_string();
     let missing = said(&climb(Some("/nowhere/brain.json")));
     assert!(missing.contains("/nowhere/brain.json"), "{missing}");

@@ -1,0 +1,158 @@
+//! The cameras of a film.
+
+use clamber::geometry::rotation_from_axis_angle;
+use clamber::glam::DVec3;
+use clamber::prelude::*;
+use clamber::render::Camera;
+use clamber_scenes::battle::{Battle, TICK};
+use clamber_scenes::picture::orbit;
+use clamber_scenes::valley;
+
+use crate::options::CameraKind;
+
+/// Rate of the orbiting camera's turn, radians a second.
+const ORBIT: f64 = 0.08;
+
+/// Distances of a close and of a chasing camera from the climber, metres.
+const AWAY: [f64; 2] = [2.4, 7.5];
+
+/// Distance that a chasing camera keeps from the skin, metres: visible fur reaches 0.8 m beyond the skin of a giant of
+/// 40 m.
+const KEPT: f64 = 1.4;
+
+/// Fastest turn of a chasing camera around the climber, radians a second.
+const TURN: f64 = 1.2;
+
+/// Half-life of changes of a chasing camera's position, seconds.
+const HALF: f64 = 0.12;
+
+/// A climber that moves farther than this in a tick was teleported, metres; the camera follows at once.
+const PUT: f64 = 8.0;
+
+/// A camera, and its memory of earlier ticks.
+pub(super) struct Views {
+    kind: CameraKind,
+    /// A copy of the creature's skin: its queries do not change the battle's own measurements.
+    skin: Option<SkinnedSurface>,
+    /// Unit vector from the climber to the eye.
+    away: DVec3,
+    eye: DVec3,
+    climber: DVec3,
+}
+
+impl Views {
+    pub(super) fn new(kind: CameraKind) -> Self {
+        Self {
+            kind,
+            skin: None,
+            away: DVec3::X,
+            eye: DVec3::ZERO,
+            climber: DVec3::INFINITY,
+        }
+    }
+
+    /// The camera after another tick.
+    pub(super) fn follow(&mut self, battle: &Battle<'_>) -> Camera {
+        if self.kind == CameraKind::Orbit {
+            let seconds = battle.tick() as f64 * TICK;
+            return orbit(battle, battle.height(), 0.6 + ORBIT * seconds);
+        }
+        let mut skin = self.skin.take().unwrap_or_else(|| battle.surface().clone());
+        // If the pose is refused, the last one stays.
+        let _ = skin.place(battle.palette(), *battle.surface().world_from_model());
+        let camera = match self.kind {
+            CameraKind::Close => close(battle, &skin),
+            _ => self.chase(battle, &skin),
+        };
+        self.skin = Some(skin);
+        camera
+    }
+
+    /// A camera that follows the climber. It turns at a bounded rate towards the direction with the best view, comes
+    /// nearer where skin is in the way, and keeps a distance from all skin.
+    fn chase(&mut self, battle: &Battle<'_>, skin: &SkinnedSurface) -> Camera {
+        let [_, far] = AWAY;
+        let climber = battle.climber().state().position;
+        let target = climber + DVec3::Y * 0.5;
+        let is_new = !(self.climber.distance(climber) < PUT);
+        self.climber = climber;
+        let (last, ideal) = (self.away, ideal(battle, self.away));
+        let free = |away: DVec3| {
+            let hit = skin.cast_ray(target, away, far + KEPT);
+            hit.map_or(far, |hit| (hit.distance - KEPT).max(0.5 * hit.distance))
+        };
+        let score = |away: &DVec3| free(*away) / far + 0.5 * away.dot(ideal) + 0.2 * away.dot(last);
+        // Eight directions around the climber, at three heights.
+        let around = (0..24u32).map(|index| {
+            let turn = f64::from(index % 8) * core::f64::consts::FRAC_PI_4;
+            let level = rotation_from_axis_angle(DVec3::Y, turn) * ideal.with_y(0.0).normalize();
+            (level + DVec3::Y * (0.5 * f64::from(index / 8))).normalize()
+        });
+        let best = around.max_by(|a, b| score(a).total_cmp(&score(b)));
+        let best = best.unwrap_or(ideal);
+        let most = if is_new { f64::INFINITY } else { TURN * TICK };
+        let share = 1.0 - libm::exp2(-TICK / HALF);
+        self.away = turned(last, best, most);
+        let wanted = keep_out(skin, target + self.away * free(self.away));
+        let eye = if is_new {
+            wanted
+        } else {
+            self.eye.lerp(wanted, share)
+        };
+        self.eye = above_ground(keep_out(skin, eye), 1.0);
+        Camera::new(self.eye, target)
+    }
+}
+
+/// A camera a few steps from the climber: outward from the skin that it holds, and to a side, so that hands and face are
+/// seen. It stays in front of skin that would hide the climber.
+fn close(battle: &Battle<'_>, skin: &SkinnedSurface) -> Camera {
+    let [far, _] = AWAY;
+    let (up, state) = (battle.climber().config().up(), battle.climber().state());
+    let out = match state.support {
+        Some(support) if state.mode.is_holding() => support.normal_in_world(),
+        _ => -state.heading,
+    };
+    let target = state.position + up * 0.45;
+    let side = state.heading.cross(up);
+    let away = (out * 0.75 + side * 0.75 + up * 0.35).normalize_or(up);
+    let hit = skin.cast_ray(target, away, far + 0.2);
+    let free = hit.map_or(far, |hit| (hit.distance - 0.2).max(0.5 * hit.distance));
+    Camera::new(above_ground(target + away * free, 0.3), target)
+}
+
+/// The best direction to the eye if the view is free: outward from the skin that the climber holds, or from the
+/// creature; a little above the climber.
+fn ideal(battle: &Battle<'_>, away: DVec3) -> DVec3 {
+    let state = battle.climber().state();
+    let root = battle.surface().world_from_model().translation;
+    let out = match state.support {
+        Some(support) if state.mode.is_holding() => support.normal_in_world(),
+        _ => (state.position - root).normalize_or_zero() + away * 0.5,
+    };
+    let level = (out + away * 0.01).with_y(0.0).normalize_or(DVec3::X);
+    (level + DVec3::Y * 0.4).normalize()
+}
+
+/// A unit vector turned towards another one by at most an angle.
+fn turned(from: DVec3, to: DVec3, most: f64) -> DVec3 {
+    let across = from.cross(to);
+    let angle = libm::atan2(across.length(), from.dot(to));
+    let axis = across.normalize_or(from.any_orthonormal_vector());
+    (rotation_from_axis_angle(axis, angle.min(most)) * from).normalize_or(from)
+}
+
+/// The place moved away from the skin by [`KEPT`].
+fn keep_out(skin: &SkinnedSurface, place: DVec3) -> DVec3 {
+    let near = skin.in_world().closest_point(place, KEPT);
+    near.map_or(place, |near| {
+        let way = (place - near.point).normalize_or(near.normal);
+        let is_inside = way.dot(near.normal) < 0.0;
+        near.point + if is_inside { near.normal } else { way } * KEPT
+    })
+}
+
+/// The eye, at least so many metres above the ground.
+fn above_ground(eye: DVec3, least: f64) -> DVec3 {
+    eye.with_y(eye.y.max(valley::height(eye.x, eye.z) + least))
+}
