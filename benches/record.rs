@@ -166,7 +166,11 @@ fn writer_us(
 
 /// Mean time of a tick, microseconds: pose, climber and rocks.
 fn tick_us(battle: &Battle<'_>) -> f64 {
-    let times: Vec<f64> = battle.times().iter().map(|[own, rocks]| own + rocks).collect();
+    let times: Vec<f64> = battle
+        .times()
+        .iter()
+        .map(|[own, rocks]| own + rocks)
+        .collect();
     mean(&times)
 }
 

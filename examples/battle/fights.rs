@@ -1,9 +1,7 @@
 //! Many fights, one for each seed, on all cores.
 
-use std::sync::atomic::{AtomicU64, Ordering};
-
 use clamber_scenes::Creature;
-use clamber_scenes::battle::{Battle, BattleError, BattleOptions, TICK};
+use clamber_scenes::battle::{Battle, BattleError, BattleOptions, Counts, TICK};
 
 use crate::Failure;
 
@@ -12,66 +10,52 @@ const HEADING: &str = "  seed  at top  killed  plate  weak damage blows  deaths 
 
 /// How a fight went.
 struct Fight {
-    /// Its line in the table.
-    line: String,
-    /// The climber came to the highest weak point.
-    arrived: bool,
+    /// When the climber first came to the highest weak point, seconds.
+    arrived: Option<f64>,
     /// When the creature was killed, seconds.
     killed: Option<f64>,
+    counts: Counts,
+    hash: u64,
 }
 
 /// Fights battles of several seeds, the one of the options and the next ones, and prints the result of each.
 pub(crate) fn fight_all(options: &BattleOptions, count: u64) -> Result<bool, Failure> {
     let creature = options.load_creature()?;
-    let bar = indicatif::ProgressBar::new(count);
-    let next = AtomicU64::new(0);
-    let work = || {
-        let mut done = Vec::new();
-        loop {
-            let index = next.fetch_add(1, Ordering::Relaxed);
-            if index >= count {
-                return done;
-            }
-            let seed = options.seed.wrapping_add(index);
-            let fight = fight(
-                &creature,
-                &BattleOptions {
-                    seed,
-                    ..options.clone()
-                },
-            );
-            done.push((index, fight));
-            bar.inc(1);
-        }
-    };
+    let seeds: Vec<u64> = (0..count)
+        .map(|index| options.seed.wrapping_add(index))
+        .collect();
     let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
-    let mut fights = std::thread::scope(|scope| {
-        let threads: Vec<_> = (0..cores).map(|_| scope.spawn(work)).collect();
-        let joined = threads.into_iter().map(|thread| thread.join());
-        let done = joined.map(|done| done.unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
-        done.flatten().collect::<Vec<_>>()
-    });
-    bar.finish_and_clear();
-    fights.sort_by_key(|(index, _)| *index);
-    let fights: Vec<Fight> = fights
-        .into_iter()
-        .map(|(_, fight)| fight)
-        .collect::<Result<_, _>>()?;
+    let (mut arrived, mut killed) = (0, Vec::new());
     println!("{HEADING}");
-    for fight in &fights {
-        println!("{}", fight.line);
+    for seeds in seeds.chunks(cores) {
+        let fights: Vec<_> = std::thread::scope(|scope| {
+            let start = |seed: &u64| {
+                let options = BattleOptions {
+                    seed: *seed,
+                    ..options.clone()
+                };
+                let creature = &creature;
+                scope.spawn(move || fight(creature, &options))
+            };
+            let threads: Vec<_> = seeds.iter().map(start).collect();
+            threads.into_iter().map(|thread| thread.join()).collect()
+        });
+        for (seed, fight) in seeds.iter().zip(fights) {
+            let fight = fight.unwrap_or_else(|panic| std::panic::resume_unwind(panic))?;
+            print(*seed, &fight);
+            arrived += u32::from(fight.arrived.is_some());
+            killed.extend(fight.killed);
+        }
     }
-    let killed: Vec<f64> = fights.iter().filter_map(|fight| fight.killed).collect();
     println!(
-        "of {} fights: {} came to the highest weak point, {} killed the creature, after {:.1} s on average",
-        fights.len(),
-        fights.iter().filter(|fight| fight.arrived).count(),
+        "of {count} fights: {arrived} came to the highest weak point, {} killed the creature, after {:.1} s on average",
         killed.len(),
         killed.iter().sum::<f64>() / killed.len().max(1) as f64,
     );
     Ok(true)
 }
 
+/// Fights until the creature is dead, or the time is over.
 fn fight(creature: &Creature, options: &BattleOptions) -> Result<Fight, BattleError> {
     let mut battle = Battle::new(creature, options)?;
     let mut ticks = 0..options.ticks();
@@ -81,26 +65,27 @@ fn fight(creature: &Creature, options: &BattleOptions) -> Result<Fight, BattleEr
         battle.step(options.input_at(tick))?;
     }
     let counts = *battle.counts();
-    let time = |seconds: Option<f64>| {
-        seconds.map_or("     -".to_owned(), |seconds| format!("{seconds:6.1}"))
-    };
-    let arrived = battle.bot().and_then(|(_, _, arrived)| arrived);
-    let killed = (counts.killed > 0).then_some(counts.killed as f64 * TICK);
-    let line = format!(
-        "{:6}  {}  {}  {:5}  {:3}  {:5.1}  {:5}  {:6}  {:016x}",
-        options.seed,
-        time(arrived),
-        time(killed),
-        counts.plates,
-        counts.weak_points,
-        counts.damage,
-        counts.blows,
-        counts.deaths,
-        battle.hash()
-    );
     Ok(Fight {
-        line,
-        arrived: arrived.is_some(),
-        killed,
+        arrived: battle.bot().and_then(|(_, _, arrived)| arrived),
+        killed: (counts.killed > 0).then_some(counts.killed as f64 * TICK),
+        counts,
+        hash: battle.hash(),
     })
+}
+
+/// Prints a line of the table.
+fn print(seed: u64, fight: &Fight) {
+    let time = |seconds: Option<f64>| seconds.map_or("-".to_owned(), |time| format!("{time:.1}"));
+    let (arrived, killed, hash) = (time(fight.arrived), time(fight.killed), fight.hash);
+    let Counts {
+        plates,
+        weak_points,
+        damage,
+        blows,
+        deaths,
+        ..
+    } = fight.counts;
+    println!(
+        "{seed:6}  {arrived:>6}  {killed:>6}  {plates:5}  {weak_points:3}  {damage:5.1}  {blows:5}  {deaths:6}  {hash:016x}"
+    );
 }

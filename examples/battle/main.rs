@@ -88,7 +88,7 @@ fn run(options: &Options) -> Result<bool, Failure> {
         camera.finish()?;
     }
     let checks = watch.checks(&battle, settings);
-    report::write(&battle, &watch, &checks, &options.out)?;
+    report::write(&battle, &checks, &options.out)?;
     println!(
         "{}  written to {}",
         report::table(&battle, &watch, &checks),

@@ -14,107 +14,82 @@ pub(crate) fn table(battle: &Battle<'_>, watch: &Watch, checks: &[Check]) -> Str
         let mut times: Vec<f64> = battle.times().iter().map(|times| times[part]).collect();
         quantile(&mut times, share)
     };
-    let after = |seconds: Option<f64>| {
-        seconds.map_or("never".into(), |seconds| format!("after {seconds:.1} s"))
-    };
     let ticks = counts.tick as f64;
     let modes = ClimberMode::ALL.iter().zip(watch.modes);
-    let modes = modes.filter(|(_, ticks)| *ticks > 0);
     let modes: Vec<String> = modes
         .map(|(mode, ticks)| format!("{mode:?} {ticks}"))
         .collect();
-    let mut rows = vec![
-        ("ticks", format!("{ticks} ({:.1} s)", ticks * TICK)),
-        (
-            "riding",
-            format!("{:.1} % of them", watch.riding_share() * 100.0),
-        ),
-        (
-            "drops, landings",
-            format!("{}, {}", counts.drops, counts.landings),
-        ),
-        ("ticks by mode", modes.join(", ")),
-    ];
-    if let Some((_, _, arrived)) = battle.bot() {
-        let killed = (counts.killed > 0).then_some(counts.killed as f64 * TICK);
-        let (stabs, damage) = (counts.stabs, counts.damage);
-        rows.extend([
-            (
-                "blows, deaths",
-                format!("{}, {}", counts.blows, counts.deaths),
-            ),
-            (
-                "arrows, hits",
-                format!("{}, {}", counts.arrows, counts.arrow_hits),
-            ),
-            (
-                "stabs, broken off",
-                format!("{stabs}, {}; damage {damage:.2}", counts.broken_off),
-            ),
-            (
-                "weak points, plates",
-                format!("{}, {}", counts.weak_points, counts.plates),
-            ),
-            ("killed the creature", after(killed)),
-            ("at the top", after(arrived)),
-        ]);
-    }
-    let near = rocks.near as f64 / ticks.max(1.0);
-    let (count, drops, left) = (rocks.bodies().len(), rocks.drops, rocks.left);
-    let put_back = rocks.put_back;
-    rows.extend([
-        (
-            "vertices skinned per tick",
-            format!("{:.1} %", watch.skinned_share() * 100.0),
-        ),
-        (
-            "tick, median and p99",
-            format!("{:.0} us, {:.0} us", time_us(0, 0.5), time_us(0, 0.99)),
-        ),
-        (
-            "rocks, drops, near the skin",
-            format!("{count}, {drops}, {near:.1}; {left} left the valley"),
-        ),
-        (
-            "rocks with physics, median",
-            format!("{:.0} us, {put_back} put back", time_us(1, 0.5)),
-        ),
-        ("hash", format!("{:016x}", battle.hash())),
-    ]);
-    let head = format!(
-        "{}: {:.0} m, {} joints, {} vertices, {} triangles\n",
+    let mut table = format!(
+        "{}: {:.0} m, {} joints, {} vertices, {} triangles
+  ticks                       {ticks} ({:.1} s), {:.1} % riding
+  ticks by mode               {}
+  drops, landings             {}, {}\n",
         battle.creature().name,
         battle.height(),
         mesh.joint_count(),
         mesh.positions().len(),
-        mesh.triangles().len()
+        mesh.triangles().len(),
+        ticks * TICK,
+        watch.riding_share() * 100.0,
+        modes.join(", "),
+        counts.drops,
+        counts.landings,
     );
-    let rows = rows
+    if let Some((_, _, arrived)) = battle.bot() {
+        let after = |seconds: Option<f64>| {
+            seconds.map_or("never".into(), |seconds| format!("after {seconds:.1} s"))
+        };
+        table += &format!(
+            "  blows, deaths               {}, {}
+  arrows, hits                {}, {}
+  stabs, broken off           {}, {}; damage {:.2}
+  weak points, plates         {}, {}
+  killed the creature         {}
+  at the top                  {}\n",
+            counts.blows,
+            counts.deaths,
+            counts.arrows,
+            counts.arrow_hits,
+            counts.stabs,
+            counts.broken_off,
+            counts.damage,
+            counts.weak_points,
+            counts.plates,
+            after((counts.killed > 0).then_some(counts.killed as f64 * TICK)),
+            after(arrived),
+        );
+    }
+    table += &format!(
+        "  vertices skinned per tick   {:.1} %
+  tick, median and p99        {:.0} us, {:.0} us
+  rocks, drops, near the skin {}, {}, {:.1}; {} left the valley
+  rocks with physics, median  {:.0} us, {} put back
+  hash                        {:016x}\n",
+        watch.skinned_share() * 100.0,
+        time_us(0, 0.5),
+        time_us(0, 0.99),
+        rocks.bodies().len(),
+        rocks.drops,
+        rocks.near as f64 / ticks,
+        rocks.left,
+        time_us(1, 0.5),
+        rocks.put_back,
+        battle.hash(),
+    );
+    checks
         .iter()
-        .map(|(name, value)| format!("  {name:<28}{value}\n"));
-    let checks = checks.iter().map(|check| format!("{check}\n"));
-    std::iter::once(head).chain(rows).chain(checks).collect()
+        .fold(table, |table, check| format!("{table}{check}\n"))
 }
 
 /// Writes `summary.json` into a folder.
-pub(crate) fn write(
-    battle: &Battle<'_>,
-    watch: &Watch,
-    checks: &[Check],
-    folder: &Path,
-) -> Result<(), Failure> {
+pub(crate) fn write(battle: &Battle<'_>, checks: &[Check], folder: &Path) -> Result<(), Failure> {
     let summary = json!({
         "creature": battle.creature().name,
-        "height_m": battle.height(),
-        "seconds": battle.tick() as f64 * TICK,
         "hash": format!("{:016x}", battle.hash()),
         "counts": battle.counts(),
-        "riding_share": watch.riding_share(),
-        "vertices_skinned_share": watch.skinned_share(),
         "checks": checks,
     });
     let path = folder.join("summary.json");
     let failed = |error| format!("cannot write {}: {error}", path.display());
-    std::fs::write(&path, format!("{summary:#}\n")).map_err(failed)?;
-    Ok(())
+    Ok(std::fs::write(&path, format!("{summary:#}\n")).map_err(failed)?)
 }

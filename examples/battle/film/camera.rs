@@ -13,8 +13,11 @@ use crate::options::CameraKind;
 /// Rate of the orbiting camera's turn, radians a second.
 const ORBIT: f64 = 0.08;
 
-/// Distances of a close and of a chasing camera from the climber, metres.
-const AWAY: [f64; 2] = [2.4, 7.5];
+/// Distance of a close camera from the climber, metres.
+const CLOSE: f64 = 2.4;
+
+/// Distance of a chasing camera from the climber, metres.
+const FAR: f64 = 7.5;
 
 /// Distance that a chasing camera keeps from the skin, metres: visible fur reaches 0.8 m beyond the skin of a giant of
 /// 40 m.
@@ -71,17 +74,16 @@ impl Views {
     /// A camera that follows the climber. It turns at a bounded rate towards the direction with the best view, comes
     /// nearer where skin is in the way, and keeps a distance from all skin.
     fn chase(&mut self, battle: &Battle<'_>, skin: &SkinnedSurface) -> Camera {
-        let [_, far] = AWAY;
         let climber = battle.climber().state().position;
         let target = climber + DVec3::Y * 0.5;
         let is_new = !(self.climber.distance(climber) < PUT);
         self.climber = climber;
         let (last, ideal) = (self.away, ideal(battle, self.away));
         let free = |away: DVec3| {
-            let hit = skin.cast_ray(target, away, far + KEPT);
-            hit.map_or(far, |hit| (hit.distance - KEPT).max(0.5 * hit.distance))
+            let hit = skin.cast_ray(target, away, FAR + KEPT);
+            hit.map_or(FAR, |hit| (hit.distance - KEPT).max(0.5 * hit.distance))
         };
-        let score = |away: &DVec3| free(*away) / far + 0.5 * away.dot(ideal) + 0.2 * away.dot(last);
+        let score = |away: &DVec3| free(*away) / FAR + 0.5 * away.dot(ideal) + 0.2 * away.dot(last);
         // Eight directions around the climber, at three heights.
         let around = (0..24u32).map(|index| {
             let turn = f64::from(index % 8) * core::f64::consts::FRAC_PI_4;
@@ -107,7 +109,6 @@ impl Views {
 /// A camera a few steps from the climber: outward from the skin that it holds, and to a side, so that hands and face are
 /// seen. It stays in front of skin that would hide the climber.
 fn close(battle: &Battle<'_>, skin: &SkinnedSurface) -> Camera {
-    let [far, _] = AWAY;
     let (up, state) = (battle.climber().config().up(), battle.climber().state());
     let out = match state.support {
         Some(support) if state.mode.is_holding() => support.normal_in_world(),
@@ -116,8 +117,8 @@ fn close(battle: &Battle<'_>, skin: &SkinnedSurface) -> Camera {
     let target = state.position + up * 0.45;
     let side = state.heading.cross(up);
     let away = (out * 0.75 + side * 0.75 + up * 0.35).normalize_or(up);
-    let hit = skin.cast_ray(target, away, far + 0.2);
-    let free = hit.map_or(far, |hit| (hit.distance - 0.2).max(0.5 * hit.distance));
+    let hit = skin.cast_ray(target, away, CLOSE + 0.2);
+    let free = hit.map_or(CLOSE, |hit| (hit.distance - 0.2).max(0.5 * hit.distance));
     Camera::new(above_ground(target + away * free, 0.3), target)
 }
 

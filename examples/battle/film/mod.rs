@@ -12,9 +12,11 @@ use clamber_scenes::giant;
 use clamber_scenes::picture::{Stage, add_visual, light};
 
 use crate::Failure;
-use crate::options::FilmOptions;
+use crate::options::{FilmOptions, OverlayKind};
 use camera::Views;
-use overlays::Overlays;
+
+/// Number of ticks of the climber's path that are drawn.
+const WAY: usize = 90;
 
 /// Length of a drawn arrow, metres.
 const ARROW: f64 = 0.8;
@@ -24,7 +26,9 @@ pub(crate) struct Film {
     renderer: Renderer,
     stage: Stage,
     views: Views,
-    overlays: Overlays,
+    overlays: Vec<OverlayKind>,
+    /// Path of the climber's centre in the last ticks.
+    way: Vec<DVec3>,
     frames: Option<PathBuf>,
     gif: Option<Gif>,
     /// Pictures a second.
@@ -55,7 +59,8 @@ impl Film {
             renderer,
             stage,
             views: Views::new(film.camera),
-            overlays: Overlays::new(&film.overlay, battle.height()),
+            overlays: film.overlay.clone(),
+            way: Vec::new(),
             frames: film.frames.clone(),
             gif: gif.transpose()?,
             rate: film.rate,
@@ -68,7 +73,8 @@ impl Film {
 impl crate::Camera for Film {
     /// Takes a picture if it is time for one.
     fn watch(&mut self, battle: &Battle<'_>) -> Result<(), Failure> {
-        self.overlays.watch(battle);
+        self.way.push(battle.climber().state().position);
+        self.way.drain(..self.way.len().saturating_sub(WAY));
         self.stage.watch(battle, TICK)?;
         let camera = self.views.follow(battle);
         let Some(ticks) = battle.tick().checked_sub(self.from) else {
@@ -82,7 +88,7 @@ impl crate::Camera for Film {
             self.stage.add_rocks(&mut self.renderer, battle)?;
         }
         let drawn = self.stage.drawn(battle, battle.palette());
-        let mut overlay = self.overlays.draw(battle, camera.eye);
+        let mut overlay = overlays::draw(&self.overlays, battle, camera.eye, &self.way);
         arrows(&mut overlay, battle);
         let light = light(battle, battle.height());
         let mut image = self.renderer.draw(&Frame {
@@ -93,10 +99,10 @@ impl crate::Camera for Film {
         })?;
         if let Some(gif) = &mut self.gif {
             let mut half = image.halved();
-            self.overlays.write(battle, &mut half);
+            overlays::write(&self.overlays, battle, &mut half);
             gif.push(&half)?;
         }
-        self.overlays.write(battle, &mut image);
+        overlays::write(&self.overlays, battle, &mut image);
         if let Some(folder) = &self.frames {
             image.write_png(&folder.join(format!("{:05}.png", self.taken)))?;
         }
