@@ -5,12 +5,9 @@ use clap::{ArgGroup, CommandFactory, Parser, error::ErrorKind};
 
 /// A climber fights a giant that hunts it, or rides a creature that walks and shakes, while rocks fall.
 ///
-/// The climber comes over an outcrop, shoots two arrows, gets out of the way of the giant's blows or is knocked down by
-/// them, grips a leg, climbs to the giant's weak points, breaks the plate over one of them, and stabs each until the
-/// giant is dead. Or it is dropped on the creature's back, where it stands, walks and jumps, and holds on where the
-/// skin is too steep to stand on. Checks in every tick that the climber is carried exactly and stays above the ground,
-/// and several times a second that neither the climber nor a rock is inside the creature. Prints a table with the first
-/// fault of each failed check, and exits with 1 if a check failed.
+/// Checks in every tick that the climber is carried exactly and stays above the ground, and several times a second that
+/// neither the climber nor a rock is inside the creature. Prints a table with the first fault of each failed check, and
+/// exits with 1 if a check failed.
 #[derive(Debug, Parser)]
 #[command(name = "battle", version)]
 pub(crate) struct Options {

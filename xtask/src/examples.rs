@@ -48,8 +48,6 @@ const ARGUMENTS: [(&str, &[&str]); 9] = [
             "assets/colossus.glb",
             "--seconds",
             "10",
-            "--out",
-            "target/rides-brief",
         ],
     ),
     ("seeds", &["target/fuzz-seeds"]),

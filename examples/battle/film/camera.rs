@@ -23,11 +23,8 @@ const FAR: f64 = 7.5;
 /// 40 m.
 const KEPT: f64 = 1.4;
 
-/// Fastest turn of a chasing camera around the climber, radians a second.
-const TURN: f64 = 1.2;
-
-/// Half-life of changes of a chasing camera's position, seconds.
-const HALF: f64 = 0.12;
+/// Half-lives of changes of a chasing camera's direction from the climber, and of its position, seconds.
+const HALF_LIVES: [f64; 2] = [0.6, 0.12];
 
 /// A climber that moves farther than this in a tick was teleported, metres; the camera follows at once.
 const PUT: f64 = 8.0;
@@ -56,52 +53,54 @@ impl Views {
 
     /// The camera after another tick.
     pub(super) fn follow(&mut self, battle: &Battle<'_>) -> Camera {
-        if self.kind == CameraKind::Orbit {
-            let seconds = battle.tick() as f64 * TICK;
-            return orbit(battle, battle.height(), 0.6 + ORBIT * seconds);
-        }
         let mut skin = self.skin.take().unwrap_or_else(|| battle.surface().clone());
         // If the pose is refused, the last one stays.
         let _ = skin.place(battle.palette(), *battle.surface().world_from_model());
         let camera = match self.kind {
+            CameraKind::Orbit => {
+                let heading = 0.6 + ORBIT * TICK * battle.tick() as f64;
+                orbit(battle, battle.height(), heading)
+            }
             CameraKind::Close => close(battle, &skin),
-            _ => self.chase(battle, &skin),
+            CameraKind::Chase => self.chase(battle, &skin),
         };
         self.skin = Some(skin);
         camera
     }
 
-    /// A camera that follows the climber. It turns at a bounded rate towards the direction with the best view, comes
-    /// nearer where skin is in the way, and keeps a distance from all skin.
+    /// A camera that follows the climber. It turns towards the direction with the best view, comes nearer where skin is
+    /// in the way, and keeps a distance from all skin.
     fn chase(&mut self, battle: &Battle<'_>, skin: &SkinnedSurface) -> Camera {
         let climber = battle.climber().state().position;
         let target = climber + DVec3::Y * 0.5;
         let is_new = !(self.climber.distance(climber) < PUT);
         self.climber = climber;
-        let (last, ideal) = (self.away, ideal(battle, self.away));
+        let ideal = outward(battle, self.away);
         let free = |away: DVec3| {
             let hit = skin.cast_ray(target, away, FAR + KEPT);
             hit.map_or(FAR, |hit| (hit.distance - KEPT).max(0.5 * hit.distance))
         };
+        let last = self.away;
         let score = |away: &DVec3| free(*away) / FAR + 0.5 * away.dot(ideal) + 0.2 * away.dot(last);
         // Eight directions around the climber, at three heights.
         let around = (0..24u32).map(|index| {
             let turn = f64::from(index % 8) * core::f64::consts::FRAC_PI_4;
-            let level = rotation_from_axis_angle(DVec3::Y, turn) * ideal.with_y(0.0).normalize();
+            let level = rotation_from_axis_angle(DVec3::Y, turn) * ideal;
             (level + DVec3::Y * (0.5 * f64::from(index / 8))).normalize()
         });
         let best = around.max_by(|a, b| score(a).total_cmp(&score(b)));
-        let best = best.unwrap_or(ideal);
-        let most = if is_new { f64::INFINITY } else { TURN * TICK };
-        let share = 1.0 - libm::exp2(-TICK / HALF);
-        self.away = turned(last, best, most);
-        let wanted = keep_out(skin, target + self.away * free(self.away));
-        let eye = if is_new {
-            wanted
-        } else {
-            self.eye.lerp(wanted, share)
+        let part = |half: f64| {
+            if is_new {
+                1.0
+            } else {
+                1.0 - libm::exp2(-TICK / half)
+            }
         };
-        self.eye = above_ground(keep_out(skin, eye), 1.0);
+        let [turns, moves] = HALF_LIVES.map(part);
+        self.away = last.lerp(best.unwrap_or(ideal), turns).normalize_or(ideal);
+        let wanted = keep_out(skin, target + self.away * free(self.away));
+        let eye = keep_out(skin, self.eye.lerp(wanted, moves));
+        self.eye = above_ground(eye, 1.0);
         Camera::new(self.eye, target)
     }
 }
@@ -122,25 +121,15 @@ fn close(battle: &Battle<'_>, skin: &SkinnedSurface) -> Camera {
     Camera::new(above_ground(target + away * free, 0.3), target)
 }
 
-/// The best direction to the eye if the view is free: outward from the skin that the climber holds, or from the
-/// creature; a little above the climber.
-fn ideal(battle: &Battle<'_>, away: DVec3) -> DVec3 {
+/// The level direction outward from the skin that the climber holds, or from the creature.
+fn outward(battle: &Battle<'_>, away: DVec3) -> DVec3 {
     let state = battle.climber().state();
     let root = battle.surface().world_from_model().translation;
     let out = match state.support {
         Some(support) if state.mode.is_holding() => support.normal_in_world(),
         _ => (state.position - root).normalize_or_zero() + away * 0.5,
     };
-    let level = (out + away * 0.01).with_y(0.0).normalize_or(DVec3::X);
-    (level + DVec3::Y * 0.4).normalize()
-}
-
-/// A unit vector turned towards another one by at most an angle.
-fn turned(from: DVec3, to: DVec3, most: f64) -> DVec3 {
-    let across = from.cross(to);
-    let angle = libm::atan2(across.length(), from.dot(to));
-    let axis = across.normalize_or(from.any_orthonormal_vector());
-    (rotation_from_axis_angle(axis, angle.min(most)) * from).normalize_or(from)
+    (out + away * 0.01).with_y(0.0).normalize_or(DVec3::X)
 }
 
 /// The place moved away from the skin by [`KEPT`].
@@ -148,8 +137,9 @@ fn keep_out(skin: &SkinnedSurface, place: DVec3) -> DVec3 {
     let near = skin.in_world().closest_point(place, KEPT);
     near.map_or(place, |near| {
         let way = (place - near.point).normalize_or(near.normal);
-        let is_inside = way.dot(near.normal) < 0.0;
-        near.point + if is_inside { near.normal } else { way } * KEPT
+        let is_outside = way.dot(near.normal) >= 0.0;
+        let out = if is_outside { way } else { near.normal };
+        near.point + out * KEPT
     })
 }
 

@@ -117,13 +117,10 @@ fn arrows(over: &mut Overlay, battle: &Battle<'_>) {
         return;
     };
     battle.touched(|obstacles| {
-        for place in arena
-            .projectiles()
-            .iter()
-            .filter_map(|one| arena.place(one, obstacles))
-        {
-            let back: DVec3 = place.tip - place.direction * ARROW;
-            over.line(back, place.tip, 3.0, [0.85, 0.8, 0.72, 1.0]);
+        let all = arena.projectiles().iter();
+        for place in all.filter_map(|one| arena.place(one, obstacles)) {
+            let nock = place.tip - place.direction * ARROW;
+            over.line(nock, place.tip, 3.0, [0.85, 0.8, 0.72, 1.0]);
         }
     });
 }

@@ -2,11 +2,10 @@
 
 use std::time::Instant;
 
+use clamber_surface::surface::SkinnedSurface;
 use clamber_world::rapier3d::prelude::*;
 use clamber_world::{Debris, DebrisConfig};
 use glam::{DVec3, Vec3};
-
-use clamber_surface::surface::SkinnedSurface;
 
 use super::{BattleError, CREATURE, TICK};
 use crate::rocks::scatter;
