@@ -8,16 +8,6 @@ use crate::Failure;
 /// The heading of the table of fights.
 const HEADING: &str = "  seed  at top  killed  plate  weak damage blows  deaths  hash";
 
-/// How a fight went.
-struct Fight {
-    /// When the climber first came to the highest weak point, seconds.
-    arrived: Option<f64>,
-    /// When the creature was killed, seconds.
-    killed: Option<f64>,
-    counts: Counts,
-    hash: u64,
-}
-
 /// Fights battles of several seeds, the one of the options and the next ones, and prints the result of each.
 pub(crate) fn fight_all(options: &BattleOptions, count: u64) -> Result<bool, Failure> {
     let creature = options.load_creature()?;
@@ -42,9 +32,25 @@ pub(crate) fn fight_all(options: &BattleOptions, count: u64) -> Result<bool, Fai
         });
         for (seed, fight) in seeds.iter().zip(fights) {
             let fight = fight.unwrap_or_else(|panic| std::panic::resume_unwind(panic))?;
-            print(*seed, &fight);
-            arrived += u32::from(fight.arrived.is_some());
-            killed.extend(fight.killed);
+            let (counts, top, hash) = fight;
+            let Counts {
+                plates,
+                weak_points,
+                damage,
+                blows,
+                deaths,
+                ..
+            } = counts;
+            let time =
+                |seconds: Option<f64>| seconds.map_or("-".to_owned(), |time| format!("{time:.1}"));
+            let end = (counts.killed > 0).then_some(counts.killed as f64 * TICK);
+            println!(
+                "{seed:6}  {:>6}  {:>6}  {plates:5}  {weak_points:3}  {damage:5.1}  {blows:5}  {deaths:6}  {hash:016x}",
+                time(top),
+                time(end),
+            );
+            arrived += u32::from(top.is_some());
+            killed.extend(end);
         }
     }
     println!(
@@ -55,8 +61,12 @@ pub(crate) fn fight_all(options: &BattleOptions, count: u64) -> Result<bool, Fai
     Ok(true)
 }
 
-/// Fights until the creature is dead, or the time is over.
-fn fight(creature: &Creature, options: &BattleOptions) -> Result<Fight, BattleError> {
+/// Fights until the creature is dead, or the time is over. Returns the counts, the time at which the climber first came
+/// to the highest weak point, seconds, and the hash.
+fn fight(
+    creature: &Creature,
+    options: &BattleOptions,
+) -> Result<(Counts, Option<f64>, u64), BattleError> {
     let mut battle = Battle::new(creature, options)?;
     let mut ticks = 0..options.ticks();
     while battle.counts().killed == 0
@@ -64,28 +74,6 @@ fn fight(creature: &Creature, options: &BattleOptions) -> Result<Fight, BattleEr
     {
         battle.step(options.input_at(tick))?;
     }
-    let counts = *battle.counts();
-    Ok(Fight {
-        arrived: battle.bot().and_then(|(_, _, arrived)| arrived),
-        killed: (counts.killed > 0).then_some(counts.killed as f64 * TICK),
-        counts,
-        hash: battle.hash(),
-    })
-}
-
-/// Prints a line of the table.
-fn print(seed: u64, fight: &Fight) {
-    let time = |seconds: Option<f64>| seconds.map_or("-".to_owned(), |time| format!("{time:.1}"));
-    let (arrived, killed, hash) = (time(fight.arrived), time(fight.killed), fight.hash);
-    let Counts {
-        plates,
-        weak_points,
-        damage,
-        blows,
-        deaths,
-        ..
-    } = fight.counts;
-    println!(
-        "{seed:6}  {arrived:>6}  {killed:>6}  {plates:5}  {weak_points:3}  {damage:5.1}  {blows:5}  {deaths:6}  {hash:016x}"
-    );
+    let top = battle.bot().and_then(|(_, _, arrived)| arrived);
+    Ok((*battle.counts(), top, battle.hash()))
 }

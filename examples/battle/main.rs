@@ -99,12 +99,8 @@ fn run(options: &Options) -> Result<bool, Failure> {
 
 fn create(path: &Path) -> Result<BufWriter<File>, Failure> {
     let failed = |error| format!("cannot write {}: {error}", path.display());
-    let folder = path
-        .parent()
-        .filter(|folder| !folder.as_os_str().is_empty());
-    folder
-        .map_or(Ok(()), std::fs::create_dir_all)
-        .map_err(failed)?;
+    let folder = path.parent().unwrap_or(path);
+    std::fs::create_dir_all(folder).map_err(failed)?;
     Ok(BufWriter::new(File::create(path).map_err(failed)?))
 }
 

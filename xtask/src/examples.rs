@@ -42,14 +42,7 @@ const ARGUMENTS: [(&str, &[&str]); 9] = [
     ("life", &["--minutes", "10"]),
     // `duel` records this file.
     ("replay", &[DUEL, "--from", "60"]),
-    (
-        "rides",
-        &[
-            "assets/colossus.glb",
-            "--seconds",
-            "10",
-        ],
-    ),
+    ("rides", &["assets/colossus.glb", "--seconds", "10"]),
     ("seeds", &["target/fuzz-seeds"]),
     ("soak", &["--minutes", "0.2", "--out", "target/soak-brief"]),
 ];

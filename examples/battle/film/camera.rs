@@ -13,17 +13,13 @@ use crate::options::CameraKind;
 /// Rate of the orbiting camera's turn, radians a second.
 const ORBIT: f64 = 0.08;
 
-/// Distance of a close camera from the climber, metres.
-const CLOSE: f64 = 2.4;
+/// Distances of a close camera from the climber and, at least, from the skin, metres.
+const CLOSE: [f64; 2] = [2.4, 0.3];
 
-/// Distance of a chasing camera from the climber, metres.
-const FAR: f64 = 7.5;
+/// The same of a chasing camera: visible fur reaches 0.8 m beyond the skin of a giant of 40 m.
+const CHASE: [f64; 2] = [7.5, 1.4];
 
-/// Distance that a chasing camera keeps from the skin, metres: visible fur reaches 0.8 m beyond the skin of a giant of
-/// 40 m.
-const KEPT: f64 = 1.4;
-
-/// Half-lives of changes of a chasing camera's direction from the climber, and of its position, seconds.
+/// Half-lives of changes of their direction from the climber, and of their position, seconds.
 const HALF_LIVES: [f64; 2] = [0.6, 0.12];
 
 /// A climber that moves farther than this in a tick was teleported, metres; the camera follows at once.
@@ -61,8 +57,8 @@ impl Views {
                 let heading = 0.6 + ORBIT * TICK * battle.tick() as f64;
                 orbit(battle, battle.height(), heading)
             }
-            CameraKind::Close => close(battle, &skin),
-            CameraKind::Chase => self.chase(battle, &skin),
+            CameraKind::Close => self.chase(battle, &skin, CLOSE),
+            CameraKind::Chase => self.chase(battle, &skin, CHASE),
         };
         self.skin = Some(skin);
         camera
@@ -70,18 +66,23 @@ impl Views {
 
     /// A camera that follows the climber. It turns towards the direction with the best view, comes nearer where skin is
     /// in the way, and keeps a distance from all skin.
-    fn chase(&mut self, battle: &Battle<'_>, skin: &SkinnedSurface) -> Camera {
+    fn chase(
+        &mut self,
+        battle: &Battle<'_>,
+        skin: &SkinnedSurface,
+        [far, kept]: [f64; 2],
+    ) -> Camera {
         let climber = battle.climber().state().position;
         let target = climber + DVec3::Y * 0.5;
         let is_new = !(self.climber.distance(climber) < PUT);
         self.climber = climber;
         let ideal = outward(battle, self.away);
         let free = |away: DVec3| {
-            let hit = skin.cast_ray(target, away, FAR + KEPT);
-            hit.map_or(FAR, |hit| (hit.distance - KEPT).max(0.5 * hit.distance))
+            let hit = skin.cast_ray(target, away, far + kept);
+            hit.map_or(far, |hit| (hit.distance - kept).max(0.5 * hit.distance))
         };
         let last = self.away;
-        let score = |away: &DVec3| free(*away) / FAR + 0.5 * away.dot(ideal) + 0.2 * away.dot(last);
+        let score = |away: &DVec3| free(*away) / far + 0.5 * away.dot(ideal) + 0.2 * away.dot(last);
         // Eight directions around the climber, at three heights.
         let around = (0..24u32).map(|index| {
             let turn = f64::from(index % 8) * core::f64::consts::FRAC_PI_4;
@@ -98,27 +99,11 @@ impl Views {
         };
         let [turns, moves] = HALF_LIVES.map(part);
         self.away = last.lerp(best.unwrap_or(ideal), turns).normalize_or(ideal);
-        let wanted = keep_out(skin, target + self.away * free(self.away));
-        let eye = keep_out(skin, self.eye.lerp(wanted, moves));
-        self.eye = above_ground(eye, 1.0);
+        let wanted = keep_out(skin, target + self.away * free(self.away), kept);
+        let eye = keep_out(skin, self.eye.lerp(wanted, moves), kept);
+        self.eye = eye.with_y(eye.y.max(valley::height(eye.x, eye.z) + 0.5));
         Camera::new(self.eye, target)
     }
-}
-
-/// A camera a few steps from the climber: outward from the skin that it holds, and to a side, so that hands and face are
-/// seen. It stays in front of skin that would hide the climber.
-fn close(battle: &Battle<'_>, skin: &SkinnedSurface) -> Camera {
-    let (up, state) = (battle.climber().config().up(), battle.climber().state());
-    let out = match state.support {
-        Some(support) if state.mode.is_holding() => support.normal_in_world(),
-        _ => -state.heading,
-    };
-    let target = state.position + up * 0.45;
-    let side = state.heading.cross(up);
-    let away = (out * 0.75 + side * 0.75 + up * 0.35).normalize_or(up);
-    let hit = skin.cast_ray(target, away, CLOSE + 0.2);
-    let free = hit.map_or(CLOSE, |hit| (hit.distance - 0.2).max(0.5 * hit.distance));
-    Camera::new(above_ground(target + away * free, 0.3), target)
 }
 
 /// The level direction outward from the skin that the climber holds, or from the creature.
@@ -132,18 +117,13 @@ fn outward(battle: &Battle<'_>, away: DVec3) -> DVec3 {
     (out + away * 0.01).with_y(0.0).normalize_or(DVec3::X)
 }
 
-/// The place moved away from the skin by [`KEPT`].
-fn keep_out(skin: &SkinnedSurface, place: DVec3) -> DVec3 {
-    let near = skin.in_world().closest_point(place, KEPT);
+/// The place moved away from the skin, up to a distance.
+fn keep_out(skin: &SkinnedSurface, place: DVec3, kept: f64) -> DVec3 {
+    let near = skin.in_world().closest_point(place, kept);
     near.map_or(place, |near| {
         let way = (place - near.point).normalize_or(near.normal);
         let is_outside = way.dot(near.normal) >= 0.0;
         let out = if is_outside { way } else { near.normal };
-        near.point + out * KEPT
+        near.point + out * kept
     })
-}
-
-/// The eye, at least so many metres above the ground.
-fn above_ground(eye: DVec3, least: f64) -> DVec3 {
-    eye.with_y(eye.y.max(valley::height(eye.x, eye.z) + least))
 }

@@ -42,13 +42,18 @@ pub(super) struct Choreography<'a> {
     scale: f64,
     /// Lowest y of the skin in the first pose, in model space.
     lowest: f64,
+    /// Walking speed, metres a second.
     speed: f64,
-    time: f64,
-    walked: f64,
-    /// The pose of the current tick, and memory for the fade.
+    /// Time of the clips, seconds.
+    pub(super) time: f64,
+    /// Distance that the creature has walked, metres.
+    pub(super) walked: f64,
+    /// The pose of the current tick.
     pose: Pose,
+    /// Memory for the pose that is faded in.
     fading: Pose,
-    palette: Palette,
+    /// The palette of the last [`Choreography::pose`].
+    pub(super) palette: Palette,
 }
 
 impl<'a> Choreography<'a> {
@@ -123,21 +128,6 @@ impl<'a> Choreography<'a> {
         let skeleton = &self.creature.skeleton;
         skeleton.palette_into(&self.pose, &mut self.palette)?;
         Ok((&self.palette, self.world_from_model()))
-    }
-
-    /// Seconds passed and metres walked: the whole state.
-    pub(super) fn progress(&self) -> (f64, f64) {
-        (self.time, self.walked)
-    }
-
-    /// Restores a state from [`Choreography::progress`].
-    pub(super) fn go_to(&mut self, (time, walked): (f64, f64)) {
-        (self.time, self.walked) = (time, walked);
-    }
-
-    /// The palette of the last [`Choreography::pose`].
-    pub(super) fn palette(&self) -> &Palette {
-        &self.palette
     }
 
     /// The current clip and the time in it, as text for messages.

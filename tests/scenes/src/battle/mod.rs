@@ -13,6 +13,7 @@ mod choreography;
 mod counts;
 mod eyes;
 mod fencer;
+mod footing;
 mod options;
 mod outcrop;
 #[cfg(feature = "record")]
@@ -24,8 +25,7 @@ mod rockfall;
 mod scene;
 
 pub use checks::{
-    Check, DRIFT, FALLS, INSIDE, MAX_DRIFT, MAX_STANDS_OFF, PUSHED_OFF, ROCKS_INSIDE, STANDS_OFF,
-    Watch,
+    Check, DRIFT, FALLS, INSIDE, MAX_DRIFT, MAX_STANDS_OFF, ROCKS_INSIDE, STANDS_OFF, Watch,
 };
 pub use counts::Counts;
 pub use options::{BattleOptions, Story};

@@ -2,11 +2,11 @@ use std::sync::Arc;
 
 use clamber_climber::{Climber, ClimberConfig, ClimberInput, GripConfig, StepReport, StepRules};
 use clamber_surface::surface::SkinnedSurface;
-use clamber_world::{MaterialPoint, Obstacle, ObstacleId};
+use clamber_world::{Obstacle, ObstacleId};
 use glam::DVec3;
 
 use super::choreography::Choreography;
-use super::rider::{Intent, Rider, RiderScene};
+use super::rider::Rider;
 use super::{BattleError, CREATURE, TERRAIN, TICK};
 use crate::Creature;
 
@@ -19,7 +19,8 @@ pub(super) struct Ride<'a> {
     pub(super) rider: Rider,
     /// Velocity of the creature as a whole over the last tick, without its clips, metres a second.
     pub(super) velocity: DVec3,
-    height: f64,
+    /// Height of the creature, metres.
+    pub(super) height: f64,
 }
 
 impl<'a> Ride<'a> {
@@ -34,7 +35,7 @@ impl<'a> Ride<'a> {
             surface,
             climber: Climber::new(ClimberConfig::walker(), DVec3::ZERO)?,
             report: StepReport::default(),
-            rider: Rider::new(),
+            rider: Rider::FIRST,
             velocity: DVec3::ZERO,
             height,
         })
@@ -50,23 +51,6 @@ impl<'a> Ride<'a> {
         Ok(())
     }
 
-    /// The input that carries out an intent. `perch` is the material point that a patrol stays near.
-    pub(super) fn input(
-        &mut self,
-        intent: Intent,
-        perch: &MaterialPoint,
-        seconds: f64,
-    ) -> ClimberInput {
-        let scene = RiderScene {
-            surface: &self.surface,
-            perch,
-            velocity: self.velocity,
-            seconds,
-            height: self.height,
-        };
-        self.rider.input(intent, &self.climber, &scene)
-    }
-
     /// Steps the rider on the creature that was posed for this tick.
     pub(super) fn step(
         &mut self,
@@ -80,9 +64,9 @@ impl<'a> Ride<'a> {
         Ok(())
     }
 
-    /// Restores the time and the way of [`Choreography::progress`]; the skin stands there without motion.
-    pub(super) fn go_to(&mut self, progress: (f64, f64)) -> Result<(), BattleError> {
-        self.choreography.go_to(progress);
+    /// Restores the time of the clips, seconds, and the distance walked, metres; the skin stands there without motion.
+    pub(super) fn go_to(&mut self, time: f64, walked: f64) -> Result<(), BattleError> {
+        (self.choreography.time, self.choreography.walked) = (time, walked);
         let (palette, world_from_model) = self.choreography.pose()?;
         self.surface.place(palette, world_from_model)?;
         self.velocity = DVec3::ZERO;

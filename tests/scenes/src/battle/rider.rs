@@ -1,9 +1,10 @@
 //! The scripted climber on the creature's back.
 
-use clamber_climber::{Climber, ClimberInput, ClimberMode};
-use clamber_surface::surface::SkinnedSurface;
+use clamber_climber::{ClimberInput, ClimberMode};
 use clamber_world::{MaterialPoint, Obstacle};
 use glam::DVec3;
+
+use super::ride::Ride;
 
 /// What the script asks of the climber in a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,143 +48,117 @@ const JUMP_SHAKE: f64 = 3.0;
 /// its landing, and grips. With a smaller value it would grip skin that it could have landed on.
 const JUMP_SECONDS: f64 = 1.2;
 
-/// The part of the scene that a rider sees.
-pub(super) struct RiderScene<'a> {
-    pub(super) surface: &'a SkinnedSurface,
-    /// The material point that a patrol keeps near.
-    pub(super) perch: &'a MaterialPoint,
-    /// Velocity of the creature as a whole, metres a second.
-    pub(super) velocity: DVec3,
-    /// Time since the beginning, seconds.
-    pub(super) seconds: f64,
-    /// Height of the creature, metres.
-    pub(super) height: f64,
-}
-
-/// Drives a climber that rides: where the skin gets too steep to stand on, it holds on and climbs up to where it can
-/// stand again.
-#[derive(Clone, Debug)]
+/// What a rider remembers. Where the skin gets too steep to stand on, it holds on and climbs up to where it can stand
+/// again.
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Rider {
     holds_on: bool,
-    /// It jumps as soon as the skin is calm.
+    /// The rider jumps as soon as the skin is calm.
     wants_jump: bool,
-    /// When it jumped or was first dropped, seconds; `None` after it has stood again.
+    /// When the rider jumped or was first dropped, seconds; `None` after it has stood again.
     flies_since: Option<f64>,
 }
 
 impl Rider {
     /// A rider at the beginning: in the air above the creature.
-    pub(super) fn new() -> Self {
-        Self {
-            holds_on: false,
-            wants_jump: false,
-            flies_since: Some(0.0),
-        }
-    }
+    pub(super) const FIRST: Self = Self {
+        holds_on: false,
+        wants_jump: false,
+        flies_since: Some(0.0),
+    };
 
-    /// Tells the rider that it was dropped again, just above the skin: it grips whatever it meets.
-    pub(super) fn dropped(&mut self) {
-        *self = Self {
-            holds_on: true,
-            wants_jump: false,
-            flies_since: None,
-        };
-    }
+    /// A rider that was dropped again, just above the skin: it grips whatever it meets.
+    pub(super) const DROPPED: Self = Self {
+        holds_on: true,
+        wants_jump: false,
+        flies_since: None,
+    };
+}
 
-    /// The input that carries out an intent.
+impl Ride<'_> {
+    /// The rider's input that carries out an intent. `perch` is the material point that a patrol stays near, and
+    /// `seconds` the time since the beginning.
     pub(super) fn input(
         &mut self,
         intent: Intent,
-        climber: &Climber,
-        scene: &RiderScene<'_>,
+        perch: &MaterialPoint,
+        seconds: f64,
     ) -> ClimberInput {
-        self.wants_jump |= intent == Intent::Jump;
-        self.look_at_its_footing(climber, scene.seconds);
-        if self.holds_on {
+        self.rider.wants_jump |= intent == Intent::Jump;
+        self.look_at_footing(seconds);
+        let mut input = ClimberInput::default();
+        if self.rider.holds_on {
             // Up, to where it can stand again.
-            return ClimberInput {
-                grip: true,
-                climb: climber.config().up(),
-                ..ClimberInput::default()
-            };
+            (input.grip, input.climb) = (true, self.climber.config().up());
+        } else if self.rider.wants_jump && self.is_calm() {
+            (self.rider.wants_jump, self.rider.flies_since) = (false, Some(seconds));
+            input.jump = true;
+        } else if matches!(intent, Intent::Patrol | Intent::Jump) {
+            input.walk = self.patrol(perch, seconds);
         }
-        if self.wants_jump && is_calm(climber, scene) {
-            self.wants_jump = false;
-            self.flies_since = Some(scene.seconds);
-            return ClimberInput {
-                jump: true,
-                ..ClimberInput::default()
-            };
-        }
-        let walks = matches!(intent, Intent::Patrol | Intent::Jump);
-        ClimberInput {
-            walk: if walks {
-                patrol(climber, scene)
-            } else {
-                DVec3::ZERO
-            },
-            ..ClimberInput::default()
-        }
+        input
     }
 
     /// Decides whether the rider holds on.
-    fn look_at_its_footing(&mut self, climber: &Climber, seconds: f64) {
-        let (state, up) = (climber.state(), climber.config().up());
+    fn look_at_footing(&mut self, seconds: f64) {
+        let (state, up) = (self.climber.state(), self.climber.config().up());
         let slope = state.support.map(|support| {
             let cosine = support.normal_in_world().dot(up);
             libm::acos(cosine.clamp(-1.0, 1.0))
         });
+        let rider = &mut self.rider;
         match (state.mode, slope) {
             (ClimberMode::Standing, Some(slope)) => {
-                self.flies_since = None;
-                self.holds_on |= slope > HOLD_ON;
+                rider.flies_since = None;
+                rider.holds_on |= slope > HOLD_ON;
                 if slope < STAND_UP {
-                    self.holds_on = false;
+                    rider.holds_on = false;
                 }
             }
-            (ClimberMode::Sliding, _) => self.holds_on = true,
-            (mode, Some(slope)) if mode.is_holding() => self.holds_on = slope > STAND_UP,
+            (ClimberMode::Sliding, _) => rider.holds_on = true,
+            (mode, Some(slope)) if mode.is_holding() => rider.holds_on = slope > STAND_UP,
             // In the air: by a jump, until the landing is missed, or because the skin moved away.
             _ => {
-                let flies = self.flies_since.map(|since| seconds - since);
-                self.holds_on |= flies.is_none_or(|flies| flies > JUMP_SECONDS);
+                let flies = rider.flies_since.map(|since| seconds - since);
+                rider.holds_on |= flies.is_none_or(|flies| flies > JUMP_SECONDS);
             }
         }
     }
-}
 
-/// True if the climber stands on skin that moves evenly, along with the creature.
-fn is_calm(climber: &Climber, scene: &RiderScene<'_>) -> bool {
-    let state = climber.state();
-    let velocity = state.support_velocity.unwrap_or(state.velocity);
-    state.mode == ClimberMode::Standing
-        && velocity.distance(scene.velocity) < JUMP_SPEED
-        && state.shake.length() < JUMP_SHAKE
-}
+    /// True if the climber stands on skin that moves evenly, along with the creature.
+    fn is_calm(&self) -> bool {
+        let state = self.climber.state();
+        let velocity = state.support_velocity.unwrap_or(state.velocity);
+        state.mode == ClimberMode::Standing
+            && velocity.distance(self.velocity) < JUMP_SPEED
+            && state.shake.length() < JUMP_SHAKE
+    }
 
-/// The direction to walk in: towards the end of the patrol, or none if there is no walkable skin ahead.
-fn patrol(climber: &Climber, scene: &RiderScene<'_>) -> DVec3 {
-    let Some(middle) = scene.surface.motion(scene.perch, 1.0) else {
-        return DVec3::ZERO;
-    };
-    let forward = scene.surface.world_from_model().rotation * DVec3::Z;
-    let ahead = if (scene.seconds / LEG).rem_euclid(2.0) < 1.0 {
-        1.0
-    } else {
-        -1.0
-    };
-    let target = middle.position + forward * (ahead * REACH * scene.height);
-    let position = climber.state().position;
-    let level = (target - position) * DVec3::new(1.0, 0.0, 1.0);
-    let direction = level.normalize_or_zero();
-    let up = climber.config().up();
-    let feet = position - up * climber.config().body.radius;
-    let above = feet + direction * AHEAD + up * STEP;
-    let ground = scene.surface.cast_ray(above, -up, 2.0 * STEP);
-    let is_walkable = ground.is_some_and(|g| g.normal.dot(up) > libm::cos(WALKABLE));
-    if level.length() > ARRIVED && is_walkable {
-        direction * 0.6
-    } else {
-        DVec3::ZERO
+    /// The direction to walk in: towards the end of the patrol, or none if there is no walkable skin ahead.
+    fn patrol(&self, perch: &MaterialPoint, seconds: f64) -> DVec3 {
+        let Some(middle) = self.surface.motion(perch, 1.0) else {
+            return DVec3::ZERO;
+        };
+        let forward = self.surface.world_from_model().rotation * DVec3::Z;
+        let ahead = if (seconds / LEG).rem_euclid(2.0) < 1.0 {
+            1.0
+        } else {
+            -1.0
+        };
+        let target = middle.position + forward * (ahead * REACH * self.height);
+        let position = self.climber.state().position;
+        let level = (target - position) * DVec3::new(1.0, 0.0, 1.0);
+        let direction = level.normalize_or_zero();
+        let config = self.climber.config();
+        let up = config.up();
+        let feet = position - up * config.body.radius;
+        let above = feet + direction * AHEAD + up * STEP;
+        let ground = self.surface.cast_ray(above, -up, 2.0 * STEP);
+        let is_walkable = ground.is_some_and(|g| g.normal.dot(up) > libm::cos(WALKABLE));
+        if level.length() > ARRIVED && is_walkable {
+            direction * 0.6
+        } else {
+            DVec3::ZERO
+        }
     }
 }
