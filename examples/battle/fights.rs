@@ -5,26 +5,18 @@ use clamber_scenes::battle::{Battle, BattleError, BattleOptions, Counts, TICK};
 
 use crate::Failure;
 
-/// The heading of the table of fights.
-const HEADING: &str = "  seed  at top  killed  plate  weak damage blows  deaths  hash";
-
 /// Fights battles of several seeds, the one of the options and the next ones, and prints the result of each.
 pub(crate) fn fight_all(options: &BattleOptions, count: u64) -> Result<bool, Failure> {
     let creature = options.load_creature()?;
-    let seeds: Vec<u64> = (0..count)
-        .map(|index| options.seed.wrapping_add(index))
-        .collect();
+    let seeds: Vec<u64> = (options.seed..).take(count as usize).collect();
     let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
     let (mut arrived, mut killed) = (0, Vec::new());
-    println!("{HEADING}");
+    println!("  seed  at top  killed  plate  weak damage blows  deaths  hash");
     for seeds in seeds.chunks(cores) {
         let fights: Vec<_> = std::thread::scope(|scope| {
             let start = |seed: &u64| {
-                let options = BattleOptions {
-                    seed: *seed,
-                    ..options.clone()
-                };
-                let creature = &creature;
+                let (mut options, creature) = (options.clone(), &creature);
+                options.seed = *seed;
                 scope.spawn(move || fight(creature, &options))
             };
             let threads: Vec<_> = seeds.iter().map(start).collect();
@@ -33,21 +25,18 @@ pub(crate) fn fight_all(options: &BattleOptions, count: u64) -> Result<bool, Fai
         for (seed, fight) in seeds.iter().zip(fights) {
             let fight = fight.unwrap_or_else(|panic| std::panic::resume_unwind(panic))?;
             let (counts, top, hash) = fight;
-            let Counts {
-                plates,
-                weak_points,
-                damage,
-                blows,
-                deaths,
-                ..
-            } = counts;
             let time =
                 |seconds: Option<f64>| seconds.map_or("-".to_owned(), |time| format!("{time:.1}"));
             let end = (counts.killed > 0).then_some(counts.killed as f64 * TICK);
             println!(
-                "{seed:6}  {:>6}  {:>6}  {plates:5}  {weak_points:3}  {damage:5.1}  {blows:5}  {deaths:6}  {hash:016x}",
+                "{seed:6}  {:>6}  {:>6}  {:5}  {:3}  {:5.1}  {:5}  {:6}  {hash:016x}",
                 time(top),
                 time(end),
+                counts.plates,
+                counts.weak_points,
+                counts.damage,
+                counts.blows,
+                counts.deaths,
             );
             arrived += u32::from(top.is_some());
             killed.extend(end);

@@ -1,8 +1,7 @@
 //! A climber fights a giant that hunts it and shakes it off, from the ground to its head, while rocks fall.
 //!
 //! `cargo run --release --example battle -- --help` lists the options. The scene and its checks are in
-//! `clamber_scenes::battle`. With `--features render`, the example can film the battle, with `--features record` it can
-//! record it.
+//! `clamber_scenes::battle`. The example films with `--features render`, and records with `--features record`.
 
 mod fights;
 #[cfg(all(feature = "render", feature = "gltf", feature = "rapier"))]
@@ -54,8 +53,7 @@ fn main() -> ExitCode {
 /// Fights a battle, films and records it, and reports the results. Returns true if all checks hold.
 fn run(options: &Options) -> Result<bool, Failure> {
     let settings = &options.battle;
-    let failed = |error| format!("cannot write {}: {error}", options.out.display());
-    std::fs::create_dir_all(&options.out).map_err(failed)?;
+    let summary = create(&options.out.join("summary.json"))?;
     let file = options.record.as_deref().map(create).transpose()?;
     let mut cameras = Vec::new();
     if options.film.is_wanted() {
@@ -78,29 +76,21 @@ fn run(options: &Options) -> Result<bool, Failure> {
         if tick % 600 == 0 {
             let state = battle.climber().state();
             let (seconds, height) = (tick as f64 * TICK, state.position.y);
-            eprintln!(
-                "{seconds:5.1} s  {:<13} {height:5.1} m up",
-                format!("{:?}", state.mode)
-            );
+            eprintln!("{seconds:5.1} s  {height:5.1} m up  {:?}", state.mode);
         }
     }
     for camera in cameras {
         camera.finish()?;
     }
     let checks = watch.checks(&battle, settings);
-    report::write(&battle, &checks, &options.out)?;
-    println!(
-        "{}  written to {}",
-        report::table(&battle, &watch, &checks),
-        options.written()
-    );
+    report::write(&battle, &checks, summary)?;
+    print!("{}", report::table(&battle, &watch, &checks));
     Ok(checks.iter().all(|check| check.holds()))
 }
 
 fn create(path: &Path) -> Result<BufWriter<File>, Failure> {
     let failed = |error| format!("cannot write {}: {error}", path.display());
-    let folder = path.parent().unwrap_or(path);
-    std::fs::create_dir_all(folder).map_err(failed)?;
+    std::fs::create_dir_all(path.parent().unwrap_or(path)).map_err(failed)?;
     Ok(BufWriter::new(File::create(path).map_err(failed)?))
 }
 

@@ -113,14 +113,6 @@ impl Options {
         }
         options
     }
-
-    /// The paths of all results.
-    pub(crate) fn written(&self) -> String {
-        let asked = [&self.record, &self.film.frames, &self.film.gif];
-        let paths = std::iter::once(&self.out).chain(asked.into_iter().flatten());
-        let paths: Vec<String> = paths.map(|path| path.display().to_string()).collect();
-        paths.join(", ")
-    }
 }
 
 impl FilmOptions {

@@ -1,4 +1,4 @@
-use std::path::Path;
+use std::io::Write;
 
 use clamber::climber::ClimberMode;
 use clamber_scenes::battle::{Battle, Check, TICK, Watch};
@@ -81,15 +81,18 @@ pub(crate) fn table(battle: &Battle<'_>, watch: &Watch, checks: &[Check]) -> Str
         .fold(table, |table, check| format!("{table}{check}\n"))
 }
 
-/// Writes `summary.json` into a folder.
-pub(crate) fn write(battle: &Battle<'_>, checks: &[Check], folder: &Path) -> Result<(), Failure> {
+/// Writes the results of a battle as JSON.
+pub(crate) fn write(
+    battle: &Battle<'_>,
+    checks: &[Check],
+    mut out: impl Write,
+) -> Result<(), Failure> {
     let summary = json!({
         "creature": battle.creature().name,
         "hash": format!("{:016x}", battle.hash()),
         "counts": battle.counts(),
         "checks": checks,
     });
-    let path = folder.join("summary.json");
-    let failed = |error| format!("cannot write {}: {error}", path.display());
-    Ok(std::fs::write(&path, format!("{summary:#}\n")).map_err(failed)?)
+    writeln!(out, "{summary:#}")?;
+    Ok(out.flush()?)
 }

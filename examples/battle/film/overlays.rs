@@ -62,9 +62,8 @@ pub(super) fn draw(
 /// Writes the text onto a picture.
 pub(super) fn write(kinds: &[OverlayKind], battle: &Battle<'_>, image: &mut Image) {
     if kinds.contains(&OverlayKind::State) {
-        let is_small = image.height < 600;
-        let sizes = [TextSize::Large, TextSize::Small];
-        image.text([16, 16], sizes[usize::from(is_small)], &state(battle));
+        let size = [TextSize::Large, TextSize::Small][usize::from(image.height < 600)];
+        image.text([16, 16], size, &state(battle));
     }
 }
 
@@ -198,21 +197,19 @@ fn own_point(battle: &Battle<'_>) -> Option<MaterialPoint> {
 fn state(battle: &Battle<'_>) -> String {
     let state = battle.climber().state();
     let motion = own_point(battle).and_then(|point| battle.surface().motion(&point, TICK));
-    let skin = motion.map_or(DVec3::ZERO, |motion| motion.velocity);
+    let speed = (state.velocity - motion.map_or(DVec3::ZERO, |motion| motion.velocity)).length();
     let skinned = battle.skinned();
     let share = 100.0 * skinned.vertices_skinned as f64 / skinned.vertices.max(1) as f64;
     // A share from 0 to 1 as a bar.
     let bar = |share: f64| format!("[{:<20}]", "#".repeat((share * 20.0).ceil() as usize));
     format!(
         "time     {:5.2} s, tick {}\nclimber  {:?}\nstamina  {}\nhealth   {}\nshake    {:5.2} m/s2\n\
-         speed    {:5.2} m/s over the skin\nskin     {:5.2} m/s\nskinned  {share:5.1} % of vertices",
+         speed    {speed:5.2} m/s over the skin\nskinned  {share:5.1} % of vertices",
         battle.tick() as f64 * TICK,
         battle.tick(),
         state.mode,
         bar(state.stamina),
         bar(state.hit_points),
         state.shake.length(),
-        (state.velocity - skin).length(),
-        skin.length(),
     )
 }
