@@ -74,7 +74,7 @@ impl Views {
     ) -> Camera {
         let climber = battle.climber().state().position;
         let target = climber + DVec3::Y * 0.5;
-        let is_new = !(self.climber.distance(climber) < PUT);
+        let is_new = self.climber.distance(climber) >= PUT;
         self.climber = climber;
         let ideal = outward(battle, self.away);
         let free = |away: DVec3| {
