@@ -1,7 +1,7 @@
 //! Measures the cost of recording a battle, and the size of the file.
 //!
 //! Two battles with the same options take turns, tick by tick: one is recorded to a file, the other is not. A tick
-//! consists of pose, climber and rocks, without the scene's checks. Prints a table and writes it to
+//! consists of pose, climber and rocks. Prints a table and writes it to
 //! `target/measure/record.csv`: name, value, bound, holds. Fails if the two battles differ.
 //!
 //! Run it with `cargo bench -p clamber_benches --features record --bench record`; briefly with `-- --test`.
@@ -81,7 +81,7 @@ fn measure(
     recorder.finish()?;
     let bytes = std::fs::metadata(&path)?.len() as f64;
     std::fs::remove_file(&path)?;
-    if plain.recording().hash() != recorded.recording().hash() {
+    if plain.hash() != recorded.hash() {
         return Err("the recorded battle differs from the one that was not recorded".into());
     }
     let (without, beside) = (tick_us(&plain), tick_us(&recorded));
@@ -135,7 +135,7 @@ fn writer_us(
         creature_fingerprint: 0,
         tick_seconds: TICK,
         climber: *battle.climber().config(),
-        settings: options.to_settings()?,
+        settings: options.to_settings(),
         version: RecordingInfo::VERSION.to_owned(),
     };
     let skeleton = &battle.creature().skeleton;
@@ -155,7 +155,7 @@ fn writer_us(
         })?;
         if tick.is_multiple_of(60) {
             let snapshot = snapshot.clone();
-            recorder.snapshot_with(move || snapshot.to_json())?;
+            recorder.snapshot_with(move || serde_json::to_string(&snapshot))?;
         }
     }
     recorder.finish()?;
@@ -164,15 +164,14 @@ fn writer_us(
     Ok(all * 1e6 / ticks as f64)
 }
 
-/// Mean time of a tick, microseconds: pose, climber and rocks, without the scene's checks.
+/// Mean time of a tick, microseconds: pose, climber and rocks.
 fn tick_us(battle: &Battle<'_>) -> f64 {
-    let own: Vec<f64> = battle
-        .recording()
-        .samples()
+    let times: Vec<f64> = battle
+        .times()
         .iter()
-        .map(|s| s.microseconds)
+        .map(|[own, rocks]| own + rocks)
         .collect();
-    mean(&own) + mean(battle.rocks().times())
+    mean(&times)
 }
 
 fn mean(values: &[f64]) -> f64 {

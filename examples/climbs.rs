@@ -7,9 +7,8 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clamber::climber::ClimberConfig;
-use clamber_scenes::Creature;
-use clamber_scenes::battle::RidesOptions;
 use clamber_scenes::climbs::{ClimbOptions, Climbed, climb_by};
+use clamber_scenes::{Creature, test_data};
 use clap::Parser;
 
 /// Least share of the models that the bot has to climb: 20 of 27.
@@ -43,11 +42,7 @@ fn main() -> ExitCode {
 
 /// Climbs all models and prints the table; true if the bot came to the top of enough models.
 fn run(Options { models, climb }: Options) -> Result<bool, Box<dyn Error>> {
-    let rides = RidesOptions {
-        models,
-        ..RidesOptions::default()
-    };
-    let files = rides.files()?;
+    let files = test_data::models_or(&models)?;
     let mut rows = String::new();
     let mut climbs = Vec::new();
     for (index, file) in files.iter().enumerate() {

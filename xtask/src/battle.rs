@@ -26,7 +26,7 @@ const RECORD: [&str; 2] = ["--record", RECORDING];
 const FROM: [&str; 2] = ["--from", "200"];
 
 /// Value of the option `--overlay` with all overlays of a battle.
-const OVERLAYS: &str = "joints,clusters,contact,anchors,sweeps,rocks,state";
+const OVERLAYS: &str = "joints,contact,anchors,plan,ways,state";
 
 /// Folder of the film's pictures.
 const FRAMES: &str = "target/xtask-frames";

@@ -41,16 +41,7 @@ const ARGUMENTS: [(&str, &[&str]); 9] = [
     ("duel", &["--joins", "10", "--record", DUEL]),
     // `duel` records this file.
     ("replay", &[DUEL, "--from", "60"]),
-    (
-        "rides",
-        &[
-            "assets/colossus.glb",
-            "--seconds",
-            "10",
-            "--out",
-            "target/rides-brief",
-        ],
-    ),
+    ("rides", &["assets/colossus.glb", "--seconds", "10"]),
     ("seeds", &["target/fuzz-seeds"]),
     ("soak", &["--minutes", "0.2", "--out", "target/soak-brief"]),
     ("soak", &["--case", "life", "--minutes", "10"]),

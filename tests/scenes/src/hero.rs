@@ -1,58 +1,36 @@
 //! The project's hero as the body of a battle's climber.
 
-mod arms;
-
 use std::path::PathBuf;
 
-use arms::Arms;
-use clamber_body::clamber_animation::AnimationError;
-use clamber_body::clamber_animation::ik::IkError;
-use clamber_body::{Body, BodyError, BodyFrame, Figure, FigureError, Humanoid, HumanoidError};
-use clamber_fight::ArenaEvent;
-use clamber_gltf::{GltfError, Model};
+use clamber_body::clamber_animation::{AnimationSet, ClipId, Layer};
+use clamber_body::{Act as BodyAct, Body, BodyFrame, Figure, Humanoid};
+use clamber_fight::{Act, ArenaEvent, Fighter};
 use clamber_surface::geometry::Similarity;
-use clamber_surface::rig::{Palette, Pose, RigError, Skeleton};
-use glam::DVec3;
-use thiserror::Error;
+use clamber_surface::mesh::Rig;
+use clamber_surface::rig::{Palette, Pose, Skeleton};
+use glam::Vec3;
 
-use crate::battle::Battle;
+use crate::battle::{Battle, BattleError};
 
-/// A humanoid that is posed for each tick of a battle.
+/// The time at which the clip `stab_strike` hits, seconds: its marker `hit`.
+const HIT: f64 = 0.2;
+
+/// Share of a full draw at which the clip `draw` is over and `aim` begins.
+const NOCKED: f64 = 0.6;
+
+/// Lengths of fades to the clips `stab_strike` and `loose`, to other clips of weapons, and to none, seconds.
+const FADES: [f64; 3] = [0.06, 0.14, 0.3];
+
+/// A humanoid that is posed for each tick of a battle. In a fight it shows its sword and its bow.
 #[derive(Clone, Debug)]
 pub struct Hero {
     figure: Figure,
     body: Body,
-    /// The body's pose with its hands at its weapons.
-    pose: Pose,
     palette: Palette,
-    arms: Option<Arms>,
-}
-
-/// Why there is no hero.
-#[derive(Debug, Error)]
-#[non_exhaustive]
-pub enum HeroError {
-    /// Its file cannot be loaded.
-    #[error(transparent)]
-    Load(#[from] GltfError),
-    /// Its skeleton is no humanoid.
-    #[error(transparent)]
-    Humanoid(#[from] HumanoidError),
-    /// Its clips do not fit.
-    #[error(transparent)]
-    Figure(#[from] FigureError),
-    /// Its body cannot be posed.
-    #[error(transparent)]
-    Body(#[from] BodyError),
-    /// Its body cannot be posed.
-    #[error(transparent)]
-    Rig(#[from] RigError),
-    /// The clips of its weapons cannot be played.
-    #[error(transparent)]
-    Animation(#[from] AnimationError),
-    /// Its hands cannot be brought to its weapons.
-    #[error(transparent)]
-    Ik(#[from] IkError),
+    /// The clip of its weapons that is played, and which hands play it.
+    shown: Option<(&'static str, [bool; 2])>,
+    /// Seconds since it let an arrow go.
+    loosed: f64,
 }
 
 /// Path of the hero's file.
@@ -67,93 +45,163 @@ impl Hero {
     /// A hero from a file's rig.
     ///
     /// # Errors
-    /// [`HeroError`].
-    pub fn new(model: Model) -> Result<Self, HeroError> {
-        let humanoid = Humanoid::find(&model.rig.skeleton)?;
-        let figure = Figure::new(model.rig.skeleton, humanoid, model.rig.clips)?;
+    /// [`BattleError`] if the skeleton is no humanoid, or the clips do not fit it.
+    pub fn new(rig: Rig) -> Result<Self, BattleError> {
+        let humanoid = Humanoid::find(&rig.skeleton).map_err(BattleError::new)?;
+        let figure = Figure::new(rig.skeleton, humanoid, rig.clips).map_err(BattleError::new)?;
         let body = Body::new(&figure);
         Ok(Self {
             palette: figure.skeleton().palette(body.pose())?,
-            pose: body.pose().clone(),
             body,
             figure,
-            arms: None,
+            shown: None,
+            loosed: f64::INFINITY,
         })
-    }
-
-    /// Shows what it does with its weapons. Without it, the sword stays in its sheath and the bow on its back.
-    #[must_use]
-    pub fn with_arms(mut self) -> Self {
-        self.arms = Some(Arms::new(&self.figure));
-        self
     }
 
     /// The hero of the project's file.
     ///
     /// # Errors
-    /// [`HeroError`].
-    pub fn load() -> Result<Self, HeroError> {
-        Self::new(clamber_gltf::load(hero_path())?)
+    /// [`BattleError`] if the file cannot be loaded.
+    pub fn load() -> Result<Self, BattleError> {
+        Self::new(
+            clamber_gltf::load(hero_path())
+                .map_err(BattleError::new)?
+                .rig,
+        )
     }
 
     /// Poses the hero for the battle's current tick, `dt` seconds after the last one that it was posed for.
     ///
     /// # Errors
-    /// [`HeroError`].
-    pub fn watch(&mut self, battle: &Battle<'_>, dt: f64) -> Result<(), HeroError> {
-        let surface = battle.surface();
+    /// [`BattleError`] if the body cannot be posed.
+    pub fn watch(&mut self, battle: &Battle<'_>, dt: f64) -> Result<(), BattleError> {
         let head = battle.creature().skeleton.find("head");
         let head = head.and_then(|head| battle.palette().model_from_joint(head));
-        let look_at = head.map(|head| {
-            let root = surface.world_from_model();
-            root.transform_point(head.translation)
-        });
-        let fighter = battle.performer().fighter();
-        if let (Some(arms), Some(fighter)) = (&mut self.arms, fighter) {
+        let root = battle.surface().world_from_model();
+        let look_at = head.map(|head| root.transform_point(head.translation));
+        if let Some(arena) = battle.arena() {
             let shot = |event: &ArenaEvent| matches!(event, ArenaEvent::Shot { .. });
-            let has_shot = battle
-                .arena()
-                .is_some_and(|arena| arena.events().iter().any(shot));
-            let aim = (battle.input().aim, has_shot);
-            arms.play(&self.figure, &mut self.body, fighter, aim, dt)?;
+            let has_shot = arena.events().iter().any(shot);
+            self.loosed = if has_shot { 0.0 } else { self.loosed + dt };
+            self.play(&arena.fighters()[0])?;
         }
-        battle.touched(|obstacles| {
+        let posed = battle.touched(|obstacles| {
             let frame = BodyFrame {
                 look_at,
                 ..BodyFrame::new(battle.climber(), obstacles)
             };
             self.body.update(&self.figure, &frame, dt)
-        })?;
-        self.pose.clone_from(self.body.pose());
-        if let (Some(arms), Some(fighter)) = (&mut self.arms, fighter) {
-            let root = self.body.world_from_model();
-            arms.reach(&self.figure, &mut self.pose, &root, fighter, dt)?;
-        }
-        self.palette = self.figure.skeleton().palette(&self.pose)?;
+        });
+        posed.map_err(BattleError::new)?;
+        let mut pose = self.body.pose().clone();
+        show_sword(self.figure.skeleton(), &mut pose);
+        self.palette = self.figure.skeleton().palette(&pose)?;
         Ok(())
     }
 
-    /// The grip and the tip of the sword in its hand, in world space; `None` while it is in its sheath, and without
-    /// [arms](Hero::with_arms).
-    pub fn sword(&self) -> Option<[DVec3; 2]> {
-        let arms = self.arms.as_ref()?;
-        let ends = arms.sword(self.figure.skeleton(), &self.pose)?;
-        let root = self.world_from_model();
-        Some(ends.map(|end| root.transform_point(end)))
+    /// Plays the clip for what a fighter does with its weapons.
+    fn play(&mut self, fighter: &Fighter) -> Result<(), BattleError> {
+        let set = self.figure.animations();
+        let wanted = weapon_clip(set, fighter, self.loosed);
+        let holds = fighter.climber().state().mode.is_holding();
+        let shown = wanted.map(|(clip, _)| (clip, [!holds, true]));
+        if shown != self.shown {
+            let act = shown.and_then(|(name, hands)| {
+                let clip = set.find(name)?;
+                let loops = matches!(name, "stab_hold" | "aim");
+                let layer = if loops {
+                    Layer::new(clip)
+                } else {
+                    Layer::once(clip)
+                };
+                let mask = Some(self.figure.upper_body());
+                let layer = Layer { mask, ..layer };
+                Some(BodyAct { layer, hands })
+            });
+            let [quick, usual, end] = FADES;
+            let fade = match shown {
+                Some(("stab_strike" | "loose", _)) => quick,
+                Some(_) => usual,
+                None => end,
+            };
+            self.body
+                .set_act(&self.figure, act, fade)
+                .map_err(BattleError::new)?;
+            self.shown = shown;
+        }
+        if let (Some((_, Some(time))), Some(layer)) = (wanted, self.body.act_mut()) {
+            (layer.time, layer.speed) = (time, 0.0);
+        }
+        Ok(())
     }
 
-    /// Its skeleton.
+    /// The skeleton.
     pub fn skeleton(&self) -> &Skeleton {
         self.figure.skeleton()
     }
 
-    /// Its pose: the rest pose until it is [watched](Hero::watch).
+    /// The pose: the rest pose until the hero is [watched](Hero::watch).
     pub fn palette(&self) -> &Palette {
         &self.palette
     }
 
-    /// Where it is drawn.
+    /// The place at which the hero is drawn.
     pub fn world_from_model(&self) -> Similarity {
         self.body.world_from_model()
+    }
+}
+
+/// The clip for what a fighter does with its weapons, and the time in it, seconds; `None` as time for a clip that plays
+/// by itself. An arrow was let go `loosed` seconds ago.
+fn weapon_clip(
+    set: &AnimationSet,
+    fighter: &Fighter,
+    loosed: f64,
+) -> Option<(&'static str, Option<f64>)> {
+    let clip = |id: ClipId| set.clip(id).ok();
+    let length = |name: &str| {
+        set.find(name)
+            .and_then(clip)
+            .map_or(0.0, |clip| clip.duration())
+    };
+    let at =
+        |name: &'static str, share: f64| Some((name, Some(share.clamp(0.0, 1.0) * length(name))));
+    let sword = fighter.config().sword;
+    match fighter.act() {
+        Act::Raise { seconds, .. } => at("stab_raise", seconds / sword?.raise.max(1e-3)),
+        Act::Charge { .. } => Some(("stab_hold", None)),
+        Act::Strike { seconds, .. } => {
+            let share = (seconds / sword?.strike).clamp(0.0, 1.0);
+            Some(("stab_strike", Some(share * HIT)))
+        }
+        Act::Plunge { .. } => Some(("stab_strike", Some(HIT))),
+        Act::PullOut { seconds, .. } => {
+            let left = (seconds / sword?.pull_out.max(1e-3)).clamp(0.0, 1.0);
+            let rest = (length("stab_strike") - HIT).max(0.0);
+            Some(("stab_strike", Some(HIT + (1.0 - left) * rest)))
+        }
+        Act::Cut { seconds, .. } => {
+            let sword = sword?;
+            at(
+                "swing",
+                seconds / (sword.wind_up + sword.cut + sword.recover),
+            )
+        }
+        Act::Draw { drawn } if *drawn < NOCKED => at("draw", drawn / NOCKED),
+        Act::Draw { .. } => Some(("aim", None)),
+        Act::Ready | Act::Throw { .. } => (loosed < length("loose")).then_some(("loose", None)),
+    }
+}
+
+/// Shows the sword either in the hand or in its sheath: clips fade between the two by their scale.
+fn show_sword(skeleton: &Skeleton, pose: &mut Pose) {
+    let (Some(sword), Some(sheathed)) = (skeleton.find("sword"), skeleton.find("sword_sheathed"))
+    else {
+        return;
+    };
+    let is_out = pose.transforms[sword.index()].scale.x > 0.5;
+    for (joint, is_shown) in [(sword, is_out), (sheathed, !is_out)] {
+        pose.transforms[joint.index()].scale = Vec3::splat(f32::from(u8::from(is_shown)));
     }
 }

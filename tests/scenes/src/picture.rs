@@ -1,8 +1,5 @@
 //! A battle for the renderer: meshes of its creature, its climber and the ground, light and cameras.
 
-mod arrows;
-
-use arrows::Arrows;
 use clamber_gltf::Model;
 use clamber_render::{
     Camera, Drawn, Light, Look, RenderError, RenderMesh, RenderMeshId, Renderer, SkinSource,
@@ -11,15 +8,18 @@ use clamber_render::{
 use clamber_surface::geometry::Similarity;
 use clamber_surface::mesh::{ColliderMesh, Influence, VertexId};
 use clamber_surface::rig::Palette;
-use glam::{DVec3, Vec3};
-use thiserror::Error;
+use clamber_world::rapier3d::dynamics::RigidBodyHandle;
+use glam::DVec3;
 
-use crate::battle::Battle;
-use crate::hero::{Hero, HeroError, hero_path};
+use crate::battle::{Battle, BattleError, Triangles, outcrop};
+use crate::hero::{Hero, hero_path};
 use crate::valley;
 
 /// Distance between neighbouring vertices of the drawn ground, metres.
 const GROUND_CELL: f64 = 2.0;
+
+/// Colour of the outcrop, linear red, green and blue.
+const OUTCROP: [f32; 3] = [0.3, 0.28, 0.25];
 
 /// The meshes of a battle, as added to a renderer, and the body of its climber.
 #[derive(Clone, Debug)]
@@ -27,24 +27,18 @@ pub struct Stage {
     creature: Vec<RenderMeshId>,
     ground: RenderMeshId,
     outcrop: RenderMeshId,
+    rocks: Vec<(RigidBodyHandle, RenderMeshId)>,
     hero: Hero,
     hero_meshes: Vec<RenderMeshId>,
     watched: bool,
     /// Those of the creature's meshes that are plates, with the numbers by which its brain names them.
     plates: Vec<(RenderMeshId, u32)>,
-    arrows: Option<Arrows>,
 }
 
-/// Why a stage cannot be set.
-#[derive(Debug, Error)]
-#[non_exhaustive]
-pub enum StageError {
-    /// A mesh cannot be drawn.
-    #[error(transparent)]
-    Render(#[from] RenderError),
-    /// There is no hero.
-    #[error(transparent)]
-    Hero(#[from] HeroError),
+impl From<RenderError> for BattleError {
+    fn from(error: RenderError) -> Self {
+        Self::new(error)
+    }
 }
 
 impl Stage {
@@ -52,38 +46,22 @@ impl Stage {
     /// meshes in the same renderer, from [`add_visual`] or [`add_collider`].
     ///
     /// # Errors
-    /// [`StageError`].
-    pub fn new(renderer: &mut Renderer, creature: Vec<RenderMeshId>) -> Result<Self, StageError> {
-        let model = clamber_gltf::load(hero_path()).map_err(HeroError::from)?;
+    /// [`BattleError`].
+    pub fn new(renderer: &mut Renderer, creature: Vec<RenderMeshId>) -> Result<Self, BattleError> {
+        let model = clamber_gltf::load(hero_path()).map_err(BattleError::new)?;
         Ok(Self {
             creature,
-            ground: add_ground(renderer)?,
-            outcrop: add_outcrop(renderer)?,
+            ground: add_plain(renderer, &valley::mesh(GROUND_CELL), [1.0; 3], Look::Ground)?,
+            outcrop: add_plain(renderer, &sharp(&outcrop()), OUTCROP, Look::Stone)?,
+            rocks: Vec::new(),
             hero_meshes: add_visual(renderer, &model)?,
-            hero: Hero::new(model)?,
+            hero: Hero::new(model.rig)?,
             watched: false,
             plates: Vec::new(),
-            arrows: None,
         })
     }
 
-    /// Draws what a fight has: the hero's sword and bow in its hands while it uses them, and arrows and stones.
-    ///
-    /// # Errors
-    /// [`StageError::Render`] if the meshes cannot be added to the renderer.
-    pub fn with_arms(mut self, renderer: &mut Renderer) -> Result<Self, StageError> {
-        self.arrows = Some(Arrows::add(renderer)?);
-        self.hero = self.hero.with_arms();
-        Ok(self)
-    }
-
-    /// The hero as it was last [watched](Stage::watch).
-    pub fn hero(&self) -> &Hero {
-        &self.hero
-    }
-
-    /// Tells which of the creature's meshes are plates, which are drawn until they break: the file's whose meshes
-    /// [`add_visual`] added.
+    /// Draws plates until they break. `model` is the file whose meshes [`add_visual`] added.
     #[must_use]
     pub fn with_plates(mut self, model: &Model) -> Self {
         let user = |mesh: &clamber_gltf::VisualMesh| {
@@ -97,6 +75,31 @@ impl Stage {
             .zip(model.visual.iter().map(user));
         self.plates = all.filter(|(_, user)| *user > 0).collect();
         self
+    }
+
+    /// Draws the battle's rocks as well.
+    ///
+    /// # Errors
+    /// [`RenderError`].
+    pub fn add_rocks(
+        &mut self,
+        renderer: &mut Renderer,
+        battle: &Battle<'_>,
+    ) -> Result<(), RenderError> {
+        let meshes = battle.rocks().meshes(battle.world());
+        for (number, (rock, mesh)) in meshes.into_iter().enumerate() {
+            let shade = 0.24 + 0.03 * (number % 5) as f32;
+            let color = [shade, shade * 0.95, shade * 0.86];
+            // Round shapes have so many triangles that their edges may be shaded smoothly.
+            let mesh = if mesh.1.len() <= 12 {
+                sharp(&mesh)
+            } else {
+                mesh
+            };
+            let mesh = add_plain(renderer, &mesh, color, Look::Stone)?;
+            self.rocks.push((rock, mesh));
+        }
+        Ok(())
     }
 
     /// True unless a mesh is a plate that is broken.
@@ -113,15 +116,15 @@ impl Stage {
     /// Poses the hero for the battle's current tick, `dt` seconds after the last one that was watched.
     ///
     /// # Errors
-    /// [`StageError::Hero`].
-    pub fn watch(&mut self, battle: &Battle<'_>, dt: f64) -> Result<(), StageError> {
+    /// [`BattleError`].
+    pub fn watch(&mut self, battle: &Battle<'_>, dt: f64) -> Result<(), BattleError> {
         self.hero.watch(battle, dt)?;
         self.watched = true;
         Ok(())
     }
 
-    /// Everything to draw for the battle's current tick, with the creature in the pose `palette`:
-    /// [`Battle::palette`] or another one. The hero is drawn as it was last [watched](Stage::watch).
+    /// Everything to draw for the battle's current tick, with the creature in the pose `palette`: [`Battle::palette`] or
+    /// another one. The hero is drawn as it was last [watched](Stage::watch).
     pub fn drawn<'a>(&'a self, battle: &Battle<'_>, palette: &'a Palette) -> Vec<Drawn<'a>> {
         let at = |mesh, world_from_model, palette| Drawn {
             mesh,
@@ -134,10 +137,11 @@ impl Stage {
             let meshes = self.hero_meshes.iter();
             drawn.extend(meshes.map(|mesh| at(*mesh, place, Some(palette))));
         }
-        if battle.has_outcrop() {
+        if battle.arena().is_some() {
             drawn.push(at(self.outcrop, Similarity::IDENTITY, None));
         }
-        drawn.extend(self.arrows.iter().flat_map(|arrows| arrows.drawn(battle)));
+        let rocks = self.rocks.iter();
+        drawn.extend(rocks.map(|(rock, mesh)| at(*mesh, battle.placed(*rock), None)));
         let shown = self.creature.iter();
         let shown = shown.filter(|mesh| self.shows(**mesh, battle));
         drawn.extend(shown.map(|mesh| Drawn {
@@ -215,45 +219,26 @@ pub fn add_collider(
     })
 }
 
-fn add_ground(renderer: &mut Renderer) -> Result<RenderMeshId, RenderError> {
-    let cells = (valley::SIZE / GROUND_CELL) as u32;
-    let place = |index: u32| f64::from(index) * GROUND_CELL - valley::SIZE / 2.0;
-    let mut positions = Vec::new();
-    let mut triangles = Vec::new();
-    for row in 0..=cells {
-        for column in 0..=cells {
-            let (x, z) = (place(column), place(row));
-            positions.push(DVec3::new(x, valley::height(x, z), z).as_vec3());
-            if row < cells && column < cells {
-                let [a, b] = [row, row + 1].map(|row| row * (cells + 1) + column);
-                triangles.extend([[a, b, a + 1], [a + 1, b, b + 1]]);
-            }
-        }
-    }
-    renderer.add_mesh(&RenderMesh {
-        positions: &positions,
-        looks: &vec![Look::Ground; positions.len()],
-        triangles: &triangles,
-        ..RenderMesh::default()
-    })
-}
-
 /// The triangles with three corners of their own each, so that edges are shaded sharp.
-pub fn sharp(corners: &[Vec3], triangles: &[[u32; 3]]) -> (Vec<Vec3>, Vec<[u32; 3]>) {
+fn sharp((corners, triangles): &Triangles) -> Triangles {
     let own = triangles.iter().flatten();
     let own = own.map(|corner| corners[*corner as usize]).collect();
     let triangles = (0..triangles.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]);
     (own, triangles.collect())
 }
 
-fn add_outcrop(renderer: &mut Renderer) -> Result<RenderMeshId, RenderError> {
-    let (corners, triangles) = crate::battle::outcrop();
-    let (positions, triangles) = sharp(&corners, &triangles);
+/// Adds a mesh in one colour to a renderer.
+fn add_plain(
+    renderer: &mut Renderer,
+    (positions, triangles): &Triangles,
+    color: [f32; 3],
+    look: Look,
+) -> Result<RenderMeshId, RenderError> {
     renderer.add_mesh(&RenderMesh {
-        positions: &positions,
-        colors: &vec![[0.3, 0.28, 0.25]; positions.len()],
-        looks: &vec![Look::Stone; positions.len()],
-        triangles: &triangles,
+        positions,
+        colors: &vec![color; positions.len()],
+        looks: &vec![look; positions.len()],
+        triangles,
         ..RenderMesh::default()
     })
 }

@@ -60,6 +60,35 @@ pub fn gltf_files(test: &str) -> std::io::Result<Vec<(String, PathBuf)>> {
     Ok(files)
 }
 
+/// The given files, or, if none are given, all files of `models/` in the folder that [`VARIABLE`] names, sorted.
+///
+/// # Errors
+/// A message if no files are given, and the folder is not set, cannot be read, or has no model.
+pub fn models_or(given: &[PathBuf]) -> Result<Vec<PathBuf>, String> {
+    if !given.is_empty() {
+        return Ok(given.to_vec());
+    }
+    let root = std::env::var_os(VARIABLE)
+        .ok_or_else(|| format!("no models: pass files, or set {VARIABLE} to a folder"))?;
+    let folder = PathBuf::from(root).join("models");
+    let failed = |error: std::io::Error| format!("no models: {}: {error}", folder.display());
+    let mut files = Vec::new();
+    for entry in std::fs::read_dir(&folder).map_err(failed)? {
+        let path = entry.map_err(failed)?.path();
+        if path.extension().is_some_and(|e| e == "glb" || e == "gltf") {
+            files.push(path);
+        }
+    }
+    files.sort();
+    if files.is_empty() {
+        return Err(format!(
+            "no models: no .glb or .gltf file in {}",
+            folder.display()
+        ));
+    }
+    Ok(files)
+}
+
 /// Models for measurements, by several makers, with 19 to 48 joints and 1 to 20 clips.
 const FIVE_MODELS: [&str; 5] = [
     "Trex.glb",

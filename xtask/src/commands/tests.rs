@@ -35,7 +35,7 @@ fn an_example_is_run_with_its_features_and_options() {
         "cargo run --release --features record --example replay -- FILE --from 9",
         "ci: examples",
     );
-    assert_nobody("cargo run --release --example battle -- --pilot bot");
+    assert_nobody("cargo run --release --example battle -- --rocks 3");
     assert_wrong(
         "cargo run --release --example battel",
         "no package has `--example battel`",

@@ -1,189 +1,345 @@
-//! The scripted climber on the creature's back.
+//! A bot that plans its way to the creature's weak points, and wounds it there.
 
-use clamber_climber::{Climber, ClimberInput, ClimberMode};
-use clamber_surface::surface::SkinnedSurface;
-use clamber_world::{MaterialPoint, Obstacle};
+use std::sync::Arc;
+
+use clamber_climber::{ClimberInput, ClimberMode};
+use clamber_colossus::{AttackPhase, Brain, CreatureConfig};
+use clamber_fight::{Arena, ArenaConfig, CreatureId};
+use clamber_navigation::{Bot, BotConfig, ClimbGraph, Danger, Forecast, Goal, View};
 use glam::DVec3;
 
-/// What the script asks of the climber in a tick.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Intent {
-    /// Stand without input, as long as the skin is level enough.
-    Stand,
-    /// Walk to and fro along the back, around the perch.
-    Patrol,
-    /// Patrol, and jump as soon as the skin is calm.
-    Jump,
-    /// Approach over the ground and climb to the top.
-    Climb,
+use super::choreography::no_height;
+use super::eyes::Eyes;
+use super::fencer::Fencer;
+use super::outcrop::Crossing;
+use super::{BattleError, BattleOptions, CREATURE, TICK};
+use crate::{Creature, valley};
+
+/// Place where the creature begins, x and z, metres: beyond the outcrop.
+const HOME: [f64; 2] = [65.0, 0.0];
+
+/// Distance from its place within which the creature stays, metres.
+const ARENA: f64 = 35.0;
+/// Distance up to which the creature sees, metres.
+const SIGHT: f64 = 60.0;
+
+/// Height below which a fighter has left the valley, metres.
+const FLOOR: f64 = -30.0;
+
+/// Largest distance of a plate's patches from the weak point that the plate covers, metres on a creature of the height
+/// [`TALL`]; proportionally less on a smaller one.
+const COVER: f64 = 1.2;
+/// Distance beyond a weak point's radius up to which a climber can wound it, metres on a creature of that height.
+const BESIDE: f64 = 0.5;
+/// Height of the giant, metres.
+const TALL: f64 = 41.0;
+
+/// Shake up to which the bot moves up to its goal's weak point, metres a second squared.
+const STEADY: f64 = 6.0;
+
+/// An arena with the creature alone.
+pub(super) fn arena(
+    creature: &Creature,
+    brain: Brain,
+    options: &BattleOptions,
+) -> Result<Arena, BattleError> {
+    let kind = creature.with_brain(brain)?;
+    // The height in the brain's file is at a scale of 1.
+    let tall = kind.brain().file().body.height.unwrap_or(kind.height());
+    let scale = options.height() / tall;
+    if !(scale.is_normal() && scale > 0.0) {
+        return Err(no_height(creature, options.height()));
+    }
+    let [x, z] = HOME;
+    let config = CreatureConfig {
+        position: DVec3::new(x, valley::height(x, z), z),
+        scale,
+        seed: options.seed,
+        arena: ARENA,
+        sight: SIGHT,
+        ..CreatureConfig::default()
+    };
+    let mut arena = Arena::new(ArenaConfig {
+        tick: TICK,
+        floor: FLOOR,
+        seed: options.seed,
+        ..ArenaConfig::default()
+    })?;
+    arena.add_creature(Arc::new(kind), config)?;
+    Ok(arena)
 }
 
-/// Seconds for which a patrol walks in one direction.
-const LEG: f64 = 2.5;
-
-/// Distance from the perch at which a patrol turns round, as a share of the creature's height.
-const REACH: f64 = 0.06;
-
-/// Distance from its target at which a patrol has arrived, metres.
-const ARRIVED: f64 = 0.2;
-
-/// Slope above which a rider holds on, and below which it stands up again, radians: 40 and 30 degrees, well below the
-/// 50 degrees that it can stand on.
-const HOLD_ON: f64 = 0.7;
-const STAND_UP: f64 = 0.52;
-
-/// A patrol looks for skin so far ahead, and so far above and below its feet, metres. It walks on if that skin is less
-/// steep than `WALKABLE`, radians.
-const AHEAD: f64 = 0.6;
-const STEP: f64 = 0.5;
-const WALKABLE: f64 = 0.6;
-
-/// A rider jumps only from skin that moves more slowly than this relative to the creature as a whole, metres a second,
-/// and that shakes less than `JUMP_SHAKE`, metres a second squared: the jump takes a second, in which it cannot steer.
-const JUMP_SPEED: f64 = 0.4;
-const JUMP_SHAKE: f64 = 3.0;
-
-/// A little more than the seconds that a jump takes on level ground. A rider that is in the air for longer has missed
-/// its landing, and grips. With a smaller value it would grip skin that it could have landed on.
-const JUMP_SECONDS: f64 = 1.2;
-
-/// The part of the scene that a rider sees.
-pub(super) struct RiderScene<'a> {
-    pub(super) surface: &'a SkinnedSurface,
-    /// The material point that a patrol keeps near.
-    pub(super) perch: &'a MaterialPoint,
-    /// Velocity of the creature as a whole, metres a second.
-    pub(super) velocity: DVec3,
-    /// Time since the beginning, seconds.
-    pub(super) seconds: f64,
-    /// Height of the creature, metres.
-    pub(super) height: f64,
+/// The creature of an arena from [`arena()`].
+#[expect(
+    clippy::expect_used,
+    reason = "the creature joins first and never leaves"
+)]
+pub(super) fn giant(arena: &Arena) -> &clamber_colossus::Creature {
+    arena.creature(CreatureId(0)).expect("there is a creature")
 }
 
-/// Drives a climber that rides: where the skin gets too steep to stand on, it holds on and climbs up to where it can
-/// stand again.
-#[derive(Clone, Debug)]
-pub(super) struct Rider {
-    holds_on: bool,
-    /// It jumps as soon as the skin is calm.
-    wants_jump: bool,
-    /// When it jumped or was first dropped, seconds; `None` after it has stood again.
-    flies_since: Option<f64>,
+/// What the bot sees of the creature's actions.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sight {
+    /// The creature stays where it is.
+    stays: bool,
+    /// The creature raises a limb against somebody, or strikes, or its wave or shot is on its way.
+    pub(super) attacks: bool,
 }
 
-impl Rider {
-    /// A rider at the beginning: in the air above the creature.
-    pub(super) fn new() -> Self {
+impl Sight {
+    fn of(life: &clamber_colossus::Creature) -> Self {
+        let attack = life.attack().map(|(_, phase)| phase);
+        let attacks = matches!(attack, Some(AttackPhase::WindUp | AttackPhase::Active))
+            || life.waves().next().is_some()
+            || life.shots().next().is_some();
         Self {
-            holds_on: false,
-            wants_jump: false,
-            flies_since: Some(0.0),
+            stays: life.state().speed().abs() < 0.5,
+            attacks,
         }
     }
+}
 
-    /// Tells the rider that it was dropped again, just above the skin: it grips whatever it meets.
-    pub(super) fn dropped(&mut self) {
-        *self = Self {
-            holds_on: true,
-            wants_jump: false,
-            flies_since: None,
+/// What to strike.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Aim {
+    /// The weak point, by its index.
+    pub(super) weak_point: usize,
+    /// The plate over the weak point, by its index.
+    pub(super) plate: Option<usize>,
+}
+
+/// What to strike, and the ways there.
+#[derive(Clone, Debug)]
+struct Target {
+    aim: Aim,
+    goal: Goal,
+}
+
+/// The bot's plan and memory.
+#[derive(Clone, Debug)]
+pub(super) struct Planner {
+    bot: Bot,
+    targets: Vec<Target>,
+    /// The current target, by its index.
+    at: usize,
+    forecast: Forecast,
+    fencer: Fencer,
+    crossing: Crossing,
+    eyes: Eyes,
+    /// The highest weak point at rest.
+    highest: Option<usize>,
+    arrived: Option<f64>,
+}
+
+impl Planner {
+    /// A bot against the creature of an arena. [`BattleError`] if no weak point can be reached from the ground.
+    pub(super) fn new(
+        arena: &Arena,
+        graph: Arc<ClimbGraph>,
+        creature: &Creature,
+    ) -> Result<Self, BattleError> {
+        let life = giant(arena);
+        let leads = |target: &Target| {
+            let mut entries = graph.entries().iter();
+            entries.any(|entry| target.goal.least_seconds_from(entry.patch).is_finite())
         };
+        let targets: Vec<Target> = targets(life, &graph).into_iter().filter(leads).collect();
+        if targets.is_empty() {
+            let name = &creature.name;
+            return Err(BattleError::new(format!(
+                "found no way up {name}: no grippable skin leads from near the ground to a weak point; try --story ride"
+            )));
+        }
+        let forecast = Forecast::still()
+            .then(&graph, "idle", 0.0, 4.5)
+            .then(&graph, "shake", 0.0, 4.5);
+        let places =
+            (0..life.kind().weak_points().len()).map(|index| (place(life, index).y, index));
+        let highest = places.max_by(|a, b| a.0.total_cmp(&b.0));
+        Ok(Self {
+            bot: Bot::new(graph, BotConfig::default()),
+            targets,
+            at: 0,
+            forecast,
+            fencer: Fencer::default(),
+            crossing: Crossing::default(),
+            eyes: Eyes::new(&creature.collider),
+            highest: highest.map(|(_, index)| index),
+            arrived: None,
+        })
     }
 
-    /// The input that carries out an intent.
-    pub(super) fn input(
-        &mut self,
-        intent: Intent,
-        climber: &Climber,
-        scene: &RiderScene<'_>,
-    ) -> ClimberInput {
-        self.wants_jump |= intent == Intent::Jump;
-        self.look_at_its_footing(climber, scene.seconds);
-        if self.holds_on {
-            // Up, to where it can stand again.
-            return ClimberInput {
-                grip: true,
-                climb: climber.config().up(),
-                ..ClimberInput::default()
-            };
-        }
-        if self.wants_jump && is_calm(climber, scene) {
-            self.wants_jump = false;
-            self.flies_since = Some(scene.seconds);
-            return ClimberInput {
-                jump: true,
-                ..ClimberInput::default()
-            };
-        }
-        let walks = matches!(intent, Intent::Patrol | Intent::Jump);
-        ClimberInput {
-            walk: if walks {
-                patrol(climber, scene)
-            } else {
-                DVec3::ZERO
+    /// The bot, its goal, and when it first came to the highest weak point, seconds.
+    pub(super) fn bot(&self) -> (&Bot, &Goal, Option<f64>) {
+        (&self.bot, &self.targets[self.at].goal, self.arrived)
+    }
+
+    /// The climber was put back to the start.
+    pub(super) fn begin_again(&mut self) {
+        self.bot.forget();
+        self.fencer.begin_again();
+        self.crossing = Crossing::default();
+    }
+
+    /// The input of the tick that begins at `seconds`.
+    pub(super) fn input(&mut self, arena: &Arena, seconds: f64) -> ClimberInput {
+        let (life, fighter) = (giant(arena), &arena.fighters()[0]);
+        let sight = Sight::of(life);
+        self.choose(arena);
+        let climber = fighter.climber();
+        let shake_ahead = self.eyes.shake_ahead(life, climber);
+        let state = climber.state();
+        let target = &self.targets[self.at];
+        let view = View {
+            seconds,
+            climber,
+            creature: CREATURE,
+            surface: life.surface(),
+            goal: &target.goal,
+            forecast: &self.forecast,
+            danger: match sight {
+                Sight { attacks: true, .. } => Danger::Attacks,
+                Sight { stays: true, .. } => Danger::None,
+                _ => Danger::Moves,
             },
-            ..ClimberInput::default()
+            shake_ahead,
+        };
+        let support = state.support.map(|support| support.attachment.obstacle);
+        if support != Some(CREATURE) {
+            if let Some(input) = self.crossing.input(climber, seconds, sight.attacks) {
+                return input;
+            }
+            if state.mode == ClimberMode::Standing
+                && let Some(shot) = self.fencer.shoot(arena, sight)
+            {
+                return shot;
+            }
+            return self.bot.input(&view);
+        }
+        if let Some(stab) = self.fencer.stab(arena, target.aim) {
+            return stab;
+        }
+        let is_there = self.bot.is_there(&view);
+        if self.bot.wants_rest(&view) || !is_there {
+            return self.bot.input(&view);
+        }
+        if Some(target.aim.weak_point) == self.highest {
+            self.arrived.get_or_insert(seconds);
+        }
+        let hold = ClimberInput {
+            grip: true,
+            ..ClimberInput::IDLE
+        };
+        if !life.is_open(target.aim.weak_point) || state.shake.length() > STEADY {
+            return hold;
+        }
+        match self.fencer.miss(arena, target.aim) {
+            Some(miss) => ClimberInput {
+                climb: miss.normalize_or_zero(),
+                walk: miss,
+                ..hold
+            },
+            None => self.bot.input(&view),
         }
     }
 
-    /// Decides whether the rider holds on.
-    fn look_at_its_footing(&mut self, climber: &Climber, seconds: f64) {
-        let (state, up) = (climber.state(), climber.config().up());
-        let slope = state.support.map(|support| {
-            let cosine = support.normal_in_world().dot(up);
-            libm::acos(cosine.clamp(-1.0, 1.0))
+    /// Chooses another target if the current one is reached: the nearest by the way from where the climber is.
+    fn choose(&mut self, arena: &Arena) {
+        let open = self.open(giant(arena));
+        if open.contains(&self.at) || open.is_empty() {
+            return;
+        }
+        let support = arena.fighters()[0].climber().state().support;
+        let here = support.and_then(|support| {
+            let material = support.attachment.material;
+            let weights = material.coordinates.map(|weight| weight as f32);
+            self.bot.graph().patch_near(material.triangle()?, weights)
         });
-        match (state.mode, slope) {
-            (ClimberMode::Standing, Some(slope)) => {
-                self.flies_since = None;
-                self.holds_on |= slope > HOLD_ON;
-                if slope < STAND_UP {
-                    self.holds_on = false;
-                }
-            }
-            (ClimberMode::Sliding, _) => self.holds_on = true,
-            (mode, Some(slope)) if mode.is_holding() => self.holds_on = slope > STAND_UP,
-            // In the air: by a jump, until the landing is missed, or because the skin moved away.
-            _ => {
-                let flies = self.flies_since.map(|since| seconds - since);
-                self.holds_on |= flies.is_none_or(|flies| flies > JUMP_SECONDS);
+        let left = |target: &usize| {
+            let goal = &self.targets[*target].goal;
+            here.map_or(0.0, |here| goal.least_seconds_from(here))
+        };
+        let nearest = open
+            .iter()
+            .copied()
+            .min_by(|a, b| left(a).total_cmp(&left(b)));
+        self.at = nearest.unwrap_or(0);
+        self.bot.forget();
+    }
+
+    /// The present targets: open weak points without a whole plate, and plates that cover one. If there are none, those
+    /// that are going to be open.
+    fn open(&self, life: &clamber_colossus::Creature) -> Vec<usize> {
+        let is_whole = |plate: usize| life.state().plate(plate) > 0;
+        let is_next = |index: &usize| {
+            let aim = self.targets[*index].aim;
+            let left = life.state().hit_points().get(aim.weak_point);
+            let mut others = self.targets.iter().map(|target| target.aim);
+            left.is_some_and(|left| *left > 0.0)
+                && aim.plate.map_or_else(
+                    || {
+                        let covers = |other: Aim| {
+                            other.weak_point == aim.weak_point && other.plate.is_some_and(is_whole)
+                        };
+                        !others.any(covers)
+                    },
+                    is_whole,
+                )
+        };
+        let next: Vec<usize> = (0..self.targets.len()).filter(is_next).collect();
+        let is_open = |index: &usize| life.is_open(self.targets[*index].aim.weak_point);
+        let open: Vec<usize> = next.iter().copied().filter(is_open).collect();
+        if open.is_empty() { next } else { open }
+    }
+}
+
+/// Position of a weak point at rest, in the units of the creature's file.
+fn place(life: &clamber_colossus::Creature, weak_point: usize) -> DVec3 {
+    let kind = life.kind();
+    let point = &kind.weak_points()[weak_point];
+    let palette = kind.skeleton().palette(&kind.skeleton().rest_pose());
+    let palette = palette.unwrap_or_default();
+    let frame = palette.model_from_joint(point.joint);
+    frame.map_or(DVec3::ZERO, |frame| {
+        frame.transform_point3(point.position.as_dvec3())
+    })
+}
+
+/// For each weak point: the plates that cover it, and itself.
+fn targets(life: &clamber_colossus::Creature, graph: &ClimbGraph) -> Vec<Target> {
+    let (kind, scale) = (life.kind(), life.scale());
+    let size = life.height() / TALL;
+    let mut targets = Vec::new();
+    for (weak_point, point) in kind.weak_points().iter().enumerate() {
+        let place = place(life, weak_point) * scale;
+        let is_of = |patch: usize, plate: usize| {
+            let triangle = graph.patches()[patch].triangle;
+            kind.plates()[plate].triangles.contains(&triangle)
+        };
+        let plates = 0..kind.plates().len();
+        let mut add = |plate: Option<usize>, patches: &[usize]| {
+            targets.push(Target {
+                aim: Aim { weak_point, plate },
+                goal: graph.goal(patches),
+            });
+        };
+        let over = graph.patches_near(place, COVER * size);
+        for plate in plates.clone() {
+            let on: Vec<usize> = over
+                .iter()
+                .copied()
+                .filter(|patch| is_of(*patch, plate))
+                .collect();
+            if !on.is_empty() {
+                add(Some(plate), &on);
             }
         }
+        let reach = f64::from(point.radius) * scale + BESIDE * size;
+        let is_skin = |patch: &usize| !plates.clone().any(|plate| is_of(*patch, plate));
+        let beside = graph.patches_near(place, reach);
+        let beside: Vec<usize> = beside.into_iter().filter(is_skin).collect();
+        add(None, &beside);
     }
-}
-
-/// True if the climber stands on skin that moves evenly, along with the creature.
-fn is_calm(climber: &Climber, scene: &RiderScene<'_>) -> bool {
-    let state = climber.state();
-    let velocity = state.support_velocity.unwrap_or(state.velocity);
-    state.mode == ClimberMode::Standing
-        && velocity.distance(scene.velocity) < JUMP_SPEED
-        && state.shake.length() < JUMP_SHAKE
-}
-
-/// The direction to walk in: towards the end of the patrol, or none if there is no walkable skin ahead.
-fn patrol(climber: &Climber, scene: &RiderScene<'_>) -> DVec3 {
-    let Some(middle) = scene.surface.motion(scene.perch, 1.0) else {
-        return DVec3::ZERO;
-    };
-    let forward = scene.surface.world_from_model().rotation * DVec3::Z;
-    let ahead = if (scene.seconds / LEG).rem_euclid(2.0) < 1.0 {
-        1.0
-    } else {
-        -1.0
-    };
-    let target = middle.position + forward * (ahead * REACH * scene.height);
-    let position = climber.state().position;
-    let level = (target - position) * DVec3::new(1.0, 0.0, 1.0);
-    let direction = level.normalize_or_zero();
-    let up = climber.config().up();
-    let feet = position - up * climber.config().body.radius;
-    let above = feet + direction * AHEAD + up * STEP;
-    let ground = scene.surface.cast_ray(above, -up, 2.0 * STEP);
-    let is_walkable = ground.is_some_and(|g| g.normal.dot(up) > libm::cos(WALKABLE));
-    if level.length() > ARRIVED && is_walkable {
-        direction * 0.6
-    } else {
-        DVec3::ZERO
-    }
+    targets
 }

@@ -1,5 +1,5 @@
-//! The part of a creature without a brain: which clip plays when, and where the creature is. It depends only on the
-//! ticks that have passed.
+//! The timetable of a creature in a ride: which clip plays when, and where the creature is. It depends only on the ticks
+//! that have passed.
 
 use std::collections::BTreeSet;
 
@@ -10,7 +10,7 @@ use glam::DVec3;
 
 use super::BattleError;
 use super::repeat::Repeat;
-use crate::{Creature, CreatureError, valley};
+use crate::{Creature, valley};
 
 /// Seconds over which one clip fades into the next.
 const FADE: f64 = 0.6;
@@ -28,23 +28,13 @@ const LANDING: f64 = 2.0;
 struct Act {
     clip: Option<usize>,
     seconds: f64,
-    kind: Kind,
+    /// The creature moves along its path, rather than staying where it is.
+    walks: bool,
     repeat: Repeat,
 }
 
-/// What the creature does in an act.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
-    /// The creature stays where it is, and may be approached.
-    Calm,
-    /// The creature moves along its path.
-    Walk,
-    /// The creature stays where it is, but shakes.
-    Wild,
-}
-
-/// The creature's part of a battle.
-pub struct Choreography<'a> {
+/// A creature that plays its clips by a timetable.
+pub(super) struct Choreography<'a> {
     creature: &'a Creature,
     acts: Vec<Act>,
     rest: Pose,
@@ -52,22 +42,26 @@ pub struct Choreography<'a> {
     scale: f64,
     /// Lowest y of the skin in the first pose, in model space.
     lowest: f64,
+    /// Walking speed, metres a second.
     speed: f64,
-    time: f64,
-    walked: f64,
-    /// The pose of the current tick, and memory for the fade.
+    /// Time of the clips, seconds.
+    pub(super) time: f64,
+    /// Distance that the creature has walked, metres.
+    pub(super) walked: f64,
+    /// The pose of the current tick.
     pose: Pose,
+    /// Memory for the pose that is faded in.
     fading: Pose,
-    palette: Palette,
+    /// The palette of the last [`Choreography::pose`].
+    pub(super) palette: Palette,
 }
 
 impl<'a> Choreography<'a> {
     /// A creature that is scaled to be `height` metres tall in its first pose.
     ///
     /// # Errors
-    /// [`BattleError::NoHeight`] if the creature is flat in its first pose, [`BattleError::Creature`] if a clip does
-    /// not fit its skeleton.
-    pub fn new(creature: &'a Creature, height: f64) -> Result<Self, BattleError> {
+    /// [`BattleError`] if the creature is flat in its first pose, or a clip does not fit its skeleton.
+    pub(super) fn new(creature: &'a Creature, height: f64) -> Result<Self, BattleError> {
         let mut acts = acts(creature);
         let rest = creature.skeleton.rest_pose();
         let mut first = rest.clone();
@@ -78,19 +72,13 @@ impl<'a> Choreography<'a> {
         let tall = f64::from(high.y) - f64::from(low.y);
         let scale = height / tall;
         if !(scale.is_normal() && scale > 0.0) {
-            return Err(BattleError::NoHeight {
-                creature: creature.name.clone(),
-                height,
-            });
+            return Err(no_height(creature, height));
         }
         let probe = SeamProbe::new(&creature.skeleton, &creature.collider, tall);
         let repeats = |act: &&mut Act| act.repeat != Repeat::Hold;
         for act in acts.iter_mut().filter(repeats) {
             if let Some(clip) = act.clip {
-                let seam = probe
-                    .measure(&creature.clips[clip])
-                    .map_err(CreatureError::from)?;
-                act.repeat = Repeat::of(seam);
+                act.repeat = Repeat::of(probe.measure(&creature.clips[clip])?);
             }
         }
         let speed = creature
@@ -112,23 +100,19 @@ impl<'a> Choreography<'a> {
     }
 
     /// Advances the time by `dt` seconds, and moves the creature along its path. Poses nothing.
-    ///
-    /// # Errors
-    /// None at present.
-    pub fn advance(&mut self, dt: f64) -> Result<(), BattleError> {
+    pub(super) fn advance(&mut self, dt: f64) {
         self.time += dt;
         let (now, before, share) = self.moment();
-        let walking = |act: usize| f64::from(u8::from(self.acts[act].kind == Kind::Walk));
+        let walking = |act: usize| f64::from(u8::from(self.acts[act].walks));
         let pace = walking(before) * (1.0 - share) + walking(now) * share;
         self.walked += pace * self.speed * dt;
-        Ok(())
     }
 
     /// Poses the creature for the current tick: its palette, and its place in the world.
     ///
     /// # Errors
-    /// [`BattleError::Creature`] if a clip does not fit the skeleton.
-    pub fn pose(&mut self) -> Result<(&Palette, Similarity), BattleError> {
+    /// [`BattleError`] if a clip does not fit the skeleton.
+    pub(super) fn pose(&mut self) -> Result<(&Palette, Similarity), BattleError> {
         let (now, before, share) = self.moment();
         self.pose.clone_from(&self.rest);
         if let Some((clip, time)) = self.clip(before) {
@@ -146,29 +130,8 @@ impl<'a> Choreography<'a> {
         Ok((&self.palette, self.world_from_model()))
     }
 
-    /// Seconds passed and metres walked: the whole state.
-    pub(super) fn progress(&self) -> (f64, f64) {
-        (self.time, self.walked)
-    }
-
-    /// Restores a state from [`Choreography::progress`].
-    pub(super) fn go_to(&mut self, (time, walked): (f64, f64)) {
-        (self.time, self.walked) = (time, walked);
-    }
-
-    /// The palette of the last [`Choreography::pose`].
-    pub fn palette(&self) -> &Palette {
-        &self.palette
-    }
-
-    /// True if the creature stays where it is and does not shake: its feet may be approached.
-    pub fn is_calm(&self) -> bool {
-        let (now, ..) = self.moment();
-        self.acts[now].kind == Kind::Calm
-    }
-
     /// The current clip and the time in it, as text for messages.
-    pub fn playing(&self) -> String {
+    pub(super) fn playing(&self) -> String {
         let (now, before, share) = self.moment();
         let Some((clip, time)) = self.clip(now) else {
             return "at rest".into();
@@ -181,7 +144,7 @@ impl<'a> Choreography<'a> {
     }
 
     /// Names of the clips that are not loops and are therefore played back and forth.
-    pub fn turned_back(&self) -> Vec<String> {
+    pub(super) fn turned_back(&self) -> Vec<String> {
         let acts = self
             .acts
             .iter()
@@ -238,6 +201,14 @@ impl<'a> Choreography<'a> {
     }
 }
 
+/// The creature cannot be scaled to a height, metres.
+pub(super) fn no_height(creature: &Creature, height: f64) -> BattleError {
+    let name = &creature.name;
+    BattleError::new(format!(
+        "{name} has no height in its first pose, so it cannot be scaled to {height} m"
+    ))
+}
+
 /// The acts, by the names of the creature's clips.
 ///
 /// Idle, walk, and if there is a shake, shake and walk. Without idle and walk: the first pose of the first clip, and
@@ -250,17 +221,17 @@ fn acts(creature: &Creature) -> Vec<Act> {
             .iter()
             .position(|other| std::ptr::eq(other, clip))
     };
-    let act = |clip, seconds, kind| Act {
+    let act = |clip, seconds, walks| Act {
         clip: Some(clip),
         seconds,
-        kind,
+        walks,
         repeat: Repeat::Loop,
     };
     let (idle, walk) = (index(&["idle"]), index(&["walk", "run"]));
     if let (Some(idle), Some(walk)) = (idle, walk) {
-        let mut acts = vec![act(idle, 6.0, Kind::Calm), act(walk, 16.0, Kind::Walk)];
+        let mut acts = vec![act(idle, 6.0, false), act(walk, 16.0, true)];
         if let Some(shake) = index(&["shake", "attack"]) {
-            acts.extend([act(shake, 4.0, Kind::Wild), act(walk, 12.0, Kind::Walk)]);
+            acts.extend([act(shake, 4.0, false), act(walk, 12.0, true)]);
         }
         return acts;
     }
@@ -268,12 +239,12 @@ fn acts(creature: &Creature) -> Vec<Act> {
         let name = clip.name.to_lowercase();
         !name.contains("death") && !name.contains("die")
     });
-    let mut acts: Vec<Act> = lively.map(|(clip, _)| act(clip, 8.0, Kind::Calm)).collect();
+    let mut acts: Vec<Act> = lively.map(|(clip, _)| act(clip, 8.0, false)).collect();
     // Still until a rider has landed: some clips begin with an attack, at 70 m/s.
     if let Some(first) = acts.first().and_then(|first| first.clip) {
         let still = Act {
             repeat: Repeat::Hold,
-            ..act(first, LANDING, Kind::Calm)
+            ..act(first, LANDING, false)
         };
         acts.insert(0, still);
     }
@@ -281,7 +252,7 @@ fn acts(creature: &Creature) -> Vec<Act> {
         acts.push(Act {
             clip: None,
             seconds: 8.0,
-            kind: Kind::Calm,
+            walks: false,
             repeat: Repeat::Loop,
         });
     }

@@ -3,46 +3,49 @@
 use clamber_climber::{ClimberInput, ClimberMode};
 use clamber_fight::actions::{BOW, STAB};
 use clamber_fight::aim::lead;
-use clamber_fight::{Act, FighterId};
+use clamber_fight::{Act, Arena, FighterId};
 use glam::DVec3;
 
-use super::Performer;
-use super::performer::Sight;
-use super::planner::Aim;
-use super::scene::TICK;
+use super::TICK;
+use super::bot::{Aim, Sight, giant};
 
-/// Arrows that it shoots before it comes near.
+/// Arrows that the bot shoots before it comes near.
 const ARROWS: u32 = 2;
 
-/// It shoots from so far, metres.
+/// Least and largest distance of a shot, metres.
 const RANGE: [f64; 2] = [14.0, 60.0];
 
-/// Ticks for which it draws.
+/// Ticks for which the bot draws its bow.
 const DRAW: u32 = 66;
 
-/// It does not begin a stab in a shake beyond this, metres a second squared, or with less stamina.
+/// Shake up to which the bot begins a stab, metres a second squared.
 const CALM: f64 = 6.0;
+/// Least stamina with which the bot begins a stab.
 const STRONG: f64 = 0.15;
 
-/// It strikes with this charge.
+/// Charge at which the bot strikes.
 const FULL: f64 = 0.999;
 
-/// Memory of its weapons.
+/// The fighter that the bot plays.
+const HERO: FighterId = FighterId(0);
+
+/// What the bot remembers of its weapons.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Fencer {
+    /// Arrows that were shot.
     shot: u32,
+    /// Ticks for which the bow has been drawn.
     drawn: u32,
-    /// It pressed the button in the last tick.
+    /// The button was down in the last tick.
     pressed: bool,
-    /// Where its aim was a tick ago.
+    /// Position of the target a tick ago.
     target: Option<DVec3>,
 }
 
 impl Fencer {
-    /// The input of a stab: begins one if the blade would go where it should, and goes on with it. `None` if there is
-    /// none.
-    pub(super) fn stab(&mut self, performer: &Performer<'_>, aim: Aim) -> Option<ClimberInput> {
-        let fighter = performer.fighter()?;
+    /// The input of a stab, which begins if the blade would hit the aim, and is continued; `None` without a stab.
+    pub(super) fn stab(&mut self, arena: &Arena, aim: Aim) -> Option<ClimberInput> {
+        let fighter = arena.fighter(HERO)?;
         let state = fighter.climber().state();
         let holds = |actions| ClimberInput {
             grip: true,
@@ -61,35 +64,31 @@ impl Fencer {
             Act::Strike { .. } | Act::Plunge { .. } | Act::PullOut { .. } => press(false),
             Act::Ready => {
                 // No terrain is between them while it stands on the creature.
-                let aimed = performer.arena()?.stab_aim(FighterId(0), &[])?;
+                let aimed = arena.stab_aim(HERO, &[])?;
                 let is_right = match aim.plate {
                     Some(plate) => aimed.plate == Some(plate),
-                    None => aimed.plate.is_none() && aimed.weak_point == aim.weak_point,
+                    None => aimed.plate.is_none() && aimed.weak_point == Some(aim.weak_point),
                 };
                 let is_firm = matches!(state.mode, ClimberMode::Standing | ClimberMode::Holding);
-                let can = is_right && aim.weak_point.is_some() && is_firm;
-                let can = can && state.shake.length() < CALM && state.stamina > STRONG;
+                let is_able = state.shake.length() < CALM && state.stamina > STRONG;
+                let can = is_right && is_firm && is_able;
                 if can { press(!was_pressed) } else { None }
             }
             Act::Cut { .. } | Act::Draw { .. } | Act::Throw { .. } => None,
         }
     }
 
-    /// How far the blade would miss its weak point, and where to: a vector; `None` if there is no skin before it.
-    pub(super) fn miss(&self, performer: &Performer<'_>, aim: Aim) -> Option<DVec3> {
-        let place = performer.life()?.weak_point(aim.weak_point?)?;
-        let aimed = performer.arena()?.stab_aim(FighterId(0), &[])?;
+    /// The vector from the point that the blade would hit to the weak point; `None` if there is no skin before the blade.
+    pub(super) fn miss(&self, arena: &Arena, aim: Aim) -> Option<DVec3> {
+        let place = giant(arena).weak_point(aim.weak_point)?;
+        let aimed = arena.stab_aim(HERO, &[])?;
         Some(place - aimed.place)
     }
 
-    /// The input of a shot from the ground; `None` if it does not shoot.
-    pub(super) fn shoot(
-        &mut self,
-        performer: &Performer<'_>,
-        sight: Sight,
-    ) -> Option<ClimberInput> {
-        let fighter = performer.fighter()?;
-        let (climber, arena) = (fighter.climber(), performer.arena()?);
+    /// The input of a shot from the ground; `None` without a shot.
+    pub(super) fn shoot(&mut self, arena: &Arena, sight: Sight) -> Option<ClimberInput> {
+        let fighter = arena.fighter(HERO)?;
+        let climber = fighter.climber();
         let from = fighter.nock()?;
         let (_, _, place) = arena.next_weak_point(from)?;
         let velocity = self
@@ -118,7 +117,7 @@ impl Fencer {
         })
     }
 
-    /// It is put back to the start: its arrows are shot.
+    /// The climber was put back to the start; the arrows that it shot are gone.
     pub(super) fn begin_again(&mut self) {
         *self = Self {
             shot: self.shot,

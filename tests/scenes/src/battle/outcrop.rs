@@ -1,41 +1,41 @@
 //! An outcrop on the way to the creature: a wall with an edge to hang from, and a slope behind it that is too steep to
-//! stand on.
+//! stand on; and the bot's way over it.
 
+use clamber_climber::{Climber, ClimberInput, ClimberMode};
 use clamber_world::rapier3d::prelude::*;
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 
 use super::BattleError;
+use super::rockfall::Triangles;
 use crate::valley;
 
-/// X of its wall, and z of its middle, metres: it is climbed along +X.
+/// X of its wall, metres: it is climbed along +X.
 pub(super) const WALL: f64 = 33.0;
+/// Z of its middle, metres.
 const MIDDLE: f64 = 0.0;
 
-/// Height of its top above the ground at the wall, and length of the top along X, metres. A climber cannot reach the
-/// top from the ground, but can with a jump.
+/// Height of its top above the ground at the wall, metres. A climber cannot reach the top from the ground, but can with
+/// a jump.
 const HEIGHT: f64 = 2.3;
+/// Length of the top along X, metres.
 const TOP: f64 = 2.5;
 
-/// Length of the slope behind the top along X, metres, and its fall for each metre: 60 degrees.
+/// Length of the slope behind the top along X, metres.
 const SLOPE: f64 = 2.2;
+/// Fall of the slope for each metre: 60 degrees.
 const STEEPNESS: f64 = 1.732;
 
 /// Half of its width along Z, metres.
 const HALF_WIDTH: f64 = 3.5;
 
-/// Room beside it, metres.
+/// Width of the way around it on either side, metres.
 const BESIDE: f64 = 1.0;
 
 /// X of the end of its slope, metres.
-pub(super) const END: f64 = WALL + TOP + SLOPE;
-
-/// True if whoever walks along +X at this z comes to the outcrop, or near it.
-pub(super) fn is_in_line(z: f64) -> bool {
-    (z - MIDDLE).abs() < HALF_WIDTH + BESIDE
-}
+const END: f64 = WALL + TOP + SLOPE;
 
 /// The outcrop's corners, in the world, and its triangles.
-pub fn mesh() -> (Vec<Vec3>, Vec<[u32; 3]>) {
+pub fn mesh() -> Triangles {
     let top = valley::height(WALL, MIDDLE) + HEIGHT;
     let behind = top - SLOPE * STEEPNESS;
     let profile = [
@@ -71,8 +71,75 @@ pub fn mesh() -> (Vec<Vec3>, Vec<[u32; 3]>) {
 pub(super) fn insert(world: &mut PhysicsWorld) -> Result<(), BattleError> {
     let (corners, triangles) = mesh();
     let collider = ColliderBuilder::trimesh(corners, triangles);
-    let collider = collider.map_err(|error| BattleError::Outcrop(error.to_string()))?;
+    let collider =
+        collider.map_err(|error| format!("the outcrop cannot be added to the valley: {error}"))?;
     world.insert_collider(collider, None);
     world.detect_collisions(&(), &());
     Ok(())
+}
+
+/// The bot jumps within this distance of the wall, metres.
+const JUMP: f64 = 0.9;
+
+/// Least time between two jumps, seconds.
+const BETWEEN_JUMPS: f64 = 1.2;
+
+/// What the bot remembers of its way over the outcrop.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Crossing {
+    /// The climber has been behind it.
+    crossed: bool,
+    /// Time of the last jump, seconds.
+    jumped: Option<f64>,
+}
+
+impl Crossing {
+    /// The input on the way over the outcrop, or around it once the climber has crossed it; `None` where it is not in the
+    /// way. An attacked climber steps back from the wall.
+    pub(super) fn input(
+        &mut self,
+        climber: &Climber,
+        seconds: f64,
+        attacked: bool,
+    ) -> Option<ClimberInput> {
+        let state = climber.state();
+        let is_before =
+            state.position.x < END && (state.position.z - MIDDLE).abs() < HALF_WIDTH + BESIDE;
+        self.crossed |= state.position.x >= END;
+        if !is_before || self.crossed && attacked {
+            return None;
+        }
+        if self.crossed {
+            let aside = DVec3::Z * state.position.z.signum();
+            return Some(ClimberInput {
+                walk: aside,
+                grip: state.mode == ClimberMode::Standing,
+                ..ClimberInput::IDLE
+            });
+        }
+        if state.mode == ClimberMode::Tumbling {
+            return Some(ClimberInput::IDLE);
+        }
+        let grip = ClimberInput {
+            grip: true,
+            ..ClimberInput::IDLE
+        };
+        if state.mode == ClimberMode::LedgeHanging {
+            return Some(ClimberInput {
+                climb: climber.config().up(),
+                ..grip
+            });
+        }
+        let gap = WALL - climber.config().body.radius - state.position.x;
+        let is_near = (0.0..JUMP).contains(&gap) && state.mode == ClimberMode::Standing;
+        let is_rested = self
+            .jumped
+            .is_none_or(|jumped| seconds - jumped > BETWEEN_JUMPS);
+        let jump = is_near && is_rested && !attacked;
+        if jump {
+            self.jumped = Some(seconds);
+        }
+        let walk = if attacked { -DVec3::X } else { DVec3::X };
+        Some(ClimberInput { walk, jump, ..grip })
+    }
 }

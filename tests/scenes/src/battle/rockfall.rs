@@ -2,14 +2,12 @@
 
 use std::time::Instant;
 
+use clamber_surface::surface::SkinnedSurface;
 use clamber_world::rapier3d::prelude::*;
 use clamber_world::{Debris, DebrisConfig};
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
-use super::checks::ROCKS_INSIDE;
-use super::faults::{Faults, Moment};
-use super::scene::CREATURE;
-use super::{BattleError, TICK};
+use super::{BattleError, CREATURE, TICK};
 use crate::rocks::scatter;
 use crate::{solid_angle, valley};
 
@@ -28,6 +26,9 @@ const LOOK_EVERY: u64 = 30;
 /// A rock lies in the valley if its centre is less than this above the ground, metres at a scale of 1.
 const LIES: f64 = 4.0;
 
+/// Corners and triangles of a mesh.
+pub type Triangles = (Vec<Vec3>, Vec<[u32; 3]>);
+
 /// The rocks of a battle, and counts of what happened to them.
 #[derive(Clone, Debug)]
 pub struct Rockfall {
@@ -37,25 +38,18 @@ pub struct Rockfall {
     rng: fastrand::Rng,
     /// Index of the next rock to check for lying in the valley.
     next: usize,
-    report: RockfallReport,
-    times: Vec<f64>,
-}
-
-/// Counts of what happened to the rocks.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct RockfallReport {
     /// How often a rock was dropped, the first drop of each included.
     pub drops: u32,
-    /// `DebrisReport::near`, summed over all ticks: rocks with skin near them.
+    /// [`DebrisReport::near`](clamber_world::DebrisReport::near), summed over all ticks: rocks with skin near them.
     pub near: u64,
-    /// `DebrisReport::put_back`, summed over all ticks: rocks put back in front of the skin.
+    /// [`DebrisReport::put_back`](clamber_world::DebrisReport::put_back), summed over all ticks: rocks put back in front
+    /// of the skin.
     pub put_back: u32,
-    /// `DebrisReport::caught`, summed over all ticks: rocks that skin passes through.
-    pub caught: u32,
-    /// How often a rock was found under the ground, or inside the creature without being caught (such as under a foot).
-    pub fell_through: u32,
     /// How often a rock was knocked out of the valley, where there is no ground.
     pub left: u32,
+    /// Rocks that were found inside the creature without being caught, as under a foot, or below the ground, in the last
+    /// tick: index, place and kind of the fault.
+    pub faults: Vec<(usize, DVec3, &'static str)>,
 }
 
 impl Rockfall {
@@ -78,25 +72,24 @@ impl Rockfall {
             scale,
             rng: fastrand::Rng::with_seed(seed),
             next: 0,
-            report: RockfallReport {
-                drops: rocks.len() as u32,
-                ..RockfallReport::default()
-            },
+            drops: rocks.len() as u32,
+            near: 0,
+            put_back: 0,
+            left: 0,
+            faults: Vec::new(),
             rocks,
-            times: Vec::new(),
         })
     }
 
     /// Steps the world with its rocks. Drops lost rocks again from about `above`, and once a second a rock that lies in
-    /// the valley.
+    /// the valley. Returns the time that rocks and physics took, microseconds.
     pub(super) fn step(
         &mut self,
-        moment: &Moment<'_>,
+        surface: &SkinnedSurface,
+        tick: u64,
         world: &mut PhysicsWorld,
         above: DVec3,
-        faults: &mut Faults,
-    ) -> Result<(), BattleError> {
-        let (surface, tick) = (moment.surface(), moment.tick);
+    ) -> Result<f64, BattleError> {
         let start = Instant::now();
         let surfaces = [(CREATURE, surface)];
         let (bodies, colliders) = (&mut world.bodies, &mut world.colliders);
@@ -113,22 +106,21 @@ impl Rockfall {
             narrow_phase,
             TICK,
         )?;
-        self.times.push(start.elapsed().as_secs_f64() * 1e6);
-        self.report.near += u64::from(report.near);
-        self.report.put_back += report.put_back;
-        self.report.caught += report.caught;
+        let time = start.elapsed().as_secs_f64() * 1e6;
+        self.near += u64::from(report.near);
+        self.put_back += report.put_back;
+        self.faults.clear();
         if tick.is_multiple_of(LOOK_EVERY) {
-            self.look_inside(moment, world, faults);
+            self.look_inside(surface, world);
         }
-        self.bring_back(moment, world, above, faults);
+        self.bring_back(world, above);
         if tick.is_multiple_of(AGAIN) {
             self.drop_again(world, above);
         }
-        Ok(())
+        Ok(time)
     }
 
-    fn look_inside(&mut self, moment: &Moment<'_>, world: &PhysicsWorld, faults: &mut Faults) {
-        let surface = moment.surface();
+    fn look_inside(&mut self, surface: &SkinnedSurface, world: &PhysicsWorld) {
         let mut positions = Vec::new();
         surface.skin_all(&mut positions);
         for (index, rock) in self.rocks.iter().enumerate() {
@@ -136,33 +128,21 @@ impl Rockfall {
             let in_model = surface.world_from_model().inverse_transform_point(place);
             let inside = solid_angle::is_inside_skin(&positions, surface, in_model);
             if inside && !self.debris.is_let_through(*rock) {
-                self.report.fell_through += 1;
-                faults.note(ROCKS_INSIDE, || {
-                    moment.describe(&format!("rock {index} inside"), place)
-                });
+                self.faults.push((index, place, "inside"));
             }
         }
     }
 
     /// Drops rocks again that no ground will stop: those out of the valley, which have a count of their own, and those
     /// under its ground, which are a fault.
-    fn bring_back(
-        &mut self,
-        moment: &Moment<'_>,
-        world: &mut PhysicsWorld,
-        above: DVec3,
-        faults: &mut Faults,
-    ) {
+    fn bring_back(&mut self, world: &mut PhysicsWorld, above: DVec3) {
         for index in 0..self.rocks.len() {
             let body = &mut world.bodies[self.rocks[index]];
             let place = body.translation().as_dvec3();
             if !valley::contains(place.x, place.z) {
-                self.report.left += 1;
+                self.left += 1;
             } else if place.y < valley::height(place.x, place.z) {
-                self.report.fell_through += 1;
-                faults.note(ROCKS_INSIDE, || {
-                    moment.describe(&format!("rock {index} below the ground"), place)
-                });
+                self.faults.push((index, place, "below the ground"));
             } else {
                 continue;
             }
@@ -192,7 +172,7 @@ impl Rockfall {
         let body = &mut world.bodies[self.rocks[index]];
         body.set_translation(place.as_vec3(), true);
         body.set_linvel(Vector::ZERO, true);
-        self.report.drops += 1;
+        self.drops += 1;
     }
 
     /// Handles of the rocks' bodies in the physics world.
@@ -200,24 +180,21 @@ impl Rockfall {
         &self.rocks
     }
 
-    /// Number of rocks.
-    pub fn len(&self) -> usize {
-        self.rocks.len()
-    }
-
-    /// True if there are no rocks.
-    pub fn is_empty(&self) -> bool {
-        self.rocks.is_empty()
-    }
-
-    /// The counts so far.
-    pub fn report(&self) -> &RockfallReport {
-        &self.report
-    }
-
-    /// Time of each tick for the rocks, physics included, microseconds.
-    pub fn times(&self) -> &[f64] {
-        &self.times
+    /// The meshes of the rocks' colliders, each with its rock's body.
+    pub fn meshes(&self, world: &PhysicsWorld) -> Vec<(RigidBodyHandle, Triangles)> {
+        let mut meshes = Vec::new();
+        for rock in &self.rocks {
+            for collider in world.bodies[*rock].colliders() {
+                let mesh = match world.colliders[*collider].shape().as_typed_shape() {
+                    TypedShape::Ball(ball) => ball.to_trimesh(24, 16),
+                    TypedShape::Cuboid(cuboid) => cuboid.to_trimesh(),
+                    TypedShape::Capsule(capsule) => capsule.to_trimesh(24, 12),
+                    _ => continue,
+                };
+                meshes.push((*rock, mesh));
+            }
+        }
+        meshes
     }
 
     /// A 64-bit hash of the rocks' positions and rotations.

@@ -1,7 +1,7 @@
 //! Whole battles, with a check in every tick that all numbers are finite.
 
 use clamber_scenes::Creature;
-use clamber_scenes::battle::{Battle, BattleOptions, Story, Summary};
+use clamber_scenes::battle::{Battle, BattleOptions, Story, Watch};
 
 /// Length of a battle, seconds.
 const SECONDS: f64 = 15.0;
@@ -18,17 +18,18 @@ pub(crate) fn fight(giant: &Creature, seed: u64) -> usize {
     let options = BattleOptions {
         story: Some(story),
         seconds: Some(SECONDS),
-        out: "target/soak".into(),
         ..BattleOptions::ride(24, seed)
     };
     let mut battle = match Battle::new(giant, &options) {
         Ok(battle) => battle,
         Err(error) => panic!("the battle cannot be made: {error}"),
     };
+    let mut watch = Watch::default();
     for tick in 0..options.ticks() {
         if let Err(error) = battle.step(options.input_at(tick)) {
             panic!("tick {tick}: {error}");
         }
+        watch.tick(&battle);
         let state = battle.climber().state();
         let support = state.support.map(|support| support.attachment.point);
         let finite = state.position.is_finite()
@@ -42,9 +43,9 @@ pub(crate) fn fight(giant: &Creature, seed: u64) -> usize {
             assert!(at.is_finite(), "tick {tick}: a rock is at {at}");
         }
     }
-    let summary = Summary::new(&battle, &options);
-    for check in &summary.checks {
-        assert!(check.holds, "{check:?}");
+    let checks = watch.checks(&battle, &options);
+    for check in &checks {
+        assert!(check.holds(), "{check}");
     }
-    summary.ticks * 3 + summary.checks.len()
+    watch.ticks() * 3 + checks.len()
 }

@@ -1,0 +1,181 @@
+//! Each check of a ride fails on its own fault and on no other.
+
+use clamber::climber::{Climber, ClimberState};
+use clamber::glam::DVec3;
+use clamber::world::Obstacle;
+use clamber_scenes::battle::{
+    Battle, BattleOptions, DRIFT, FALLS, INSIDE, Intent, MAX_DRIFT, MAX_STANDS_OFF, STANDS_OFF,
+    TERRAIN, Watch,
+};
+use clamber_scenes::giant::giant;
+use clamber_scenes::valley;
+
+const HEIGHT: f64 = 20.0;
+
+/// A rider that has stood on the giant for a while, and a watch that has recorded its point there.
+struct Scene<'a> {
+    battle: &'a Battle<'a>,
+    watch: Watch,
+}
+
+impl<'a> Scene<'a> {
+    fn new(battle: &'a Battle<'a>) -> Self {
+        let mut scene = Self {
+            battle,
+            watch: Watch::default(),
+        };
+        // The first look records the point that the rider stands on.
+        scene.look(*battle.climber().state());
+        scene
+    }
+
+    /// Checks the rider as if it were in a state; returns the drift.
+    fn look(&mut self, state: ClimberState) -> Option<f64> {
+        let mut climber: Climber = self.battle.climber().clone();
+        climber.restore(state).unwrap();
+        self.watch.look(self.battle, &climber, true)
+    }
+}
+
+fn stood<R>(test: impl FnOnce(&mut Scene<'_>, ClimberState) -> R) -> R {
+    let creature = giant().unwrap();
+    let options = BattleOptions {
+        height: Some(HEIGHT),
+        ..BattleOptions::ride(0, 1)
+    };
+    let mut battle = Battle::new(&creature, &options).unwrap();
+    for _ in 0..120 {
+        battle.step(Intent::Stand).unwrap();
+    }
+    let state = *battle.climber().state();
+    assert!(
+        state.support.is_some(),
+        "the rider has not landed: {state:?}"
+    );
+    test(&mut Scene::new(&battle), state)
+}
+
+/// The state with only its body moved.
+fn moved(state: ClimberState, by: DVec3) -> ClimberState {
+    ClimberState {
+        position: state.position + by,
+        ..state
+    }
+}
+
+fn normal(state: &ClimberState) -> DVec3 {
+    state.support.unwrap().normal_in_world()
+}
+
+#[test]
+fn a_rider_that_stands_where_it_stood_has_no_fault() {
+    stood(|scene, state| {
+        let drift = scene.look(state).unwrap();
+        assert!(drift < MAX_DRIFT, "drift {drift}");
+        let watch = &scene.watch;
+        assert!(watch.stands_off < 1e-4, "stands off {}", watch.stands_off);
+        assert_eq!((watch.pushed_off, watch.falls), (0.0, 0));
+        assert!(watch.first_fault(DRIFT).is_none());
+    });
+}
+
+#[test]
+fn a_contact_off_its_material_point_is_drift() {
+    stood(|scene, state| {
+        let mut support = state.support.unwrap();
+        support.attachment.point += normal(&state).any_orthonormal_vector() * 2e-4;
+        let drift = scene.look(ClimberState {
+            support: Some(support),
+            ..state
+        });
+        assert!(drift.unwrap() > 1.5e-4, "drift {drift:?}");
+        assert!(scene.watch.first_fault(DRIFT).is_some());
+    });
+}
+
+#[test]
+fn another_material_point_without_input_is_drift() {
+    stood(|scene, state| {
+        let elsewhere = state.position + normal(&state).any_orthonormal_vector() * 0.5;
+        let nearest = scene
+            .battle
+            .surface()
+            .closest_point(elsewhere, 5.0)
+            .unwrap();
+        let mut support = state.support.unwrap();
+        (support.attachment.material, support.attachment.point) = (nearest.material, nearest.point);
+        let drift = scene.look(ClimberState {
+            support: Some(support),
+            ..state
+        });
+        assert!(drift.unwrap() > 0.1, "drift {drift:?}");
+    });
+}
+
+#[test]
+fn a_body_sunk_into_its_point_is_drift() {
+    stood(|scene, state| {
+        let drift = scene.look(moved(state, normal(&state) * -2e-4));
+        assert!(drift.unwrap() > 1.5e-4, "drift {drift:?}");
+    });
+}
+
+#[test]
+fn a_body_that_floats_stands_off_and_is_not_pushed() {
+    stood(|scene, state| {
+        scene.look(moved(state, normal(&state) * 0.011));
+        let watch = &scene.watch;
+        assert!(watch.stands_off > MAX_STANDS_OFF, "{}", watch.stands_off);
+        assert_eq!(watch.pushed_off, 0.0);
+        assert!(watch.first_fault(STANDS_OFF).is_some());
+        assert!(watch.first_fault(DRIFT).is_none());
+    });
+}
+
+/// The ball touches skin, but skin that leaves it room on its point: nothing pushed it away.
+#[test]
+fn a_body_that_slid_along_open_skin_stands_off_and_is_not_pushed() {
+    stood(|scene, state| {
+        let surface = scene.battle.surface();
+        let radius = scene.battle.climber().config().body.radius;
+        let aside = state.position + normal(&state).any_orthonormal_vector() * 0.3;
+        let under = surface.closest_point(aside, 5.0).unwrap();
+        let place = under.point + under.separation_normal(aside) * radius;
+        scene.look(moved(state, place - state.position));
+        let watch = &scene.watch;
+        assert!(watch.stands_off > MAX_STANDS_OFF, "{}", watch.stands_off);
+        assert_eq!(watch.pushed_off, 0.0);
+    });
+}
+
+#[test]
+fn a_rider_on_the_ground_has_fallen_once_until_it_rides_again() {
+    stood(|scene, state| {
+        let mut support = state.support.unwrap();
+        support.attachment.obstacle = TERRAIN;
+        let down = ClimberState {
+            support: Some(support),
+            ..state
+        };
+        scene.look(down);
+        scene.look(down);
+        assert_eq!(scene.watch.falls, 1);
+        let cause = scene.watch.first_fault(FALLS).unwrap();
+        assert!(cause.contains("left the creature"), "{cause}");
+        scene.look(state);
+        scene.look(down);
+        assert_eq!(scene.watch.falls, 2, "fallen again");
+    });
+}
+
+#[test]
+fn a_rider_below_the_ground_is_a_fault_inside_the_valley_only() {
+    stood(|scene, state| {
+        scene.look(moved(state, DVec3::Y * -60.0));
+        assert_eq!(scene.watch.inside, 1);
+        let cause = scene.watch.first_fault(INSIDE).unwrap();
+        assert!(cause.contains("below the ground"), "{cause}");
+        scene.look(moved(state, DVec3::new(valley::SIZE, -60.0, 0.0)));
+        assert_eq!(scene.watch.inside, 1, "there is no ground outside");
+    });
+}
