@@ -10,7 +10,7 @@ use cargo_metadata::camino::Utf8Path;
 use cargo_metadata::{Package, Target};
 use serde_json::Value;
 
-use crate::process::{cargo_path, split};
+use crate::process::{IGNORE_RUST_VERSION, cargo_path, split};
 
 /// Examples that open a window: a step builds them with `--all-targets`, and none runs them.
 const WINDOWS: [&str; 2] = ["first", "fox"];
@@ -95,10 +95,13 @@ pub(crate) fn ask(folder: &Utf8Path, line: &str) -> Result<Call, String> {
 fn graph(folder: &Utf8Path, words: &[&str]) -> Result<Call, String> {
     let mut cargo = Command::new(cargo_path());
     // `cargo run` has no graph: it builds what `cargo build` would build.
-    cargo
-        .arg(words[0].replace("run", "build"))
-        .args(&words[1..]);
-    cargo.args(["-Zunstable-options", "--unit-graph"]);
+    cargo.arg(words[0].replace("run", "build"));
+    cargo.args(
+        words[1..]
+            .iter()
+            .filter(|word| **word != IGNORE_RUST_VERSION),
+    );
+    cargo.args([IGNORE_RUST_VERSION, "-Zunstable-options", "--unit-graph"]);
     cargo.current_dir(folder).env("RUSTC_BOOTSTRAP", "1");
     let output = cargo.output();
     let output = output.map_err(|error| format!("cannot run cargo: {error}"))?;

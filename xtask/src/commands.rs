@@ -276,7 +276,6 @@ none <= cargo run --release --example battle -- --out x | cat
 none <= cargo test -p clamber_gltf --lib -- --ignored
 none <= CLAMBER_BLESS=1 cargo test --test bots
 none <= clamber inspect --hominid FILE
-none <= cd examples/bevy && cargo run --features gamepad
 none <= cargo add --path ../clamber --features serde,record
 no battel <= cargo run --release --example battel
 requires the features: `record` <= cargo run --release --example replay

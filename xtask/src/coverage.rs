@@ -115,8 +115,10 @@ mod tests {
         let targets = &mut world.unwrap().targets;
         targets.extend(targets.iter().find(|target| target.is_test()).cloned());
         targets.last_mut().unwrap().name = "nobody".into();
-        let removed = "ci: benches, ci: golden, ci: examples, nightly: peers";
-        plan.calls.retain(|(step, _)| !removed.contains(step));
+        let removed = "benches golden examples peers";
+        let name = |step: &str| step.rsplit(' ').next().unwrap().to_owned();
+        plan.calls
+            .retain(|(step, _)| !removed.contains(&name(step)));
         let gaps = gaps(&plan).join("\n");
         for part in [
             "test nobody of clamber_world",
