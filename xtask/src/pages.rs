@@ -1,5 +1,5 @@
-//! Finds the commands of the documentation: lines of blocks that are marked `sh`, `bash` or `console`, and words in
-//! backticks that begin with a known program. Pages are all Markdown files but the changelog, which describes earlier
+//! Finds the commands of the documentation: lines of blocks that are marked `sh`, `bash` or `console`, and indented lines
+//! and words in backticks that begin with a known program. Pages are all Markdown files but the changelog, which describes earlier
 //! versions.
 
 use std::collections::BTreeMap;
@@ -62,6 +62,11 @@ pub(crate) fn commands(page: &str) -> Vec<String> {
             }
             continue;
         }
+        let indented = text
+            .lines()
+            .filter(|line| line.starts_with("    "))
+            .map(one_line);
+        commands.extend(indented.filter(|line| is_command(line)));
         for paragraph in text.split("\n\n") {
             let code = paragraph.split('`').skip(1).step_by(2);
             let code = code.map(|text| one_line(&text.replace("\\|", "|")));
@@ -123,6 +128,8 @@ cargo run
 '''rust
 let a = 1; // `cargo no`
 '''
+
+    cargo xtask soak
 ";
         let due = [
             "cargo test",
@@ -130,6 +137,7 @@ let a = 1; // `cargo no`
             "A=1 cargo run | grep x",
             "cargo run --example battle -- --seconds 1",
             "cd examples/bevy && cargo run",
+            "cargo xtask soak",
         ];
         assert_eq!(commands(&page.replace('\'', "`")), due);
     }
