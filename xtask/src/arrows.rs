@@ -1,214 +1,104 @@
-//! Checks which crates may depend on which, and keeps each engine to a single crate.
+//! Checks which crates may depend on which, keeps each engine to a single crate, and checks the chart of the crates.
+
+use std::collections::BTreeMap;
 
 use cargo_metadata::{DependencyKind, Metadata};
 
-/// The workspace crates that each crate may depend on. A crate that is missing here fails the check.
-const ALLOWED: [(&str, &[&str]); 19] = [
-    ("clamber_surface", &[]),
-    ("clamber_world", &["clamber_surface"]),
-    ("clamber_mover", &["clamber_surface", "clamber_world"]),
-    (
-        "clamber_climber",
-        &["clamber_surface", "clamber_world", "clamber_mover"],
-    ),
-    ("clamber_animation", &["clamber_surface"]),
-    (
-        "clamber_body",
-        &[
-            "clamber_surface",
-            "clamber_world",
-            "clamber_climber",
-            "clamber_animation",
-        ],
-    ),
-    (
-        "clamber_colossus",
-        &["clamber_surface", "clamber_world", "clamber_animation"],
-    ),
-    (
-        "clamber_fight",
-        &[
-            "clamber_surface",
-            "clamber_world",
-            "clamber_climber",
-            "clamber_colossus",
-        ],
-    ),
-    (
-        "clamber_navigation",
-        &["clamber_surface", "clamber_world", "clamber_climber"],
-    ),
-    ("clamber_gltf", &["clamber_surface"]),
-    ("clamber_render", &["clamber_surface", "clamber_gltf"]),
-    (
-        "clamber_record",
-        &[
-            "clamber_surface",
-            "clamber_world",
-            "clamber_climber",
-            "clamber_colossus",
-            "clamber_fight",
-        ],
-    ),
-    (
-        "clamber",
-        &[
-            "clamber_surface",
-            "clamber_animation",
-            "clamber_body",
-            "clamber_colossus",
-            "clamber_fight",
-            "clamber_world",
-            "clamber_mover",
-            "clamber_climber",
-            "clamber_navigation",
-            "clamber_gltf",
-            "clamber_render",
-            "clamber_record",
-        ],
-    ),
-    (
-        "clamber_scenes",
-        &[
-            "clamber_surface",
-            "clamber_animation",
-            "clamber_world",
-            "clamber_climber",
-            "clamber_body",
-            "clamber_colossus",
-            "clamber_fight",
-            "clamber_gltf",
-            "clamber_navigation",
-            "clamber_record",
-            "clamber_render",
-        ],
-    ),
-    (
-        "bevy_clamber",
-        &[
-            "clamber_surface",
-            "clamber_animation",
-            "clamber_body",
-            "clamber_colossus",
-            "clamber_fight",
-            "clamber_world",
-            "clamber_climber",
-            "clamber_gltf",
-        ],
-    ),
-    (
-        "clamber_verify",
-        &["clamber_surface", "clamber_world", "clamber_gltf"],
-    ),
-    (
-        "clamber_cli",
-        &[
-            "clamber_surface",
-            "clamber_animation",
-            "clamber_body",
-            "clamber_climber",
-            "clamber_colossus",
-            "clamber_gltf",
-            "clamber_navigation",
-            "clamber_record",
-        ],
-    ),
-    ("clamber_benches", &[]),
-    ("xtask", &[]),
-];
+use crate::workspace::{differences, no_faults, read};
 
-/// The workspace crates that tests and examples of a crate may use as well, besides `clamber_verify`.
-const ALLOWED_FOR_TESTS: [(&str, &str); 23] = [
-    ("bevy_clamber", "clamber_scenes"),
-    ("clamber", "clamber_scenes"),
-    ("clamber_animation", "clamber_gltf"),
-    ("clamber_body", "clamber_gltf"),
-    ("clamber_body", "clamber_scenes"),
-    ("clamber_colossus", "clamber_climber"),
-    ("clamber_colossus", "clamber_gltf"),
-    ("clamber_benches", "clamber"),
-    ("clamber_cli", "clamber_scenes"),
-    ("clamber_benches", "clamber_body"),
-    ("clamber_benches", "clamber_colossus"),
-    ("clamber_benches", "clamber_fight"),
-    ("clamber_benches", "clamber_navigation"),
-    ("clamber_benches", "clamber_scenes"),
-    ("clamber_fight", "clamber_gltf"),
-    ("clamber_navigation", "clamber_gltf"),
-    ("clamber_scenes", "clamber"),
-    ("clamber_verify", "clamber_climber"),
-    ("clamber_verify", "clamber_colossus"),
-    ("clamber_verify", "clamber_fight"),
-    ("clamber_verify", "clamber_scenes"),
-    ("clamber_record", "clamber_scenes"),
-    ("clamber_render", "clamber_scenes"),
-];
+/// The workspace crates that each crate may depend on, and the crates that keep engines to themselves.
+const ALLOWED: &str = include_str!("../crates.txt");
+
+/// The crate that tests of any crate may use.
+const VERIFY: &str = "verify";
 
 /// The only crate of Bevy that crates other than `bevy_clamber` may depend on, for a feature of the same name:
 /// components contain their types, and without it no inspector or scene could show or store these.
 const REFLECTION: &str = "bevy_reflect";
 
+/// All crates outside the workspace that the core may depend on.
+const CORE: &str = "arrayvec bevy_reflect fearless_simd glam libm rayon serde thiserror";
+
+/// The page with the chart, from the root of the repository.
+const PAGE: &str = "docs/architecture.md";
+
 /// Crates outside the workspace, each with the only crate of the workspace that may depend on it.
-const KEPT_TO: [(&str, &str); 10] = [
-    ("avian3d", "bevy_clamber"),
-    ("rapier3d", "clamber_world"),
-    ("parry3d", "clamber_world"),
-    ("ggrs", "clamber_fight"),
-    ("gltf", "clamber_gltf"),
-    ("wgpu", "clamber_render"),
-    ("embedded-graphics", "clamber_render"),
-    ("mcap", "clamber_record"),
-    ("foxglove", "clamber_record"),
-    ("prost", "clamber_record"),
-];
+const KEPT_TO: &str = "avian3d:bevy_clamber rapier3d:world parry3d:world ggrs:fight gltf:gltf wgpu:render \
+    embedded-graphics:render mcap:record foxglove:record prost:record";
 
-/// The core and all crates outside the workspace that it may depend on.
-const CORE: (&str, &[&str]) = (
-    "clamber_surface",
-    &[
-        "arrayvec",
-        REFLECTION,
-        "fearless_simd",
-        "glam",
-        "libm",
-        "rayon",
-        "serde",
-        "thiserror",
-    ],
-);
+/// The name of a crate of the workspace without `clamber_` in front.
+fn short(name: &str) -> &str {
+    name.strip_prefix("clamber_").unwrap_or(name)
+}
 
+/// Checks all dependencies of the workspace's crates.
 pub(crate) fn check(metadata: &Metadata) -> Result<(), String> {
     let packages = metadata.workspace_packages();
+    let has = |list: &str, name: &str| list.split_whitespace().any(|known| known == name);
     let mut wrong = Vec::new();
     for package in &packages {
-        let name = package.name.as_str();
-        let Some((_, allowed)) = ALLOWED.iter().find(|(known, _)| *known == name) else {
-            wrong.push(format!("{name} is not in xtask/src/arrows.rs"));
+        let name = short(&package.name);
+        let mut lines = ALLOWED.lines().filter_map(|line| line.split_once(':'));
+        let Some((_, allowed)) = lines.find(|(known, _)| *known == name) else {
+            wrong.push(format!("{name} is not in xtask/crates.txt"));
             continue;
         };
+        let (allowed, for_tests) = allowed.split_once('|').unwrap_or((allowed, ""));
         for dependency in &package.dependencies {
             let to = dependency.name.as_str();
-            let inside = packages.iter().any(|other| other.name == to);
-            let for_tests = dependency.kind == DependencyKind::Development;
-            let fine = if inside {
-                let tests = to == "clamber_verify" || ALLOWED_FOR_TESTS.contains(&(name, to));
-                allowed.contains(&to) || for_tests && tests
+            let is_for_tests = dependency.kind == DependencyKind::Development;
+            let is_fine = if packages.iter().any(|other| other.name == to) {
+                let to = short(to);
+                has(allowed, to) || is_for_tests && (to == VERIFY || has(for_tests, to))
             } else {
-                if to.starts_with("bevy") && to != REFLECTION && name != "bevy_clamber" {
-                    wrong.push(format!("{name} must not know Bevy"));
-                }
-                let kept = KEPT_TO.iter().find(|(engine, _)| *engine == to);
-                let core = name == CORE.0 && !for_tests;
-                kept.is_none_or(|(_, owner)| *owner == name) && (!core || CORE.1.contains(&to))
+                let mut kept = KEPT_TO.split([' ', ':']).skip_while(|engine| *engine != to);
+                let is_bevy = to.starts_with("bevy") && to != REFLECTION && name != "bevy_clamber";
+                let is_core = name == "surface" && !is_for_tests;
+                kept.nth(1).is_none_or(|owner| owner == name)
+                    && !is_bevy
+                    && (!is_core || has(CORE, to))
             };
-            if !fine {
+            if !is_fine {
                 wrong.push(format!("{name} must not depend on {to}"));
             }
         }
     }
-    if wrong.is_empty() {
-        Ok(())
-    } else {
-        Err(wrong.join("; "))
+    no_faults(&wrong, "")
+}
+
+/// The crates that each crate depends on. The value is true if only a feature turns the dependency on.
+type Needs<'a> = BTreeMap<&'a str, BTreeMap<&'a str, bool>>;
+
+/// Checks that the chart has an arrow for each dependency, dotted if only a feature turns it on. Dependencies of tests
+/// are left out, as are arrows that follow from others: if A needs B and B needs C, no arrow leads from A to C.
+pub(crate) fn check_chart(metadata: &Metadata) -> Result<(), String> {
+    let packages = metadata.workspace_packages();
+    let mut needs = Needs::new();
+    for package in &packages {
+        let needed = needs.entry(short(&package.name)).or_default();
+        for it in &package.dependencies {
+            let is_member = packages.iter().any(|other| other.name == it.name);
+            if is_member && it.kind == DependencyKind::Normal {
+                needed.insert(short(&it.name), it.optional);
+            }
+        }
     }
+    let mut due = String::new();
+    for (from, needed) in &needs {
+        for (to, is_optional) in needed.iter().filter(|(to, _)| !follows(&needs, from, to)) {
+            let arrow = if *is_optional { "-.->" } else { "-->" };
+            due += &format!("    {from} {arrow} {to}\n");
+        }
+    }
+    let page = read(&metadata.workspace_root.join(PAGE))?;
+    let mut drawn: Vec<&str> = page.lines().collect();
+    drawn.retain(|line| line.contains("->"));
+    let hint = format!(": `+` is missing in {PAGE}, `-` is wrong or follows from other arrows");
+    no_faults(&differences(&drawn.join("\n"), &due), &hint)
+}
+
+/// True if a crate depends on another one through further crates, independently of features.
+fn follows(all: &Needs, from: &str, to: &str) -> bool {
+    let mut needs = all[from].iter().filter(|(_, is_optional)| !**is_optional);
+    needs.any(|(through, _)| all[through].get(to) == Some(&false) || follows(all, through, to))
 }

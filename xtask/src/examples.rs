@@ -1,57 +1,19 @@
 //! Runs each example once, briefly, as built for tests.
 
-use std::path::PathBuf;
+use std::collections::BTreeMap;
 
-use crate::run::program;
-use crate::test_run::{Targets, TestRun};
-use crate::{battle, build};
+use cargo_metadata::{Message, Metadata};
 
-/// Options and files that examples get. Examples run in the order of their names. An example that is listed twice runs
-/// twice. An example that is missing here runs once, without options.
-const ARGUMENTS: [(&str, &[&str]); 9] = [
-    (
-        "battle",
-        &[
-            "--story",
-            "ride",
-            "--creature",
-            "assets/colossus.glb",
-            "--height",
-            "10",
-            "--seconds",
-            "3",
-            "--out",
-            "target/xtask-brief",
-        ],
-    ),
-    (
-        "battle",
-        &[
-            "--fights",
-            "1",
-            "--seed",
-            "1",
-            "--seconds",
-            "2",
-            "--out",
-            "target/xtask-brief",
-        ],
-    ),
-    ("climbs", &["--height", "40", "assets/colossus.glb"]),
-    ("duel", &["--joins", "10", "--record", DUEL]),
-    // `duel` records this file.
-    ("replay", &[DUEL, "--from", "60"]),
-    ("rides", &["assets/colossus.glb", "--seconds", "10"]),
-    ("seeds", &["target/fuzz-seeds"]),
-    ("soak", &["--minutes", "0.2", "--out", "target/soak-brief"]),
-    ("soak", &["--case", "life", "--minutes", "10"]),
-];
+use crate::battle;
+use crate::plan::expand;
+use crate::process::{cargo_path, refuses, run};
+use crate::workspace::files;
 
-/// Recording of `duel`, which `replay` reads.
-const DUEL: &str = "target/xtask-duel.mcap";
+/// Options and files that examples get.
+const LINES: &str = include_str!("../examples.txt");
 
-/// The example that also runs on all models of the test data, if there are any.
-const ON_MODELS: &str = "climbs";
+/// Options of the example that also runs on all models of the test data, if there are any.
+const ON_MODELS: (&str, [&str; 2]) = ("climbs", ["", "--moving --forecast"]);
 
 /// The environment variable with the folder of the test data.
 const DATA: &str = "CLAMBER_TEST_DATA";
@@ -61,69 +23,77 @@ const QUERY: &str = "\
     1,4,1,1,1,4,1\n0,1,0,1,0,1,1\n1,1,0,1,0,1,1\n0,1,0,1,1,1,1\n\
     1,4,-1,1,1,4,1\n0,1,0,1,0,1,1\n1,1,0,1,0,1,1\n0,1,0,1,1,1,1\n";
 
-/// All examples of the workspace, as one run.
-pub(crate) fn runs() -> Vec<TestRun> {
-    vec![TestRun {
-        given,
-        perform: |_, run| all(run),
-        ..build::selection().of(vec![Targets::Examples])
-    }]
+/// Paths of the examples' binaries, by name.
+pub(crate) type Examples = BTreeMap<String, String>;
+
+/// The lines of an example, without its name.
+fn lines(name: &str) -> Vec<&'static str> {
+    let lines = LINES.lines().filter_map(|line| line.split_once(' '));
+    lines
+        .filter(|(known, _)| *known == name)
+        .map(|(_, rest)| rest)
+        .collect()
 }
 
-/// The options among an example's arguments, from here and from [`battle::given`].
-fn given(name: &str) -> Vec<&'static str> {
-    let listed = ARGUMENTS.iter().filter(|(needing, _)| *needing == name);
-    let mut words: Vec<&str> = listed
-        .flat_map(|(_, arguments)| *arguments)
-        .copied()
-        .collect();
-    words.extend(battle::given(name));
-    words.retain(|word| word.starts_with("--"));
-    words
+/// The options that an example gets in the step `examples`.
+pub(crate) fn given(name: &str) -> Vec<&'static str> {
+    let mut all = [lines(name), battle::given(name)].concat();
+    all.retain(|line| !line.contains("=>"));
+    all.into_iter().flat_map(str::split_whitespace).collect()
 }
 
-fn all(run: &TestRun) -> Result<(), String> {
-    let folder = "target";
-    std::fs::create_dir_all(folder).map_err(|error| format!("{folder}: {error}"))?;
-    let queries = query_files()?;
-    let examples = build::examples(run)?;
+/// Builds examples with a selection of cargo.
+pub(crate) fn build(metadata: &Metadata, selection: &str) -> Result<Examples, String> {
+    let line = format!("build --quiet --message-format json-render-diagnostics {selection}");
+    let messages = run(&cargo_path(), &expand(metadata, &line))?;
+    let mut examples = Examples::new();
+    for message in Message::parse_stream(messages.as_bytes()) {
+        let message = message.map_err(|error| format!("cargo's messages: {error}"))?;
+        if let Message::CompilerArtifact(artifact) = message
+            && artifact.target.is_example()
+            && let Some(binary) = artifact.executable
+        {
+            examples.insert(artifact.target.name, binary.into_string());
+        }
+    }
+    Ok(examples)
+}
+
+/// Runs all examples, then the checks of the battle.
+pub(crate) fn run_all(metadata: &Metadata) -> Result<(), String> {
+    let examples = build(metadata, "{all} --examples")?;
+    std::fs::create_dir_all("target").map_err(|error| format!("target: {error}"))?;
+    let data = std::env::var(DATA).ok();
+    let queries = query_files(data.as_deref())?;
     for (name, binary) in &examples {
-        let needed = ARGUMENTS.iter().filter(|(needing, _)| needing == name);
-        let mut given: Vec<&[&str]> = needed.map(|(_, arguments)| *arguments).collect();
-        if given.is_empty() {
-            given.push(&[]);
+        let mut all = lines(name);
+        if data.is_some() && name == ON_MODELS.0 {
+            all.extend(ON_MODELS.1);
         }
-        if name == ON_MODELS && std::env::var_os(DATA).is_some() {
-            given.extend([&[][..], &["--moving", "--forecast"]]);
+        if name == "ccd_queries" {
+            all.push(&queries);
+        } else if all.is_empty() {
+            all.push("");
         }
-        let files = queries.iter().map(String::as_str);
-        let files: Vec<&str> = files.filter(|_| name == "ccd_queries").collect();
-        for arguments in given {
-            program(binary, &[arguments, &files].concat())?;
+        for line in all {
+            match line.split_once("=> ") {
+                Some((line, reason)) => refuses(binary, line, reason)?,
+                None => run(binary, line).map(drop)?,
+            }
         }
     }
     battle::check(&examples)
 }
 
 /// The query files of the test data. Without test data, a file with [`QUERY`].
-fn query_files() -> Result<Vec<String>, String> {
-    let Some(data) = std::env::var_os(DATA) else {
+fn query_files(data: Option<&str>) -> Result<String, String> {
+    let Some(data) = data else {
         let file = "target/xtask-vertex-face.csv";
         std::fs::write(file, QUERY).map_err(|error| format!("{file}: {error}"))?;
-        return Ok(vec![file.into()]);
+        return Ok(file.into());
     };
-    let (mut files, mut folders) = (Vec::new(), vec![PathBuf::from(data).join("ccd")]);
-    while let Some(folder) = folders.pop() {
-        let failed = |error: std::io::Error| format!("{}: {error}", folder.display());
-        for entry in std::fs::read_dir(&folder).map_err(failed)? {
-            let path = entry.map_err(failed)?.path();
-            if path.is_dir() {
-                folders.push(path);
-            } else if path.extension().is_some_and(|extension| extension == "csv") {
-                files.push(path.to_string_lossy().into_owned());
-            }
-        }
-    }
-    files.sort();
-    Ok(files)
+    let mut files = files(format!("{data}/ccd").as_str().into())?;
+    files.retain(|file| file.extension() == Some("csv"));
+    let files = files.iter().map(|file| format!("{data}/ccd/{file} "));
+    Ok(files.collect())
 }

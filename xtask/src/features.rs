@@ -1,95 +1,73 @@
 //! Lints the library of each published crate alone, as its users build it: without features, and with each of its
 //! features alone. Dependencies of its tests are left out, so that they turn no feature on. Another step lints tests,
 //! benches and examples, and all features together. Dependencies that declare a newer Rust than ours are refused here.
-//!
-//! The nightly task lints each feature alone of the crates whose features bring in large dependencies. It also runs the
-//! libraries' tests with each feature that is not on in the tests of the workspace.
 
 use cargo_metadata::{Metadata, Package};
 
-use crate::build::owned;
-use crate::parts::Kind;
-use crate::run::{IGNORE_RUST_VERSION, cargo};
-use crate::test_run::{Packages, Targets, TestRun};
+use crate::call::{Part, ask};
+use crate::process::{IGNORE_RUST_VERSION, cargo};
+use crate::workspace::published;
 
 /// Features that bring in crates which declare a newer Rust than ours, but build with ours.
-const NEWER_RUST: [&str; 3] = [
-    "bevy_clamber/avian",
-    "bevy_clamber/gltf",
-    "bevy_clamber/rapier",
-];
+const NEWER_RUST: &str = "bevy_clamber/avian bevy_clamber/gltf bevy_clamber/rapier";
 
-/// Crates whose features each build other parts of Bevy, rapier or wgpu. They are linted here without features, and in
-/// the nightly task with each feature alone. The step `lints` has all features on.
+/// Crates whose features each build other parts of Bevy, rapier or wgpu. CI lints them without features, and the
+/// nightly task with each feature alone. The step `lints` has all features on.
 const HEAVY: [&str; 2] = ["bevy_clamber", "clamber"];
 
+/// Lints all crates without features, and all but the heavy ones with each feature alone.
 pub(crate) fn check(metadata: &Metadata) -> Result<(), String> {
-    for package in published(metadata) {
-        lint(package, None)?;
-        if !HEAVY.contains(&package.name.as_str()) {
-            each(package)?;
-        }
-    }
-    Ok(())
+    let mut packages = published(metadata).into_iter();
+    packages.try_for_each(|package| lint(&package.name, ""))?;
+    lint_each(metadata, false)
 }
 
-/// Lints the crates that [`check`] leaves out with each of their features alone.
+/// Lints the heavy crates with each of their features alone.
 pub(crate) fn check_heavy(metadata: &Metadata) -> Result<(), String> {
-    let heavy = |package: &&Package| HEAVY.contains(&package.name.as_str());
-    published(metadata).filter(heavy).try_for_each(each)
+    lint_each(metadata, true)
 }
 
-/// The packages that users can depend on.
-pub(crate) fn published(metadata: &Metadata) -> impl Iterator<Item = &Package> {
+fn lint_each(metadata: &Metadata, is_heavy: bool) -> Result<(), String> {
+    let mut packages = published(metadata);
+    packages.retain(|package| HEAVY.contains(&package.name.as_str()) == is_heavy);
+    let mut features = packages.into_iter().flat_map(features);
+    features.try_for_each(|(name, feature)| lint(name, &feature))
+}
+
+/// The features of a package, as package and `package/feature`.
+fn features(package: &Package) -> impl Iterator<Item = (&str, String)> {
+    let features = package.features.keys();
+    let features = features.filter(|feature| *feature != "default");
+    features.map(|feature| (package.name.as_str(), format!("{}/{feature}", package.name)))
+}
+
+/// Lints a package's library with one feature, or with none if it is empty.
+fn lint(name: &str, feature: &str) -> Result<(), String> {
+    let mut line = format!("clippy --quiet -p {name} --lib --no-default-features");
+    if !feature.is_empty() {
+        line += &format!(" --features {feature}");
+    }
+    if NEWER_RUST.split(' ').any(|known| known == feature) {
+        line += &format!(" {IGNORE_RUST_VERSION}");
+    }
+    cargo(&(line + " -- -D warnings"))
+}
+
+/// The calls of each library's tests with each of its features that is not on in `tests`. The facade has no tests in its
+/// library: its features belong to other crates.
+pub(crate) fn runs(metadata: &Metadata, tests: &[String]) -> Result<Vec<String>, String> {
     let packages = metadata.workspace_packages().into_iter();
-    packages.filter(|package| package.publish.as_ref().is_none_or(|to| !to.is_empty()))
-}
-
-/// Lints a package's library with each of its features alone.
-fn each(package: &Package) -> Result<(), String> {
-    let features = package.features.keys().filter(|name| *name != "default");
-    features
-        .into_iter()
-        .try_for_each(|feature| lint(package, Some(feature)))
-}
-
-/// Lints a package's library with one feature, or with none.
-fn lint(package: &Package, feature: Option<&str>) -> Result<(), String> {
-    let lint = ["clippy", "--quiet", "-p", &package.name, "--lib"];
-    let mut with = vec!["--no-default-features"];
-    if let Some(feature) = feature {
-        with.extend(["--features", feature]);
-        if NEWER_RUST.contains(&format!("{}/{feature}", package.name).as_str()) {
-            with.push(IGNORE_RUST_VERSION);
-        }
+    let mut missing: Vec<(&str, String)> = packages.flat_map(features).collect();
+    missing.retain(|(name, _)| *name != "clamber");
+    for line in tests {
+        let call = ask(&metadata.workspace_root, line)?;
+        missing.retain(|(name, feature)| {
+            let is_tested = call.parts.contains(&Part::new(name, "lib", name));
+            !is_tested || !call.features.contains(feature)
+        });
     }
-    cargo(&[&lint[..], &with, &["--", "-D", "warnings"]].concat())
-}
-
-/// Runs of each library's tests with each of its features that is not on in `tests`.
-pub(crate) fn runs(metadata: &Metadata, tests: &[TestRun]) -> Vec<TestRun> {
-    let mut runs = Vec::new();
-    for package in metadata.workspace_packages() {
-        let name = package.name.as_str();
-        let is_library = |run: &&TestRun| {
-            let mut parts = run.covers(metadata).into_iter();
-            parts.any(|part| part.package == name && part.kind == Kind::Library)
-        };
-        let tests: Vec<_> = tests.iter().filter(is_library).collect();
-        let tested: Vec<_> = tests.iter().map(|run| run.turned_on(metadata)).collect();
-        for feature in package.features.keys().filter(|name| *name != "default") {
-            let feature = format!("{name}/{feature}");
-            // The facade has no tests in its library: its features belong to other crates.
-            if name != "clamber" && !tested.iter().any(|on| on.contains(&feature)) {
-                runs.push(TestRun {
-                    packages: Packages::Named(owned(&[name])),
-                    features: vec![feature],
-                    targets: vec![Targets::Library],
-                    options: owned(&["--quiet", IGNORE_RUST_VERSION]),
-                    ..TestRun::default()
-                });
-            }
-        }
-    }
-    runs
+    let line = |(name, feature)| {
+        format!("test -p {name} --features {feature} --quiet --lib {IGNORE_RUST_VERSION}")
+    };
+    Ok(missing.into_iter().map(line).collect())
 }

@@ -3,34 +3,21 @@
 //! its steps leave out no test and no command of the documentation. `cargo xtask nightly` runs the checks that take
 //! hours.
 
-mod app;
 mod arrows;
 mod battle;
-mod benches;
-mod build;
-mod ci;
+mod call;
 mod commands;
 mod coverage;
-mod crates;
 mod examples;
 mod face;
 mod features;
-mod files;
-mod golden;
 mod modules;
-mod nightly;
 mod packages;
-mod parts;
-mod peers;
+mod pages;
 mod plan;
-mod results;
-mod run;
-mod soak;
+mod process;
 mod steps;
-mod targets;
-mod test_run;
-mod turned_on;
-mod workspaces;
+mod workspace;
 
 use std::process::ExitCode;
 
@@ -63,14 +50,8 @@ enum Task {
     },
     /// Stores the list of each crate's public items. `ci` compares the items that it finds with it.
     Face,
-    /// Writes docs/commands.md, the list of all commands in the documentation with the step that runs each. `ci`
-    /// compares it with the list that it would write.
+    /// Prints all commands in the documentation, with the step that runs each, or the reason why none does.
     Commands,
-    /// Draws docs/crates.svg, the picture of the crates. `ci` compares it with the picture that it would draw.
-    Crates,
-    /// Checks the app on all of Bevy, which has a workspace of its own: its format, its tests, and a picture that it
-    /// draws off-screen. CI has a job of its own for it: a cold build of Bevy takes many minutes.
-    App,
     /// Runs stress cases of every family, every fuzz target on random bytes and whole battles, in release, with fresh
     /// seeds until the time is up. Checks that nothing panics, all numbers are finite, answers equal brute force,
     /// bounds hold, closed skin lets no ray through, no contact is missed or late, and that among queries with similar
@@ -93,43 +74,33 @@ fn main() -> ExitCode {
     if let Some(ended) = face::as_rustdoc() {
         return ended;
     }
-    let task = Arguments::parse().task;
-    let metadata = match workspaces::main() {
-        Ok(metadata) => metadata,
-        Err(error) => {
-            eprintln!("{error}");
-            return ExitCode::FAILURE;
-        }
-    };
-    let root = &metadata.workspace_root;
-    if let Err(error) = std::env::set_current_dir(root) {
-        eprintln!("{root}: {error}");
-        return ExitCode::FAILURE;
-    }
-    match task {
-        Task::Ci { only } => steps::run(&ci::STEPS, &metadata, only.as_deref(), |_, _| Ok(())),
-        Task::Nightly { only } => {
-            steps::run(&nightly::STEPS, &metadata, only.as_deref(), results::add)
-        }
-        Task::App => ended(app::check(&metadata)),
-        Task::Commands => ended(commands::store(&metadata)),
-        Task::Face => ended(face::store(&metadata)),
-        Task::Crates => ended(crates::store(&metadata)),
-        Task::Soak {
-            minutes,
-            seed,
-            case,
-        } => ended(soak::run(minutes, seed, case.as_deref())),
-    }
-}
-
-/// The exit code of a task without steps.
-fn ended(came: Result<(), String>) -> ExitCode {
-    match came {
+    match run(Arguments::parse().task) {
         Ok(()) => ExitCode::SUCCESS,
         Err(reason) => {
             eprintln!("{reason}");
             ExitCode::FAILURE
+        }
+    }
+}
+
+/// Runs a task in the root of the repository.
+fn run(task: Task) -> Result<(), String> {
+    let metadata = workspace::main()?;
+    let root = &metadata.workspace_root;
+    std::env::set_current_dir(root).map_err(|error| format!("{root}: {error}"))?;
+    match task {
+        Task::Ci { only } => steps::run(&metadata, "ci", &only.unwrap_or_default()),
+        Task::Nightly { only } => steps::run(&metadata, "nightly", &only.unwrap_or_default()),
+        Task::Face => face::store(&metadata),
+        Task::Commands => commands::print(&metadata),
+        Task::Soak {
+            minutes,
+            seed,
+            case,
+        } => {
+            let case = case.map_or(String::new(), |case| format!("--case {case}"));
+            let line = plan::expand(&metadata, "run {soak}");
+            process::cargo(&format!("{line} --minutes {minutes} --seed {seed} {case}"))
         }
     }
 }

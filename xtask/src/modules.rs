@@ -1,114 +1,101 @@
-//! Checks the imports between the core's modules: no module imports a module to its right in [`ORDER`].
+//! Checks the imports between the top-level modules of each library: no module imports a module to its right in
+//! `xtask/modules.txt`. An import through a name that the crate's root exports again counts as one of its module.
 
-use std::path::{Path, PathBuf};
+use std::collections::{BTreeMap, BTreeSet};
 
-/// Sources of the core, from the root of the repository.
-const SOURCES: &str = "crates/clamber_surface/src";
+use cargo_metadata::Metadata;
+use cargo_metadata::camino::Utf8Path;
 
-/// The modules in the direction of the data flow, from left to right.
-const ORDER: [&str; 9] = [
-    "geometry", "rig", "mesh", "skin", "bounds", "pose", "query", "surface", "measure",
-];
+use crate::workspace::{files, no_faults, read};
 
-pub(crate) fn check() -> Result<(), String> {
-    let mut files = Vec::new();
-    collect(Path::new(SOURCES), &mut files).map_err(|error| format!("{SOURCES}: {error}"))?;
+/// The modules of each library in the direction of the data flow, and the imports that break this order.
+const ORDER: &str = include_str!("../modules.txt");
+
+/// Checks all libraries of the workspace. Each module that imports another one must have a place in the order.
+pub(crate) fn check(metadata: &Metadata) -> Result<(), String> {
     let mut wrong = Vec::new();
-    for file in files {
-        let text = std::fs::read_to_string(&file);
-        let text = text.map_err(|error| format!("{}: {error}", file.display()))?;
-        let path = file.strip_prefix(SOURCES).unwrap_or(&file);
-        let known = importer(path).map(|from| (from, imported(&text, depth(path))));
-        let Some((from, modules)) = known else {
-            continue;
-        };
-        let to_the_right = modules.into_iter().filter(|to| place(to) > place(from));
-        wrong.extend(to_the_right.map(|to| format!("{} must not import {to}", file.display())));
-    }
-    wrong.sort();
-    wrong.dedup();
-    if wrong.is_empty() {
-        Ok(())
-    } else {
-        Err(wrong.join("; "))
-    }
-}
-
-/// Collects the source files under a folder, except test files.
-fn collect(folder: &Path, files: &mut Vec<PathBuf>) -> std::io::Result<()> {
-    for entry in std::fs::read_dir(folder)? {
-        let path = entry?.path();
-        let name = path.file_stem().and_then(|name| name.to_str());
-        if matches!(name, Some("tests" | "testing" | "agreement")) {
-            continue;
-        }
-        if path.is_dir() {
-            collect(&path, files)?;
-        } else if path.extension().is_some_and(|extension| extension == "rs") {
-            files.push(path);
+    for package in metadata.workspace_packages() {
+        let prefix = format!("{}: ", package.name);
+        let mut lines = ORDER.lines().filter_map(|line| line.strip_prefix(&prefix));
+        let words: Vec<&str> = lines.next().unwrap_or_default().split(' ').collect();
+        for library in package.targets.iter().filter(|target| target.is_lib()) {
+            for (from, to) in arrows(&library.src_path)? {
+                let place = |module: &str| words.iter().position(|known| *known == module);
+                let is_allowed = place(&format!("{from}>{to}")).is_some();
+                match (place(&from), place(&to)) {
+                    _ if is_allowed => {}
+                    (Some(from), Some(to)) if to < from => {}
+                    _ => wrong.push(format!("{prefix}{from}>{to}")),
+                }
+            }
         }
     }
-    Ok(())
+    no_faults(&wrong, ": imports against the order in xtask/modules.txt")
 }
 
-/// The module that a file belongs to; `None` for files outside of [`ORDER`], such as those at the crate's root.
-fn importer(path: &Path) -> Option<&'static str> {
-    let first = path.iter().next()?.to_str()?.trim_end_matches(".rs");
-    ORDER.into_iter().find(|module| *module == first)
-}
-
-/// Number of modules from the crate's root down to the file's module.
-fn depth(path: &Path) -> usize {
-    let module_file = path.file_stem().is_some_and(|name| name == "mod");
-    path.iter().count() - usize::from(module_file)
-}
-
-/// Position of a module in [`ORDER`]. Modules that are not in it have 0: all modules may import them.
-fn place(module: &str) -> usize {
-    let place = ORDER.iter().position(|known| *known == module);
-    place.unwrap_or(0)
-}
-
-/// The first names after `crate::`, or after enough `super::`, in code without comments and tests.
-fn imported(text: &str, depth: usize) -> Vec<String> {
-    let code = text
-        .split("#[cfg(test)]\nmod tests {")
-        .next()
-        .unwrap_or_default();
-    let lines = code
-        .lines()
-        .filter(|line| !line.trim_start().starts_with("//"));
-    let code: String = lines.map(|line| format!("{line}\n")).collect();
-    let up = "super::".repeat(depth);
-    let roots = ["crate::", up.as_str()];
-    let after = roots.iter().flat_map(|root| {
-        code.match_indices(root)
-            .map(|(at, _)| &code[at + root.len()..])
+/// The imports between different top-level modules of a library.
+fn arrows(root: &Utf8Path) -> Result<BTreeSet<(String, String)>, String> {
+    let (folder, exports) = (root.parent().unwrap_or(root), read(root)?);
+    let mut sources = files(folder)?;
+    sources.retain(|file| {
+        let is_declared = exports.contains(&format!("mod {};", module(file)));
+        let mut parts = file.iter().map(|part| part.trim_end_matches(".rs"));
+        let is_test = parts.any(|part| matches!(part, "tests" | "testing" | "agreement"));
+        is_declared && !is_test && file.extension() == Some("rs")
     });
-    after.flat_map(first_names).collect()
-}
-
-/// The name at the beginning of a path, or all names of a group in braces.
-fn first_names(path: &str) -> Vec<String> {
-    let name = |text: &str| -> String {
-        let is_part = |c: &char| c.is_alphanumeric() || *c == '_';
-        text.trim_start().chars().take_while(is_part).collect()
-    };
-    let Some(group) = path.strip_prefix('{') else {
-        return vec![name(path)];
-    };
-    let mut open = 0;
-    let mut names = vec![name(group)];
-    for (at, character) in group.char_indices() {
-        match character {
-            '{' => open += 1,
-            '}' if open == 0 => break,
-            '}' => open -= 1,
-            ',' if open == 0 => names.push(name(&group[at + 1..])),
-            _ => {}
+    let modules: BTreeSet<&str> = sources.iter().map(|file| module(file)).collect();
+    // The module of each name that the root exports, and of each module.
+    let mut owners = BTreeMap::new();
+    for used in exports.split("use ").skip(1) {
+        let mut names = names(used.split(';').next().unwrap_or_default());
+        let module = names.next().filter(|name| modules.contains(name));
+        owners.extend(names.filter_map(|name| Some((name, module?))));
+    }
+    owners.extend(modules.iter().map(|module| (*module, *module)));
+    let mut arrows = BTreeSet::new();
+    for file in &sources {
+        let depth = file.iter().count() - usize::from(file.file_stem() == Some("mod"));
+        for name in imported(&read(&folder.join(file))?, depth) {
+            let to = owners.get(name.as_str()).copied().unwrap_or(module(file));
+            arrows.insert((module(file).to_owned(), to.to_owned()));
         }
     }
-    names
+    arrows.retain(|(from, to)| from != to);
+    Ok(arrows)
+}
+
+/// The top-level module of a file.
+fn module(file: &Utf8Path) -> &str {
+    file.iter()
+        .next()
+        .unwrap_or_default()
+        .trim_end_matches(".rs")
+}
+
+/// The names in a path or in a group of paths.
+fn names(path: &str) -> impl Iterator<Item = &str> {
+    let names = path.split(|c: char| !c.is_alphanumeric() && c != '_');
+    names.filter(|name| !name.is_empty())
+}
+
+/// The first name after each `crate::`, or after enough `super::`, in code without comments and tests. All names of the
+/// groups in braces that follow.
+fn imported(text: &str, depth: usize) -> Vec<String> {
+    let mut code = String::new();
+    for line in text.lines().take_while(|line| *line != "mod tests {") {
+        if !line.trim_start().starts_with("//") {
+            code += &format!("{line}\n");
+        }
+    }
+    let mut imported = Vec::new();
+    for root in ["crate::", &"super::".repeat(depth)] {
+        for path in code.split(root).skip(1) {
+            let count = if path.starts_with('{') { usize::MAX } else { 1 };
+            let names = names(path.split(';').next().unwrap_or_default());
+            imported.extend(names.take(count).map(str::to_owned));
+        }
+    }
+    imported
 }
 
 #[cfg(test)]
@@ -117,19 +104,17 @@ mod tests {
 
     #[test]
     fn finds_what_a_file_imports_however_it_is_written() {
-        let text = "\
+        let text = "
 //! crate::surface in a comment
-use crate::{mesh::{ColliderMesh, TriangleId}, pose};
+use crate::{mesh::Mesh, pose};
 use super::super::skin::cluster;
 use super::hit::SurfaceHit;
 fn f() -> crate::bounds::Spheres {}
 #[cfg(test)]
 mod tests {
     use crate::surface::SkinnedSurface;
-}
-";
-        let mut found = imported(text, 2);
-        found.sort();
-        assert_eq!(found, ["bounds", "mesh", "pose", "skin"]);
+}";
+        let due = ["mesh", "Mesh", "pose", "bounds", "skin"];
+        assert_eq!(imported(text, 2), due);
     }
 }

@@ -1,124 +1,118 @@
-//! Runs steps one after the other. Each step is timed. After a failure the next step runs all the same, and the summary
-//! lists failures and skipped tests.
+//! Runs the steps of a task one after the other, and times them. After a failure the next step runs all the same, and
+//! the summary lists failures and skipped tests.
 
-use std::process::ExitCode;
+use std::io::Write;
+use std::process::Command;
+use std::sync::PoisonError;
 use std::time::Instant;
 
 use cargo_metadata::Metadata;
 
-use crate::run;
-use crate::test_run::TestRun;
+use crate::plan::steps;
+use crate::process::{SKIPPED, cargo};
 
-/// The work of a step besides its runs.
-type Rest = fn(&Metadata) -> Result<(), String>;
+/// File of the table with the results of nightly steps, in cargo's target folder.
+const RESULTS: &str = "nightly.md";
+
+/// Beginning of the table; its columns are those in `docs/measured.md`.
+const HEAD: &str = "| step | commit | seconds | result |\n|---|---|---|---|\n";
+
+/// Work of a step.
+pub(crate) type Check = fn(&Metadata) -> Result<(), String>;
 
 /// A part of a task, which `--only` selects by its name.
 pub(crate) struct Step {
+    /// The task and the name, as in `ci: tests`.
     pub(crate) name: &'static str,
-    /// The tests, benches and examples that the step runs, for the main workspace. No step may run them in another way,
-    /// or the check of coverage would not see them.
-    pub(crate) runs: fn(&Metadata) -> Vec<TestRun>,
-    /// The work after the runs.
-    pub(crate) rest: Rest,
+    /// Calls of cargo, after the environment variables that they set.
+    pub(crate) runs: Vec<String>,
+    /// Performed after the runs.
+    pub(crate) checks: Vec<Check>,
 }
 
 impl Step {
-    /// A step that only runs tests, benches or examples.
-    pub(crate) const fn runs(name: &'static str, runs: fn(&Metadata) -> Vec<TestRun>) -> Self {
-        Self {
-            name,
-            runs,
-            rest: |_| Ok(()),
-        }
-    }
-
-    /// A step without tests, benches and examples.
-    pub(crate) const fn other(name: &'static str, rest: Rest) -> Self {
-        Self {
-            name,
-            runs: |_| Vec::new(),
-            rest,
-        }
-    }
-
-    /// Performs all runs and the rest; a failure does not stop it.
+    /// Performs all runs and checks; a failure does not stop it. Adds a line to the table of nightly results.
     fn perform(&self, metadata: &Metadata) -> Result<(), String> {
-        let runs = (self.runs)(metadata);
-        let ran = runs.iter().map(|run| (run.perform)(metadata, run));
-        let all = ran.chain(std::iter::once_with(|| (self.rest)(metadata)));
-        let failures: Vec<String> = all.filter_map(Result::err).collect();
-        if failures.is_empty() {
-            Ok(())
-        } else {
-            Err(failures.join("; "))
+        let start = Instant::now();
+        let runs = self.runs.iter().map(|line| cargo(line));
+        let all = runs.chain(self.checks.iter().map(|check| check(metadata)));
+        let mut failures: Vec<String> = all.filter_map(Result::err).collect();
+        if let Some(name) = self.name.strip_prefix("nightly: ") {
+            let seconds = start.elapsed().as_secs_f64();
+            failures.extend(record(metadata, name, seconds, failures.is_empty()).err());
         }
+        failures.is_empty().then_some(()).ok_or(failures.join("; "))
     }
 }
 
-/// The result of a step.
-pub(crate) struct Ended {
-    pub(crate) name: &'static str,
-    pub(crate) seconds: f64,
-    pub(crate) passed: bool,
-}
-
-/// Runs the steps whose names contain `only`, or all steps. Calls `tell` for each step that ends.
-pub(crate) fn run(
-    steps: &[Step],
-    metadata: &Metadata,
-    only: Option<&str>,
-    tell: fn(&Metadata, &Ended) -> Result<(), String>,
-) -> ExitCode {
-    let asked = |name: &str| only.is_none_or(|only| name.contains(only));
-    let mut all = Vec::new();
-    for step in steps.iter().filter(|step| asked(step.name)) {
-        let name = step.name;
+/// Runs the steps of a task whose names contain `only`, which may be empty. Prints times, failures and skipped tests.
+pub(crate) fn run(metadata: &Metadata, task: &str, only: &str) -> Result<(), String> {
+    let mut steps = steps(metadata)?;
+    steps.retain(|step| step.name.starts_with(task));
+    let (mut times, mut failed, mut total) = (String::new(), Vec::new(), 0.0);
+    for step in &steps {
+        let name = step.name.trim_start_matches(task).trim_start_matches(": ");
+        if !name.contains(only) {
+            continue;
+        }
         println!("== {name}");
         let start = Instant::now();
-        let came = step.perform(metadata);
-        let mut ended = Ended {
-            name,
-            seconds: start.elapsed().as_secs_f64(),
-            passed: came.is_ok(),
-        };
-        if let Err(reason) = came.and(tell(metadata, &ended)) {
+        if let Err(reason) = step.perform(metadata) {
             eprintln!("{name} FAILED: {reason}");
-            ended.passed = false;
+            failed.push(name);
         }
-        println!("   {name}: {:.0} s", ended.seconds);
-        all.push(ended);
+        let seconds = start.elapsed().as_secs_f64();
+        println!("   {name}: {seconds:.0} s");
+        times += &format!("   {seconds:6.0} s  {name}\n");
+        total += seconds;
     }
-    if all.is_empty() {
+    if times.is_empty() {
         let names: Vec<&str> = steps.iter().map(|step| step.name).collect();
-        eprintln!("no step has such a name; there are {}", names.join(", "));
-        return ExitCode::FAILURE;
+        return Err(format!(
+            "no step has such a name; there are {}",
+            names.join(", ")
+        ));
     }
-    summary(&all, steps.len())
+    print!("== summary\n{times}");
+    let skipped = SKIPPED.lock().unwrap_or_else(PoisonError::into_inner);
+    skipped.iter().for_each(|line| println!("   {line}"));
+    let (ran, of, skipped) = (times.lines().count(), steps.len(), skipped.len());
+    let ran = format!("{ran} of {of} steps ran in {total:.0} s, {skipped} SKIPPED tests");
+    if failed.is_empty() {
+        println!("{ran}, all passed");
+        return Ok(());
+    }
+    Err(format!("{ran}, failed: {}", failed.join(", ")))
 }
 
-/// Prints times, failures and skipped tests.
-fn summary(all: &[Ended], steps: usize) -> ExitCode {
-    println!("== summary");
-    for Ended { name, seconds, .. } in all {
-        println!("   {seconds:6.0} s  {name}");
-    }
-    let skipped = run::skipped();
-    for line in &skipped {
-        println!("   {line}");
-    }
-    let total: f64 = all.iter().map(|ended| ended.seconds).sum();
-    let ran = format!("{} of {steps} steps ran in {total:.0} s", all.len());
-    let skipped = match skipped.len() {
-        0 => "nothing skipped".to_owned(),
-        count => format!("{count} SKIPPED, see above"),
+/// Adds a line to the table of nightly results. Runs of single steps on one commit add up to a whole run.
+fn record(metadata: &Metadata, name: &str, seconds: f64, passed: bool) -> Result<(), String> {
+    let path = metadata.target_directory.join(RESULTS);
+    let head = if path.exists() { "" } else { HEAD };
+    let (commit, result) = (commit(), if passed { "passed" } else { "failed" });
+    let row = format!("{head}| {name} | {commit} | {seconds:.0} | {result} |\n");
+    let file = std::fs::OpenOptions::new()
+        .append(true)
+        .create(true)
+        .open(&path);
+    let written = file.and_then(|mut file| file.write_all(row.as_bytes()));
+    written.map_err(|error| format!("{path}: {error}"))
+}
+
+/// The current commit, and whether files differ from it.
+fn commit() -> String {
+    let git = |arguments: &[&str]| {
+        let output = Command::new("git").args(arguments).output().ok()?;
+        let text = String::from_utf8_lossy(&output.stdout).trim().to_owned();
+        output.status.success().then_some(text)
     };
-    let failed = all.iter().filter(|ended| !ended.passed);
-    let failed: Vec<&str> = failed.map(|ended| ended.name).collect();
-    if failed.is_empty() {
-        println!("{ran}, all passed, {skipped}");
-        ExitCode::SUCCESS
-    } else {
-        eprintln!("{ran}, failed: {}, {skipped}", failed.join(", "));
-        ExitCode::FAILURE
+    let changed = git(&["status", "--porcelain", "--untracked-files=no"]);
+    match (
+        git(&["rev-parse", "--short=12", "HEAD"]),
+        changed.as_deref(),
+    ) {
+        (None, _) => "unknown".into(),
+        (Some(commit), Some("")) => commit,
+        (Some(commit), _) => format!("{commit}, changed"),
     }
 }
