@@ -7,8 +7,6 @@ use super::*;
 use crate::mesh::{BuildOptions, MeshSource, SurfaceTag, VertexId};
 use crate::surface::SkinnedSurface;
 
-/// An influence with all weight on joint 0.
-
 fn mesh(positions: &[Vec3], triangles: &[[u32; 3]]) -> ColliderMesh {
     let source = MeshSource::rigid(positions, triangles);
     ColliderMesh::build(&source, &BuildOptions::default())
