@@ -15,7 +15,7 @@
 
 use std::collections::BTreeSet;
 
-use cargo_metadata::camino::Utf8Path;
+use cargo_metadata::camino::{Utf8Path, Utf8PathBuf};
 use cargo_metadata::{Metadata, Package};
 use clap::Parser;
 
@@ -235,8 +235,22 @@ impl Plan {
                 })
         };
         let mut tests = tests.into_iter();
-        let test = tests.find(|(_, test)| read(&test.src_path).is_ok_and(|text| is_it(&text)));
+        let test = tests.find(|(_, test)| {
+            let mut files = sources(&test.src_path).into_iter();
+            files.any(|file| read(&file).is_ok_and(|text| is_it(&text)))
+        });
         test.map(|(part, _)| part)
+    }
+}
+
+/// The files of a test: its own, or all files beside it if it is a `main.rs`.
+fn sources(file: &Utf8Path) -> Vec<Utf8PathBuf> {
+    match (file.file_name(), file.parent()) {
+        (Some("main.rs"), Some(folder)) => {
+            let files = files(folder).unwrap_or_default().into_iter();
+            files.map(|file| folder.join(file)).collect()
+        }
+        _ => vec![file.to_owned()],
     }
 }
 
@@ -261,7 +275,7 @@ mod tests {
 ci: examples <= cargo run --release --example battle
 ci: examples <= cargo run --features record --example replay -- FILE --from 9
 ci: tests <= cargo test --test bots
-ci: golden <= cargo test --features deterministic --test golden_battle
+ci: tests <= cargo test --features deterministic --test golden_battle
 nightly: all cases <= cargo test -p clamber_verify --test stress -- --include-ignored
 ci: benches <= cargo bench -p clamber_benches --bench tick
 nightly: peers <= cargo bench --manifest-path peers/Cargo.toml --bench peers -- queries

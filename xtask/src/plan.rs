@@ -73,11 +73,6 @@ fn words(metadata: &Metadata, name: &str) -> String {
                 words += &format!("--bench {} ", target.name);
             }
         }
-        "beyond-default" => {
-            for package in metadata.workspace_default_packages() {
-                words += &format!("--exclude {} ", package.name);
-            }
-        }
         _ => {
             let mut defined = STEPS.lines().filter_map(|line| line.split_once(" = "));
             words += defined
