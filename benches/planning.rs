@@ -23,7 +23,7 @@ use clamber::rig::{Palette, Playback};
 use clamber::surface::SkinnedSurface;
 use clamber::world::{HalfSpace, Obstacle, ObstacleId};
 use clamber_navigation::{
-    Bot, BotConfig, ClimbGraph, Danger, Flight, Footing, Forecast, FutureSkin, GraphConfig,
+    Airborne, Bot, BotConfig, ClimbGraph, Danger, Footing, Forecast, FutureSkin, GraphConfig,
     GraphOrigin, Start, View,
 };
 use clamber_scenes::measure::{Bound, Cells, is_brief, quantile};
@@ -253,7 +253,7 @@ fn predictions(creature: &Creature, count: usize, cells: &mut Cells) -> Result<(
         grip: true,
         ..ClimberInput::IDLE
     };
-    let flight = Flight {
+    let flight = Airborne {
         climber: &climber,
         input: &grip,
         rules: &rules,

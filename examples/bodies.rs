@@ -8,7 +8,7 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use clamber::body::{Body, BodyFrame, Figure, Humanoid, Retarget};
+use clamber::body::{Body, BodyInput, Figure, Humanoid, Retarget};
 use clamber::geometry::Similarity;
 use clamber::glam::DVec3;
 use clamber::gltf::Model;
@@ -172,7 +172,7 @@ fn sheet(
     while stage.time < to && drawn < columns {
         stage.tick(TICK)?;
         let obstacles = stage.obstacles();
-        body.update(figure, &BodyFrame::new(&stage.climber, &obstacles), TICK)?;
+        body.update(figure, &BodyInput::new(&stage.climber, &obstacles), TICK)?;
         let due = from + (to - from) * (f64::from(drawn) + 0.999) / f64::from(columns);
         if stage.time + 1e-9 < due {
             continue;

@@ -8,7 +8,7 @@ use clamber::climber::{Climber, ClimberConfig, ClimberInput, ContactQuery, StepR
 use clamber::rig::{Palette, Playback};
 use clamber::surface::SkinnedSurface;
 use clamber::world::{HalfSpace, Obstacle, ObstacleId};
-use clamber_navigation::{Flight, FutureSkin};
+use clamber_navigation::{Airborne, FutureSkin};
 use clamber_scenes::giant;
 use fastrand::Rng;
 use glam::DVec3;
@@ -48,7 +48,7 @@ fn landings_are_foreseen_on_moving_skin() {
             ..ClimberInput::IDLE
         };
         let others: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &floor)];
-        let flight = Flight {
+        let flight = Airborne {
             climber: &climber,
             input: &input,
             rules: &rules,

@@ -12,7 +12,7 @@ use std::time::Instant;
 
 use clamber::animation::ik::{PoleMemory, TwoBoneGoal, aim};
 use clamber::animation::joint_in_model;
-use clamber::body::{Body, BodyClip, BodyFrame, Extremity, Figure, Limb};
+use clamber::body::{Body, BodyClip, BodyInput, Extremity, Figure, Limb};
 use clamber::climber::ClimberMode;
 use clamber::geometry::Similarity;
 use clamber::rig::{Playback, Pose};
@@ -100,7 +100,7 @@ fn watch(climb: &Scene, figure: &Figure, most: u32) -> Result<(Vec<Frame>, Shown
     for _ in 0..((climb.seconds / DT) as u32).min(most) {
         stage.tick(DT)?;
         let obstacles = stage.obstacles();
-        let frame = BodyFrame::new(&stage.climber, &obstacles);
+        let frame = BodyInput::new(&stage.climber, &obstacles);
         let start = Instant::now();
         body.update(figure, &frame, DT)?;
         let micros = start.elapsed().as_secs_f64() * 1e6;

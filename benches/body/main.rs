@@ -18,7 +18,7 @@ use std::error::Error;
 use std::process::ExitCode;
 use std::time::Instant;
 
-use clamber::body::{Body, BodyFrame, Extremity, Figure, Humanoid, Side};
+use clamber::body::{Body, BodyInput, Extremity, Figure, Humanoid, Side};
 use clamber::rig::{Palette, Playback};
 use clamber_scenes::bodies::{self, Mount, Scene, Stage};
 use clamber_scenes::giant;
@@ -130,7 +130,7 @@ fn play(scene: &Scene, figure: &Figure, most: u32) -> Result<Seen, Box<dyn Error
     for _ in 0..ticks {
         stage.tick(DT)?;
         let obstacles = stage.obstacles();
-        let frame = BodyFrame::new(&stage.climber, &obstacles);
+        let frame = BodyInput::new(&stage.climber, &obstacles);
         let start = Instant::now();
         body.update(figure, &frame, DT)?;
         seen.micros.push(start.elapsed().as_secs_f64() * 1e6);

@@ -6,7 +6,7 @@ mod figure;
 mod humanoid;
 mod retarget;
 
-pub use body::{Act, Body, BodyError, BodyFrame, Plant};
+pub use body::{Body, BodyError, BodyInput, OverlayClip, Plant};
 /// The crate that plays clips and solves inverse kinematics, as for [`Limb::ik`].
 pub use clamber_animation;
 pub use error::HumanoidError;

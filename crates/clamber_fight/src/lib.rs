@@ -18,10 +18,10 @@ pub use arena::{
 };
 pub use error::ArenaError;
 pub use fighter::{
-    Act, Blade, BodyFrame, BowConfig, CrushConfig, Fighter, FighterConfig, FighterId, FighterState,
-    StoneConfig, SwordConfig, Target,
+    Blade, BowConfig, CrushConfig, Fighter, FighterConfig, FighterFrame, FighterId, FighterState,
+    StabTarget, StoneConfig, SwordConfig, WeaponAction,
 };
 pub use projectile::{
-    Flight, Projectile, ProjectileBody, ProjectileId, ProjectileKind, ProjectileMotion,
+    Ballistics, Projectile, ProjectileBody, ProjectileId, ProjectileKind, ProjectileMotion,
     ProjectilePlace,
 };

@@ -40,7 +40,7 @@ impl Characters<'_> {
 
     /// The offset of a half-space of a contact with a character, lowered by the allowed depth. The half-space contains
     /// the frame's displacement.
-    fn offset(&self, path: &Path, half_space: &HalfSpace, touch: &Touch) -> f64 {
+    fn offset(&self, path: &Path, half_space: &MovePlane, touch: &Touch) -> f64 {
         if self.yielding {
             return f64::NEG_INFINITY;
         }
@@ -90,13 +90,13 @@ impl Characters<'_> {
 
     /// The half-space of a contact that a sweep along `way` found: its plane is where the touched material is at the
     /// tick's end.
-    pub(crate) fn half_space_of_hit(&self, path: &Path, hit: &Hit, way: DVec3) -> HalfSpace {
+    pub(crate) fn half_space_of_hit(&self, path: &Path, hit: &Hit, way: DVec3) -> MovePlane {
         let Hit { touch, time, .. } = hit;
         let (obstacle, contact) = (touch.obstacle, &touch.contact);
         let motion = path_among(self.obstacles, obstacle, &contact.material, self.dt);
         let end = motion.map_or(contact.point, |motion| motion.position);
         let on_axis = path.end_of(way, *time, contact.point);
-        HalfSpace {
+        MovePlane {
             normal: touch.normal,
             offset: touch.normal.dot(end - path.start - on_axis) + path.body.radius,
         }
@@ -172,8 +172,8 @@ impl<'a> Mover<'a> {
         &mut self,
         path: &Path,
         touch: Touch,
-        half_space: HalfSpace,
-        wall: Option<HalfSpace>,
+        half_space: MovePlane,
+        wall: Option<MovePlane>,
     ) {
         let characters = self.characters();
         let memory = &mut *self.memory;
@@ -183,7 +183,7 @@ impl<'a> Mover<'a> {
             memory.walls.extend(wall);
             return;
         }
-        let yielding = |half_space: HalfSpace| HalfSpace {
+        let yielding = |half_space: MovePlane| MovePlane {
             offset: characters.offset(path, &half_space, &touch),
             ..half_space
         };

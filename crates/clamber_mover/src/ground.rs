@@ -3,7 +3,7 @@
 use clamber_world::WorldCapsule;
 use glam::DVec3;
 
-use crate::half_spaces::{HalfSpace, project_onto_half_spaces};
+use crate::half_spaces::{MovePlane, project_onto_half_spaces};
 use crate::{Hit, Mover, MoverBody, Touch};
 
 /// Parameters of a search for ground.
@@ -133,7 +133,7 @@ impl Mover<'_> {
         if slope(best.normal, up) <= max_slope {
             return Some(best);
         }
-        let mut slopes = [HalfSpace {
+        let mut slopes = [MovePlane {
             normal: up,
             offset: 0.0,
         }; WEDGE];

@@ -55,7 +55,7 @@ const ATTEMPTS: usize = 150;
 
 /// All points y with `normal . y >= offset`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HalfSpace {
+pub struct MovePlane {
     /// Unit normal that points into the half-space. Planes whose normal is shorter than a half, longer than 2, or not
     /// finite are ignored.
     pub normal: DVec3,
@@ -82,7 +82,7 @@ pub struct Projection {
 /// of coordinates. If the intersection is empty, [`Projection::missed`] is exact to 1e-12 of that gap, and the point to
 /// 1e-8 of it. The order of the planes does not change any bit of the result. Planes that are not finite are ignored. A
 /// target that is not finite is returned as it is, with nothing missed.
-pub fn project_onto_half_spaces(target: DVec3, planes: &[HalfSpace]) -> Projection {
+pub fn project_onto_half_spaces(target: DVec3, planes: &[MovePlane]) -> Projection {
     project_where_it_pays(target, planes, 0.0, STEEPEST)
 }
 
@@ -92,7 +92,7 @@ pub fn project_onto_half_spaces(target: DVec3, planes: &[HalfSpace]) -> Projecti
 /// offsets, and is no farther away than `free` and `steepest` times the largest gap together. `steepest` is at least 1.
 pub(crate) fn project_where_it_pays(
     target: DVec3,
-    planes: &[HalfSpace],
+    planes: &[MovePlane],
     free: f64,
     steepest: f64,
 ) -> Projection {
@@ -108,7 +108,7 @@ pub(crate) fn project_where_it_pays(
 /// The problem, with the target at the origin and scaled so that the largest gap is 1.
 struct Search<'a> {
     target: DVec3,
-    planes: &'a [HalfSpace],
+    planes: &'a [MovePlane],
     /// The largest gap: the violation of the worst plane at the target.
     size: f64,
     /// Distance up to which the point may move for any gain of room, in largest gaps.
@@ -152,7 +152,7 @@ struct Corner {
 
 impl<'a> Search<'a> {
     /// `None` if the target is above all planes, to within 1e-300.
-    fn new(target: DVec3, planes: &'a [HalfSpace], free: f64, steepest: f64) -> Option<Self> {
+    fn new(target: DVec3, planes: &'a [MovePlane], free: f64, steepest: f64) -> Option<Self> {
         let gaps = planes.iter().filter_map(|plane| gap(plane, target));
         let size = gaps.fold(0.0, f64::max);
         // Reciprocals of smaller gaps overflow.
@@ -327,7 +327,7 @@ impl TooLittle {
 }
 
 /// The amount by which a point violates a plane, negative inside the half-space; `None` if the plane is ignored.
-fn gap(plane: &HalfSpace, point: DVec3) -> Option<f64> {
+fn gap(plane: &MovePlane, point: DVec3) -> Option<f64> {
     let gap = plane.offset - plane.normal.dot(point);
     ((0.25..=4.0).contains(&plane.normal.length_squared()) && gap.is_finite()).then_some(gap)
 }

@@ -22,7 +22,7 @@ pub use filters::{ContactFilter, ContactFilters};
 /// The version of glam that this crate's API uses.
 pub use glam;
 pub use ground::{Ground, GroundProbe, StepUp, slope};
-pub use half_spaces::{HalfSpace, Projection, project_onto_half_spaces};
+pub use half_spaces::{MovePlane, Projection, project_onto_half_spaces};
 pub use ledge::{Ledge, LedgeHold, LedgeProbe};
 pub use mover::{Mover, MoverMemory};
 pub use path::{Arm, Begin, IntoOthers, Moved, Path, Walking};

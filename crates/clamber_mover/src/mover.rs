@@ -22,11 +22,11 @@ pub struct MoverMemory {
     /// Room that the wanted movement lacks between the half-spaces, metres. It is not updated once the body is crushed.
     pub(crate) lacking: f64,
     pub(crate) overlaps: Vec<Touch>,
-    pub(crate) half_spaces: Vec<HalfSpace>,
+    pub(crate) half_spaces: Vec<MovePlane>,
     /// Vertical walls that replace steep slopes. The slopes themselves are in `half_spaces`.
-    pub(crate) walls: Vec<HalfSpace>,
+    pub(crate) walls: Vec<MovePlane>,
     /// Like `walls`, for contacts with other characters.
-    pub(crate) yielding_walls: Vec<HalfSpace>,
+    pub(crate) yielding_walls: Vec<MovePlane>,
     /// True if walls and other characters left no room in the last movement, so that characters were ignored.
     pub(crate) characters_yield: bool,
     pub(crate) touched: Vec<Touch>,

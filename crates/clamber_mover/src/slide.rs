@@ -15,7 +15,7 @@
 
 use glam::DVec3;
 
-use crate::half_spaces::{HalfSpace, Projection, project_where_it_pays};
+use crate::half_spaces::{MovePlane, Projection, project_where_it_pays};
 use crate::mover::path_among;
 use crate::{Begin, Hit, Moved, Mover, Path, Touch, Walking};
 
@@ -332,7 +332,7 @@ impl Mover<'_> {
 
     /// Adds a contact with its half-space. `position` is where the body would be without it.
     fn add_half_space(&mut self, path: &Path, touch: Touch, offset: f64, position: DVec3) {
-        let half_space = HalfSpace {
+        let half_space = MovePlane {
             normal: touch.normal,
             offset,
         };
@@ -351,7 +351,7 @@ impl Mover<'_> {
             }
             let displacement = position - path.start;
             let into = offset - touch.normal.dot(displacement);
-            Some(HalfSpace {
+            Some(MovePlane {
                 normal: level,
                 offset: level.dot(displacement) + into / lean,
             })
@@ -423,7 +423,7 @@ impl Mover<'_> {
                 break;
             }
             let inward = -reach.normalize_or(DVec3::Y);
-            self.memory.half_spaces.push(HalfSpace {
+            self.memory.half_spaces.push(MovePlane {
                 normal: inward,
                 offset: inward.dot(arm.pivot - path.start) - arm.length,
             });

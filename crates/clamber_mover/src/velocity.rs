@@ -1,7 +1,7 @@
 use clamber_world::WorldPath;
 use glam::DVec3;
 
-use crate::half_spaces::{HalfSpace, project_where_it_pays};
+use crate::half_spaces::{MovePlane, project_where_it_pays};
 use crate::slide::STEEPEST_PUSH;
 use crate::{Mover, Touch};
 
@@ -51,7 +51,7 @@ impl Mover<'_> {
     /// `frame` is the velocity of the support, or of the frame that the body is in. Relative to `frame`, the result is
     /// never faster than the sum of the body's speed and the speed of the fastest obstacle: between half-spaces that
     /// close like scissors, the nearest velocity has no bound.
-    pub fn clip_velocity(&self, velocity: DVec3, frame: DVec3, limit: Option<HalfSpace>) -> DVec3 {
+    pub fn clip_velocity(&self, velocity: DVec3, frame: DVec3, limit: Option<MovePlane>) -> DVec3 {
         self.clip_velocity_with(velocity, frame, limit, |_, of_material| of_material)
     }
 
@@ -61,13 +61,13 @@ impl Mover<'_> {
         &self,
         velocity: DVec3,
         frame: DVec3,
-        limit: Option<HalfSpace>,
+        limit: Option<MovePlane>,
         velocity_of: impl Fn(&Touch, DVec3) -> DVec3,
     ) -> DVec3 {
         if limit.is_none() && self.touched().is_empty() {
             return velocity;
         }
-        let mut half_spaces = [HalfSpace {
+        let mut half_spaces = [MovePlane {
             normal: DVec3::Y,
             offset: 0.0,
         }; STOPS];
@@ -80,7 +80,7 @@ impl Mover<'_> {
         }
         for touch in self.touched().iter().take(STOPS - count) {
             let own = velocity_of(touch, self.velocity_of(touch));
-            half_spaces[count] = HalfSpace {
+            half_spaces[count] = MovePlane {
                 normal: touch.normal,
                 offset: touch.normal.dot(own),
             };

@@ -13,12 +13,12 @@ use crate::NavigationError;
 /// transform in the world then. `None` if it does not know that far ahead.
 ///
 /// The clips that the creature plays give this pose, until its brain chooses other clips.
-pub trait Future {
+pub trait PoseForecast {
     /// The pose at a time, seconds from now on, not negative. At time 0 it is the creature's present pose.
     fn pose(&mut self, seconds: f64, palette: &mut Palette) -> Option<Similarity>;
 }
 
-impl<F: FnMut(f64, &mut Palette) -> Option<Similarity>> Future for F {
+impl<F: FnMut(f64, &mut Palette) -> Option<Similarity>> PoseForecast for F {
     fn pose(&mut self, seconds: f64, palette: &mut Palette) -> Option<Similarity> {
         self(seconds, palette)
     }
@@ -65,7 +65,7 @@ impl FutureSkin {
     /// Poses the skin at a future time, without motion. False if that pose is not known.
     pub(crate) fn place(
         &mut self,
-        future: &mut dyn Future,
+        future: &mut dyn PoseForecast,
         seconds: f64,
     ) -> Result<bool, NavigationError> {
         let Some(place) = future.pose(seconds, &mut self.palette) else {
@@ -78,7 +78,7 @@ impl FutureSkin {
     /// Moves the skin on to a future time. False if that pose is not known.
     pub(crate) fn advance(
         &mut self,
-        future: &mut dyn Future,
+        future: &mut dyn PoseForecast,
         seconds: f64,
     ) -> Result<bool, NavigationError> {
         let Some(place) = future.pose(seconds, &mut self.palette) else {

@@ -4,7 +4,7 @@ use clamber_climber::{Climber, ClimberInput, ClimberState, StepRules};
 use clamber_world::{Obstacle, ObstacleId};
 
 use crate::NavigationError;
-use crate::future::{Future, FutureSkin, check_step};
+use crate::future::{FutureSkin, PoseForecast, check_step};
 
 /// The first contact that supports an airborne climber.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,7 +18,7 @@ pub struct Landing {
 
 /// An airborne climber, and the obstacles around it.
 #[derive(Clone, Copy)]
-pub struct Flight<'a> {
+pub struct Airborne<'a> {
     /// The airborne climber.
     pub climber: &'a Climber,
     /// The climber's input in every tick. Steering and gripping take effect.
@@ -41,8 +41,8 @@ impl FutureSkin {
     /// fit the skin, [`NavigationError::OutOfRange`] if `dt` is not positive and finite.
     pub fn landing(
         &mut self,
-        flight: &Flight<'_>,
-        future: &mut dyn Future,
+        flight: &Airborne<'_>,
+        future: &mut dyn PoseForecast,
         dt: f64,
         most: f64,
     ) -> Result<Option<Landing>, NavigationError> {

@@ -5,7 +5,7 @@ use clamber_world::{Obstacle, ObstacleId};
 use glam::DVec3;
 
 use crate::NavigationError;
-use crate::future::{Future, FutureSkin, check_step};
+use crate::future::{FutureSkin, PoseForecast, check_step};
 
 /// Why a climber is thrown off.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -133,7 +133,7 @@ impl FutureSkin {
         &mut self,
         climber: &Climber,
         creature: ObstacleId,
-        future: &mut dyn Future,
+        future: &mut dyn PoseForecast,
         dt: f64,
         most: f64,
     ) -> Result<Ride, NavigationError> {
@@ -189,7 +189,7 @@ impl FutureSkin {
         &mut self,
         climber: &Climber,
         creature: ObstacleId,
-        future: &mut dyn Future,
+        future: &mut dyn PoseForecast,
         dt: f64,
         most: f64,
     ) -> Result<f64, NavigationError> {

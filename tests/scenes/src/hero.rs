@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use clamber_body::clamber_animation::{AnimationSet, ClipId, Layer};
-use clamber_body::{Act as BodyAct, Body, BodyFrame, Figure, Humanoid};
-use clamber_fight::{Act, ArenaEvent, Fighter};
+use clamber_body::{Body, BodyInput, Figure, Humanoid, OverlayClip};
+use clamber_fight::{ArenaEvent, Fighter, WeaponAction};
 use clamber_surface::geometry::Similarity;
 use clamber_surface::mesh::Rig;
 use clamber_surface::rig::{Palette, Pose, Skeleton};
@@ -87,9 +87,9 @@ impl Hero {
             self.play(&arena.fighters()[0])?;
         }
         let posed = battle.touched(|obstacles| {
-            let frame = BodyFrame {
+            let frame = BodyInput {
                 look_at,
-                ..BodyFrame::new(battle.climber(), obstacles)
+                ..BodyInput::new(battle.climber(), obstacles)
             };
             self.body.update(&self.figure, &frame, dt)
         });
@@ -117,7 +117,7 @@ impl Hero {
                 };
                 let mask = Some(self.figure.upper_body());
                 let layer = Layer { mask, ..layer };
-                Some(BodyAct { layer, hands })
+                Some(OverlayClip { layer, hands })
             });
             let [quick, usual, end] = FADES;
             let fade = match shown {
@@ -169,28 +169,30 @@ fn weapon_clip(
         |name: &'static str, share: f64| Some((name, Some(share.clamp(0.0, 1.0) * length(name))));
     let sword = fighter.config().sword;
     match fighter.act() {
-        Act::Raise { seconds, .. } => at("stab_raise", seconds / sword?.raise.max(1e-3)),
-        Act::Charge { .. } => Some(("stab_hold", None)),
-        Act::Strike { seconds, .. } => {
+        WeaponAction::Raise { seconds, .. } => at("stab_raise", seconds / sword?.raise.max(1e-3)),
+        WeaponAction::Charge { .. } => Some(("stab_hold", None)),
+        WeaponAction::Strike { seconds, .. } => {
             let share = (seconds / sword?.strike).clamp(0.0, 1.0);
             Some(("stab_strike", Some(share * HIT)))
         }
-        Act::Plunge { .. } => Some(("stab_strike", Some(HIT))),
-        Act::PullOut { seconds, .. } => {
+        WeaponAction::Plunge { .. } => Some(("stab_strike", Some(HIT))),
+        WeaponAction::PullOut { seconds, .. } => {
             let left = (seconds / sword?.pull_out.max(1e-3)).clamp(0.0, 1.0);
             let rest = (length("stab_strike") - HIT).max(0.0);
             Some(("stab_strike", Some(HIT + (1.0 - left) * rest)))
         }
-        Act::Cut { seconds, .. } => {
+        WeaponAction::Cut { seconds, .. } => {
             let sword = sword?;
             at(
                 "swing",
                 seconds / (sword.wind_up + sword.cut + sword.recover),
             )
         }
-        Act::Draw { drawn } if *drawn < NOCKED => at("draw", drawn / NOCKED),
-        Act::Draw { .. } => Some(("aim", None)),
-        Act::Ready | Act::Throw { .. } => (loosed < length("loose")).then_some(("loose", None)),
+        WeaponAction::Draw { drawn } if *drawn < NOCKED => at("draw", drawn / NOCKED),
+        WeaponAction::Draw { .. } => Some(("aim", None)),
+        WeaponAction::Ready | WeaponAction::Throw { .. } => {
+            (loosed < length("loose")).then_some(("loose", None))
+        }
     }
 }
 

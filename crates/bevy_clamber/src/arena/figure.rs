@@ -1,7 +1,7 @@
 use bevy_ecs::prelude::*;
 use bevy_time::Time;
 use bevy_transform::components::Transform;
-use clamber_body::BodyFrame;
+use clamber_body::BodyInput;
 use clamber_fight::creature_obstacle;
 use clamber_world::{Obstacle, ObstacleId};
 
@@ -34,7 +34,7 @@ pub(super) fn pose(
             let all: Vec<(ObstacleId, &dyn Obstacle)> =
                 terrain.iter().copied().chain(creatures).collect();
             figure.update(
-                &BodyFrame {
+                &BodyInput {
                     state: fighter.climber().state(),
                     config: fighter.climber().config(),
                     obstacles: &all,

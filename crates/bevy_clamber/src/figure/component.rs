@@ -3,7 +3,7 @@ use std::sync::Arc;
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_transform::components::Transform;
-use clamber_body::{Body, BodyError, BodyFrame, Figure, Plant};
+use clamber_body::{Body, BodyError, BodyInput, Figure, Plant};
 use thiserror::Error;
 
 use crate::creature::transform;
@@ -129,7 +129,7 @@ impl ClimberFigure {
         &mut self.body
     }
     /// Poses the body.
-    pub(crate) fn update(&mut self, frame: &BodyFrame<'_>, dt: f64) -> Result<(), BodyError> {
+    pub(crate) fn update(&mut self, frame: &BodyInput<'_>, dt: f64) -> Result<(), BodyError> {
         let figure = Arc::clone(&self.figure);
         self.body.update(&figure, frame, dt)
     }

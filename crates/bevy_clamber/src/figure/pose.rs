@@ -2,7 +2,7 @@ use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_time::Time;
 use bevy_transform::components::Transform;
-use clamber_body::BodyFrame;
+use clamber_body::BodyInput;
 use clamber_world::{Attachment, Obstacle, ObstacleId};
 
 use super::component::ClimberFigure;
@@ -51,7 +51,7 @@ pub(crate) fn pose(
             if let Some(support) = &mut state.support {
                 follow(&mut support.attachment, obstacles, dt);
             }
-            let frame = BodyFrame {
+            let frame = BodyInput {
                 state: &state,
                 config: climber.config(),
                 obstacles,

@@ -10,7 +10,7 @@ use glam::DVec3;
 
 /// Whether a limb reached its target.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Reach {
+pub enum ReachResult {
     /// The limb's end is at the target.
     Reached,
     /// The target is too far, or in the soft part of the limb's reach. The limb's end is this far short of it, metres.
@@ -27,7 +27,7 @@ pub struct Bend {
     /// Hand or foot, relative to the shoulder or hip.
     pub end: DVec3,
     /// Whether `end` is at the target.
-    pub reach: Reach,
+    pub reach: ReachResult,
 }
 
 /// Bends two bones so that their end is at `target`. All vectors are relative to the start of the first bone.
@@ -66,11 +66,11 @@ pub fn bend(lengths: [f64; 2], target: DVec3, pole: DVec3, soft: f64, least: f64
         elbow: direction * along + side * across,
         end: direction * distance,
         reach: if gap.abs() <= 1e-9 * full {
-            Reach::Reached
+            ReachResult::Reached
         } else if gap > 0.0 {
-            Reach::Short(gap)
+            ReachResult::Short(gap)
         } else {
-            Reach::TooNear(-gap)
+            ReachResult::TooNear(-gap)
         },
     }
 }

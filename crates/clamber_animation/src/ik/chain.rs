@@ -1,7 +1,7 @@
 use clamber_surface::rig::{JointId, Pose, Skeleton};
 use glam::{DAffine3, DVec3};
 
-use super::bend::Reach;
+use super::bend::ReachResult;
 use super::two_bone::check_pose;
 use super::{IkError, arc};
 use crate::pose::{rotation_of, store_rotation};
@@ -65,7 +65,7 @@ impl Chain {
         skeleton: &Skeleton,
         pose: &mut Pose,
         target: DVec3,
-    ) -> Result<Reach, IkError> {
+    ) -> Result<ReachResult, IkError> {
         check_pose(skeleton, pose, self.joints.iter().copied())?;
         if !target.is_finite() {
             return Err(IkError::NotFinite("the target"));
@@ -140,7 +140,7 @@ impl Chain {
 }
 
 /// Moves the points so that the last one is at the target, and keeps the distances between neighbours.
-fn reach(points: &mut [DVec3], lengths: &[f64], full: f64, target: DVec3) -> Reach {
+fn reach(points: &mut [DVec3], lengths: &[f64], full: f64, target: DVec3) -> ReachResult {
     let (start, last) = (points[0], points.len() - 1);
     let distance = start.distance(target);
     if distance >= full {
@@ -150,9 +150,9 @@ fn reach(points: &mut [DVec3], lengths: &[f64], full: f64, target: DVec3) -> Rea
         }
         let gap = distance - full;
         return if gap > TOLERANCE * full {
-            Reach::Short(gap)
+            ReachResult::Short(gap)
         } else {
-            Reach::Reached
+            ReachResult::Reached
         };
     }
     // A straight chain whose target lies on its line would stay straight: a small bend lets it fold.
@@ -177,14 +177,14 @@ fn reach(points: &mut [DVec3], lengths: &[f64], full: f64, target: DVec3) -> Rea
             points[k + 1] = follow(points[k], points[k + 1], lengths[k]);
         }
         if points[last].distance(target) <= TOLERANCE * full {
-            return Reach::Reached;
+            return ReachResult::Reached;
         }
     }
     let gap = points[last].distance(target);
     // The longest bone is longer than all the others together, and the chain cannot fold any further.
     if points[last].distance(start) > distance {
-        Reach::TooNear(gap)
+        ReachResult::TooNear(gap)
     } else {
-        Reach::Short(gap)
+        ReachResult::Short(gap)
     }
 }

@@ -16,7 +16,7 @@ mod pole;
 mod two_bone;
 
 pub use aim::{aim, orient};
-pub use bend::{Bend, Reach, bend, soft_distance};
+pub use bend::{Bend, ReachResult, bend, soft_distance};
 pub use chain::Chain;
 pub use error::IkError;
 pub use limits::SwingTwist;

@@ -1,7 +1,7 @@
 use clamber_surface::rig::{JointId, Pose, Skeleton};
 use glam::{DAffine3, DMat3, DVec3};
 
-use super::bend::{Reach, bend};
+use super::bend::{ReachResult, bend};
 use super::{IkError, PoleMemory, arc, frame_turn};
 use crate::pose::{rotation_of, store_rotation};
 use crate::space::{invertible, model_from_joint, model_from_parent, uniform_inverse};
@@ -213,7 +213,7 @@ impl TwoBone {
         pose: &mut Pose,
         goal: &TwoBoneGoal,
         memory: Option<(&mut PoleMemory, f64)>,
-    ) -> Result<Reach, IkError> {
+    ) -> Result<ReachResult, IkError> {
         check_pose(skeleton, pose, self.joints())?;
         if !goal.target.is_finite() {
             return Err(IkError::NotFinite("the target"));

@@ -1,7 +1,7 @@
 //! Heads that look at a target: scenes B10 and B11.
 
 use clamber_animation::glam::{DQuat, DVec3, Vec3};
-use clamber_animation::ik::{Chain, IkError, LookAt, LookMemory, Reach, aim, orient};
+use clamber_animation::ik::{Chain, IkError, LookAt, LookMemory, ReachResult, aim, orient};
 use clamber_animation::rig::{JointId, Pose, Skeleton};
 use clamber_animation::{joint_in_model, joints_in_model};
 use clamber_surface::geometry::{rotation_from_axis_angle, rotation_vector};
@@ -364,7 +364,7 @@ fn b11_a_head_stays_where_it_looks_while_the_body_sways() {
         control = control.max(place(&skeleton, &pose, 6).distance(home));
         // The neck chain brings the head to its place first, then the head aims at the target.
         let reach = neck.solve(&skeleton, &mut pose, home).unwrap();
-        assert_eq!(reach, Reach::Reached);
+        assert_eq!(reach, ReachResult::Reached);
         let to_target = target - place(&skeleton, &pose, 6);
         aim(
             &skeleton,
@@ -408,8 +408,8 @@ fn chains_reach_what_they_can_and_say_what_they_cannot() {
         let reach = chain.solve(&skeleton, &mut pose, target).unwrap();
         let off = chain.end(&skeleton, &pose).unwrap().distance(target);
         match reach {
-            Reach::Reached => assert!(off < 2e-4, "{target}: {off}"),
-            Reach::Short(gap) | Reach::TooNear(gap) => {
+            ReachResult::Reached => assert!(off < 2e-4, "{target}: {off}"),
+            ReachResult::Short(gap) | ReachResult::TooNear(gap) => {
                 assert!(
                     (gap - off).abs() < 1e-4 && off < 0.05,
                     "{target}: {off} {gap}"
@@ -426,7 +426,7 @@ fn chains_reach_what_they_can_and_say_what_they_cannot() {
         .solve(&skeleton, &mut pose, DVec3::new(2.0, 1.0, 0.0))
         .unwrap();
     assert!(
-        matches!(far, Reach::Short(gap) if (gap - 1.4).abs() < 1e-4),
+        matches!(far, ReachResult::Short(gap) if (gap - 1.4).abs() < 1e-4),
         "{far:?}"
     );
     assert!(chain.solve(&skeleton, &mut pose, DVec3::NAN).is_err());

@@ -2,7 +2,7 @@
 
 use clamber_animation::glam::{DMat3, DQuat, DVec3, Quat, Vec3};
 use clamber_animation::ik::{
-    IkError, PoleMemory, Reach, TwoBone, TwoBoneGoal, bend, soft_distance,
+    IkError, PoleMemory, ReachResult, TwoBone, TwoBoneGoal, bend, soft_distance,
 };
 use clamber_animation::rig::{JointId, Pose, Skeleton, Transform};
 use clamber_surface::geometry::{rotation_from_axis_angle, rotation_vector};
@@ -49,7 +49,7 @@ fn b01_reachable_targets_are_reached_and_bones_keep_their_lengths() {
         let distance = nearest + (full - nearest) * rng.f64();
         let target = unit(&mut rng) * distance;
         let found = bend(lengths, target, random(&mut rng, 1.0), 1.0, 0.0);
-        assert_eq!(found.reach, Reach::Reached, "{lengths:?} {target}");
+        assert_eq!(found.reach, ReachResult::Reached, "{lengths:?} {target}");
         worst[0] = worst[0].max(found.end.distance(target) / full);
         let bones = [found.elbow.length(), found.elbow.distance(found.end)];
         for (bone, length) in bones.into_iter().zip(lengths) {
@@ -79,7 +79,7 @@ fn b01_reachable_targets_are_reached_and_bones_keep_their_lengths() {
             ..TwoBoneGoal::reach(target)
         };
         let reach = limb.solve(&skeleton, &mut pose, &goal, None).unwrap();
-        assert_eq!(reach, Reach::Reached, "{lengths:?} {target}");
+        assert_eq!(reach, ReachResult::Reached, "{lengths:?} {target}");
         let end = place(&skeleton, &pose, 3);
         worst[2] = worst[2].max(end.distance(target) / full);
     }
@@ -105,7 +105,10 @@ fn b02_far_targets_are_aimed_at_with_the_soft_length() {
             .solve(&skeleton, &mut pose, &goal, None)
             .unwrap();
         let way = place(&skeleton, &pose, 3) - from;
-        assert!(matches!(reach, Reach::Short(gap) if gap > 0.0), "{reach:?}");
+        assert!(
+            matches!(reach, ReachResult::Short(gap) if gap > 0.0),
+            "{reach:?}"
+        );
         let aim = way.cross(direction).length().atan2_of(way.dot(direction));
         assert!(aim <= 1e-4, "{aim}");
         // The formula of the reference: d' = r L + (1 - r) L (1 - e^(-(d - r L) / ((1 - r) L))).
@@ -397,7 +400,7 @@ fn b07_mirrored_limbs_are_mirrored_and_mirrored_rigs_reach() {
             let limb = TwoBone::new(skeleton, JOINTS, DVec3::NEG_Z).unwrap();
             assert_eq!(
                 limb.solve(skeleton, &mut pose, &goal, None),
-                Ok(Reach::Reached)
+                Ok(ReachResult::Reached)
             );
             let [elbow, hand] = [2, 3].map(|k| place(skeleton, &pose, k));
             assert!(hand.distance(target) < 1e-5, "{target} {hand}");
@@ -444,7 +447,7 @@ fn b08_a_parent_that_scales_unevenly_is_exact_and_a_joint_that_does_is_refused()
         let target =
             shoulder(&skeleton, &pose) + parent * (unit(&mut rng) * (0.01 + 0.58 * rng.f64()));
         let reach = limb(&skeleton).solve(&skeleton, &mut pose, &TwoBoneGoal::reach(target), None);
-        assert_eq!(reach, Ok(Reach::Reached));
+        assert_eq!(reach, Ok(ReachResult::Reached));
         let end = place(&skeleton, &pose, 3);
         assert!(end.distance(target) <= 1e-3, "{}", end.distance(target));
     }
@@ -509,7 +512,9 @@ fn an_elbow_does_not_fold_beyond_its_limit() {
     let [upper, lower] = [a - b, c - b];
     let angle = libm::atan2(upper.cross(lower).length(), upper.dot(lower));
     assert!((angle - 0.6).abs() < 1e-5, "{angle}");
-    assert!(matches!(reach, Reach::TooNear(by) if (by - (a.distance(c) - 0.06)).abs() < 1e-5));
+    assert!(
+        matches!(reach, ReachResult::TooNear(by) if (by - (a.distance(c) - 0.06)).abs() < 1e-5)
+    );
     for angle in [-0.1, 3.2, f64::NAN] {
         assert!(limb.with_least_angle(angle).is_err());
     }
@@ -528,7 +533,7 @@ fn a_limb_may_end_at_a_point_of_its_lower_bone() {
         let target = from + unit(&mut rng) * (0.12 + 0.38 * rng.f64());
         let goal = TwoBoneGoal::reach(target);
         let reach = limb.solve(&skeleton, &mut pose, &goal, None).unwrap();
-        assert_eq!(reach, Reach::Reached);
+        assert_eq!(reach, ReachResult::Reached);
         let end = limb.end(&skeleton, &pose).unwrap();
         let palette = skeleton.palette(&pose).unwrap();
         let elbow = palette.model_from_joint(JointId(2)).unwrap();

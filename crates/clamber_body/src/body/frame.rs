@@ -9,7 +9,7 @@ use crate::BodyError;
 /// All fields are as drawn: a game that draws between two ticks passes a state with the drawn position, and obstacles
 /// in their drawn poses.
 #[derive(Clone, Copy)]
-pub struct BodyFrame<'a> {
+pub struct BodyInput<'a> {
     /// The climber's state.
     pub state: &'a ClimberState,
     /// The climber's configuration.
@@ -20,7 +20,7 @@ pub struct BodyFrame<'a> {
     pub look_at: Option<DVec3>,
 }
 
-impl<'a> BodyFrame<'a> {
+impl<'a> BodyInput<'a> {
     /// The frame of a climber that is drawn in the state after its last step.
     pub fn new(climber: &'a Climber, obstacles: &'a [(ObstacleId, &'a dyn Obstacle)]) -> Self {
         Self {

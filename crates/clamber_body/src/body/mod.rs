@@ -30,8 +30,8 @@ use glam::DVec3;
 
 pub use error::BodyError;
 pub use event::Plant;
-pub use frame::BodyFrame;
-pub use play::Act;
+pub use frame::BodyInput;
+pub use play::OverlayClip;
 
 use memory::Memory;
 use play::Player;
@@ -75,7 +75,7 @@ impl Body {
     pub fn update(
         &mut self,
         figure: &Figure,
-        frame: &BodyFrame<'_>,
+        frame: &BodyInput<'_>,
         dt: f64,
     ) -> Result<(), BodyError> {
         self.check(figure)?;
@@ -158,7 +158,7 @@ impl Body {
     pub fn set_act(
         &mut self,
         figure: &Figure,
-        act: Option<Act>,
+        act: Option<OverlayClip>,
         fade: f64,
     ) -> Result<(), AnimationError> {
         if let Some(act) = &act {

@@ -32,18 +32,18 @@ enum Base {
 ///
 /// ```
 /// use clamber_animation::Layer;
-/// use clamber_body::{Act, Body, Figure};
+/// use clamber_body::{OverlayClip, Body, Figure};
 ///
 /// /// Draws a bow: the left hand follows the clip, and the right one holds on meanwhile.
 /// fn draw(figure: &Figure, body: &mut Body) -> Result<(), Box<dyn std::error::Error>> {
 ///     let clip = figure.animations().find("draw").ok_or("no such clip")?;
 ///     let layer = Layer { mask: Some(figure.upper_body()), ..Layer::once(clip) };
-///     body.set_act(figure, Some(Act { layer, hands: [true, false] }), 0.2)?;
+///     body.set_act(figure, Some(OverlayClip { layer, hands: [true, false] }), 0.2)?;
 ///     Ok(()) // `act_mut` tells its time; then "aim", "loose", and `None`
 /// }
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Act {
+pub struct OverlayClip {
     /// The clip, how it is blended in, and its mask of joints. [`Figure::upper_body`](crate::Figure::upper_body) is a
     /// mask of the joints above the hips.
     pub layer: Layer,
@@ -97,7 +97,7 @@ impl Player {
     pub(crate) fn set_act(
         &mut self,
         figure: &Figure,
-        act: Option<Act>,
+        act: Option<OverlayClip>,
         fade: f64,
     ) -> Result<(), AnimationError> {
         let had = self.act.is_some();

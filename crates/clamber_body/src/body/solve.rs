@@ -1,6 +1,6 @@
 //! Solves a limb's joints for the desired place of its hand or foot.
 
-use clamber_animation::ik::{IkError, Reach, TwoBoneGoal, aim};
+use clamber_animation::ik::{IkError, ReachResult, TwoBoneGoal, aim};
 use clamber_animation::{ik::PoleMemory, joint_in_model};
 use clamber_surface::rig::Pose;
 use glam::{DAffine3, DVec3};
@@ -55,8 +55,10 @@ pub(crate) fn limb(
         }
     }
     let position = match reach {
-        Reach::Reached => wanted.place.position,
-        Reach::Short(_) | Reach::TooNear(_) => root.point(shape.ik.end(skeleton, pose)? * scale),
+        ReachResult::Reached => wanted.place.position,
+        ReachResult::Short(_) | ReachResult::TooNear(_) => {
+            root.point(shape.ik.end(skeleton, pose)? * scale)
+        }
     };
     Ok(Place {
         position,

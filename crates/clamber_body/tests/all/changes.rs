@@ -201,7 +201,7 @@ fn teleports_are_quiet() {
             stage.climber.restore(state).unwrap();
         }
         let obstacles = stage.obstacles();
-        let frame = clamber_body::BodyFrame::new(&stage.climber, &obstacles);
+        let frame = clamber_body::BodyInput::new(&stage.climber, &obstacles);
         body.update(&figure, &frame, 1.0 / 60.0).unwrap();
         let place = body.world_from_model().translation;
         let off = place.distance(stage.climber.state().position);

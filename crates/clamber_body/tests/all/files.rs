@@ -1,6 +1,6 @@
 //! Bodies in files: the project's hero and third-party characters.
 
-use clamber_animation::ik::{Reach, TwoBoneGoal};
+use clamber_animation::ik::{ReachResult, TwoBoneGoal};
 use clamber_body::{HumanJoint, Humanoid, HumanoidError, Limb, LimbEnd, Retarget, Side};
 use clamber_scenes::test_data;
 use clamber_surface::mesh::Rig;
@@ -42,7 +42,7 @@ fn check_limbs(rig: &Rig, body: &Humanoid) {
                 .ik
                 .solve(&rig.skeleton, &mut pose, &goal, None)
                 .unwrap();
-            assert_eq!(reach, Reach::Reached, "{}", name(rig, limb.upper));
+            assert_eq!(reach, ReachResult::Reached, "{}", name(rig, limb.upper));
             let off = limb.ik.end(&rig.skeleton, &pose).unwrap().distance(target);
             assert!(off < 1e-5 * length, "{}: {off}", name(rig, limb.upper));
         }

@@ -1,7 +1,7 @@
 //! Lost holds, stretching skin, acts, refused frames, missing obstacles, and allocations.
 
 use clamber_animation::{Layer, LayerKind};
-use clamber_body::{Act, Body, BodyError, BodyFrame, Extremity, Side};
+use clamber_body::{Body, BodyError, BodyInput, Extremity, OverlayClip, Side};
 use clamber_climber::{Climber, ClimberConfig, ClimberInput, StepRules};
 use clamber_scenes::bodies::{self, Stage};
 use clamber_surface::geometry::{Affine, Similarity};
@@ -107,7 +107,7 @@ impl Cling {
         self.climber
             .step_with(&input, &obstacles, &rules, DT)
             .unwrap();
-        let frame = BodyFrame::new(&self.climber, &obstacles);
+        let frame = BodyInput::new(&self.climber, &obstacles);
         self.body.update(figure, &frame, DT).unwrap();
     }
 
@@ -186,7 +186,7 @@ fn a_hand_with_a_weapon_leaves_its_hold() {
     let figure = figures::hero();
     let mut cling = Cling::new(&figure);
     let clip = figure.animations().find("swing").unwrap();
-    let act = Act {
+    let act = OverlayClip {
         layer: Layer {
             mask: Some(figure.upper_body()),
             ..Layer::once(clip)
@@ -225,7 +225,7 @@ fn an_act_never_takes_both_hands() {
             let (mut lost, mut acts) = (0, 0);
             for tick in 0..240 {
                 if tick == 120 + begin {
-                    let act = Act {
+                    let act = OverlayClip {
                         layer: Layer {
                             mask: Some(figure.upper_body()),
                             ..Layer::new(clip)
@@ -236,7 +236,7 @@ fn an_act_never_takes_both_hands() {
                 }
                 stage.tick(DT).unwrap();
                 let obstacles = stage.obstacles();
-                let frame = BodyFrame::new(&stage.climber, &obstacles);
+                let frame = BodyInput::new(&stage.climber, &obstacles);
                 body.update(&figure, &frame, DT).unwrap();
                 let holds = Side::BOTH.map(|side| body.hold(Extremity::Hand(side)).is_some());
                 lost += u32::from(tick >= 120 && holds == [false; 2]);
@@ -260,7 +260,7 @@ fn bad_frames_are_refused() {
     stage.tick(DT).unwrap();
     let mut body = Body::new(&figure);
     let obstacles = stage.obstacles();
-    let good = BodyFrame::new(&stage.climber, &obstacles);
+    let good = BodyInput::new(&stage.climber, &obstacles);
     body.update(&figure, &good, DT).unwrap();
     let (pose, place) = (body.pose().clone(), body.world_from_model());
     for dt in [-1.0, f64::NAN, f64::INFINITY] {
@@ -271,7 +271,7 @@ fn bad_frames_are_refused() {
     }
     let mut state = *stage.climber.state();
     state.position.x = f64::NAN;
-    let bad = BodyFrame {
+    let bad = BodyInput {
         state: &state,
         ..good
     };
@@ -279,7 +279,7 @@ fn bad_frames_are_refused() {
         body.update(&figure, &bad, DT),
         Err(BodyError::NotFinite(_))
     ));
-    let look = BodyFrame {
+    let look = BodyInput {
         look_at: Some(DVec3::INFINITY),
         ..good
     };
@@ -311,7 +311,7 @@ fn a_body_needs_no_obstacles() {
         let mut body = Body::new(&figure);
         for _ in 0..60 {
             climber.step(&ClimberInput::IDLE, &[], DT).unwrap();
-            body.update(&figure, &BodyFrame::new(&climber, &[]), DT)
+            body.update(&figure, &BodyInput::new(&climber, &[]), DT)
                 .unwrap();
             let off = body
                 .world_from_model()
@@ -336,7 +336,7 @@ fn steady_frames_allocate_nothing() {
         for tick in 0..200 {
             stage.tick(DT).unwrap();
             let obstacles = stage.obstacles();
-            let frame = BodyFrame::new(&stage.climber, &obstacles);
+            let frame = BodyInput::new(&stage.climber, &obstacles);
             let used = allocation_counter::measure(|| body.update(&figure, &frame, DT).unwrap());
             assert!(
                 tick < 100 || used.count_total == 0,

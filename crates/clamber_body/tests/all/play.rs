@@ -1,4 +1,4 @@
-use clamber_body::{Body, BodyFrame, Figure};
+use clamber_body::{Body, BodyInput, Figure};
 use clamber_scenes::bodies::{Scene, Stage};
 
 /// Plays a scene with one frame per tick, and passes each frame to `see`.
@@ -16,7 +16,7 @@ pub(crate) fn play(
         let obstacles = stage.obstacles();
         body.update(
             figure,
-            &BodyFrame::new(&stage.climber, &obstacles),
+            &BodyInput::new(&stage.climber, &obstacles),
             1.0 / rate,
         )
         .unwrap();

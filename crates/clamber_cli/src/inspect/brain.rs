@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use clamber_animation::SeamProbe;
-use clamber_colossus::brain::Act;
+use clamber_colossus::brain::StateAction;
 use clamber_colossus::{Brain, CreatureKind};
 use clamber_gltf::load;
 
@@ -86,7 +86,7 @@ fn print_jumps(kind: &CreatureKind) -> Result<(), InspectError> {
     let brain = kind.brain();
     let mut names: BTreeSet<&str> = BTreeSet::new();
     for state in brain.states() {
-        if let Some(Act::Play(clip)) = brain.act(state) {
+        if let Some(StateAction::Play(clip)) = brain.act(state) {
             names.insert(clip);
         }
     }

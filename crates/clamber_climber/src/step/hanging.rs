@@ -1,6 +1,6 @@
 //! Hanging by the hands from a grip: a pendulum that can only hold on.
 
-use clamber_mover::{Arm, HalfSpace, Moved, Path};
+use clamber_mover::{Arm, MovePlane, Moved, Path};
 use glam::DVec3;
 
 use super::carrying::Carried;
@@ -201,7 +201,7 @@ impl Tick<'_> {
         }
         let inward = -arm.normalize_or(DVec3::Y);
         let is_taut = arm.length() >= self.state.hanging.arm * (1.0 - 1e-6);
-        let taut = is_taut.then(|| HalfSpace {
+        let taut = is_taut.then(|| MovePlane {
             normal: inward,
             offset: inward.dot(carried.velocity()),
         });

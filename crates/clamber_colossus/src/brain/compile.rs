@@ -360,7 +360,7 @@ impl Brain {
             self.transitions[range].iter()
         });
         let instant = around.filter(|transition| transition.is_instant());
-        if self.is_final(state) || self.act(state).is_some_and(super::Act::is_whole) {
+        if self.is_final(state) || self.act(state).is_some_and(super::StateAction::is_whole) {
             return None;
         }
         // The first transition of the highest priority.
@@ -382,12 +382,12 @@ fn count(states: &BTreeMap<String, StateFile>) -> usize {
 }
 
 fn check_act(file: &StateFile) -> Result<(), BrainProblem> {
-    use super::Act;
+    use super::StateAction;
     match &file.act {
-        Some(Act::Attack(attack)) => attack.check(),
-        Some(Act::Walk(walk)) => check_seconds("within", walk.within),
-        Some(Act::Turn(turn)) => check_seconds("within_deg", turn.within_deg),
-        Some(Act::Play(_) | Act::Once(_) | Act::Sleep) | None => Ok(()),
+        Some(StateAction::Attack(attack)) => attack.check(),
+        Some(StateAction::Walk(walk)) => check_seconds("within", walk.within),
+        Some(StateAction::Turn(turn)) => check_seconds("within_deg", turn.within_deg),
+        Some(StateAction::Play(_) | StateAction::Once(_) | StateAction::Sleep) | None => Ok(()),
     }
 }
 

@@ -56,7 +56,7 @@ pub struct StateFile {
     /// The creature's act in this state. With `None` it stands: it plays the idle clip if it has a gait, else goes on
     /// with its last clip.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub act: Option<Act>,
+    pub act: Option<StateAction>,
     /// Where the creature looks. `None` takes the gaze of the outer state.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gaze: Option<Gaze>,
@@ -129,7 +129,7 @@ pub enum After {
 /// The action of a creature in a state.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Act {
+pub enum StateAction {
     /// Plays a clip in a loop, on the spot.
     Play(String),
     /// Plays a clip once, to its end, and holds its last pose. Before the end, only a transition that interrupts leaves

@@ -17,7 +17,8 @@ pub(crate) use compile::list;
 use condition::Condition;
 pub use error::{BrainError, BrainProblem};
 pub use file::{
-    Act, After, BrainFile, Gaze, MoodFile, Place, RaiseFile, StateFile, TransitionFile, Turn, Walk,
+    After, BrainFile, Gaze, MoodFile, Place, RaiseFile, StateAction, StateFile, TransitionFile,
+    Turn, Walk,
 };
 pub use report::{BrainReport, Never};
 pub use state::{BrainState, Entered};
@@ -79,7 +80,7 @@ struct State {
     depth: usize,
     /// The inner state that is entered with it.
     start: Option<StateId>,
-    act: Option<Act>,
+    act: Option<StateAction>,
     gaze: Gaze,
     fade: f64,
     exposes: Vec<String>,
@@ -122,7 +123,7 @@ struct Mood {
     raised: Vec<(Vec<Condition>, u32)>,
 }
 
-impl Act {
+impl StateAction {
     /// True if the act has to be played to its end.
     fn is_whole(&self) -> bool {
         matches!(self, Self::Once(_) | Self::Attack(_))
@@ -176,7 +177,7 @@ impl Brain {
     }
 
     /// The act of a state; `None` if the creature only stands in it.
-    pub fn act(&self, state: StateId) -> Option<&Act> {
+    pub fn act(&self, state: StateId) -> Option<&StateAction> {
         self.state(state)?.act.as_ref()
     }
 

@@ -266,10 +266,15 @@ impl Brain {
         let mut clips = self
             .states()
             .filter(|state| self.is_within(*state, transition.from))
-            .map(|state| (self.act(state), self.act(state).and_then(super::Act::clip)));
+            .map(|state| {
+                (
+                    self.act(state),
+                    self.act(state).and_then(super::StateAction::clip),
+                )
+            });
         let found = clips.any(|(act, clip)| match (act, clip) {
             // Walks and turns play clips of the gait, which are not known here.
-            (Some(super::Act::Walk(_) | super::Act::Turn(_)), _) => true,
+            (Some(super::StateAction::Walk(_) | super::StateAction::Turn(_)), _) => true,
             (_, Some(clip)) => has(clip, wanted),
             _ => false,
         });
@@ -280,7 +285,10 @@ impl Brain {
     fn waits_for_no_end(&self, transition: &Transition) -> bool {
         use super::condition::Source;
         let state = &self.states[transition.from.index()];
-        let is_endless = matches!(state.act, Some(super::Act::Play(_) | super::Act::Sleep));
+        let is_endless = matches!(
+            state.act,
+            Some(super::StateAction::Play(_) | super::StateAction::Sleep)
+        );
         let waits = |condition: &Condition| {
             let is_done = condition.source == Source::Sense(crate::senses::Sense::Done);
             is_done && !condition.holds_for(0.0)

@@ -216,7 +216,7 @@ impl Brain {
         if self.is_final(current) {
             return None;
         }
-        let is_whole = self.act(current).is_some_and(super::Act::is_whole);
+        let is_whole = self.act(current).is_some_and(super::StateAction::is_whole);
         let is_bound = is_whole && (at_once || senses.get(crate::Sense::Done) == 0.0);
         let can = |transition: &&Transition| {
             (!at_once || transition.is_instant())

@@ -7,7 +7,7 @@ use super::clips::Playing;
 use super::move_on::Progress;
 use super::ordered::Errand;
 use super::{Creature, Surroundings};
-use crate::brain::{Act, StateId};
+use crate::brain::{StateAction, StateId};
 use crate::error::ColossusError;
 
 /// Share of the walking speed below which the creature has come to a stand, so that an act of another kind can begin.
@@ -95,11 +95,11 @@ impl Creature {
         }
         let kind = std::sync::Arc::clone(&self.kind);
         let act = kind.brain().act(state);
-        let walks = matches!(act, Some(Act::Walk(_)));
+        let walks = matches!(act, Some(StateAction::Walk(_)));
         let speed = kind.gait().map_or(0.0, |gait| self.full_speed(gait));
         let is_moving = self.state.speed().abs() > STANDING_SPEED_SHARE * speed;
         // An attack aims once, and would strike elsewhere if the creature turned on.
-        let turns = matches!(act, Some(Act::Attack(_))) && self.is_turning();
+        let turns = matches!(act, Some(StateAction::Attack(_))) && self.is_turning();
         if !walks && !self.state.acting.halts && (is_moving || turns) {
             return Ok(());
         }
@@ -110,16 +110,17 @@ impl Creature {
         self.state.ranged.begin();
         self.state.walked.progress = Progress::default();
         match act {
-            Some(Act::Walk(_) | Act::Turn(_)) => self.begin_way(),
-            Some(Act::Play(_)) => self.begin(state, Playback::Loop)?,
-            Some(Act::Once(_)) => self.begin(state, Playback::Clamp)?,
-            Some(Act::Attack(_)) => self.begin_attack(state, around)?,
-            Some(Act::Sleep) => self.state.clips.stop(),
+            Some(StateAction::Walk(_) | StateAction::Turn(_)) => self.begin_way(),
+            Some(StateAction::Play(_)) => self.begin(state, Playback::Loop)?,
+            Some(StateAction::Once(_)) => self.begin(state, Playback::Clamp)?,
+            Some(StateAction::Attack(_)) => self.begin_attack(state, around)?,
+            Some(StateAction::Sleep) => self.state.clips.stop(),
             None => self.play(Playing::Idle, 1.0, kind.brain().fade(state))?,
         }
         // Clips that sleep has stopped go on only now, so that the fade to the new clip begins without motion.
-        let is_way = matches!(act, Some(Act::Walk(_) | Act::Turn(_))) && kind.gait().is_some();
-        if !is_way && !matches!(act, Some(Act::Sleep)) {
+        let is_way = matches!(act, Some(StateAction::Walk(_) | StateAction::Turn(_)))
+            && kind.gait().is_some();
+        if !is_way && !matches!(act, Some(StateAction::Sleep)) {
             self.state.clips.go_on();
         }
         Ok(())

@@ -10,7 +10,7 @@ use super::state::{is_fast, is_large};
 use super::way::Way;
 use super::{Creature, CreatureEvent, Surroundings};
 use crate::angle::nearest_turn;
-use crate::brain::{Act, StateId};
+use crate::brain::{StateAction, StateId};
 use crate::error::ColossusError;
 use crate::kind::{Gait, HUMAN_HEIGHT};
 use crate::senses::Sense;
@@ -174,7 +174,7 @@ impl Creature {
         } else if way.is_some() {
             self.state.clips.go_on();
         }
-        if !(matches!(playing, Playing::Act(_)) || sleeps && playing == Playing::Idle) {
+        if !(matches!(playing, Playing::StateAction(_)) || sleeps && playing == Playing::Idle) {
             self.state.clips.set_speed(clip_speed);
         }
         let stands = self.state.speed() == 0.0 && !self.is_turning();
@@ -191,7 +191,7 @@ impl Creature {
         } = *wanted;
         let moves = self.state.speed() > 0.0 && !self.state.acting.halts();
         let playing = self.state.clips.playing();
-        let acts = matches!(playing, Playing::Act(_)) && way.is_none();
+        let acts = matches!(playing, Playing::StateAction(_)) && way.is_none();
         if moves {
             Playing::Walk
         } else if turns_on_spot && gait.turn.is_some() && self.state.speed() >= 0.0 {
@@ -253,9 +253,11 @@ impl Creature {
         let is_blocked = progress.is_blocked && !tries;
         let is_over = !tries
             && match self.kind.brain().act(state) {
-                Some(Act::Walk(_) | Act::Turn(_)) => is_there,
-                Some(Act::Once(_) | Act::Attack(_)) => begun && self.is_played(state),
-                Some(Act::Play(_) | Act::Sleep) => false,
+                Some(StateAction::Walk(_) | StateAction::Turn(_)) => is_there,
+                Some(StateAction::Once(_) | StateAction::Attack(_)) => {
+                    begun && self.is_played(state)
+                }
+                Some(StateAction::Play(_) | StateAction::Sleep) => false,
                 None => true,
             };
         let is_act = self.state.acting.has_begun(state);

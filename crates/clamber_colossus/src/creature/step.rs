@@ -4,7 +4,7 @@ use clamber_surface::geometry::Similarity;
 use serde::{Deserialize, Serialize};
 
 use super::{Creature, CreatureReport, Surroundings};
-use crate::brain::Act;
+use crate::brain::StateAction;
 use crate::error::ColossusError;
 use crate::feet::Ground;
 
@@ -119,7 +119,7 @@ impl Creature {
             .acting
             .state()
             .and_then(|state| self.kind.brain().act(state));
-        matches!(act, Some(Act::Sleep))
+        matches!(act, Some(StateAction::Sleep))
     }
 
     /// True if the creature is asleep, and so still that nothing has to be posed.

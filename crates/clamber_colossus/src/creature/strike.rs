@@ -14,7 +14,7 @@ use super::report::{AttackPhase, Blow};
 use super::room::LEAST_GROUND_NORMAL;
 use super::state::{is_far, is_large};
 use super::{Creature, Person, Surroundings};
-use crate::brain::{Act, StateId};
+use crate::brain::{StateAction, StateId};
 use crate::feet::Carried;
 use crate::kind::Strike;
 
@@ -120,10 +120,10 @@ impl Striking {
 impl Creature {
     /// State and phase of the current attack; `None` while the creature does not attack.
     pub fn attack(&self) -> Option<(StateId, AttackPhase)> {
-        let Playing::Act(state) = self.state.clips.playing() else {
+        let Playing::StateAction(state) = self.state.clips.playing() else {
             return None;
         };
-        let Some(Act::Attack(_)) = self.kind.brain().act(state) else {
+        let Some(StateAction::Attack(_)) = self.kind.brain().act(state) else {
             return None;
         };
         // The clip may still play when the creature already does something else.

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::Creature;
 use super::state::is_far;
 use super::walked::Walked;
-use crate::brain::{Act, Place, StateId, Walk};
+use crate::brain::{Place, StateAction, StateId, Walk};
 use crate::feet::Carried;
 
 /// The places that a creature comes back to.
@@ -71,7 +71,7 @@ impl Creature {
 
     pub(super) fn way(&self, state: StateId) -> Option<Way> {
         match self.kind.brain().act(state)? {
-            Act::Walk(Walk { to, within, .. }) => {
+            StateAction::Walk(Walk { to, within, .. }) => {
                 let goal = self.within_arena(self.place_of(*to));
                 let Some(strike) = &self.kind.act(state).strike else {
                     return Some(Way {
@@ -92,7 +92,7 @@ impl Creature {
                     walks: true,
                 })
             }
-            Act::Turn(turn) => Some(Way {
+            StateAction::Turn(turn) => Some(Way {
                 goal: self.place_of(turn.to),
                 bearing: Some(0.0),
                 within: f64::INFINITY,

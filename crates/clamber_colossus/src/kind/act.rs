@@ -4,7 +4,7 @@ use clamber_animation::ClipId;
 use clamber_animation::rig::{Playback, WeakPoint};
 
 use super::{Contacts, Gait, JointBall, Leg, Names, Strike};
-use crate::brain::{Act, Attack, Brain, BrainProblem, StateId, list};
+use crate::brain::{Attack, Brain, BrainProblem, StateAction, StateId, list};
 use crate::error::ColossusError;
 
 /// The clip of a state's act, and its strike.
@@ -61,8 +61,8 @@ fn compile(
         .transpose()
         .map_err(here)?;
     let strike = match act {
-        Act::Attack(attack) => Some(strike(names, attack, legs, balls).map_err(here)?),
-        Act::Walk(walk) => match &walk.strike {
+        StateAction::Attack(attack) => Some(strike(names, attack, legs, balls).map_err(here)?),
+        StateAction::Walk(walk) => match &walk.strike {
             Some(clip) => {
                 let (owner, attack) = attack_with(brain, clip)
                     .ok_or_else(|| here(BrainProblem::NoAttack { clip: clip.clone() }))?;
@@ -74,13 +74,13 @@ fn compile(
         },
         _ => None,
     };
-    if matches!(act, Act::Walk(_) | Act::Turn(_)) && gait.is_none() {
+    if matches!(act, StateAction::Walk(_) | StateAction::Turn(_)) && gait.is_none() {
         return Err(here(BrainProblem::NoGait).into());
     }
     let mut contacts = Vec::new();
     if let Some(clip) = clip {
         let playback = match act {
-            Act::Play(_) => Playback::Loop,
+            StateAction::Play(_) => Playback::Loop,
             _ => Playback::Clamp,
         };
         for leg in legs {
@@ -111,7 +111,7 @@ fn strike(
 /// The first state whose attack plays a clip, and its attack.
 fn attack_with<'a>(brain: &'a Brain, clip: &str) -> Option<(StateId, &'a Attack)> {
     brain.states().find_map(|state| match brain.act(state) {
-        Some(Act::Attack(attack)) if attack.clip == clip => Some((state, attack.as_ref())),
+        Some(StateAction::Attack(attack)) if attack.clip == clip => Some((state, attack.as_ref())),
         _ => None,
     })
 }

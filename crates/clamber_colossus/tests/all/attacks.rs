@@ -6,7 +6,7 @@ use crate::ranged::{attack as ranged_attack, places, somebody, wall};
 use crate::support::{TICK, all_cases, brain_file, brain_with, creature, kind, kind_at, person};
 use clamber_animation::rig::Playback;
 use clamber_animation::{joint_in_model, rig::JointId};
-use clamber_colossus::brain::Act;
+use clamber_colossus::brain::StateAction;
 use clamber_colossus::{Creature, CreatureConfig, CreatureEvent, Surroundings};
 use clamber_world::rapier3d::prelude::{ColliderBuilder, PhysicsWorld, Pose};
 use clamber_world::{BodyPoses, HalfSpace, Obstacle, RapierTerrain};
@@ -68,7 +68,7 @@ fn attack(before: &Creature, at: DVec3, flees: bool) -> Outcome {
     };
     let mut begun: Option<usize> = None;
     let brain = giant.kind().brain();
-    let Some(Act::Attack(act)) = brain.act(brain.find("attacks").unwrap()) else {
+    let Some(StateAction::Attack(act)) = brain.act(brain.find("attacks").unwrap()) else {
         unreachable!("the state attacks");
     };
     // Only the joints of the limb count: some joint of the whole body would move along any blow.

@@ -50,7 +50,7 @@ fn spot(kind: &Arc<CreatureKind>) -> DVec3 {
     let mut creature = Creature::new(Arc::clone(kind), CreatureConfig::default()).unwrap();
     let brain = kind.brain();
     let strikes = brain.find("strikes").unwrap();
-    let Some(clamber_colossus::brain::Act::Attack(attack)) = brain.act(strikes) else {
+    let Some(clamber_colossus::brain::StateAction::Attack(attack)) = brain.act(strikes) else {
         unreachable!("it attacks");
     };
     let end = kind.skeleton().find(attack.limb.last().unwrap()).unwrap();

@@ -5,7 +5,7 @@ use glam::DVec3;
 
 use super::member::skins_of;
 use super::{Arena, CreatureId, Skins, creature_of};
-use crate::fighter::{Around, FighterId, Target};
+use crate::fighter::{Around, FighterId, StabTarget};
 
 /// A point of a creature's skin at which a stab aims.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,7 +37,7 @@ impl Arena {
             skins: Skins(&skins),
             terrain,
         };
-        let Target::Skin(at) = fighter.stab_target(&around) else {
+        let StabTarget::Skin(at) = fighter.stab_target(&around) else {
             return None;
         };
         let id = creature_of(at.obstacle)?;

@@ -10,7 +10,7 @@ use super::{
     fighter_obstacle,
 };
 use crate::error::ArenaError;
-use crate::fighter::{Around, BodyFrame, Fighter, FighterId, Room, Wielding, looks_every};
+use crate::fighter::{Around, Fighter, FighterFrame, FighterId, Room, Wielding, looks_every};
 use crate::projectile::{Air, Flown};
 
 /// Memory that is reused in each step.
@@ -294,7 +294,7 @@ impl Arena {
             let fighter = &mut self.fighters[index];
             let is_held = fighter.be_held(dt);
             let (input, throws) = fighter.begin(&player, is_held);
-            let before = BodyFrame::of(fighter.climber());
+            let before = FighterFrame::of(fighter.climber());
             fighter.step(&input, &obstacles, &rules, dt)?;
             let id = fighter.id();
             let events = fighter.report().events.iter();

@@ -5,7 +5,7 @@ use clamber_world::{Attachment, MaterialPoint, Obstacle, ObstacleId};
 use glam::DVec3;
 
 use super::state::HARMED_PLATES;
-use super::{Act, Around, BodyFrame, Fighter, Room, Target, arrows};
+use super::{Around, Fighter, FighterFrame, Room, StabTarget, WeaponAction, arrows};
 use crate::actions::{BOW, CUT, STAB, THROW};
 use crate::arena::{ArenaEvent, CreatureId, Hit, Outcome, Weapon, creature_obstacle, creature_of};
 
@@ -31,7 +31,7 @@ fn looks(waited: f64, dt: f64) -> bool {
 #[derive(Clone, Copy)]
 pub(crate) struct Wielding<'a> {
     /// The body's frame before the climber's step.
-    pub(crate) before: BodyFrame,
+    pub(crate) before: FighterFrame,
     pub(crate) input: &'a ClimberInput,
     pub(crate) around: Around<'a>,
     pub(crate) dt: f64,
@@ -61,15 +61,16 @@ impl Fighter {
         let mut input = ClimberInput { blow, ..*input };
         let mode = self.climber.state().mode;
         let stands_still = match self.state.act {
-            Act::Raise { .. } | Act::Charge { .. } | Act::Strike { .. } | Act::PullOut { .. } => {
-                mode != ClimberMode::Falling
-            }
+            WeaponAction::Raise { .. }
+            | WeaponAction::Charge { .. }
+            | WeaponAction::Strike { .. }
+            | WeaponAction::PullOut { .. } => mode != ClimberMode::Falling,
             _ => is_held,
         };
         if stands_still {
             (input.walk, input.climb, input.jump) = (DVec3::ZERO, DVec3::ZERO, false);
         }
-        if matches!(self.state.act, Act::Draw { .. }) {
+        if matches!(self.state.act, WeaponAction::Draw { .. }) {
             input.walk *= DRAWN_WALK;
         }
         (input, throws)
@@ -82,44 +83,44 @@ impl Fighter {
         let is_free = matches!(mode, Standing | Sliding | Falling);
         let (has_sword, config) = (self.config.sword.is_some(), &self.config);
         match self.state.act {
-            Act::Ready if has_sword && pressed & STAB != 0 => {
+            WeaponAction::Ready if has_sword && pressed & STAB != 0 => {
                 if matches!(mode, Standing | Holding | Falling) {
                     let falls = mode == Falling;
-                    self.state.act = Act::Raise {
+                    self.state.act = WeaponAction::Raise {
                         seconds: 0.0,
                         falls,
                     };
                 }
             }
-            Act::Ready if has_sword && pressed & CUT != 0 && is_free => {
-                self.state.act = Act::Cut {
+            WeaponAction::Ready if has_sword && pressed & CUT != 0 && is_free => {
+                self.state.act = WeaponAction::Cut {
                     seconds: 0.0,
                     struck: Vec::new(),
                     harmed: Vec::new(),
                 };
             }
-            Act::Ready if config.bow.is_some() && actions & BOW != 0 && is_free => {
+            WeaponAction::Ready if config.bow.is_some() && actions & BOW != 0 && is_free => {
                 let counted = config.bow.is_some_and(|bow| bow.arrows.is_some());
                 if !counted || self.state.arrows > 0 {
-                    self.state.act = Act::Draw { drawn: 0.0 };
+                    self.state.act = WeaponAction::Draw { drawn: 0.0 };
                 }
             }
-            Act::Ready if pressed & THROW != 0 && is_free => {
+            WeaponAction::Ready if pressed & THROW != 0 && is_free => {
                 if let Some(stones) = config.stones {
-                    self.state.act = Act::Throw {
+                    self.state.act = WeaponAction::Throw {
                         seconds: stones.again,
                     };
                     return true;
                 }
             }
-            Act::Charge { charge, falls } if pressed & STAB != 0 => {
+            WeaponAction::Charge { charge, falls } if pressed & STAB != 0 => {
                 self.state.act = if falls {
-                    Act::Plunge { charge }
+                    WeaponAction::Plunge { charge }
                 } else {
-                    Act::Strike {
+                    WeaponAction::Strike {
                         seconds: 0.0,
                         charge,
-                        target: Target::Open,
+                        target: StabTarget::Open,
                     }
                 };
             }
@@ -174,7 +175,7 @@ impl Fighter {
         match self.state.dead {
             None if state.hit_points <= 0.0 || state.position.y < floor => {
                 self.state.dead = Some(0.0);
-                self.state.act = Act::Ready;
+                self.state.act = WeaponAction::Ready;
                 self.state.hit_stop = 0.0;
                 events.push(ArenaEvent::Died { fighter });
             }
@@ -213,7 +214,7 @@ impl Fighter {
                 return Ok(());
             };
             self.put(place)?;
-            self.state.act = Act::Ready;
+            self.state.act = WeaponAction::Ready;
             self.state.hit_stop = 0.0;
         }
         self.state.has_begun = true;
@@ -248,11 +249,13 @@ impl Fighter {
             is_struck || shakes || has_lost
         };
         match self.state.act {
-            Act::Ready | Act::PullOut { .. } | Act::Throw { .. } => false,
-            Act::Raise { falls, .. } | Act::Charge { falls, .. } => stabs(falls),
-            Act::Strike { .. } => stabs(false),
-            Act::Plunge { .. } => is_struck || matches!(state.mode, Tumbling),
-            Act::Cut { .. } | Act::Draw { .. } => {
+            WeaponAction::Ready | WeaponAction::PullOut { .. } | WeaponAction::Throw { .. } => {
+                false
+            }
+            WeaponAction::Raise { falls, .. } | WeaponAction::Charge { falls, .. } => stabs(falls),
+            WeaponAction::Strike { .. } => stabs(false),
+            WeaponAction::Plunge { .. } => is_struck || matches!(state.mode, Tumbling),
+            WeaponAction::Cut { .. } | WeaponAction::Draw { .. } => {
                 is_struck || !matches!(state.mode, Standing | Sliding | Falling)
             }
         }
@@ -266,7 +269,7 @@ impl Fighter {
             out.shoot(stone);
         }
         if self.is_broken_off(tick.is_struck) {
-            self.state.act = Act::Ready;
+            self.state.act = WeaponAction::Ready;
             out.events.push(ArenaEvent::BrokenOff { fighter: self.id });
             return;
         }
@@ -274,8 +277,8 @@ impl Fighter {
             // The hit-stop holds the blade, but the skin that the blade is in moves on.
             let mut act = std::mem::take(&mut self.state.act);
             match &mut act {
-                Act::Strike { target, .. } => *target = self.aimed(*target, tick),
-                Act::PullOut { target, .. } => *target = follow(*target, tick),
+                WeaponAction::Strike { target, .. } => *target = self.aimed(*target, tick),
+                WeaponAction::PullOut { target, .. } => *target = follow(*target, tick),
                 _ => {}
             }
             self.state.act = act;
@@ -284,36 +287,36 @@ impl Fighter {
         let dt = tick.dt;
         let act = std::mem::take(&mut self.state.act);
         self.state.act = match act {
-            Act::Ready => Act::Ready,
-            Act::Cut {
+            WeaponAction::Ready => WeaponAction::Ready,
+            WeaponAction::Cut {
                 seconds,
                 struck,
                 harmed,
             } => self.go_on_cutting(seconds, [struck, harmed], tick, out),
-            Act::Raise { seconds, falls } => self.go_on_raising(seconds + dt, falls),
-            Act::Charge { charge, falls } => self.go_on_charging(charge, falls, dt),
-            Act::Strike {
+            WeaponAction::Raise { seconds, falls } => self.go_on_raising(seconds + dt, falls),
+            WeaponAction::Charge { charge, falls } => self.go_on_charging(charge, falls, dt),
+            WeaponAction::Strike {
                 seconds,
                 charge,
                 target,
             } => self.go_on_striking([seconds, charge], target, tick, out),
-            Act::Plunge { charge } => self.go_on_plunging(charge, tick, out),
-            Act::PullOut { seconds, target } => {
+            WeaponAction::Plunge { charge } => self.go_on_plunging(charge, tick, out),
+            WeaponAction::PullOut { seconds, target } => {
                 let target = follow(target, tick);
                 if seconds > dt {
-                    Act::PullOut {
+                    WeaponAction::PullOut {
                         seconds: seconds - dt,
                         target,
                     }
                 } else {
-                    Act::Ready
+                    WeaponAction::Ready
                 }
             }
-            Act::Draw { drawn } => self.go_on_drawing(drawn, tick, out),
-            Act::Throw { seconds } if seconds > dt => Act::Throw {
+            WeaponAction::Draw { drawn } => self.go_on_drawing(drawn, tick, out),
+            WeaponAction::Throw { seconds } if seconds > dt => WeaponAction::Throw {
                 seconds: seconds - dt,
             },
-            Act::Throw { .. } => Act::Ready,
+            WeaponAction::Throw { .. } => WeaponAction::Ready,
         };
     }
 
@@ -323,13 +326,13 @@ impl Fighter {
         [mut struck, harmed]: [Vec<(ObstacleId, u32)>; 2],
         tick: &Wielding<'_>,
         out: &mut Outcome,
-    ) -> Act {
+    ) -> WeaponAction {
         let Some(sword) = self.config.sword else {
-            return Act::Ready;
+            return WeaponAction::Ready;
         };
         let (until, frames) = (
             seconds + tick.dt,
-            [tick.before, BodyFrame::of(&self.climber)],
+            [tick.before, FighterFrame::of(&self.climber)],
         );
         let mut hits = Vec::new();
         let times = [seconds, until];
@@ -367,13 +370,13 @@ impl Fighter {
         // The arena does the damage later in this tick and needs `harmed` then. So a cut that hits in its last tick
         // goes on for one more tick.
         if until < sword.wind_up + sword.cut + sword.recover || !hits.is_empty() {
-            Act::Cut {
+            WeaponAction::Cut {
                 seconds: until,
                 struck,
                 harmed,
             }
         } else {
-            Act::Ready
+            WeaponAction::Ready
         }
     }
 
@@ -387,7 +390,7 @@ impl Fighter {
         [weak_point, plate]: [Option<usize>; 2],
         below: impl Iterator<Item = usize>,
     ) -> bool {
-        let Act::Cut { harmed, .. } = &mut self.state.act else {
+        let WeaponAction::Cut { harmed, .. } = &mut self.state.act else {
             return true;
         };
         let plate = plate.map(|plate| HARMED_PLATES | plate as u32);
@@ -406,29 +409,29 @@ impl Fighter {
         is_new
     }
 
-    fn go_on_raising(&self, seconds: f64, falls: bool) -> Act {
+    fn go_on_raising(&self, seconds: f64, falls: bool) -> WeaponAction {
         let falls = falls && self.climber.state().mode == ClimberMode::Falling;
         match &self.config.sword {
-            Some(sword) if seconds < sword.raise => Act::Raise { seconds, falls },
+            Some(sword) if seconds < sword.raise => WeaponAction::Raise { seconds, falls },
             // A stab in a fall has its full strength at once.
-            Some(_) => Act::Charge {
+            Some(_) => WeaponAction::Charge {
                 charge: if falls { 1.0 } else { 0.0 },
                 falls,
             },
-            None => Act::Ready,
+            None => WeaponAction::Ready,
         }
     }
 
-    fn go_on_charging(&self, charge: f64, falls: bool, dt: f64) -> Act {
+    fn go_on_charging(&self, charge: f64, falls: bool, dt: f64) -> WeaponAction {
         let Some(sword) = &self.config.sword else {
-            return Act::Ready;
+            return WeaponAction::Ready;
         };
         let is_pressed = self.state.actions & STAB != 0;
         let rate = if is_pressed { sword.pressed } else { 1.0 } / sword.charge;
         let still_falls = falls && self.climber.state().mode == ClimberMode::Falling;
         // The full strength of a fall ends with the fall.
         let charge = if falls && !still_falls { 0.0 } else { charge };
-        Act::Charge {
+        WeaponAction::Charge {
             charge: (charge + rate * dt).min(1.0),
             falls: still_falls,
         }
@@ -436,13 +439,13 @@ impl Fighter {
 
     /// The target of a stab after this tick. A target on skin follows the skin. If that skin is gone, as with a broken
     /// plate, the stab gets a new target.
-    fn aimed(&self, target: Target, tick: &Wielding<'_>) -> Target {
+    fn aimed(&self, target: StabTarget, tick: &Wielding<'_>) -> StabTarget {
         match target {
-            Target::Air => Target::Air,
-            Target::Open => self.stab_target(&tick.around),
-            Target::Skin(_) => match follow(target, tick) {
-                Target::Skin(at) => Target::Skin(at),
-                Target::Air | Target::Open => self.stab_target(&tick.around),
+            StabTarget::Air => StabTarget::Air,
+            StabTarget::Open => self.stab_target(&tick.around),
+            StabTarget::Skin(_) => match follow(target, tick) {
+                StabTarget::Skin(at) => StabTarget::Skin(at),
+                StabTarget::Air | StabTarget::Open => self.stab_target(&tick.around),
             },
         }
     }
@@ -450,24 +453,24 @@ impl Fighter {
     fn go_on_striking(
         &mut self,
         [seconds, charge]: [f64; 2],
-        target: Target,
+        target: StabTarget,
         tick: &Wielding<'_>,
         out: &mut Outcome,
-    ) -> Act {
+    ) -> WeaponAction {
         let Some(sword) = self.config.sword else {
-            return Act::Ready;
+            return WeaponAction::Ready;
         };
         let target = self.aimed(target, tick);
         let until = seconds + tick.dt;
         if until < sword.strike {
-            return Act::Strike {
+            return WeaponAction::Strike {
                 seconds: until,
                 charge,
                 target,
             };
         }
         let target = self.still_reached(target, &tick.around);
-        if let Target::Skin(at) = &target
+        if let StabTarget::Skin(at) = &target
             && let Some(creature) = creature_of(at.obstacle)
         {
             self.state.hit_stop = self.config.hit_stop;
@@ -482,24 +485,29 @@ impl Fighter {
                 damage: sword.stab_damage * charge,
             });
         }
-        Act::PullOut {
+        WeaponAction::PullOut {
             seconds: sword.pull_out,
             target,
         }
     }
 
-    fn go_on_plunging(&mut self, charge: f64, tick: &Wielding<'_>, out: &mut Outcome) -> Act {
+    fn go_on_plunging(
+        &mut self,
+        charge: f64,
+        tick: &Wielding<'_>,
+        out: &mut Outcome,
+    ) -> WeaponAction {
         let Some(sword) = self.config.sword else {
-            return Act::Ready;
+            return WeaponAction::Ready;
         };
-        let frames = [tick.before, BodyFrame::of(&self.climber)];
+        let frames = [tick.before, FighterFrame::of(&self.climber)];
         let Some((creature, hit)) = self.plunge_contact(frames, &tick.around, tick.dt) else {
             let falls = self.climber.state().mode == ClimberMode::Falling;
             // The fighter has landed without touching a creature.
             return if falls {
-                Act::Plunge { charge }
+                WeaponAction::Plunge { charge }
             } else {
-                Act::Ready
+                WeaponAction::Ready
             };
         };
         self.state.hit_stop = self.config.hit_stop;
@@ -517,43 +525,48 @@ impl Fighter {
         let obstacle = creature_obstacle(creature);
         let into = frames[1].direction(DVec3::NEG_Y);
         let skin = tick.around.skins.get(creature);
-        let target = skin.map_or(Target::Air, |skin| {
+        let target = skin.map_or(StabTarget::Air, |skin| {
             let at = Attachment::new(obstacle, skin, &contact, contact.point);
-            Target::Skin(at.moved_to(at.point + into))
+            StabTarget::Skin(at.moved_to(at.point + into))
         });
-        Act::PullOut {
+        WeaponAction::PullOut {
             seconds: sword.pull_out_fallen,
             target,
         }
     }
 
-    fn go_on_drawing(&mut self, drawn: f64, tick: &Wielding<'_>, out: &mut Outcome) -> Act {
+    fn go_on_drawing(
+        &mut self,
+        drawn: f64,
+        tick: &Wielding<'_>,
+        out: &mut Outcome,
+    ) -> WeaponAction {
         let Some(bow) = self.config.bow else {
-            return Act::Ready;
+            return WeaponAction::Ready;
         };
         if tick.input.actions & BOW != 0 {
             let drawn = (drawn + tick.dt / bow.draw).min(1.0);
-            return Act::Draw { drawn };
+            return WeaponAction::Draw { drawn };
         }
         if drawn >= bow.least_draw
             && let Some(arrow) = self.shoot(tick, drawn, out.next_projectile())
         {
             out.shoot(arrow);
         }
-        Act::Ready
+        WeaponAction::Ready
     }
 }
 
-/// Moves a target with its skin over the tick; [`Target::Air`] if the skin is gone.
-fn follow(target: Target, tick: &Wielding<'_>) -> Target {
-    let Target::Skin(mut at) = target else {
+/// Moves a target with its skin over the tick; [`StabTarget::Air`] if the skin is gone.
+fn follow(target: StabTarget, tick: &Wielding<'_>) -> StabTarget {
+    let StabTarget::Skin(mut at) = target else {
         return target;
     };
     let skin = creature_of(at.obstacle).and_then(|creature| tick.around.skins.get(creature));
     /// Slack of [`Attachment::follow`], metres: more than rounding, less than a player sees.
     const SLACK: f64 = 0.01;
     match skin.and_then(|skin| at.follow(skin, tick.dt, SLACK)) {
-        Some(_) => Target::Skin(at),
-        None => Target::Air,
+        Some(_) => StabTarget::Skin(at),
+        None => StabTarget::Air,
     }
 }

@@ -3,7 +3,7 @@
 use clamber_surface::geometry::rotation_from_axis_angle;
 use glam::DVec3;
 
-use super::{Act, BodyFrame, Fighter, SwordConfig, Target};
+use super::{Fighter, FighterFrame, StabTarget, SwordConfig, WeaponAction};
 
 /// A blade as a line from hilt to tip.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,7 +29,7 @@ const CARRIED_DIRECTION: DVec3 = DVec3::new(0.0, -0.5, -0.866);
 
 impl SwordConfig {
     /// The blade in a cut. `angle` is 0 at the right and grows to the left, radians.
-    pub(super) fn in_cut(&self, frame: &BodyFrame, angle: f64) -> Blade {
+    pub(super) fn in_cut(&self, frame: &FighterFrame, angle: f64) -> Blade {
         let from_ahead = angle - 0.5 * self.angle;
         let (sin, cos) = libm::sincos(from_ahead);
         let (fall, level) = libm::sincos(CUT_DOWN_ANGLE);
@@ -42,7 +42,7 @@ impl SwordConfig {
     }
 
     /// The blade of a sword that is raised for a stab.
-    pub(super) fn raised(&self, frame: &BodyFrame) -> Blade {
+    pub(super) fn raised(&self, frame: &FighterFrame) -> Blade {
         let hilt = frame.at(RAISED_HILT);
         Blade {
             hilt,
@@ -51,7 +51,7 @@ impl SwordConfig {
     }
 
     /// The blade below a falling body, pointing down.
-    pub(super) fn below(&self, frame: &BodyFrame) -> Blade {
+    pub(super) fn below(&self, frame: &FighterFrame) -> Blade {
         let hilt = frame.at(DVec3::new(0.0, 0.2, 0.3));
         Blade {
             hilt,
@@ -59,7 +59,7 @@ impl SwordConfig {
         }
     }
 
-    fn carried(&self, frame: &BodyFrame) -> Blade {
+    fn carried(&self, frame: &FighterFrame) -> Blade {
         let hilt = frame.at(CARRIED_HILT);
         Blade {
             hilt,
@@ -97,11 +97,11 @@ impl Fighter {
     /// The sword's position after the last tick; `None` without a sword. The drawn hand holds it at the hilt.
     pub fn blade(&self) -> Option<Blade> {
         let sword = self.config.sword.as_ref()?;
-        let frame = BodyFrame::of(&self.climber);
+        let frame = FighterFrame::of(&self.climber);
         let raised = sword.raised(&frame);
         Some(match &self.state.act {
-            Act::Cut { seconds, .. } => sword.in_cut(&frame, sword.cut_angle(*seconds)),
-            Act::Raise { seconds, .. } => {
+            WeaponAction::Cut { seconds, .. } => sword.in_cut(&frame, sword.cut_angle(*seconds)),
+            WeaponAction::Raise { seconds, .. } => {
                 let share = if sword.raise > 0.0 {
                     seconds / sword.raise
                 } else {
@@ -109,19 +109,19 @@ impl Fighter {
                 };
                 sword.carried(&frame).to(&raised, share.clamp(0.0, 1.0))
             }
-            Act::Charge { .. } => raised,
-            Act::Strike {
+            WeaponAction::Charge { .. } => raised,
+            WeaponAction::Strike {
                 seconds, target, ..
             } => {
                 let share = (seconds / sword.strike).clamp(0.0, 1.0);
                 raised.to(&sword.struck(&frame, target), share)
             }
-            Act::Plunge { .. } => sword.below(&frame),
-            Act::PullOut { target, .. } => {
+            WeaponAction::Plunge { .. } => sword.below(&frame),
+            WeaponAction::PullOut { target, .. } => {
                 let struck = sword.struck(&frame, target);
                 let deeper = match target {
-                    Target::Skin(_) => (struck.tip - struck.hilt).normalize_or(DVec3::ZERO),
-                    Target::Open | Target::Air => DVec3::ZERO,
+                    StabTarget::Skin(_) => (struck.tip - struck.hilt).normalize_or(DVec3::ZERO),
+                    StabTarget::Open | StabTarget::Air => DVec3::ZERO,
                 };
                 let way = deeper * sword.depth.min(sword.blade);
                 Blade {
@@ -129,7 +129,9 @@ impl Fighter {
                     tip: struck.tip + way,
                 }
             }
-            Act::Ready | Act::Draw { .. } | Act::Throw { .. } => sword.carried(&frame),
+            WeaponAction::Ready | WeaponAction::Draw { .. } | WeaponAction::Throw { .. } => {
+                sword.carried(&frame)
+            }
         })
     }
 }

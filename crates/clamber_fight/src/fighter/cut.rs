@@ -4,7 +4,7 @@ use clamber_surface::geometry::WorldCapsule;
 use clamber_surface::surface::{CastOptions, SkinnedSurface, WorldSweepHit};
 use clamber_world::ObstacleId;
 
-use super::{Blade, BodyFrame, SwordConfig};
+use super::{Blade, FighterFrame, SwordConfig};
 use crate::arena::{CreatureId, Skins, creature_obstacle};
 
 /// Greatest distance of a coarse chord from the blade's arc, metres. The blade is thickened by it for the coarse test.
@@ -43,7 +43,7 @@ impl SwordConfig {
     pub(crate) fn cut_through(
         &self,
         [from, to]: [f64; 2],
-        frames: [BodyFrame; 2],
+        frames: [FighterFrame; 2],
         dt: f64,
         skins: Skins<'_>,
         struck: &mut Vec<(ObstacleId, u32)>,

@@ -5,7 +5,7 @@ use glam::{DMat3, DQuat, DVec3};
 /// A climber's body as its weapons see it: an origin, and the directions right, up and ahead. On a hold, ahead is into
 /// the surface that it holds.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BodyFrame {
+pub struct FighterFrame {
     /// Centre of the climber's ball, in world space.
     pub origin: DVec3,
     /// The body's rotation: x is its right, y is up, and -z is ahead.
@@ -16,7 +16,7 @@ pub struct BodyFrame {
 /// where that up has no component along the surface, the heading decides.
 const HEADING_WEIGHT: f64 = 0.5;
 
-impl BodyFrame {
+impl FighterFrame {
     /// The centre of the climber's ball and the rotation of its body after its last step, in world space.
     pub fn of(climber: &Climber) -> Self {
         let (state, up) = (climber.state(), climber.config().up());

@@ -21,9 +21,9 @@ pub(crate) use act::{Wielding, looks_every};
 pub(crate) use around::Around;
 pub use blade::Blade;
 pub use config::{BowConfig, CrushConfig, FighterConfig, StoneConfig, SwordConfig};
-pub use frame::BodyFrame;
+pub use frame::FighterFrame;
 pub(crate) use room::Room;
-pub use state::{Act, FighterState, Target};
+pub use state::{FighterState, StabTarget, WeaponAction};
 
 use crate::arena::hash_of;
 use crate::error::ArenaError;
@@ -56,7 +56,7 @@ impl Fighter {
         let climber = Climber::new(config.climber, spawn)?;
         let state = FighterState {
             climber: *climber.state(),
-            act: Act::Ready,
+            act: WeaponAction::Ready,
             actions: 0,
             blow: None,
             harm: 0.0,
@@ -93,7 +93,7 @@ impl Fighter {
     }
 
     /// The fighter's current act with its weapons.
-    pub fn act(&self) -> &Act {
+    pub fn act(&self) -> &WeaponAction {
         &self.state.act
     }
 
@@ -116,9 +116,9 @@ impl Fighter {
     /// Strength of the current stab, from 0 to 1; 0 without a stab.
     pub fn charge(&self) -> f64 {
         match self.state.act {
-            Act::Charge { charge, .. } | Act::Strike { charge, .. } | Act::Plunge { charge } => {
-                charge
-            }
+            WeaponAction::Charge { charge, .. }
+            | WeaponAction::Strike { charge, .. }
+            | WeaponAction::Plunge { charge } => charge,
             _ => 0.0,
         }
     }
@@ -126,7 +126,7 @@ impl Fighter {
     /// How far its bow is drawn, from 0 to 1.
     pub fn drawn(&self) -> f64 {
         match self.state.act {
-            Act::Draw { drawn } => drawn,
+            WeaponAction::Draw { drawn } => drawn,
             _ => 0.0,
         }
     }

@@ -3,7 +3,7 @@
 use clamber_climber::{Blow, Climber, ClimberError, ClimberState};
 use glam::DVec3;
 
-use super::{Act, Fighter};
+use super::{Fighter, WeaponAction};
 
 impl Fighter {
     /// Moves the climber to a place, at rest in the air. It keeps its hit points, its stamina and its heading.
@@ -22,7 +22,7 @@ impl Fighter {
     /// wait for the next tick are dropped.
     pub(crate) fn place(&mut self, place: DVec3) -> Result<(), ClimberError> {
         self.put(place)?;
-        self.state.act = Act::Ready;
+        self.state.act = WeaponAction::Ready;
         self.state.hit_stop = 0.0;
         self.state.has_begun = false;
         (self.state.blow, self.state.harm) = (None, 0.0);

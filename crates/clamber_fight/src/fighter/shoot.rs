@@ -3,7 +3,7 @@
 use clamber_surface::geometry::rotation_from_axis_angle;
 use glam::DVec3;
 
-use super::{BodyFrame, BowConfig, Fighter, StoneConfig, Wielding};
+use super::{BowConfig, Fighter, FighterFrame, StoneConfig, Wielding};
 use crate::projectile::{
     Projectile, ProjectileBody, ProjectileId, ProjectileKind, ProjectileMotion,
 };
@@ -42,7 +42,7 @@ impl StoneConfig {
 impl Fighter {
     /// Direction of the aim: the input's aim, or straight ahead if that is zero.
     pub(super) fn aim(&self, aim: DVec3) -> DVec3 {
-        let ahead = || BodyFrame::of(&self.climber).direction(DVec3::Z);
+        let ahead = || FighterFrame::of(&self.climber).direction(DVec3::Z);
         aim.try_normalize().unwrap_or_else(ahead)
     }
 
@@ -50,7 +50,7 @@ impl Fighter {
     /// between the centre of the climber's ball and this position, a shot begins just before that obstacle.
     pub fn nock(&self) -> Option<DVec3> {
         let bow = self.config.bow.as_ref()?;
-        Some(BodyFrame::of(&self.climber).at(bow.nock))
+        Some(FighterFrame::of(&self.climber).at(bow.nock))
     }
 
     /// Velocity of an arrow that is released now without straying, at a draw from 0 to 1; `None` without a bow.
@@ -90,7 +90,7 @@ impl Fighter {
     /// Throws a stone. `None` without stones.
     pub(super) fn throw(&mut self, tick: &Wielding<'_>, id: ProjectileId) -> Option<Projectile> {
         let stones = self.config.stones?;
-        let hand = BodyFrame::of(&self.climber).at(stones.hand);
+        let hand = FighterFrame::of(&self.climber).at(stones.hand);
         let state = self.climber.state();
         let position = tick.around.reached(state.position, hand, stones.radius);
         let velocity = self.aim(tick.input.aim) * stones.speed + state.velocity;

@@ -5,7 +5,7 @@ use clamber_surface::surface::{CastOptions, TargetMotion};
 use clamber_world::{Attachment, Obstacle, SweepContact};
 use glam::DVec3;
 
-use super::{Around, Blade, BodyFrame, Fighter, SwordConfig, Target};
+use super::{Around, Blade, Fighter, FighterFrame, StabTarget, SwordConfig};
 use crate::arena::{CreatureId, creature_obstacle, creature_of};
 
 /// Distance from the centre of the climber's ball along the surface at which a stab looks for skin, in radii of the
@@ -16,25 +16,25 @@ const RAY_START_HEIGHT: f64 = 1.0;
 
 impl SwordConfig {
     /// The blade with its tip at the stab's target.
-    pub(super) fn struck(&self, frame: &BodyFrame, target: &Target) -> Blade {
+    pub(super) fn struck(&self, frame: &FighterFrame, target: &StabTarget) -> Blade {
         let below = self.below(frame);
         match target {
-            Target::Skin(at) => {
+            StabTarget::Skin(at) => {
                 let into = at.offset_in_world().normalize_or(DVec3::NEG_Y);
                 below.in_skin(at.point, into)
             }
-            Target::Open | Target::Air => below,
+            StabTarget::Open | StabTarget::Air => below,
         }
     }
 }
 
 impl Fighter {
-    /// The point of skin that a stab would hit: ahead of the feet, or in front of the hands on a hold. [`Target::Air`]
+    /// The point of skin that a stab would hit: ahead of the feet, or in front of the hands on a hold. [`StabTarget::Air`]
     /// without a sword, if no skin is in reach, or if terrain or another creature is in between. The attachment's
     /// offset is a unit vector into the skin.
-    pub(crate) fn stab_target(&self, around: &Around<'_>) -> Target {
+    pub(crate) fn stab_target(&self, around: &Around<'_>) -> StabTarget {
         let Some(sword) = &self.config.sword else {
-            return Target::Air;
+            return StabTarget::Air;
         };
         let (origin, from, into) = self.stab_way();
         let hits = around.skins.iter().filter_map(|(creature, skin)| {
@@ -46,21 +46,21 @@ impl Fighter {
             by_distance.then(a.1.cmp(&b.1))
         });
         let Some((hit, creature, skin)) = first else {
-            return Target::Air;
+            return StabTarget::Air;
         };
         if around.hides(&[origin, from, hit.point], Some(creature)) {
-            return Target::Air;
+            return StabTarget::Air;
         }
         let obstacle = creature_obstacle(creature);
         let at = Attachment::new(obstacle, skin, &hit, hit.point);
         // The offset is the direction of the blade from the point.
-        Target::Skin(at.moved_to(at.point + into))
+        StabTarget::Skin(at.moved_to(at.point + into))
     }
 
     /// The target of a stab when it lands. If the chosen point of skin is too far away by now, or hidden by an
     /// obstacle, the stab gets a new target.
-    pub(super) fn still_reached(&self, target: Target, around: &Around<'_>) -> Target {
-        let (Some(sword), Target::Skin(at)) = (&self.config.sword, &target) else {
+    pub(super) fn still_reached(&self, target: StabTarget, around: &Around<'_>) -> StabTarget {
+        let (Some(sword), StabTarget::Skin(at)) = (&self.config.sword, &target) else {
             return target;
         };
         let (origin, from, _) = self.stab_way();
@@ -74,7 +74,7 @@ impl Fighter {
 
     /// The centre of the climber's ball, the origin of the ray for skin, and the ray's direction.
     fn stab_way(&self) -> (DVec3, DVec3, DVec3) {
-        let frame = BodyFrame::of(&self.climber);
+        let frame = FighterFrame::of(&self.climber);
         let holds = self.climber.state().mode.is_holding();
         let (along, into) = if holds {
             (DVec3::Y, DVec3::Z)
@@ -90,7 +90,7 @@ impl Fighter {
     /// `None` if terrain or another creature is in between.
     pub(super) fn plunge_contact(
         &self,
-        frames: [BodyFrame; 2],
+        frames: [FighterFrame; 2],
         around: &Around<'_>,
         dt: f64,
     ) -> Option<(CreatureId, SweepContact)> {

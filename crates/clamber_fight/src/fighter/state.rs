@@ -9,7 +9,7 @@ pub struct FighterState {
     /// State of the climber.
     pub climber: ClimberState,
     /// Current act with its weapons.
-    pub act: Act,
+    pub act: WeaponAction,
     /// Buttons of the last tick.
     pub actions: u32,
     /// Blow that strikes it in the next tick.
@@ -31,12 +31,12 @@ pub struct FighterState {
     pub spawn: DVec3,
 }
 
-/// Offset of the indices of plates in the list `harmed` of [`Act::Cut`]. Indices of weak points are below it.
+/// Offset of the indices of plates in the list `harmed` of [`WeaponAction::Cut`]. Indices of weak points are below it.
 pub(super) const HARMED_PLATES: u32 = 1 << 31;
 
 /// An act of a fighter with its weapons.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub enum Act {
+pub enum WeaponAction {
     /// No act: a new one can begin.
     #[default]
     Ready,
@@ -71,7 +71,7 @@ pub enum Act {
         /// Share of the full strength, from 0 to 1.
         charge: f64,
         /// Target of the blade.
-        target: Target,
+        target: StabTarget,
     },
     /// Falls with the blade below its body.
     Plunge {
@@ -83,7 +83,7 @@ pub enum Act {
         /// Seconds left.
         seconds: f64,
         /// Position of the blade.
-        target: Target,
+        target: StabTarget,
     },
     /// Draws the bow.
     Draw {
@@ -99,7 +99,7 @@ pub enum Act {
 
 /// Target of a stab.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub enum Target {
+pub enum StabTarget {
     /// Not chosen yet: it is chosen at the end of this tick.
     Open,
     /// A point of a creature's skin. The blade's tip is there when it strikes.
@@ -110,23 +110,25 @@ pub enum Target {
 
 impl FighterState {
     pub(crate) fn is_finite(&self) -> bool {
-        let target = |target: &Target| match target {
-            Target::Skin(at) => at.is_finite(),
-            Target::Open | Target::Air => true,
+        let target = |target: &StabTarget| match target {
+            StabTarget::Skin(at) => at.is_finite(),
+            StabTarget::Open | StabTarget::Air => true,
         };
         let act = match &self.act {
-            Act::Ready => true,
-            Act::Cut { seconds, .. } | Act::Raise { seconds, .. } | Act::Throw { seconds } => {
-                is_time(*seconds)
+            WeaponAction::Ready => true,
+            WeaponAction::Cut { seconds, .. }
+            | WeaponAction::Raise { seconds, .. }
+            | WeaponAction::Throw { seconds } => is_time(*seconds),
+            WeaponAction::Charge { charge, .. } | WeaponAction::Plunge { charge } => {
+                is_share(*charge)
             }
-            Act::Charge { charge, .. } | Act::Plunge { charge } => is_share(*charge),
-            Act::Draw { drawn } => is_share(*drawn),
-            Act::Strike {
+            WeaponAction::Draw { drawn } => is_share(*drawn),
+            WeaponAction::Strike {
                 seconds,
                 charge,
                 target: to,
             } => is_time(*seconds) && is_share(*charge) && target(to),
-            Act::PullOut {
+            WeaponAction::PullOut {
                 seconds,
                 target: at,
             } => is_time(*seconds) && target(at),

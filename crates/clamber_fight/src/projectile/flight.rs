@@ -2,7 +2,7 @@ use glam::DVec3;
 
 /// Forces on a projectile in flight.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Flight {
+pub struct Ballistics {
     /// Gravity, metres a second squared.
     pub gravity: DVec3,
     /// Drag, 1/m: the deceleration is this times the square of the speed.
@@ -19,7 +19,7 @@ const MOST_DRAG_SHARE: f64 = 0.1;
 /// left after these steps is not integrated.
 const MOST_STEPS: u32 = 1_000_000;
 
-impl Flight {
+impl Ballistics {
     /// Position and velocity after `dt` seconds.
     ///
     /// Without drag this is exact: `p + v t + g t^2 / 2`. With drag it is integrated by the classical Runge-Kutta
@@ -79,7 +79,7 @@ mod tests {
     fn an_arrow_keeps_to_its_parabola_at_every_rate() {
         let (from, way) = (DVec3::new(1.0, 2.0, 3.0), DVec3::new(40.0, 39.7, 3.0));
         for rate in [30u32, 60, 144, 240] {
-            let flight = Flight {
+            let flight = Ballistics {
                 gravity: GRAVITY,
                 drag: 0.0,
             };
@@ -98,7 +98,7 @@ mod tests {
         // m.
         let drag = 1.1e-3;
         for rate in [30u32, 60, 240] {
-            let flight = Flight {
+            let flight = Ballistics {
                 gravity: DVec3::ZERO,
                 drag,
             };
@@ -117,7 +117,7 @@ mod tests {
         }
         // With gravity, the arrow is at the same place at every rate.
         let after = |rate: u32| {
-            let flight = Flight {
+            let flight = Ballistics {
                 gravity: GRAVITY,
                 drag,
             };
@@ -140,7 +140,7 @@ mod tests {
         for speed in [1.0, 150.0, 240.0, 1e3, 1e4, 1e12, 1e100] {
             for drag in [1e-3, 0.2, 1.0] {
                 for dt in [1.0 / 240.0, 1.0 / 60.0, 1.0 / 30.0, 3.0] {
-                    let flight = Flight {
+                    let flight = Ballistics {
                         gravity: DVec3::ZERO,
                         drag,
                     };
@@ -156,7 +156,7 @@ mod tests {
 
     #[test]
     fn an_arc_begins_where_it_is_shot() {
-        let flight = Flight {
+        let flight = Ballistics {
             gravity: GRAVITY,
             drag: 0.0,
         };

@@ -8,7 +8,7 @@ use clamber_world::{Attachment, ObstacleId};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-pub use flight::Flight;
+pub use flight::Ballistics;
 pub(crate) use step::{Air, Flown};
 pub(crate) use stuck::place_on;
 

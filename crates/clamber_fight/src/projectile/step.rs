@@ -8,7 +8,7 @@ use glam::DVec3;
 
 use super::stuck::{place_on, stick};
 use super::{
-    Flight, Projectile, ProjectileBody, ProjectileKind, ProjectileMotion, ProjectilePlace,
+    Ballistics, Projectile, ProjectileBody, ProjectileKind, ProjectileMotion, ProjectilePlace,
 };
 use crate::arena::{ArenaEvent, Hit, Outcome, Skins, Weapon, creature_obstacle, creature_of};
 
@@ -94,7 +94,7 @@ impl Projectile {
                 velocity,
                 direction,
             } => {
-                let flight = Flight {
+                let flight = Ballistics {
                     gravity: air.gravity,
                     drag: 0.0,
                 };
@@ -123,7 +123,7 @@ impl Projectile {
             depth,
             ..
         } = self.body;
-        let flight = Flight {
+        let flight = Ballistics {
             gravity: air.gravity,
             drag,
         };

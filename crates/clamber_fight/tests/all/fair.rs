@@ -11,8 +11,8 @@ use clamber_climber::{ClimberInput, ClimberMode};
 use clamber_colossus::{CreatureConfig, CreatureKind};
 use clamber_fight::actions::{CUT, STAB, THROW};
 use clamber_fight::{
-    Act, Arena, ArenaConfig, ArenaEvent, BowConfig, CreatureId, FighterConfig, FighterId,
-    Projectile, ProjectileId, ProjectileKind, ProjectileMotion,
+    Arena, ArenaConfig, ArenaEvent, BowConfig, CreatureId, FighterConfig, FighterId, Projectile,
+    ProjectileId, ProjectileKind, ProjectileMotion, WeaponAction,
 };
 use clamber_world::{HalfSpace, Obstacle, ObstacleId};
 use glam::{DVec3, Vec3};
@@ -202,8 +202,8 @@ fn a_charge_is_not_kept_across_a_hop() {
         arena.step(&[input], &terrain).unwrap();
         let fighter = arena.fighter(FighterId(0)).unwrap();
         match fighter.act() {
-            Act::Charge { falls: true, .. } => fell = fell.max(fighter.charge()),
-            Act::Charge {
+            WeaponAction::Charge { falls: true, .. } => fell = fell.max(fighter.charge()),
+            WeaponAction::Charge {
                 charge,
                 falls: false,
             } if !landed => {
@@ -339,8 +339,8 @@ fn a_charge_is_not_kept_by_gripping_again() {
             arena.step(&[input], &terrain).unwrap();
             let fighter = arena.fighter(FighterId(0)).unwrap();
             match fighter.act() {
-                Act::Charge { falls: true, .. } => fell += 1,
-                Act::Charge {
+                WeaponAction::Charge { falls: true, .. } => fell += 1,
+                WeaponAction::Charge {
                     charge,
                     falls: false,
                 } if after.is_none() => after = Some((*charge, fighter.climber().state().mode)),

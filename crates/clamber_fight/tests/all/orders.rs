@@ -13,8 +13,8 @@ use clamber_climber::{Blow, ClimberInput, ClimberMode, StepRules};
 use clamber_colossus::{CreatureConfig, CreatureEvent, Noise};
 use clamber_fight::actions::STAB;
 use clamber_fight::{
-    Act, Arena, ArenaConfig, ArenaError, ArenaEvent, CreatureId, FighterConfig, FighterId, KindId,
-    Order, ProjectileId,
+    Arena, ArenaConfig, ArenaError, ArenaEvent, CreatureId, FighterConfig, FighterId, KindId,
+    Order, ProjectileId, WeaponAction,
 };
 use clamber_world::{HalfSpace, Obstacle, ObstacleId};
 use glam::DVec3;
@@ -147,7 +147,10 @@ fn who_is_put_somewhere_keeps_its_body_and_finds_room() {
     };
     idle(&mut arena, &[hurt]);
     step(&mut arena, &support::pressing(STAB));
-    assert!(!matches!(arena.fighter(HERO).unwrap().act(), Act::Ready));
+    assert!(!matches!(
+        arena.fighter(HERO).unwrap().act(),
+        WeaponAction::Ready
+    ));
     let place = DVec3::new(-5.0, 2.0, 4.0);
     let put = |position| Order::PlaceFighter {
         fighter: HERO,
@@ -160,7 +163,10 @@ fn who_is_put_somewhere_keeps_its_body_and_finds_room() {
         (there.hit_points, mode(&arena)),
         (0.5, ClimberMode::Falling)
     );
-    assert!(matches!(arena.fighter(HERO).unwrap().act(), Act::Ready));
+    assert!(matches!(
+        arena.fighter(HERO).unwrap().act(),
+        WeaponAction::Ready
+    ));
     // Moved onto the other fighter, it is put beside that fighter.
     let taken = state(&arena, OTHER).position;
     idle(&mut arena, &[put(taken)]);

@@ -11,7 +11,8 @@ use clamber_climber::{ClimberError, ClimberInput, ClimberMode, StepRules};
 use clamber_colossus::CreatureConfig;
 use clamber_fight::actions::STAB;
 use clamber_fight::{
-    Act, Arena, ArenaConfig, ArenaError, ArenaEvent, ArenaState, FighterConfig, FighterId, Order,
+    Arena, ArenaConfig, ArenaError, ArenaEvent, ArenaState, FighterConfig, FighterId, Order,
+    WeaponAction,
 };
 use clamber_world::{HalfSpace, Obstacle, ObstacleId};
 use glam::{DVec3, Vec3};
@@ -105,7 +106,7 @@ fn whoever_dies_falls_and_stands_up_where_it_began() {
                 ..ClimberInput::IDLE
             },
         );
-        assert_eq!(arena.fighter(HERO).unwrap().act(), &Act::Ready);
+        assert_eq!(arena.fighter(HERO).unwrap().act(), &WeaponAction::Ready);
         let lies = mode(&arena) == ClimberMode::Tumbling;
         assert!(lies || events.contains(&ArenaEvent::Rose { fighter: HERO }));
     }

@@ -8,7 +8,9 @@ use crate::support::{
 };
 use clamber_climber::{ClimberInput, ClimberMode};
 use clamber_fight::actions::STAB;
-use clamber_fight::{Act, Arena, ArenaEvent, FighterConfig, Order, SwordConfig, Target};
+use clamber_fight::{
+    Arena, ArenaEvent, FighterConfig, Order, StabTarget, SwordConfig, WeaponAction,
+};
 use clamber_world::{Obstacle, ObstacleId};
 use glam::{DVec3, Vec3};
 
@@ -22,7 +24,7 @@ fn hero() -> FighterConfig {
     }
 }
 
-fn act(arena: &Arena) -> Act {
+fn act(arena: &Arena) -> WeaponAction {
     arena.fighter(HERO).unwrap().act().clone()
 }
 
@@ -38,7 +40,7 @@ fn raise(arena: &mut Arena, hold: &ClimberInput) {
     };
     step(arena, &pressed);
     for _ in 0..600 {
-        if matches!(act(arena), Act::Charge { .. }) {
+        if matches!(act(arena), WeaponAction::Charge { .. }) {
             return;
         }
         step(arena, hold);
@@ -56,7 +58,7 @@ fn strike(arena: &mut Arena, hold: &ClimberInput) -> Vec<f64> {
         },
     ));
     for _ in 0..600 {
-        if act(arena) == Act::Ready {
+        if act(arena) == WeaponAction::Ready {
             return all;
         }
         all.append(&mut hits(&step(arena, hold)));
@@ -304,8 +306,8 @@ fn the_tip_goes_to_its_material_point_on_stretched_and_moving_skin() {
                 ..hold
             },
         );
-        let Act::Strike {
-            target: Target::Skin(aimed),
+        let WeaponAction::Strike {
+            target: StabTarget::Skin(aimed),
             ..
         } = act(&arena)
         else {
@@ -320,7 +322,7 @@ fn the_tip_goes_to_its_material_point_on_stretched_and_moving_skin() {
                 break place;
             }
             assert!(
-                matches!(act(&arena), Act::Strike { .. }),
+                matches!(act(&arena), WeaponAction::Strike { .. }),
                 "pose {pose} missed"
             );
             events = step(&mut arena, &hold);
@@ -356,7 +358,7 @@ fn a_stab_out_of_a_fall_is_full_and_slow_to_pull_out() {
         // The sword is raised after 0.3 s.
         let input = if tick == 30 { pressing(STAB) } else { idle };
         done.append(&mut hits(&step(&mut arena, &input)));
-        pulling += u32::from(matches!(act(&arena), Act::PullOut { .. }));
+        pulling += u32::from(matches!(act(&arena), WeaponAction::PullOut { .. }));
     }
     assert_eq!(done, [1.0]);
     assert!((90..100).contains(&pulling), "{pulling} ticks");
@@ -390,9 +392,9 @@ fn the_blade_stays_in_moving_skin_at_every_rate() {
         raise(&mut arena, &ClimberInput::IDLE);
         step(&mut arena, &pressing(STAB));
         let mut held = 0;
-        while act(&arena) != Act::Ready {
-            if let Act::PullOut { target, .. } = act(&arena) {
-                let Target::Skin(at) = target else {
+        while act(&arena) != WeaponAction::Ready {
+            if let WeaponAction::PullOut { target, .. } = act(&arena) {
+                let StabTarget::Skin(at) = target else {
                     panic!("{rate} Hz: {target:?}");
                 };
                 let surface = arena.creature(GIANT).unwrap().surface();

@@ -6,7 +6,9 @@
 use crate::support::{GROUND, Slab, weak_point};
 use clamber_climber::{Blow, ClimberInput};
 use clamber_colossus::CreatureConfig;
-use clamber_fight::{Act, Arena, ArenaConfig, ArenaError, FighterConfig, ProjectileMotion};
+use clamber_fight::{
+    Arena, ArenaConfig, ArenaError, FighterConfig, ProjectileMotion, WeaponAction,
+};
 use clamber_world::{HalfSpace, Obstacle, ObstacleId};
 use fastrand::Rng;
 use glam::{DVec3, Vec3};
@@ -117,7 +119,7 @@ fn a_thousand_runs_of_wild_inputs_neither_panic_nor_lose_a_bit() {
                     state.position.is_finite() && state.velocity.is_finite(),
                     "{state:?}"
                 );
-                acts += u32::from(*fighter.act() != Act::Ready);
+                acts += u32::from(*fighter.act() != WeaponAction::Ready);
                 assert!(fighter.blade().unwrap().tip.is_finite());
             }
             for one in arena.projectiles() {

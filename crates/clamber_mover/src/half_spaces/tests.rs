@@ -6,7 +6,7 @@ const HALVINGS: usize = 50;
 
 /// The brute-force reference: among all points that up to three planes determine, the nearest above all the other
 /// planes. If no such point exists, the planes are lowered until one does.
-fn project_onto_half_spaces_reference(target: DVec3, planes: &[HalfSpace]) -> Projection {
+fn project_onto_half_spaces_reference(target: DVec3, planes: &[MovePlane]) -> Projection {
     let size = planes.iter().fold(0.0, |most: f64, plane| {
         most.max(plane.offset - plane.normal.dot(target))
     });
@@ -144,11 +144,11 @@ fn normals(rng: &mut Rng, count: usize) -> Vec<DVec3> {
 }
 
 /// Planes with a common point above or on them, about 0.5 from the target.
-fn with_room(rng: &mut Rng, normals: &[DVec3]) -> Vec<HalfSpace> {
+fn with_room(rng: &mut Rng, normals: &[DVec3]) -> Vec<MovePlane> {
     let inside = direction(rng) * rng.f64();
     let plane = |&normal: &DVec3| {
         let margin = [0.0, 1e-12, 0.1, 0.5][rng.usize(..4)] * rng.f64();
-        HalfSpace {
+        MovePlane {
             normal,
             offset: normal.dot(inside) - margin,
         }
@@ -156,15 +156,15 @@ fn with_room(rng: &mut Rng, normals: &[DVec3]) -> Vec<HalfSpace> {
     normals.iter().map(plane).collect()
 }
 
-fn anyhow(rng: &mut Rng, normals: &[DVec3]) -> Vec<HalfSpace> {
-    let plane = |&normal: &DVec3| HalfSpace {
+fn anyhow(rng: &mut Rng, normals: &[DVec3]) -> Vec<MovePlane> {
+    let plane = |&normal: &DVec3| MovePlane {
         normal,
         offset: rng.f64() * 2.0 - 1.0,
     };
     normals.iter().map(plane).collect()
 }
 
-fn size(target: DVec3, planes: &[HalfSpace], found: &Projection) -> f64 {
+fn size(target: DVec3, planes: &[MovePlane], found: &Projection) -> f64 {
     planes
         .iter()
         .fold(target.length().max(found.point.length()), |most, plane| {
@@ -174,7 +174,7 @@ fn size(target: DVec3, planes: &[HalfSpace], found: &Projection) -> f64 {
 
 /// Compares with the reference. The weighted sum of violation and distance is compared in every case; each of them
 /// alone is compared if there is room.
-fn check(target: DVec3, planes: &[HalfSpace]) {
+fn check(target: DVec3, planes: &[MovePlane]) {
     let found = project_onto_half_spaces(target, planes);
     let sought = project_onto_half_spaces_reference(target, planes);
     let slack = 1e-9 * size(target, planes, &found);
@@ -287,7 +287,7 @@ fn results_scale_with_the_input() {
         let target = direction(&mut rng);
         let found = project_onto_half_spaces(target, &planes);
         let scaled = |scale: f64| {
-            let scaled = planes.iter().map(|plane| HalfSpace {
+            let scaled = planes.iter().map(|plane| MovePlane {
                 offset: plane.offset * scale,
                 ..*plane
             });
@@ -315,15 +315,15 @@ fn results_scale_with_the_input() {
     }
 }
 
-fn planes<const N: usize>(planes: [([f64; 3], f64); N]) -> [HalfSpace; N] {
-    planes.map(|(normal, offset)| HalfSpace {
+fn planes<const N: usize>(planes: [([f64; 3], f64); N]) -> [MovePlane; N] {
+    planes.map(|(normal, offset)| MovePlane {
         normal: DVec3::from_array(normal).normalize(),
         offset,
     })
 }
 
 #[track_caller]
-fn expect(target: [f64; 3], planes: &[HalfSpace], point: [f64; 3], missed: f64) {
+fn expect(target: [f64; 3], planes: &[MovePlane], point: [f64; 3], missed: f64) {
     let found = project_onto_half_spaces(DVec3::from_array(target), planes);
     let apart = found.point.distance(DVec3::from_array(point));
     assert!(apart <= 1e-9, "{found:?}, {apart:e} off, planes {planes:?}");
@@ -400,11 +400,11 @@ fn a_closed_tetrahedron_is_violated_evenly() {
 #[test]
 fn cones_of_many_planes_have_one_apex() {
     for tilt in [1.0, 1e-3, 1e-6, 1e-9] {
-        let cone: Vec<HalfSpace> = (0..32)
+        let cone: Vec<MovePlane> = (0..32)
             .map(|k| {
                 let angle = f64::from(k) * 0.2;
                 let normal = DVec3::new(tilt * libm::cos(angle), 1.0, tilt * libm::sin(angle));
-                HalfSpace {
+                MovePlane {
                     normal: normal.normalize(),
                     offset: 0.0,
                 }
@@ -420,7 +420,7 @@ fn cones_of_many_planes_have_one_apex() {
 
 #[test]
 fn invalid_half_spaces_are_ignored() {
-    let mut all = vec![HalfSpace {
+    let mut all = vec![MovePlane {
         normal: DVec3::Y,
         offset: 1.0,
     }];
@@ -431,13 +431,13 @@ fn invalid_half_spaces_are_ignored() {
         DVec3::X * 1e-200,
         DVec3::X * 1e200,
     ] {
-        all.push(HalfSpace {
+        all.push(MovePlane {
             normal,
             offset: 1.0,
         });
     }
     for offset in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-        all.push(HalfSpace {
+        all.push(MovePlane {
             normal: DVec3::X,
             offset,
         });
@@ -453,9 +453,9 @@ fn extremes_stay_finite() {
     let mut rng = Rng::with_seed(6);
     for _ in 0..4000 {
         let count = rng.usize(1..=6);
-        let planes: Vec<HalfSpace> = normals(&mut rng, count)
+        let planes: Vec<MovePlane> = normals(&mut rng, count)
             .into_iter()
-            .map(|normal| HalfSpace {
+            .map(|normal| MovePlane {
                 normal,
                 offset: sizes[rng.usize(..sizes.len())],
             })
@@ -472,7 +472,7 @@ fn extremes_stay_finite() {
 /// The cost that [`project_where_it_pays`] minimises.
 struct Worth<'a> {
     target: DVec3,
-    planes: &'a [HalfSpace],
+    planes: &'a [MovePlane],
     free: f64,
     steepest: f64,
 }
@@ -489,11 +489,11 @@ impl Worth<'_> {
     /// The least cost, by ternary search over the relief, in which the cost is convex. The reference finds each point.
     fn least(&self, gap: f64) -> f64 {
         let cost = |relief: f64| {
-            let lowered = self.planes.iter().map(|plane| HalfSpace {
+            let lowered = self.planes.iter().map(|plane| MovePlane {
                 offset: plane.offset - relief,
                 ..*plane
             });
-            let lowered: Vec<HalfSpace> = lowered.collect();
+            let lowered: Vec<MovePlane> = lowered.collect();
             self.cost(project_onto_half_spaces_reference(self.target, &lowered).point)
         };
         let (mut low, mut high) = (0.0, gap);

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use crate::support::{Body, ball, climber, skeleton};
 use clamber_climber::{Climber, ClimberInput, StepRules};
 use clamber_navigation::{
-    Bot, BotConfig, ClimbGraph, ClimbReport, Danger, Flight, Forecast, FutureSkin, Goal,
+    Airborne, Bot, BotConfig, ClimbGraph, ClimbReport, Danger, Forecast, FutureSkin, Goal,
     GraphConfig, NavigationError, View,
 };
 use clamber_surface::geometry::Similarity;
@@ -277,7 +277,7 @@ fn a_landing_is_foreseen_on_the_skin_that_is_left() {
     let who = Climber::new(climber().climber, DVec3::new(0.0, 9.0 + radius, -2.0)).unwrap();
     let floor = HalfSpace::below(0.0);
     let others: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(0), &floor)];
-    let flight = Flight {
+    let flight = Airborne {
         climber: &who,
         input: &ClimberInput::IDLE,
         rules: &StepRules::default(),

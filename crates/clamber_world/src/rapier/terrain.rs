@@ -13,7 +13,7 @@ use rapier3d::pipeline::{PhysicsWorld, QueryFilter, QueryPipeline};
 use super::BodyPoses;
 use super::push::push_response;
 use crate::shapes::{
-    FirstContact, Moved, Reach, Tick, closest_by_overlap, holds, overlap_shape, sort_contacts,
+    FirstContact, Moved, SweptBounds, Tick, closest_by_overlap, holds, overlap_shape, sort_contacts,
 };
 use crate::{
     Contact, MaterialPoint, Obstacle, PointMotion, RigidPose, SweepContact, TargetMotion,
@@ -380,7 +380,7 @@ impl Obstacle for RapierTerrain<'_> {
     fn overlap_capsule(&self, capsule: &WorldCapsule, contacts: &mut Vec<Contact>) {
         let local = capsule.moved(-self.origin);
         let radius = capsule.radius;
-        let Some(reach) = Reach::around(local.ends, radius) else {
+        let Some(reach) = SweptBounds::around(local.ends, radius) else {
             return;
         };
         let start = contacts.len();

@@ -2,7 +2,7 @@ use glam::DVec3;
 use parry3d::bounding_volume::Aabb;
 use parry3d::shape::Shape;
 
-use super::reach::{Reach, is_usable, is_usable_radius};
+use super::reach::{SweptBounds, is_usable, is_usable_radius};
 use super::sweep::sweep_shape_where;
 use super::{ShapeTouch, Tick, sweep_shape};
 use crate::{Contact, SweepContact, WorldCapsule};
@@ -31,7 +31,7 @@ use crate::{Contact, SweepContact, WorldCapsule};
 pub struct FirstContact {
     capsule: WorldCapsule,
     displacements: [DVec3; 2],
-    reach: Reach,
+    reach: SweptBounds,
     first: Option<SweepContact>,
 }
 
@@ -54,7 +54,7 @@ impl FirstContact {
         Some(Self {
             capsule: *capsule,
             displacements,
-            reach: Reach::new(&path, radius + 2.0 * capsule.sweep_tolerance()),
+            reach: SweptBounds::new(&path, radius + 2.0 * capsule.sweep_tolerance()),
             first: None,
         })
     }

@@ -18,7 +18,7 @@ pub use first::FirstContact;
 pub use holds::holds;
 pub use moved::Moved;
 pub use overlap::{ShapeContact, overlap_shape};
-pub use reach::Reach;
+pub use reach::SweptBounds;
 pub use sweep::{ShapeSweep, ShapeTouch, sweep_shape};
 pub use tick::Tick;
 

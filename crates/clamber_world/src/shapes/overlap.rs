@@ -7,7 +7,7 @@ use parry3d::shape::Shape;
 
 use super::convex::{Convex, MovingConvex};
 use super::parts::{Part, visit_parts};
-use super::reach::Reach;
+use super::reach::SweptBounds;
 use crate::RigidPose;
 use crate::{Contact, MaterialPoint};
 
@@ -55,10 +55,10 @@ pub fn overlap_shape(
         end: ends,
         radius: 0.0,
     };
-    if !Reach::is_usable(ends, radius) {
+    if !SweptBounds::is_usable(ends, radius) {
         return;
     }
-    let reach = LazyCell::new(|| Reach::new(&still, radius));
+    let reach = LazyCell::new(|| SweptBounds::new(&still, radius));
     let mut offer = |contact: Option<ShapeContact>| {
         if let Some(contact) = contact.filter(|contact| contact.distance <= radius) {
             found(contact);

@@ -26,12 +26,12 @@ pub(super) fn is_usable_radius(radius: f64) -> bool {
 /// Bounding boxes of a moving capsule at the start and the end of its path. In between, its box lies within their
 /// linear interpolation.
 #[derive(Clone, Copy, Debug)]
-pub struct Reach {
+pub struct SweptBounds {
     low: [DVec3; 2],
     high: [DVec3; 2],
 }
 
-impl Reach {
+impl SweptBounds {
     /// Boxes around everything within `distance` of the capsule's segment.
     pub fn new(path: &MovingCapsule, distance: f64) -> Self {
         let (start, end) = (
@@ -56,7 +56,7 @@ impl Reach {
         })
     }
 
-    /// True if [`Reach::around`] returns something.
+    /// True if [`SweptBounds::around`] returns something.
     pub(super) fn is_usable(ends: [DVec3; 2], radius: f64) -> bool {
         is_usable(ends[0]) && is_usable(ends[1]) && radius >= 0.0
     }
@@ -124,7 +124,7 @@ mod tests {
             };
             let low = point(3.0);
             let other = Aabb::new(low.as_vec3(), (low + point(1.0).abs()).as_vec3());
-            let reach = Reach::new(&path, path.radius);
+            let reach = SweptBounds::new(&path, path.radius);
             let steps = (0..=64).map(|step| path.at(f64::from(step) / 64.0));
             let meets = steps.into_iter().any(|[a, b]| {
                 let (low, high) = (a.min(b) - path.radius, a.max(b) + path.radius);

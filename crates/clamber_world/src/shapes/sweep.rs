@@ -8,7 +8,7 @@ use super::ShapeContact;
 use super::convex::{Convex, MovingConvex};
 use super::overlap::{half_space, solid};
 use super::parts::{Part, visit_parts};
-use super::reach::{Reach, is_usable, is_usable_radius};
+use super::reach::{SweptBounds, is_usable, is_usable_radius};
 use crate::RigidPose;
 use crate::WorldCapsule;
 
@@ -130,17 +130,17 @@ impl ShapeSweep {
     /// rotation. In this space the point deviates from a straight line by `t (1 - t) (1 - R) (x1 - x0)`. This is at
     /// most half the sine of half the angle, times the length of the line. In between, points of the shape that move in
     /// straight lines also come closer to each other: by a factor of no less than the cosine of half the angle.
-    fn reach(&self) -> Reach {
+    fn reach(&self) -> SweptBounds {
         let path = self.seen_from_shape();
         let touch = path.radius + 2.0 * sweep_tolerance(path.radius);
         let Some(before) = &self.before else {
-            return Reach::new(&path, touch);
+            return SweptBounds::new(&path, touch);
         };
         let half_sine = before.rotation.xyz().length();
         let half_cosine = before.rotation.w.abs();
         let ways = [0, 1].map(|k| (path.end[k] - path.start[k]).length());
         let slack = 0.5 * half_sine * ways[0].max(ways[1]);
-        Reach::new(&path, (touch + slack) / half_cosine.max(f64::MIN_POSITIVE))
+        SweptBounds::new(&path, (touch + slack) / half_cosine.max(f64::MIN_POSITIVE))
     }
 
     fn meet(

@@ -3,7 +3,7 @@
 use clamber_climber::{ClimberInput, ClimberMode};
 use clamber_fight::actions::{BOW, STAB};
 use clamber_fight::aim::lead;
-use clamber_fight::{Act, Arena, FighterId};
+use clamber_fight::{Arena, FighterId, WeaponAction};
 use glam::DVec3;
 
 use super::TICK;
@@ -58,11 +58,13 @@ impl Fencer {
             Some(holds(if is_down { STAB } else { 0 }))
         };
         match fighter.act() {
-            Act::Raise { .. } => press(true),
+            WeaponAction::Raise { .. } => press(true),
             // Full: let go, and press again.
-            Act::Charge { charge, .. } => press(*charge < FULL || !was_pressed),
-            Act::Strike { .. } | Act::Plunge { .. } | Act::PullOut { .. } => press(false),
-            Act::Ready => {
+            WeaponAction::Charge { charge, .. } => press(*charge < FULL || !was_pressed),
+            WeaponAction::Strike { .. }
+            | WeaponAction::Plunge { .. }
+            | WeaponAction::PullOut { .. } => press(false),
+            WeaponAction::Ready => {
                 // No terrain is between them while it stands on the creature.
                 let aimed = arena.stab_aim(HERO, &[])?;
                 let is_right = match aim.plate {
@@ -74,7 +76,9 @@ impl Fencer {
                 let can = is_right && is_firm && is_able;
                 if can { press(!was_pressed) } else { None }
             }
-            Act::Cut { .. } | Act::Draw { .. } | Act::Throw { .. } => None,
+            WeaponAction::Cut { .. } | WeaponAction::Draw { .. } | WeaponAction::Throw { .. } => {
+                None
+            }
         }
     }
 

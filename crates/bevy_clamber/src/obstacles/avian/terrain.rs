@@ -6,7 +6,7 @@ use bevy_math::{Dir3, Vec3};
 use bevy_shape::Ray3d;
 use clamber_surface::mesh::SurfaceTag;
 use clamber_world::shapes::{
-    FirstContact, Reach, Tick, closest_by_overlap, holds, overlap_shape, sort_contacts,
+    FirstContact, SweptBounds, Tick, closest_by_overlap, holds, overlap_shape, sort_contacts,
 };
 use clamber_world::{
     Contact, MaterialPoint, Obstacle, PointMotion, RigidPose, SweepContact, TargetMotion,
@@ -236,7 +236,7 @@ impl Obstacle for AvianTerrain<'_> {
 
     fn overlap_capsule(&self, capsule: &WorldCapsule, contacts: &mut Vec<Contact>) {
         let local = capsule.moved(-self.origin);
-        let Some(reach) = Reach::around(local.ends, capsule.radius) else {
+        let Some(reach) = SweptBounds::around(local.ends, capsule.radius) else {
             return;
         };
         let start = contacts.len();

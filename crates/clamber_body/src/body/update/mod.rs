@@ -19,7 +19,7 @@ use super::carry::Carry;
 use super::climb::Schedule;
 use super::context::Context;
 use super::event::Plant;
-use super::frame::BodyFrame;
+use super::frame::BodyInput;
 use super::ground::{Ground, Look};
 use super::hold::Surroundings;
 use super::memory::{ClimberMemory, Memory};
@@ -46,7 +46,7 @@ const STEP_DOWN_TIME: f64 = 0.3;
 /// One frame of one body: the data that its phases read.
 pub(crate) struct Update<'a> {
     figure: &'a Figure,
-    frame: &'a BodyFrame<'a>,
+    frame: &'a BodyInput<'a>,
     dt: f64,
     up: DVec3,
     stance: Stance,
@@ -72,7 +72,7 @@ struct Placed {
 impl<'a> Update<'a> {
     pub(crate) fn new(
         figure: &'a Figure,
-        frame: &'a BodyFrame<'a>,
+        frame: &'a BodyInput<'a>,
         dt: f64,
         memory: Option<Memory>,
     ) -> Self {

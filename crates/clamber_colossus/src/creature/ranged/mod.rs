@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 use super::report::AttackPhase;
 use super::state::FARTHEST_COORDINATE;
 use super::{Creature, Surroundings};
-use crate::brain::{Act, Attack, StateId, WaveOf};
+use crate::brain::{Attack, StateAction, StateId, WaveOf};
 use crate::feet::Carried;
 use crate::kind::{CreatureKind, Strike};
 use beam::Ray;
@@ -252,7 +252,7 @@ fn reachable(place: DVec3) -> DVec3 {
 /// The attack of a state; `None` if its act is no attack.
 fn attack_of(kind: &CreatureKind, state: StateId) -> Option<&Attack> {
     match kind.brain().act(state) {
-        Some(Act::Attack(attack)) => Some(attack),
+        Some(StateAction::Attack(attack)) => Some(attack),
         _ => None,
     }
 }

@@ -49,8 +49,8 @@ impl Phase {
     }
 
     /// The body's frame `seconds` after the cut began.
-    fn frame(&self, seconds: f64) -> BodyFrame {
-        BodyFrame {
+    fn frame(&self, seconds: f64) -> FighterFrame {
+        FighterFrame {
             origin: self.body * seconds,
             rotation: rotation_from_axis_angle(DVec3::Y, self.turns * seconds),
         }
