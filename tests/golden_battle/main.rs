@@ -6,7 +6,7 @@
 use std::collections::BTreeSet;
 
 use clamber::climber::ClimberMode;
-use clamber::rig::Palette;
+use clamber::surface::palette_fingerprint;
 use clamber_scenes::battle::{Battle, BattleOptions, CREATURE};
 use clamber_scenes::giant::giant;
 use clamber_verify::golden::{GoldenRun, hold};
@@ -22,20 +22,10 @@ const CLIMB: u64 = 0x62ab_6d67_2580_3b65;
 fn add(run: &mut GoldenRun, battle: &Battle<'_>) {
     run.field("climber", battle.climber().state().fingerprint());
     run.fields("its ", battle.climber().state());
-    run.field("creature", palette_bits(battle.palette()));
+    run.field("creature", palette_fingerprint(battle.palette()));
     run.field("rocks", battle.rocks_fingerprint());
     run.field("rocks and fight", battle.scene_fingerprint());
     run.end_tick();
-}
-
-/// A hash of every bit of a palette.
-fn palette_bits(palette: &Palette) -> u64 {
-    let rows = palette.matrices().iter().flat_map(|map| map.rows);
-    let numbers = rows.flatten().map(f32::to_bits);
-    // The factor is 2^64 divided by the golden ratio: an odd number with well spread bits.
-    numbers.fold(0, |hash: u64, bits| {
-        (hash.rotate_left(5) ^ u64::from(bits)).wrapping_mul(0x9e37_79b9_7f4a_7c15)
-    })
 }
 
 /// The path of a stored file beside this one.

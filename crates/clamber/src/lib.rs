@@ -34,7 +34,7 @@ pub use clamber_record as record;
 #[doc(inline)]
 pub use clamber_render as render;
 #[doc(hidden)]
-pub use clamber_surface::{SimdLevel, measure};
+pub use clamber_surface::{Fingerprint, SimdLevel, measure};
 #[doc(inline)]
 pub use clamber_surface::{geometry, mesh, rig, skin, surface};
 #[doc(inline)]

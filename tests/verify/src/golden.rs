@@ -34,10 +34,12 @@
 use core::fmt::Debug;
 use std::path::Path;
 
+use clamber_surface::Fingerprint;
+
 /// A run that is hashed as it goes.
 #[derive(Clone, Debug, Default)]
 pub struct GoldenRun {
-    hash: Hash,
+    hash: Fingerprint,
     /// True if checksums are kept as well.
     is_detailed: bool,
     /// Names of the fields, which are the same in every tick.
@@ -87,24 +89,6 @@ fn head(hash: u64) -> String {
     format!("{hash:#018x}\n")
 }
 
-/// A 64-bit FNV-1a hash (Fowler, Noll, Vo).
-#[derive(Clone, Copy, Debug)]
-struct Hash(u64);
-
-impl Default for Hash {
-    fn default() -> Self {
-        Self(0xcbf2_9ce4_8422_2325)
-    }
-}
-
-impl Hash {
-    fn add(&mut self, bytes: &[u8]) {
-        for byte in bytes {
-            self.0 = (self.0 ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3);
-        }
-    }
-}
-
 impl GoldenRun {
     /// A run with a checksum of every field.
     pub fn detailed(play: impl FnOnce(&mut Self)) -> Self {
@@ -118,10 +102,10 @@ impl GoldenRun {
 
     /// Adds the bits of a number, or a hash of bits, to this tick and to the hash of the run.
     pub fn field(&mut self, name: &str, bits: u64) {
-        self.hash.add(&bits.to_le_bytes());
+        self.hash.word(bits);
         if self.is_detailed {
-            let mut hash = Hash::default();
-            hash.add(&bits.to_le_bytes());
+            let mut hash = Fingerprint::default();
+            hash.word(bits);
             self.push(name, hash);
         }
     }
@@ -134,7 +118,7 @@ impl GoldenRun {
             return;
         }
         let text = format!("{value:#?}");
-        let mut current: Option<(&str, Hash)> = None;
+        let mut current: Option<(&str, Fingerprint)> = None;
         for line in text.lines() {
             // The struct's own fields are indented once; their contents are indented deeper.
             let own = line.strip_prefix("    ");
@@ -143,10 +127,10 @@ impl GoldenRun {
                 if let Some((name, hash)) = current.take() {
                     self.push(&format!("{of}{name}"), hash);
                 }
-                current = Some((name, Hash::default()));
+                current = Some((name, Fingerprint::default()));
             }
             if let Some((_, hash)) = &mut current {
-                hash.add(line.as_bytes());
+                hash.text(line);
             }
         }
         if let Some((name, hash)) = current {
@@ -158,7 +142,7 @@ impl GoldenRun {
         if self.ticks == 0 {
             self.names.push(name.to_owned());
         }
-        let folded = hash.0 ^ hash.0 >> 32;
+        let folded = hash.value() ^ hash.value() >> 32;
         self.checksums.push((folded ^ folded >> 16) as u16);
     }
 
@@ -169,7 +153,7 @@ impl GoldenRun {
 
     /// The hash of all fields so far.
     pub fn hash(&self) -> u64 {
-        self.hash.0
+        self.hash.value()
     }
 
     /// The content of the file of a detailed run: a line with the hash, a line with each field's name, an empty line,

@@ -1,38 +1,27 @@
-//! A hash of bits: 64-bit FNV-1a (Fowler, Noll, Vo).
+//! A hash of the bits of answers.
 
+use clamber_surface::Fingerprint;
 use clamber_surface::surface::{Motion, SurfaceHit, SweepHit};
 use glam::Vec3;
 
-#[derive(Clone, Copy)]
-pub(crate) struct Bits(u64);
-
-impl Default for Bits {
-    fn default() -> Self {
-        Self(0xcbf2_9ce4_8422_2325)
-    }
-}
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Bits(Fingerprint);
 
 impl Bits {
     fn word(&mut self, word: u64) {
-        for byte in word.to_le_bytes() {
-            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
-        }
+        self.0.word(word);
     }
 
     pub(crate) fn finish(self) -> u64 {
-        self.0
+        self.0.value()
     }
 
-    fn singles(&mut self, numbers: impl IntoIterator<Item = f32>) {
-        for number in numbers {
-            self.word(u64::from(number.to_bits()));
-        }
+    fn singles<const N: usize>(&mut self, numbers: [f32; N]) {
+        self.0.floats(&numbers);
     }
 
     fn doubles(&mut self, numbers: impl IntoIterator<Item = f64>) {
-        for number in numbers {
-            self.word(number.to_bits());
-        }
+        self.0.numbers(numbers);
     }
 
     pub(crate) fn positions(&mut self, positions: &[Vec3]) {

@@ -5,6 +5,7 @@
 use crate::support::{GIANT, GROUND, Slab};
 use clamber_climber::ClimberInput;
 use clamber_fight::{Arena, FighterConfig, creature_obstacle};
+use clamber_surface::Fingerprint;
 use clamber_world::rapier3d::prelude::*;
 use clamber_world::{
     BodyPoses, Debris, DebrisConfig, DebrisSnapshot, Obstacle, ObstacleId, RapierTerrain,
@@ -100,9 +101,9 @@ impl Scene {
                 p.x, p.y, p.z, q.x, q.y, q.z, q.w, v.x, v.y, v.z, w.x, w.y, w.z,
             ]
         });
-        numbers.fold(self.arena.fingerprint(), |hash: u64, x| {
-            (hash.rotate_left(5) ^ u64::from(x.to_bits())).wrapping_mul(0x9e37_79b9_7f4a_7c15)
-        })
+        let mut hash = Fingerprint::new(self.arena.fingerprint());
+        numbers.for_each(|x| hash.floats(&[x]));
+        hash.value()
     }
 }
 

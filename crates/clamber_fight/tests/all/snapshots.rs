@@ -10,6 +10,7 @@ use std::collections::BTreeMap;
 use crate::support::{Melee, Slab, giant, weak_point};
 use clamber_colossus::CreatureConfig;
 use clamber_fight::{Arena, ArenaConfig, ArenaError, ArenaState, FighterConfig};
+use clamber_surface::Fingerprint;
 use glam::{DVec3, Vec3};
 use serde_json::Value;
 
@@ -136,9 +137,9 @@ fn at(value: &mut Value, path: Path) -> &mut Value {
 }
 
 fn text_hash(text: &str) -> u64 {
-    text.bytes().fold(0, |hash: u64, byte| {
-        (hash.rotate_left(5) ^ u64::from(byte)).wrapping_mul(0x9e37_79b9_7f4a_7c15)
-    })
+    let mut hash = Fingerprint::default();
+    hash.text(text);
+    hash.value()
 }
 
 /// A field that is missing in a saved state is noticed: a run that continues from it has other bits, within 60 ticks

@@ -7,6 +7,7 @@ use clamber_record::{
     RecordingInfo, ReplayError, Replayed, SceneryView, TickView, creature_fingerprint,
     palette_fingerprint,
 };
+use clamber_surface::Fingerprint;
 use clamber_surface::geometry::Similarity;
 use clamber_world::rapier3d::dynamics::RigidBodyHandle;
 
@@ -182,8 +183,11 @@ fn fingerprint(battle: &Battle<'_>) -> u64 {
     let brain = battle.life().map(|life| life.kind().brain().file());
     // The brain as it is read, whatever the layout of its file.
     let text = brain.and_then(|file| serde_json::to_string(file).ok());
-    let hash = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
-    text.map_or(body, |text| text.bytes().fold(body, hash))
+    text.map_or(body, |text| {
+        let mut hash = Fingerprint::new(body);
+        hash.text(&text);
+        hash.value()
+    })
 }
 
 /// The result of a replay.

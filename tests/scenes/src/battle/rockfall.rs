@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use clamber_surface::Fingerprint;
 use clamber_surface::surface::SkinnedSurface;
 use clamber_world::rapier3d::prelude::*;
 use clamber_world::{Debris, DebrisConfig};
@@ -204,8 +205,8 @@ impl Rockfall {
             let (place, turn) = (body.translation().to_array(), body.rotation().to_array());
             place.into_iter().chain(turn)
         });
-        numbers.fold(0, |hash: u64, x| {
-            (hash.rotate_left(5) ^ u64::from(x.to_bits())).wrapping_mul(0x9e37_79b9_7f4a_7c15)
-        })
+        let mut hash = Fingerprint::default();
+        numbers.for_each(|x| hash.floats(&[x]));
+        hash.value()
     }
 }

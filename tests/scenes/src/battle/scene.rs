@@ -6,6 +6,7 @@ use clamber_climber::{
     ClimberConfig, ClimberEvent, ClimberInput, ClimberState, ContactQuery, StepRules,
 };
 use clamber_fight::{Arena, ArenaEvent, ArenaState, CreatureId, FighterConfig, creature_obstacle};
+use clamber_surface::Fingerprint;
 use clamber_surface::mesh::SurfaceKind;
 use clamber_surface::surface::{Diagnostics, SkinnedSurface};
 use clamber_world::rapier3d::dynamics::RigidBodySet;
@@ -63,7 +64,7 @@ pub struct Battle<'a> {
     height: f64,
     counts: Counts,
     input: ClimberInput,
-    hash: u64,
+    hash: Fingerprint,
     skinned: Diagnostics,
     times: Vec<[f64; 2]>,
 }
@@ -166,7 +167,7 @@ impl<'a> Battle<'a> {
             height,
             counts,
             input: ClimberInput::default(),
-            hash: 0,
+            hash: Fingerprint::default(),
             skinned: Diagnostics::default(),
             times: Vec::new(),
         })
@@ -249,8 +250,11 @@ impl<'a> Battle<'a> {
                 }
             }
         }
-        let fingerprint = self.climber().state().fingerprint() ^ self.scene_fingerprint();
-        self.hash = (self.hash.rotate_left(5) ^ fingerprint).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        let (climber, scene) = (
+            self.climber().state().fingerprint(),
+            self.scene_fingerprint(),
+        );
+        self.hash.word(climber ^ scene);
     }
 
     /// Drops a rider on the creature's back again if it has been on the ground for a while or is out of the valley.

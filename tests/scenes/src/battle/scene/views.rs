@@ -35,7 +35,7 @@ impl<'a> Battle<'a> {
 
     /// A 64-bit hash of the climber's states, the rocks' poses and all that changes in a fight, in all ticks.
     pub fn hash(&self) -> u64 {
-        self.hash
+        self.hash.value()
     }
 
     /// Times of the ticks, microseconds: of pose, script and climber, and of the rocks with physics.
