@@ -33,8 +33,9 @@ pub use clamber_record as record;
 #[cfg(feature = "render")]
 #[doc(inline)]
 pub use clamber_render as render;
+pub use clamber_surface::Fingerprint;
 #[doc(hidden)]
-pub use clamber_surface::{Fingerprint, SimdLevel, measure};
+pub use clamber_surface::{SimdLevel, measure};
 #[doc(inline)]
 pub use clamber_surface::{geometry, mesh, rig, skin, surface};
 #[doc(inline)]

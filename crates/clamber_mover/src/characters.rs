@@ -8,7 +8,7 @@
 use clamber_world::{CharacterBody, Obstacle, ObstacleId, Others, WorldCapsule};
 use glam::DVec3;
 
-use crate::half_spaces::HalfSpace;
+use crate::half_spaces::MovePlane;
 use crate::mover::{find, path_among};
 use crate::slide::TOUCH;
 use crate::{Hit, IntoOthers, Mover, Path, Touch};

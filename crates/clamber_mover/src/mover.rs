@@ -8,7 +8,7 @@ use glam::DVec3;
 
 use crate::characters::is_beside;
 use crate::filters::{ContactFilter, ContactFilters, accepts};
-use crate::half_spaces::HalfSpace;
+use crate::half_spaces::MovePlane;
 use crate::surroundings::Surroundings;
 use crate::{Hit, IntoOthers, MoverBody, MoverError, Touch};
 

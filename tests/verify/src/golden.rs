@@ -138,7 +138,7 @@ impl GoldenRun {
         }
     }
 
-    fn push(&mut self, name: &str, hash: Hash) {
+    fn push(&mut self, name: &str, hash: Fingerprint) {
         if self.ticks == 0 {
             self.names.push(name.to_owned());
         }
