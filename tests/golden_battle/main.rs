@@ -13,10 +13,10 @@ use clamber_verify::golden::{GoldenRun, hold};
 
 /// Hash of the ride. It changes with any bit of a result, and with rapier's version. Check that a change is intended,
 /// then store the new hash, and the file by `CLAMBER_BLESS=1`.
-const RIDE: u64 = 0xaed0_c1e4_cca6_1b1a;
+const RIDE: u64 = 0x84d9_e97f_179e_5c66;
 
 /// Hash of the climb, under the same rules as [`RIDE`].
-const CLIMB: u64 = 0x62ab_6d67_2580_3b65;
+const CLIMB: u64 = 0x3a9c_ab26_e98e_97a7;
 
 /// Adds a tick of a battle: the climber's fields, the creature's pose, the rocks and the fight.
 fn add(run: &mut GoldenRun, battle: &Battle<'_>) {
