@@ -30,7 +30,7 @@ impl Default for Fingerprint {
 impl Fingerprint {
     /// The hash of nothing, for one of 2^64 purposes: equal data that start from different seeds have different hashes.
     pub fn new(seed: u64) -> Self {
-        // Neither fold may start at 0, which a word of 0 would leave as it is.
+        // Not 0 for the usual seeds, because a word of 0 leaves a fold at 0.
         Self([seed ^ FACTOR, !seed])
     }
 

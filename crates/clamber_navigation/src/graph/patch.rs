@@ -32,7 +32,7 @@ pub struct Patch {
     pub can_stand: bool,
     /// True if a climber can hold on there at rest.
     pub can_hold: bool,
-    /// Index in [`GraphSource::plates`](crate::GraphSource::plates): a climber has room here only without that plate.
+    /// Index in [`GraphConfig::plates`](crate::GraphConfig::plates): a climber has room here only without that plate.
     /// `None` if it has room with all plates. The index stays after the plate breaks.
     pub below: Option<u16>,
     /// The vector from the middle to the seat at rest, along the axes of the triangle, metres.

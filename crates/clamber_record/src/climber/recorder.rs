@@ -141,6 +141,9 @@ impl<W: Write> Recorder<W> {
 
     /// The log lines of the climber's events.
     fn lines(&self, view: &TickView<'_>) -> Vec<Log> {
+        if view.report.events.is_empty() {
+            return Vec::new();
+        }
         let ClimberMemory {
             creature, joints, ..
         } = &self.memory;
@@ -161,6 +164,7 @@ impl<W: Write> Recorder<W> {
 
     /// Records the joints of a figure at the tick recorded last, for people to look at: a replay does not compare them.
     /// Nothing is recorded in ticks in which no transforms are due ([`RecordOptions::transforms_every`]).
+    ///
     /// # Errors
     /// [`RecordError::FigureJoints`] if the palette, the skeleton and the skeleton of this name's first call differ in
     /// their number of joints; [`RecordError::NoTick`] before the first tick; [`RecordError::Ended`] after writing

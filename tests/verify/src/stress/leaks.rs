@@ -1,12 +1,13 @@
 //! Checks that no ray gets through closed skin.
 //!
 //! A path between two points with different winding numbers crosses the skin, however the skin is bent, mirrored or
-//! pinched. This follows from topology alone, without any query.
+//! pinched. This follows from topology alone, without any query. The winding number of a point is the sum of the solid
+//! angles of the triangles over 4 pi (van Oosterom and Strackee 1983, "The Solid Angle of a Plane Triangle"), here in
+//! f64, independently of the library's own.
 
 use crate::agreement::{Answers, Question};
 use crate::brute_force::distance;
 use clamber_surface::geometry::Ray;
-use clamber_surface::measure::winding_of;
 use glam::{DVec3, Vec3};
 
 use super::posed::Posed;
@@ -22,12 +23,18 @@ const MOVED: f64 = 1e-6;
 /// it across the point. Elsewhere such a motion does not change the winding number.
 fn winding(posed: &Posed<'_>, point: DVec3) -> Option<i64> {
     let clear = MOVED * (f64::from(posed.farthest) + point.length());
-    let triangles = || (0..posed.surface.mesh().triangles().len()).map(|t| posed.corners(t));
-    let is_near = |corners: [Vec3; 3]| distance(point, &corners.map(|p| p.as_dvec3())) < clear;
-    if triangles().any(is_near) {
-        return None;
+    let mut sum = 0.0;
+    for triangle in 0..posed.surface.mesh().triangles().len() {
+        let corners = posed.corners(triangle).map(|p| p.as_dvec3() - point);
+        if distance(DVec3::ZERO, &corners) < clear {
+            return None;
+        }
+        let [a, b, c] = corners;
+        let (x, y, z) = (a.length(), b.length(), c.length());
+        let below = x * y * z + a.dot(b) * z + b.dot(c) * x + c.dot(a) * y;
+        sum += 2.0 * libm::atan2(a.dot(b.cross(c)), below);
     }
-    let turns = winding_of(triangles(), point);
+    let turns = sum / (4.0 * core::f64::consts::PI);
     let whole = turns.round();
     ((turns - whole).abs() < ROUNDED).then_some(whole as i64)
 }
