@@ -76,7 +76,7 @@ fn run(Options { models, climb }: Options) -> Result<bool, Box<dyn Error>> {
          {rows}\n\
          the bot comes to the highest reachable place of {there} of {loaded} models; {none} cannot be got onto\n"
     );
-    Ok(there as f64 >= ENOUGH * loaded as f64)
+    Ok(loaded > 0 && there as f64 >= ENOUGH * loaded as f64)
 }
 
 fn climb_file(file: &Path, options: &ClimbOptions) -> Result<Climbed, Box<dyn Error>> {

@@ -6,14 +6,14 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use clamber_scenes::battle::{Battle, BattleError, BattleOptions, Check, Watch};
+use clamber_scenes::battle::{Battle, BattleError, BattleOptions, Check, Watch, positive};
 use clamber_scenes::{Creature, test_data};
 use clap::Parser;
 
 /// A climber rides every model of a folder for a minute, and a table shows which checks hold.
 ///
 /// Below the table, each failed check is listed with the place and time of its first failure. Exits with 1 if a model
-/// that can be loaded fails a check.
+/// that can be loaded fails a check, or if none can be loaded.
 #[derive(Clone, Debug, Parser)]
 #[command(name = "rides", version)]
 struct Options {
@@ -23,14 +23,17 @@ struct Options {
 
     /// Height of every creature, metres.
     #[arg(long, value_name = "METRES", default_value_t = 20.0)]
+    #[arg(value_parser = positive, allow_negative_numbers = true)]
     height: f64,
 
     /// Length of every ride.
     #[arg(long, value_name = "SECONDS", default_value_t = 60.0)]
+    #[arg(value_parser = positive, allow_negative_numbers = true)]
     seconds: f64,
 
     /// Number of rocks that fall on every creature.
     #[arg(long, value_name = "COUNT", default_value_t = 24)]
+    #[arg(value_parser = clap::value_parser!(u32).range(0..=1000))]
     rocks: u32,
 
     /// Seed for the climber's start and the rocks' places; the same number gives the same rides.
@@ -73,7 +76,7 @@ fn main() -> ExitCode {
         }
     }
     println!("\n{held} of {ridden} models pass all checks\n\n{causes}");
-    ExitCode::from(u8::from(held < ridden))
+    ExitCode::from(u8::from(held < ridden || ridden == 0))
 }
 
 /// Rides a model. Returns its cells of the table, and the checks that fail.

@@ -8,7 +8,9 @@ use crate::Failure;
 /// Fights battles of several seeds, the one of the options and the next ones, and prints the result of each.
 pub(crate) fn fight_all(options: &BattleOptions, count: u64) -> Result<bool, Failure> {
     let creature = options.load_creature()?;
-    let seeds: Vec<u64> = (options.seed..).take(count as usize).collect();
+    let seeds: Vec<u64> = (0..count)
+        .map(|index| options.seed.wrapping_add(index))
+        .collect();
     let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
     let (mut arrived, mut killed) = (0, Vec::new());
     println!("  seed  at top  killed  plate  weak damage blows  deaths  hash");

@@ -53,8 +53,8 @@ fn main() -> ExitCode {
 /// Fights a battle, films and records it, and reports the results. Returns true if all checks hold.
 fn run(options: &Options) -> Result<bool, Failure> {
     let settings = &options.battle;
-    let summary = create(&options.out.join("summary.json"))?;
-    let file = options.record.as_deref().map(create).transpose()?;
+    let summary = open(&options.out.join("summary.json"))?;
+    let file = options.record.as_deref().map(open).transpose()?;
     let mut cameras = Vec::new();
     if options.film.is_wanted() {
         cameras.push(film(options)?);
@@ -83,15 +83,23 @@ fn run(options: &Options) -> Result<bool, Failure> {
         camera.finish()?;
     }
     let checks = watch.checks(&battle, settings);
-    report::write(&battle, &checks, summary)?;
+    report::write(&battle, &checks, empty(summary)?)?;
     print!("{}", report::table(&battle, &watch, &checks));
     Ok(checks.iter().all(|check| check.holds()))
 }
 
-fn create(path: &Path) -> Result<BufWriter<File>, Failure> {
+/// Opens a file for the results, which keeps its content until there are new ones.
+fn open(path: &Path) -> Result<File, Failure> {
     let failed = |error| format!("cannot write {}: {error}", path.display());
     std::fs::create_dir_all(path.parent().unwrap_or(path)).map_err(failed)?;
-    Ok(BufWriter::new(File::create(path).map_err(failed)?))
+    let mut how = File::options();
+    let how = how.write(true).create(true).truncate(false);
+    Ok(how.open(path).map_err(failed)?)
+}
+
+fn empty(file: File) -> Result<BufWriter<File>, Failure> {
+    file.set_len(0)?;
+    Ok(BufWriter::new(file))
 }
 
 #[cfg(all(feature = "render", feature = "gltf", feature = "rapier"))]
@@ -118,17 +126,18 @@ impl Camera for clamber_scenes::battle::BattleRecorder<BufWriter<File>> {
 
 #[cfg(feature = "record")]
 fn recorder(
-    file: BufWriter<File>,
+    file: File,
     battle: &Battle<'_>,
     options: &Options,
 ) -> Result<Box<dyn Camera>, Failure> {
     let how = clamber::record::RecordOptions::waiting();
-    let recorder = clamber_scenes::battle::BattleRecorder::new(file, battle, &options.battle, how)?;
+    let recorder =
+        clamber_scenes::battle::BattleRecorder::new(empty(file)?, battle, &options.battle, how)?;
     let hero = clamber_scenes::hero::Hero::load()?;
     Ok(Box::new(recorder.with_hero(hero)))
 }
 
 #[cfg(not(feature = "record"))]
-fn recorder(_: BufWriter<File>, _: &Battle<'_>, _: &Options) -> Result<Box<dyn Camera>, Failure> {
+fn recorder(_: File, _: &Battle<'_>, _: &Options) -> Result<Box<dyn Camera>, Failure> {
     Err("this build cannot record: add --features record to cargo's arguments".into())
 }

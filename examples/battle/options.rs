@@ -24,7 +24,7 @@ pub(crate) struct Options {
 
     /// Fights this number of battles, with this seed and the next ones, each until the creature is dead. Prints a line
     /// for each, and writes no files.
-    #[arg(long, value_name = "COUNT", conflicts_with = "pictures")]
+    #[arg(long, value_name = "COUNT", conflicts_with_all = ["pictures", "record"])]
     #[arg(value_parser = clap::value_parser!(u64).range(1..=10_000))]
     pub(crate) fights: Option<u64>,
 

@@ -46,7 +46,9 @@ fn clips_of_a_creature_are_measured() {
     let height = f64::from(high.y - low.y);
     let probe = SeamProbe::new(&creature.skeleton, &creature.collider, height);
     let loops = |clip: &&Clip| ["idle", "walk", "shake"].contains(&clip.name.as_str());
-    for clip in creature.clips.iter().filter(loops) {
+    let clips: Vec<_> = creature.clips.iter().filter(loops).collect();
+    assert_eq!(clips.len(), 3);
+    for clip in clips {
         let seam = probe.measure(clip).unwrap();
         assert_eq!(Repeat::of(seam), Repeat::Loop, "{}: {seam:?}", clip.name);
     }

@@ -28,7 +28,7 @@ pub use checks::{
     Check, DRIFT, FALLS, INSIDE, MAX_DRIFT, MAX_STANDS_OFF, ROCKS_INSIDE, STANDS_OFF, Watch,
 };
 pub use counts::Counts;
-pub use options::{BattleOptions, Story};
+pub use options::{BattleOptions, Story, positive};
 pub use outcrop::mesh as outcrop;
 #[cfg(feature = "record")]
 pub use record::{BattleRecorder, Replay, replay};
@@ -36,8 +36,6 @@ pub use repeat::Repeat;
 pub use rider::Intent;
 pub use rockfall::{Rockfall, Triangles};
 pub use scene::{Battle, BattleSnapshot, CREATURE, CreatureState, TERRAIN, TICK};
-
-pub(crate) use options::positive;
 
 use std::error::Error;
 

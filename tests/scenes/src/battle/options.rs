@@ -66,7 +66,11 @@ pub struct BattleOptions {
     pub seed: u64,
 }
 
-pub(crate) fn positive(text: &str) -> Result<f64, String> {
+/// The number of an option, above 0 and at most 1,000,000.
+///
+/// # Errors
+/// A sentence for the user.
+pub fn positive(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(number) if number > 0.0 && number <= 1e6 => Ok(number),
         Ok(_) => Err("must be above 0 and at most 1000000".into()),
