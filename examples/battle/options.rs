@@ -95,7 +95,7 @@ pub(crate) enum OverlayKind {
     Plan,
     /// The skin, coloured by the time from there to the bot's goal: from red to blue, which is half a minute or more.
     Ways,
-    /// Text: time, the climber's support, stamina and health, shake, speeds, share of vertices skinned.
+    /// Text: time, the climber's mode, stamina and health, shake, speed over the skin, share of vertices skinned.
     State,
 }
 
