@@ -21,3 +21,40 @@ pub fn is_inside_skin(positions: &[Vec3], surface: &SkinnedSurface, p: DVec3) ->
     let corners = seen.map(|(_, corners)| corners.map(|vertex| positions[vertex.index()]));
     winding_of(corners, p) > 0.5
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use clamber_animation::joint_in_model;
+    use clamber_surface::rig::JointId;
+    use clamber_surface::skin::skin;
+
+    use super::*;
+    use crate::giant::giant;
+
+    #[test]
+    fn the_trunk_is_inside_and_the_gap_between_the_legs_outside() {
+        let giant = giant().unwrap();
+        let (skeleton, mesh) = (&giant.skeleton, &giant.collider);
+        let rest = skeleton.rest_pose();
+        let palette = skeleton.palette(&rest).unwrap();
+        let positions = skin(mesh, palette.matrices()).unwrap();
+        let surface = SkinnedSurface::new(Arc::clone(mesh));
+        let place = |name: &str| {
+            let mut joints = skeleton.joints().iter();
+            let joint = joints.position(|joint| joint.name == name).unwrap();
+            let joint = joint_in_model(skeleton, &rest, JointId(joint as u32));
+            joint.unwrap().translation
+        };
+        let gap = (place("shin.L") + place("shin.R")) * 0.5;
+        for (point, inside) in [(place("spine.2"), true), (gap, false)] {
+            assert_eq!(is_inside(&positions, mesh, point), inside, "{point}");
+            assert_eq!(
+                is_inside_skin(&positions, &surface, point),
+                inside,
+                "{point}"
+            );
+        }
+    }
+}
