@@ -24,7 +24,7 @@ use_each! {
     ClimberError ClimberEvent ClimberGroup ClimberInput ClimberMode ClimberProxy ClimberState Clip ColliderMesh
     ContactPhase ContactQuery ContactRule CustomMode Debris DebrisConfig GripConfig Influence JointId MaterialPoint
     MeshSource ModeContext Motion NextMode Obstacle ObstacleId Others Palette Playback PointMotion PoseClock PoseTrack
-    RapierTerrain Similarity Skeleton SkinnedSurface StepReport StepRules Support SurfaceHit SurfaceKind SurfacePoint
+    RapierTerrain Rig Similarity Skeleton SkinnedSurface StepReport StepRules Support SurfaceHit SurfaceKind SurfacePoint
     SurfaceTag SweepHit TargetMotion Transform TriangleId
 }
 
