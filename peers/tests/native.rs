@@ -11,11 +11,11 @@
 use std::sync::Arc;
 
 use clamber_peers::{Peer, Unsupported, all, ball};
-use clamber_verify::brute_force::{self, Triangles};
 use clamber_surface::geometry::{Affine, Ray, Sphere, rotation_from_axis_angle};
 use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
 use clamber_surface::rig::{JointId, Palette};
 use clamber_surface::skin::skin_into;
+use clamber_verify::brute_force::{self, Triangles};
 use glam::{DAffine3, DVec3, Vec3};
 
 /// Number of rings of the ball.

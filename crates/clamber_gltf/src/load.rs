@@ -87,7 +87,7 @@ pub fn load_slice(bytes: &[u8], options: &LoadOptions) -> Result<Model, GltfErro
 /// };
 /// let corners: [f32; 9] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 2.0, 0.0];
 /// let data: Vec<u8> = corners.iter().flat_map(|number| number.to_le_bytes()).collect();
-/// assert_eq!(load(&data)?.collider.triangles().len(), 1);
+/// assert_eq!(load(&data)?.rig.collider.triangles().len(), 1);
 /// let error = load(&data[1..]).map(|_| ()).unwrap_err();
 /// assert_eq!(error.to_string(), "buffer 0: claims 36 bytes, but holds 35");
 /// # Ok::<(), clamber_gltf::GltfError>(())

@@ -26,7 +26,11 @@ pub struct Person {
 pub fn load(app: &mut App) -> Result<(), Box<dyn std::error::Error>> {
     let model = clamber_gltf::load(FILE)?;
     let humanoid = Humanoid::find(&model.rig.skeleton)?;
-    let figure = Figure::new(model.rig.skeleton.clone(), humanoid, model.rig.clips.clone())?;
+    let figure = Figure::new(
+        model.rig.skeleton.clone(),
+        humanoid,
+        model.rig.clips.clone(),
+    )?;
     let world = app.world_mut();
     let mut looks = world.resource_mut::<Assets<StandardMaterial>>();
     let materials = model.materials.iter();

@@ -62,7 +62,7 @@ pub struct SpawnedRig {
     pub meshes: Vec<Entity>,
 }
 
-/// The material of a mesh of a [`SpawnedRig`], as an index into [`Rig::materials`].
+/// The material of a mesh of a [`SpawnedRig`], as an index into [`Model::materials`](clamber_gltf::Model::materials).
 ///
 /// A mesh without this component has glTF's default material.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Eq)]

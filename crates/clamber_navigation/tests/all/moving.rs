@@ -75,7 +75,13 @@ fn shakes_go_with_the_square_of_the_rate() {
     }
     for wrong in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e-9, 1e9] {
         let found = shake(&clip, wrong);
-        let is_rate = matches!(found, Err(NavigationError::OutOfRange { name: "rate", .. }));
+        let is_rate = matches!(
+            found,
+            Err(NavigationError::OutOfRange {
+                name: "clip_rate",
+                ..
+            })
+        );
         assert!(is_rate, "{wrong}: {found:?}");
     }
 }

@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use clamber_verify::brute_force::Triangles;
 use clamber_surface::geometry::{Affine, rotation_from_axis_angle};
 use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshError, MeshSource};
 use clamber_surface::rig::{JointId, Palette};
 use clamber_surface::skin::skin_into;
+use clamber_verify::brute_force::Triangles;
 use glam::{DAffine3, DQuat, DVec3, Vec3};
 
 /// Length of the limb, metres. It lies along X, from the joint on.

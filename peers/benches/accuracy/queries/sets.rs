@@ -3,13 +3,13 @@
 use std::error::Error;
 use std::sync::Arc;
 
-use clamber_verify::brute_force::{Corners, Triangles};
 use clamber_peers::ball;
 use clamber_scenes::giant::giant;
 use clamber_surface::geometry::{Affine, Ray, Sphere, rotation_from_axis_angle};
 use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
 use clamber_surface::rig::{JointId, Palette, Playback};
 use clamber_surface::skin::skin_into;
+use clamber_verify::brute_force::{Corners, Triangles};
 use glam::{DVec3, Vec3};
 
 /// Place of the creature in the set far from the origin, metres.
