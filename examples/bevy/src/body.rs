@@ -63,7 +63,7 @@ fn standard(material: &Material) -> StandardMaterial {
 impl Person {
     /// Spawns the person for a climber.
     pub fn figure(&self, commands: &mut Commands) -> ClimberFigure {
-        let model = self.assets.spawn(commands, Transform::IDENTITY);
+        let rig = self.assets.spawn(commands, Transform::IDENTITY);
         commands.entity(rig.root).insert(Visibility::default());
         let looks = self.assets.model().visual.iter();
         let looks = looks.flat_map(|mesh| &mesh.primitives);
@@ -74,6 +74,6 @@ impl Person {
             let material = material.cloned().unwrap_or_default();
             commands.entity(*mesh).insert(MeshMaterial3d(material));
         }
-        ClimberFigure::new(self.figure.clone(), &model).expect("the rig is the figure's own")
+        ClimberFigure::new(self.figure.clone(), &rig).expect("the rig is the figure's own")
     }
 }
