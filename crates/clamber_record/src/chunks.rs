@@ -214,7 +214,7 @@ impl<D, W> Chunks<D, W> {
     /// an error, and `None` if the thread was joined before.
     fn pass_on(&mut self, waits: bool) -> Option<bool> {
         self.thread.as_ref()?;
-        let next = Vec::with_capacity(self.size);
+        let next = Vec::with_capacity(self.chunk.len());
         let mut ticks = core::mem::replace(&mut self.chunk, next);
         self.saved += ticks.iter().filter(|tick| tick.is_saved()).count();
         if self.gap > 0 {

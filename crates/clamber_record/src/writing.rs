@@ -19,10 +19,11 @@ use crate::{RecordError, RecordingInfo, topics};
 pub(crate) trait EncodeTick: Send + 'static {
     type Data: Send + 'static;
 
-    /// Sends the messages of a tick. Log lines, meshes and saved states are sent by [`Writing`].
+    /// Sends the messages of a tick, which has a number and a time in nanoseconds. Log lines, meshes and saved states are
+    /// sent by [`Writing`].
     fn tick<W: Write>(
         &mut self,
-        now: u64,
+        tick: (u64, u64),
         data: Self::Data,
         sheet: &mut Sheet<W>,
     ) -> Result<(), RecordError>;
@@ -128,7 +129,7 @@ impl<E: EncodeTick, W: Write> Writing<E, W> {
     fn tick(&mut self, taken: Taken<E::Data>, saved: &[Saved]) -> Result<(), RecordError> {
         let sheet = &mut self.sheet;
         let now = sheet.output.begin(taken.tick);
-        self.encoder.tick(now, taken.data, sheet)?;
+        self.encoder.tick((taken.tick, now), taken.data, sheet)?;
         for state in saved {
             sheet.output.send_exact(sheet.saved, state)?;
         }

@@ -31,6 +31,8 @@ use scale::Scale;
 /// nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+// A group with a misspelt name would be an ability that is off.
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 #[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
 pub struct ClimberConfig {
     /// Gravity in world space, metres a second squared. Any direction and size; up is opposite to it, or +Y if it is

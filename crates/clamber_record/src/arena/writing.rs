@@ -153,7 +153,7 @@ impl EncodeTick for ArenaEncoder {
 
     fn tick<W: Write>(
         &mut self,
-        now: u64,
+        (_, now): (u64, u64),
         data: TakenArena,
         sheet: &mut Sheet<W>,
     ) -> Result<(), RecordError> {

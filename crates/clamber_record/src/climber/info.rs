@@ -1,6 +1,7 @@
 use std::collections::BTreeMap;
 
-use clamber_climber::ClimberConfig;
+use clamber_climber::{Climber, ClimberConfig};
+use glam::DVec3;
 
 use crate::RecordError;
 
@@ -61,12 +62,17 @@ impl RecordingInfo {
         settings: BTreeMap<String, String>,
     ) -> Result<Self, RecordError> {
         let config = text(metadata, Self::CLIMBER)?;
+        let refused = |error: String| {
+            RecordError::NotARecording(format!("its climber's configuration: {error}"))
+        };
+        let climber = ron::from_str(config).map_err(|error| refused(error.to_string()))?;
+        // Creating a climber checks its configuration.
+        Climber::new(climber, DVec3::ZERO).map_err(|error| refused(error.to_string()))?;
         Ok(Self {
             creature: text(metadata, "creature")?.clone(),
             creature_fingerprint: hash(metadata, "creature_fingerprint")?,
             tick_seconds: tick_seconds(metadata)?,
-            climber: ron::from_str(config)
-                .map_err(|error| bad(Self::CLIMBER, config, &error.to_string()))?,
+            climber,
             settings,
             version: text(metadata, VERSION)?.clone(),
         })
@@ -121,7 +127,6 @@ fn bad(key: &str, value: &str, reason: &str) -> RecordError {
 #[cfg(test)]
 mod tests {
     use clamber_climber::Others;
-    use glam::DVec3;
 
     use super::*;
 
@@ -183,5 +188,33 @@ mod tests {
             error.contains("recover_time") && error.contains("TumbleConfig"),
             "{error}"
         );
+    }
+
+    #[test]
+    fn what_is_no_configuration_is_refused_in_few_words() {
+        let replace = |from: &'static str, to: &'static str| {
+            move |text: &mut String| {
+                assert!(text.contains(from));
+                *text = text.replacen(from, to, 1);
+            }
+        };
+        let put = |all: String| move |text: &mut String| all.clone_into(text);
+        let refused = |change: &dyn Fn(&mut String)| {
+            let error = read_back(ClimberConfig::colossus_climber(), change).unwrap_err();
+            let error = error.to_string();
+            assert!(
+                error.contains("configuration") && error.len() < 300,
+                "{error}"
+            );
+        };
+        // A group with another name would be an ability that is off.
+        refused(&replace("grip:", "grips:"));
+        refused(&replace("shake_time:0.1", "shake_time:NaN"));
+        refused(&replace("shake_time:0.1", "shake_time:-1.0"));
+        refused(&put(String::new()));
+        refused(&put("(".repeat(1 << 20)));
+        refused(&put("Some(".repeat(1 << 16)));
+        refused(&put(format!("(gravity:\"{}\")", "x".repeat(1 << 20))));
+        refused(&put("#![enable(implicit_some)](".to_owned()));
     }
 }

@@ -4,10 +4,11 @@ use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::Path;
 use std::sync::Arc;
+use std::sync::mpsc::{Receiver, sync_channel};
 
 use clamber_climber::{ClimberInput, ClimberState, StepReport};
 use clamber_colossus::{Creature, CreatureEvent};
-use clamber_surface::geometry::Similarity;
+use clamber_surface::geometry::{Affine, Similarity};
 use clamber_surface::rig::{JointId, Palette, Skeleton};
 use clamber_surface::surface::SkinnedSurface;
 use foxglove::messages::Log;
@@ -67,7 +68,12 @@ pub struct ClimberMemory {
     frames: Arc<FigureJoints>,
     /// The figures that were recorded.
     figures: Vec<Arc<FigureJoints>>,
+    /// Memory of palettes that were written.
+    palettes: Receiver<Vec<Affine>>,
 }
+
+/// Largest number of palettes whose memory is kept.
+const MOST_PALETTES: u32 = 256;
 
 impl Recorder<BufWriter<File>> {
     /// A recorder that writes to a new file. An existing file at that path is overwritten.
@@ -98,13 +104,17 @@ impl<W: Write + Send + 'static> Recorder<W> {
         skeleton: &Skeleton,
         options: RecordOptions,
     ) -> Result<Self, RecordError> {
-        let writing = ClimberEncoder::begin(out, info, options.skin_points)?;
+        // As many palettes as a chunk has, within reason: the game's thread needs no more at once.
+        let (written, palettes) =
+            sync_channel(options.chunk_ticks.clamp(1, MOST_PALETTES) as usize);
+        let writing = ClimberEncoder::begin(out, info, options.skin_points, written)?;
         let joints = skeleton.joints().iter().map(|joint| joint.name.clone());
         let memory = ClimberMemory {
             creature: info.creature.clone(),
             joints: joints.collect(),
             frames: Arc::new(FigureJoints::new(CREATURE, skeleton)),
             figures: Vec::new(),
+            palettes,
         };
         Self::start(writing, memory, options)
     }
@@ -132,7 +142,8 @@ impl<W: Write> Recorder<W> {
         if mesh != palette {
             return Err(RecordError::JointCount { mesh, palette });
         }
-        let data = ClimberTick::new(view, &self.options, &self.memory.frames);
+        let memory = self.memory.palettes.try_recv().unwrap_or_default();
+        let data = ClimberTick::new(view, &self.options, &self.memory.frames, memory);
         let is_due = data.creature.is_some();
         let mut taken = Taken::new(view.tick, data, is_due);
         taken.lines = self.lines(view);

@@ -1,21 +1,22 @@
 use std::sync::Arc;
 
-use clamber_climber::ClimberState;
+use clamber_climber::{ClimberInput, ClimberState};
 use clamber_surface::geometry::{Affine, Similarity};
 use clamber_surface::mesh::{ColliderMesh, TriangleId};
 use clamber_surface::surface::Diagnostics;
 
 use super::TickView;
 use crate::RecordOptions;
-use crate::messages::{Brain, Mirror, Tick};
+use crate::messages::{Brain, Report};
 use crate::views::{FigureJoints, TakenFigure};
 
 /// The copy of a climber's tick that is made on the game's thread.
 #[derive(Debug)]
 pub struct ClimberTick {
-    /// The message without the fingerprints of state and palette, which take long to compute.
-    pub(crate) message: Tick,
+    pub(crate) input: ClimberInput,
     pub(crate) state: ClimberState,
+    pub(crate) report: Report,
+    pub(crate) scene_fingerprint: u64,
     pub(crate) world_from_model: Similarity,
     pub(crate) matrices: Vec<Affine>,
     /// The creature's joints; `None` if transforms are not due.
@@ -40,27 +41,25 @@ pub(crate) struct TakenSkin {
 }
 
 impl ClimberTick {
+    /// Copies a tick. `matrices` is memory for the palette, whose content does not matter.
     pub(super) fn new(
         view: &TickView<'_>,
         options: &RecordOptions,
         creature: &Arc<FigureJoints>,
+        mut matrices: Vec<Affine>,
     ) -> Self {
         let (surface, palette) = (view.surface, view.palette);
+        matrices.clear();
+        matrices.extend_from_slice(palette.matrices());
         let world_from_model = *surface.world_from_model();
         let due = |every| options.is_due(every, view.tick);
         Self {
-            message: Tick {
-                tick: view.tick,
-                input: Mirror::of(view.input),
-                state: Mirror::of(view.state),
-                report: view.report.into(),
-                state_fingerprint: 0,
-                palette_fingerprint: 0,
-                scene_fingerprint: view.scene_fingerprint,
-            },
+            input: *view.input,
             state: *view.state,
+            report: view.report.into(),
+            scene_fingerprint: view.scene_fingerprint,
             world_from_model,
-            matrices: palette.matrices().to_vec(),
+            matrices,
             creature: due(options.transforms_every)
                 .then(|| TakenFigure::new(Arc::clone(creature), palette, world_from_model)),
             skin: due(options.skin_every).then(|| TakenSkin {

@@ -1,10 +1,12 @@
 use std::io::Write;
+use std::sync::mpsc::SyncSender;
 
+use clamber_surface::geometry::Affine;
 use clamber_surface::surface::matrices_fingerprint;
 use foxglove::messages::{FrameTransforms, PointCloud};
 
 use super::{ClimberTick, RecordingInfo, TakenSkin};
-use crate::messages::{Brain, Tick, Touched};
+use crate::messages::{Brain, Mirror, Tick, Touched};
 use crate::output::Channel;
 use crate::views::{CLIMBER, CREATURE, Scene, frame_of_climber, z_up};
 use crate::writing::{EncodeTick, Sheet, Writing};
@@ -18,6 +20,8 @@ pub(super) struct ClimberEncoder {
     skin: Channel,
     touched: Channel,
     scene: Scene,
+    /// Gives the memory of palettes back to the game's thread.
+    written: SyncSender<Vec<Affine>>,
 }
 
 impl ClimberEncoder {
@@ -25,6 +29,7 @@ impl ClimberEncoder {
         out: W,
         info: &RecordingInfo,
         skin_points: usize,
+        written: SyncSender<Vec<Affine>>,
     ) -> Result<Writing<Self, W>, RecordError> {
         let metadata = (
             &OfClimber::TOPICS,
@@ -40,6 +45,7 @@ impl ClimberEncoder {
             skin: output.channel::<PointCloud>(topics::SKIN)?,
             touched: output.channel::<Touched>(topics::TOUCHED)?,
             scene: Scene::new(&info.climber, info.tick_seconds),
+            written,
         };
         Ok(Writing::new(encoder, sheet))
     }
@@ -66,13 +72,20 @@ impl EncodeTick for ClimberEncoder {
 
     fn tick<W: Write>(
         &mut self,
-        now: u64,
+        (tick, now): (u64, u64),
         mut data: ClimberTick,
         sheet: &mut Sheet<W>,
     ) -> Result<(), RecordError> {
-        data.message.state_fingerprint = data.state.fingerprint();
-        data.message.palette_fingerprint = matrices_fingerprint(&data.matrices);
-        sheet.output.send_exact(self.tick, &data.message)?;
+        let message = Tick {
+            tick,
+            input: Mirror::of(&data.input),
+            state: Mirror::of(&data.state),
+            report: data.report.clone(),
+            state_fingerprint: data.state.fingerprint(),
+            palette_fingerprint: matrices_fingerprint(&data.matrices),
+            scene_fingerprint: data.scene_fingerprint,
+        };
+        sheet.output.send_exact(self.tick, &message)?;
         if let Some(creature) = &data.creature {
             let mut transforms = creature.frames(now);
             let climber = frame_of_climber(now, CLIMBER, &data.state);
@@ -89,9 +102,11 @@ impl EncodeTick for ClimberEncoder {
             sheet.output.send(self.brain, brain)?;
         }
         // The mesh is released as soon as possible: until then, an edit has to copy it.
-        match data.skin.take() {
-            Some(view) => self.look(now, (&data, &view), sheet),
-            None => Ok(()),
+        if let Some(view) = data.skin.take() {
+            self.look(now, (&data, &view), sheet)?;
         }
+        // Memory that nobody waits for is freed here.
+        let _ = self.written.try_send(data.matrices);
+        Ok(())
     }
 }

@@ -9,7 +9,7 @@ mod tick;
 mod view;
 
 pub(crate) use climber::{Input, State};
-pub(crate) use tick::{ArenaTick, Saved, Tick};
+pub(crate) use tick::{ArenaTick, Report, Saved, Tick};
 pub(crate) use view::{Brain, Named, Touched};
 
 use glam::{DQuat, DVec3};
