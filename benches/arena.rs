@@ -93,7 +93,7 @@ fn run(brief: bool) -> Result<(), Failure> {
 fn kind() -> Result<Arc<CreatureKind>, Failure> {
     let brain = std::fs::read_to_string(giant::brain_path())?;
     let brain = Brain::from_json(&brain, 1.0 / 60.0)?;
-    Ok(Arc::new(giant::giant()?.with_brain(brain)?))
+    Ok(Arc::new(CreatureKind::new(&giant::model()?.rig, brain)?))
 }
 
 /// A climber that never tires and whose stabs break any plate.

@@ -19,7 +19,9 @@ use clamber::mesh::TriangleId;
 use clamber::rig::{Palette, Playback};
 use clamber::surface::SkinnedSurface;
 use clamber::world::{BodyPoses, MaterialPoint, Obstacle, RapierTerrain, WorldCapsule};
-use clamber_colossus::{Brain, Creature, CreatureConfig, Person, Riding, Surroundings};
+use clamber_colossus::{
+    Brain, Creature, CreatureConfig, CreatureKind, Person, Riding, Surroundings,
+};
 use clamber_scenes::measure::{Bound, Cells, is_brief, quantile};
 use clamber_scenes::{giant, valley};
 use glam::DVec3;
@@ -131,7 +133,10 @@ impl Life {
         let mut file: serde_json::Value = serde_json::from_str(&text)?;
         file["start"] = "start".into();
         file["states"] = serde_json::from_str(states)?;
-        let kind = giant::giant()?.with_brain(Brain::from_json(&file.to_string(), DT)?)?;
+        let kind = CreatureKind::new(
+            &giant::model()?.rig,
+            Brain::from_json(&file.to_string(), DT)?,
+        )?;
         let config = CreatureConfig {
             position: DVec3::Y * valley::height(0.0, 0.0),
             arena: 60.0,

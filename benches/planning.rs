@@ -82,7 +82,7 @@ fn read(creature: &Creature) -> Result<f64, Failure> {
     (config.world_from_model, config.ground) = creature.standing(HEIGHT)?;
     let folder = std::env::temp_dir().join("clamber_planning");
     let get = || {
-        ClimbGraph::cached(&folder, &creature.rig(), &config, |_| {
+        ClimbGraph::cached(&folder, &creature.rig, &config, |_| {
             ControlFlow::Continue(())
         })
     };
@@ -104,7 +104,10 @@ fn plans(
     cells: &mut Cells,
 ) -> Result<(), Failure> {
     let (place, _) = creature.standing(HEIGHT)?;
-    let palette = creature.skeleton.palette(&creature.skeleton.rest_pose())?;
+    let palette = creature
+        .rig
+        .skeleton
+        .palette(&creature.rig.skeleton.rest_pose())?;
     let forecast = Forecast::still()
         .then(graph, "idle", 0.0, 4.5)
         .then(graph, "shake", 0.0, 4.5);
@@ -114,7 +117,7 @@ fn plans(
         .collect();
     let mut rng = Rng::with_seed(28);
     let (mut goals, mut times, mut found) = (Vec::new(), Vec::new(), 0);
-    for point in &creature.weak_points {
+    for point in &creature.rig.weak_points {
         let frame = palette.model_from_joint(point.joint).ok_or("no joint")?;
         let at = place.transform_point(frame.transform_point3(point.position.as_dvec3()));
         let begin = Instant::now();
@@ -162,9 +165,9 @@ fn climb(
 ) -> Result<(), Failure> {
     let (place, ground) = creature.standing(HEIGHT)?;
     let floor = HalfSpace::below(ground);
-    let mut surface = SkinnedSurface::new(Arc::clone(&creature.collider));
-    let mut pose = creature.skeleton.rest_pose();
-    let idle = creature.clips.iter().find(|clip| clip.name == "idle");
+    let mut surface = SkinnedSurface::new(Arc::clone(&creature.rig.collider));
+    let mut pose = creature.rig.skeleton.rest_pose();
+    let idle = creature.rig.clips.iter().find(|clip| clip.name == "idle");
     let idle = idle.ok_or("the giant has no clip idle")?;
     let top = (0..graph.patches().len()).zip(graph.reachable());
     let top = top.filter_map(|(patch, is_reachable)| is_reachable.then_some(patch));
@@ -182,7 +185,7 @@ fn climb(
     for tick in 0..ticks {
         let seconds = f64::from(tick) * TICK;
         idle.sample_into(seconds, Playback::Loop, &mut pose)?;
-        surface.advance(&creature.skeleton.palette(&pose)?, place)?;
+        surface.advance(&creature.rig.skeleton.palette(&pose)?, place)?;
         let view = View {
             seconds,
             climber: &climber,
@@ -229,20 +232,27 @@ fn climb(
 
 fn predictions(creature: &Creature, count: usize, cells: &mut Cells) -> Result<(), Failure> {
     let (place, _) = creature.standing(HEIGHT)?;
-    let clip = creature.clips.iter().find(|clip| clip.name == "breathe");
+    let clip = creature
+        .rig
+        .clips
+        .iter()
+        .find(|clip| clip.name == "breathe");
     let clip = clip.ok_or("the giant has no clip breathe")?;
-    let mut pose = creature.skeleton.rest_pose();
+    let mut pose = creature.rig.skeleton.rest_pose();
     let mut future = |seconds: f64, palette: &mut Palette| -> Option<Similarity> {
         clip.sample_into(seconds, Playback::Loop, &mut pose).ok()?;
-        creature.skeleton.palette_into(&pose, palette).ok()?;
+        creature.rig.skeleton.palette_into(&pose, palette).ok()?;
         Some(place)
     };
-    let mut surface = SkinnedSurface::new(Arc::clone(&creature.collider));
+    let mut surface = SkinnedSurface::new(Arc::clone(&creature.rig.collider));
     surface.place(
-        &creature.skeleton.palette(&creature.skeleton.rest_pose())?,
+        &creature
+            .rig
+            .skeleton
+            .palette(&creature.rig.skeleton.rest_pose())?,
         place,
     )?;
-    let mut skin = FutureSkin::new(Arc::clone(&creature.collider));
+    let mut skin = FutureSkin::new(Arc::clone(&creature.rig.collider));
     let mut climber = Climber::new(
         ClimberConfig::colossus_climber(),
         DVec3::new(0.0, 41.0, -1.0),

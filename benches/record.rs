@@ -138,7 +138,7 @@ fn writer_us(
         settings: options.to_settings(),
         version: RecordingInfo::VERSION.to_owned(),
     };
-    let skeleton = &battle.creature().skeleton;
+    let skeleton = &battle.creature().rig.skeleton;
     let path = std::env::temp_dir().join(format!("clamber-writer-{}.mcap", std::process::id()));
     let mut recorder = Recorder::create(&path, &info, skeleton, how)?;
     let snapshot = battle.snapshot();

@@ -140,7 +140,7 @@ fn measure_bytes(
     let height = options.height();
     let battle = Battle::new(creature, &options)?;
     let mut renderer = Renderer::new(Gpu::new()?, 64, 64)?;
-    let mesh = add_collider(&mut renderer, &creature.collider, COLOR)?;
+    let mesh = add_collider(&mut renderer, &creature.rig.collider, COLOR)?;
     let stage = Stage::new(&mut renderer, vec![mesh])?;
     renderer.draw(&Frame {
         camera: orbit(&battle, height, 0.6),
@@ -149,7 +149,7 @@ fn measure_bytes(
         overlay: Overlay::default(),
     })?;
     let uploaded = renderer.uploaded() as f64;
-    let vertices = creature.collider.positions().len();
+    let vertices = creature.rig.collider.positions().len();
     let bound = most.map_or(Bound::None, Bound::Most);
     let name = format!("bytes uploaded for a frame, {vertices} vertices");
     cells.push(&name, uploaded, bound);
@@ -164,7 +164,7 @@ fn measure_skinning(
     effort: &Effort,
     cells: &mut Cells,
 ) -> Result<(), Box<dyn Error>> {
-    let mesh = &creature.collider;
+    let mesh = &creature.rig.collider;
     let name = format!("skinning {} vertices", mesh.positions().len());
     let palettes = poses(creature)?;
     let mut turn = palettes.iter().cycle();
@@ -210,10 +210,10 @@ fn measure_skinning(
 fn poses(creature: &Creature) -> Result<Vec<Palette>, Box<dyn Error>> {
     let walk = creature.clip_like(&["walk"]);
     let walk = walk.ok_or("the giant cannot walk")?;
-    let rest = creature.skeleton.rest_pose();
+    let rest = creature.rig.skeleton.rest_pose();
     let pose = |tick: u32| -> Result<Palette, Box<dyn Error>> {
         let pose = walk.sample(&rest, f64::from(tick) / 60.0, Playback::Loop)?;
-        Ok(creature.skeleton.palette(&pose)?)
+        Ok(creature.rig.skeleton.palette(&pose)?)
     };
     (0..60).map(pose).collect()
 }

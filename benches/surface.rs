@@ -49,7 +49,7 @@ fn run(brief: bool) -> Result<(), Box<dyn Error>> {
 type Operation<'a> = (&'a str, Box<dyn FnMut(&SkinnedSurface) + 'a>);
 
 fn measure(criterion: &mut Criterion, creature: &Creature) -> Result<(), Box<dyn Error>> {
-    let mesh = &creature.collider;
+    let mesh = &creature.rig.collider;
     let mut surface = SkinnedSurface::new(mesh.clone());
     let poses = poses(creature)?;
     surface.place(&poses[0], Similarity::IDENTITY)?;
@@ -90,12 +90,12 @@ fn measure(criterion: &mut Criterion, creature: &Creature) -> Result<(), Box<dyn
 
 /// The palettes of one second of the walk, tick by tick.
 fn poses(creature: &Creature) -> Result<Vec<Palette>, Box<dyn Error>> {
-    let walk = creature.clips.iter().find(|clip| clip.name == "walk");
+    let walk = creature.rig.clips.iter().find(|clip| clip.name == "walk");
     let walk = walk.ok_or("the giant cannot walk")?;
-    let rest = creature.skeleton.rest_pose();
+    let rest = creature.rig.skeleton.rest_pose();
     let pose = |tick: u32| -> Result<Palette, Box<dyn Error>> {
         let pose = walk.sample(&rest, f64::from(tick) / 60.0, Playback::Loop)?;
-        Ok(creature.skeleton.palette(&pose)?)
+        Ok(creature.rig.skeleton.palette(&pose)?)
     };
     (0..60).map(pose).collect()
 }

@@ -6,7 +6,7 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use clamber_scenes::battle::{Battle, BattleError, BattleOptions, Check, Watch, positive};
+use clamber_scenes::battle::{Battle, BattleOptions, Check, SceneError, Watch, positive};
 use clamber_scenes::{Creature, test_data};
 use clap::Parser;
 
@@ -80,7 +80,7 @@ fn main() -> ExitCode {
 }
 
 /// Rides a model. Returns its cells of the table, and the checks that fail.
-fn ride(file: &Path, options: &Options) -> Result<(String, Vec<Check>), BattleError> {
+fn ride(file: &Path, options: &Options) -> Result<(String, Vec<Check>), SceneError> {
     let creature = Creature::load(file)?;
     let settings = BattleOptions {
         creature: Some(file.to_owned()),

@@ -205,8 +205,8 @@ fn its_feet_do_not_slide_when_it_walks_at_its_speed() {
     let giant = giant::giant().unwrap();
     let walk = giant.clip_like(&["walk"]).unwrap();
     let speed = giant.walk_speed.unwrap();
-    let rest = giant.skeleton.rest_pose();
-    let mut surface = SkinnedSurface::new(giant.collider.clone());
+    let rest = giant.rig.skeleton.rest_pose();
+    let mut surface = SkinnedSurface::new(giant.rig.collider.clone());
     let dt = 1.0 / 60.0;
     let ticks = (walk.duration() / dt) as u32;
     let mut slides = Vec::new();
@@ -215,7 +215,7 @@ fn its_feet_do_not_slide_when_it_walks_at_its_speed() {
         let pose = walk.sample(&rest, time, Playback::Loop).unwrap();
         let forward = Similarity::from_translation(DVec3::Z * (speed * time));
         surface
-            .advance(&giant.skeleton.palette(&pose).unwrap(), forward)
+            .advance(&giant.rig.skeleton.palette(&pose).unwrap(), forward)
             .unwrap();
         if tick == 0 {
             continue;
@@ -243,7 +243,7 @@ fn its_feet_do_not_slide_when_it_walks_at_its_speed() {
 fn it_can_be_made_with_any_number_of_vertices() {
     let whole = volume(&model().rig.collider);
     for vertices in [3_000, 20_000, 100_000] {
-        let mesh = giant::giant_of(vertices).unwrap().collider;
+        let mesh = giant::giant_of(vertices).unwrap().rig.collider;
         let found = mesh.positions().len();
         assert!(
             found <= vertices && found * 1000 >= vertices * 999,

@@ -14,22 +14,22 @@ use glam::Vec3;
 /// Checks every `stride`th vertex in `poses` poses of each clip; returns the number of checks.
 fn check(poses: u32, stride: usize) -> usize {
     let creature = giant::giant().unwrap();
-    let mesh = &creature.collider;
+    let mesh = &creature.rig.collider;
     let mut around = vec![Vec::new(); mesh.positions().len()];
     for (id, corners) in mesh.triangles().iter().enumerate() {
         for corner in corners {
             around[corner.index()].push(TriangleId(id as u32));
         }
     }
-    let rest = creature.skeleton.rest_pose();
+    let rest = creature.rig.skeleton.rest_pose();
     let mut surface = SkinnedSurface::new(mesh.clone());
     let (mut positions, mut hits) = (Vec::new(), Vec::new());
     let mut checked = 0;
-    for clip in &creature.clips {
+    for clip in &creature.rig.clips {
         for k in 0..poses {
             let time = clip.duration() * f64::from(k) / f64::from(poses);
             let pose = clip.sample(&rest, time, Playback::Loop).unwrap();
-            let palette = creature.skeleton.palette(&pose).unwrap();
+            let palette = creature.rig.skeleton.palette(&pose).unwrap();
             surface.advance(&palette, Similarity::IDENTITY).unwrap();
             if k % 2 == 1 {
                 surface.skin_ahead();

@@ -26,18 +26,18 @@ fn landings_are_foreseen_on_moving_skin() {
     let (place, ground) = creature.standing(40.0).unwrap();
     let floor = HalfSpace::below(ground);
     let mut rng = Rng::with_seed(28);
-    let mut skin = FutureSkin::new(Arc::clone(&creature.collider));
+    let mut skin = FutureSkin::new(Arc::clone(&creature.rig.collider));
     let rule = |query: &ContactQuery<'_>| query.usual().with_grip(query.id == GIANT);
     let rules = StepRules::by(&rule);
     let (mut on_skin, mut elsewhere) = (0, 0);
     for _ in 0..200 {
-        let clip = &creature.clips[rng.usize(0..creature.clips.len())];
+        let clip = &creature.rig.clips[rng.usize(0..creature.rig.clips.len())];
         let from = rng.f64() * clip.duration();
         let pose = |seconds: f64, palette: &mut Palette| {
-            let mut pose = creature.skeleton.rest_pose();
+            let mut pose = creature.rig.skeleton.rest_pose();
             clip.sample_into(from + seconds, Playback::Clamp, &mut pose)
                 .ok()?;
-            creature.skeleton.palette_into(&pose, palette).ok()?;
+            creature.rig.skeleton.palette_into(&pose, palette).ok()?;
             Some(place)
         };
         let aside = DVec3::new(rng.f64() - 0.5, 0.0, rng.f64() - 0.5) * 16.0;
@@ -69,7 +69,7 @@ fn landings_are_foreseen_on_moving_skin() {
         let mut still = |_: f64, palette: &mut Palette| pose(0.0, palette);
         let still = skin.landing(&flight, &mut still, TICK, 6.0).unwrap();
 
-        let mut surface = SkinnedSurface::new(Arc::clone(&creature.collider));
+        let mut surface = SkinnedSurface::new(Arc::clone(&creature.rig.collider));
         let mut palette = Palette::default();
         pose(0.0, &mut palette).unwrap();
         surface.place(&palette, place).unwrap();

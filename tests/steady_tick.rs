@@ -46,15 +46,15 @@ impl Scene {
     fn new() -> Self {
         let creature = giant::giant().unwrap();
         let walk = creature.clip_like(&["walk"]).unwrap();
-        let rest = creature.skeleton.rest_pose();
+        let rest = creature.rig.skeleton.rest_pose();
         let palettes = (0..WARM + COUNTED).map(|tick| {
             let time = tick as f64 / 60.0;
             let pose = walk.sample(&rest, time, Playback::Loop).unwrap();
-            creature.skeleton.palette(&pose).unwrap()
+            creature.rig.skeleton.palette(&pose).unwrap()
         });
         let palettes = palettes.collect();
-        let surface = SkinnedSurface::new(creature.collider.clone());
-        let triangles = creature.collider.triangles().len() as u32;
+        let surface = SkinnedSurface::new(creature.rig.collider.clone());
+        let triangles = creature.rig.collider.triangles().len() as u32;
         let anchors = (0..triangles).step_by(4_000);
         let anchors = anchors.map(|id| surface.anchor(TriangleId(id), [0.5, 0.25, 0.25]).unwrap());
         Self {

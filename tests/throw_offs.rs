@@ -36,11 +36,15 @@ struct Play<'a> {
 
 impl Play<'_> {
     fn pose(&self, seconds: f64, palette: &mut Palette) -> Option<Similarity> {
-        let clip = &self.creature.clips[self.clip];
-        let mut pose = self.creature.skeleton.rest_pose();
+        let clip = &self.creature.rig.clips[self.clip];
+        let mut pose = self.creature.rig.skeleton.rest_pose();
         let time = self.from + self.speed * seconds;
         clip.sample_into(time, Playback::Clamp, &mut pose).ok()?;
-        self.creature.skeleton.palette_into(&pose, palette).ok()?;
+        self.creature
+            .rig
+            .skeleton
+            .palette_into(&pose, palette)
+            .ok()?;
         Some(self.place)
     }
 }
@@ -126,19 +130,19 @@ fn b59_throw_offs_are_foreseen() {
     let creature = giant::giant().unwrap();
     let (place, _) = creature.standing(40.0).unwrap();
     let mut rng = Rng::with_seed(59);
-    let mut skin = FutureSkin::new(Arc::clone(&creature.collider));
+    let mut skin = FutureSkin::new(Arc::clone(&creature.rig.collider));
     let (mut rides, mut ended, mut foreseen, mut right, mut timed) = (0, 0, 0, 0, 0);
     let mut pushed = 0;
     while rides < RIDES {
-        let clip = rng.usize(0..creature.clips.len());
+        let clip = rng.usize(0..creature.rig.clips.len());
         let play = Play {
             creature: &creature,
             clip,
-            from: rng.f64() * creature.clips[clip].duration(),
+            from: rng.f64() * creature.rig.clips[clip].duration(),
             speed: 0.6 + 0.9 * rng.f64(),
             place,
         };
-        let mut surface = SkinnedSurface::new(Arc::clone(&creature.collider));
+        let mut surface = SkinnedSurface::new(Arc::clone(&creature.rig.collider));
         let mut palette = Palette::default();
         play.pose(0.0, &mut palette).unwrap();
         surface.place(&palette, place).unwrap();

@@ -222,10 +222,10 @@ fn herd(creature: &Creature, count: usize, period: f64) -> Vec<Giant> {
         let along = |step: usize| (step as f64 - 2.0) * APART;
         let (x, z) = (along(index % ROW), along(index / ROW));
         Giant {
-            surface: SkinnedSurface::new(Arc::clone(&creature.collider)),
+            surface: SkinnedSurface::new(Arc::clone(&creature.rig.collider)),
             place: Similarity::from_translation(DVec3::new(x, valley::height(x, z), z)),
             phase: rng.f64() * period,
-            pose: creature.skeleton.rest_pose(),
+            pose: creature.rig.skeleton.rest_pose(),
             palette: Palette::default(),
         }
     };
@@ -238,6 +238,7 @@ fn pose(giants: &mut [Giant], creature: &Creature, walk: &Clip, tick: usize) -> 
         let posed = walk.sample_into(time, Playback::Loop, &mut giant.pose);
         posed.map_err(|error| error.to_string())?;
         let palette = creature
+            .rig
             .skeleton
             .palette_into(&giant.pose, &mut giant.palette);
         palette.map_err(|error| error.to_string())?;

@@ -58,7 +58,7 @@ fn run(brief: bool) -> Result<(), Box<dyn Error>> {
 /// Measures with the giant from its file, or with one of about `size` vertices.
 fn measure(size: Option<usize>, brief: bool, cells: &mut Cells) -> Result<(), Box<dyn Error>> {
     let creature = size.map_or_else(giant, giant_of)?;
-    let name = format!("{} vertices", creature.collider.positions().len());
+    let name = format!("{} vertices", creature.rig.collider.positions().len());
     let mut ours = Rocks::new(&creature, ROCKS, 3)?;
     let mut whole = Whole::new(Rocks::new(&creature, ROCKS, 3)?)?;
     let mut alone = Rocks::new(&creature, ROCKS, 3)?;

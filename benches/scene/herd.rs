@@ -55,16 +55,16 @@ impl Herd {
             let along = |step: usize| (step as f64 - (side as f64 - 1.0) / 2.0) * APART;
             let (x, z) = (along(index % side), along(index / side));
             Giant {
-                surface: SkinnedSurface::new(Arc::clone(&creature.collider)),
+                surface: SkinnedSurface::new(Arc::clone(&creature.rig.collider)),
                 place: Similarity::from_translation(DVec3::new(x, valley::height(x, z), z)),
                 phase: rng.f64() * walk.duration(),
-                pose: creature.skeleton.rest_pose(),
+                pose: creature.rig.skeleton.rest_pose(),
                 palette: Palette::default(),
             }
         };
         let mut herd = Self {
             giants: (0..count).map(giant).collect(),
-            skeleton: creature.skeleton.clone(),
+            skeleton: creature.rig.skeleton.clone(),
             walk: walk.clone(),
             skinning,
         };

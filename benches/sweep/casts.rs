@@ -39,15 +39,15 @@ const ABOVE: f32 = 3.0;
 impl Field {
     pub(crate) fn new(vertices: usize) -> Result<Self, Box<dyn Error>> {
         let creature = giant_of(vertices)?;
-        let walk = creature.clips.iter().find(|clip| clip.name == "walk");
+        let walk = creature.rig.clips.iter().find(|clip| clip.name == "walk");
         let walk = walk.ok_or("the giant cannot walk")?;
-        let rest = creature.skeleton.rest_pose();
+        let rest = creature.rig.skeleton.rest_pose();
         let palette = |seconds: f64| -> Result<Palette, Box<dyn Error>> {
             let pose = walk.sample(&rest, seconds, Playback::Loop)?;
-            Ok(creature.skeleton.palette(&pose)?)
+            Ok(creature.rig.skeleton.palette(&pose)?)
         };
         let palettes = [palette(0.5)?, palette(0.5 + 1.0 / 60.0)?];
-        let mut surface = SkinnedSurface::new(creature.collider.clone());
+        let mut surface = SkinnedSurface::new(creature.rig.collider.clone());
         surface.place(&palettes[0], Similarity::IDENTITY)?;
         surface.advance(&palettes[1], Similarity::IDENTITY)?;
         Ok(Self {

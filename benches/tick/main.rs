@@ -179,7 +179,7 @@ fn everything(
     stream: &mut Stream,
     cells: &mut Cells,
 ) -> Result<(), Box<dyn Error>> {
-    let riders = creature.collider.triangles().len() / 20;
+    let riders = creature.rig.collider.triangles().len() / 20;
     let workload = Workload::new(creature, riders, ticks / 8 + 2)?;
     let (mut lazy, mut eager) = (Lazy::new(&workload.mesh), Eager(Lazy::new(&workload.mesh)));
     let mut contenders: [&mut dyn Contender; 2] = [&mut lazy, &mut eager];

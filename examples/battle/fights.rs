@@ -1,7 +1,7 @@
 //! Many fights, one for each seed, on all cores.
 
 use clamber_scenes::Creature;
-use clamber_scenes::battle::{Battle, BattleError, BattleOptions, Counts, TICK};
+use clamber_scenes::battle::{Battle, BattleOptions, Counts, SceneError, TICK};
 
 use crate::Failure;
 
@@ -57,7 +57,7 @@ pub(crate) fn fight_all(options: &BattleOptions, count: u64) -> Result<bool, Fai
 fn fight(
     creature: &Creature,
     options: &BattleOptions,
-) -> Result<(Counts, Option<f64>, u64), BattleError> {
+) -> Result<(Counts, Option<f64>, u64), SceneError> {
     let mut battle = Battle::new(creature, options)?;
     let mut ticks = 0..options.ticks();
     while battle.counts().killed == 0

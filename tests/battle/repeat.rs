@@ -42,11 +42,11 @@ fn back_and_forth_covers_the_clip_and_never_jumps() {
 #[test]
 fn clips_of_a_creature_are_measured() {
     let creature = giant_of(1_000).unwrap();
-    let (low, high) = creature.bounds(&creature.skeleton.rest_pose()).unwrap();
+    let (low, high) = creature.bounds(&creature.rig.skeleton.rest_pose()).unwrap();
     let height = f64::from(high.y - low.y);
-    let probe = SeamProbe::new(&creature.skeleton, &creature.collider, height);
+    let probe = SeamProbe::new(&creature.rig.skeleton, &creature.rig.collider, height);
     let loops = |clip: &&Clip| ["idle", "walk", "shake"].contains(&clip.name.as_str());
-    let clips: Vec<_> = creature.clips.iter().filter(loops).collect();
+    let clips: Vec<_> = creature.rig.clips.iter().filter(loops).collect();
     assert_eq!(clips.len(), 3);
     for clip in clips {
         let seam = probe.measure(clip).unwrap();
@@ -54,9 +54,9 @@ fn clips_of_a_creature_are_measured() {
     }
     // The root moves by the creature's height in a second, and jumps back.
     let way = Vec3::new(height as f32, 0.0, 0.0);
-    let mut joints = creature.skeleton.joints().iter();
+    let mut joints = creature.rig.skeleton.joints().iter();
     let root = joints.position(|joint| joint.parent.is_none()).unwrap();
-    let rest = creature.skeleton.joints()[root].rest.translation;
+    let rest = creature.rig.skeleton.joints()[root].rest.translation;
     let there = Keyframes::Translation(vec![rest, rest + way]);
     let linear = Interpolation::Linear;
     let joint = JointId(root as u32);

@@ -88,7 +88,7 @@ fn run(brief: bool) -> Result<(), Box<dyn Error>> {
 
 /// Poses of the walk, one for each tick.
 fn walk(creature: &Creature, ticks: usize) -> Result<Vec<Pose>, Box<dyn Error>> {
-    let rest = creature.skeleton.rest_pose();
+    let rest = creature.rig.skeleton.rest_pose();
     let walk = creature.clip_like(&["walk"]).ok_or("it cannot walk")?;
     let poses = (0..ticks).map(|tick| walk.sample(&rest, tick as f64 / RATE, Playback::Loop));
     Ok(poses.collect::<Result<_, _>>()?)
@@ -169,7 +169,7 @@ fn walking(
             } else {
                 mixed.clone_from(now_drawn);
             }
-            creature.skeleton.palette_into(&mixed, &mut palette)?;
+            creature.rig.skeleton.palette_into(&mixed, &mut palette)?;
             surface.advance(&palette, Similarity::IDENTITY)?;
             let found = riders::answer(&surface, now, &mut hits);
             core.push(start.elapsed().as_secs_f64() * 1e6);
@@ -246,7 +246,7 @@ fn idle(
 ) -> Result<(), Box<dyn Error>> {
     let (count, ticks) = if brief { (5, 10) } else { (100, 1_000) };
     let mut giants = Giants::new(on_one_thread(common::app(RATE)), creature, count, timing);
-    giants.pose(&creature.skeleton.rest_pose());
+    giants.pose(&creature.rig.skeleton.rest_pose());
     let joints = giants.joints.concat();
     giants.app.insert_resource(Joints(joints, Vec::new()));
     giants.app.init_resource::<Moments>();

@@ -95,7 +95,7 @@ impl Pen<'_> {
             let frame = pen.battle.palette().model_from_joint(joint)?;
             Some(pen.near(root.transform_point(frame.translation), THROUGH))
         };
-        for (index, joint) in (0..).zip(self.battle.creature().skeleton.joints()) {
+        for (index, joint) in (0..).zip(self.battle.creature().rig.skeleton.joints()) {
             let parent = joint.parent.and_then(|parent| place(self, parent));
             if let (Some(from), Some(to)) = (parent, place(self, JointId(index))) {
                 self.over.line(from, to, 3.0, YELLOW);

@@ -271,13 +271,13 @@ pub(crate) fn run(brief: bool) -> Result<(), Box<dyn Error>> {
     let sizes: &[usize] = if brief { &[2_000] } else { &[10_000, 500_000] };
     for &vertices in sizes {
         let giant = giant_of(vertices)?;
-        let mesh = &giant.collider;
+        let mesh = &giant.rig.collider;
         let walk = giant.clip_like(&["walk"]).ok_or("the giant cannot walk")?;
         let mut poses = Vec::new();
         for pose in 0..POSES {
             let time = walk.duration() * pose as f64 / POSES as f64;
-            let pose = walk.sample(&giant.skeleton.rest_pose(), time, Playback::Loop)?;
-            let palette = giant.skeleton.palette(&pose)?;
+            let pose = walk.sample(&giant.rig.skeleton.rest_pose(), time, Playback::Loop)?;
+            let palette = giant.rig.skeleton.palette(&pose)?;
             let truth = truth(mesh, &palette);
             poses.push((palette, truth));
         }

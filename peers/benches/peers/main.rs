@@ -67,7 +67,7 @@ fn run(effort: &Effort, brief: bool) -> Result<(), Box<dyn Error>> {
     for &vertices in effort.vertices {
         let creature = giant_of(vertices)?;
         let entrants = clamber_peers::all().into_iter();
-        let entrants = entrants.map(|entry| Entrant::new(entry, &creature.collider));
+        let entrants = entrants.map(|entry| Entrant::new(entry, &creature.rig.collider));
         let mut entrants: Vec<Entrant> = entrants.collect::<Result<_, _>>()?;
         for &riders in effort.riders {
             eprintln!("{vertices} vertices, {riders} riders ...");
@@ -78,7 +78,7 @@ fn run(effort: &Effort, brief: bool) -> Result<(), Box<dyn Error>> {
                 effort.least_ticks,
                 effort.each,
             )?;
-            report.add(&creature.collider, riders, &entrants, laps)?;
+            report.add(&creature.rig.collider, riders, &entrants, laps)?;
         }
     }
     report.finish(brief)

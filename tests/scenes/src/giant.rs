@@ -4,10 +4,9 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use clamber_gltf::Model;
-use clamber_surface::mesh::Rig;
 
 use crate::resample::resample;
-use crate::{Creature, CreatureError};
+use crate::{Creature, SceneError};
 
 /// Speed of the giant's walk, metres a second. `assets/giant/clips.py` sets it.
 const WALK_SPEED: f64 = 5.0;
@@ -28,37 +27,23 @@ pub fn brain_path() -> PathBuf {
 /// The giant, with the collider that its file has.
 ///
 /// # Errors
-/// [`CreatureError`] if its file is missing or broken.
-pub fn giant() -> Result<Creature, CreatureError> {
-    Ok(creature(&model()?.rig))
+/// [`SceneError`] if its file is missing or broken.
+pub fn giant() -> Result<Creature, SceneError> {
+    Ok(Creature {
+        walk_speed: Some(WALK_SPEED),
+        ..Creature::new("giant", model()?.rig)
+    })
 }
 
 /// The whole content of the giant's file, visual meshes included.
-///
-/// # Errors
-/// As [`giant`].
-pub fn model() -> Result<Model, CreatureError> {
+pub fn model() -> Result<Model, SceneError> {
     Ok(clamber_gltf::load(path())?)
 }
 
 /// The giant with about so many vertices: its collider, closed as it is, with the longest edges halved or
 /// the shortest ones collapsed. See [`resample`].
-///
-/// # Errors
-/// As [`giant`].
-pub fn giant_of(vertices: usize) -> Result<Creature, CreatureError> {
-    let giant = giant()?;
-    Ok(Creature {
-        collider: Arc::new(resample(&giant.collider, vertices)?),
-        ..giant
-    })
-}
-
-fn creature(rig: &Rig) -> Creature {
-    let (skeleton, clips) = (rig.skeleton.clone(), rig.clips.clone());
-    Creature {
-        walk_speed: Some(WALK_SPEED),
-        weak_points: rig.weak_points.clone(),
-        ..Creature::new("giant", skeleton, clips, rig.collider.clone())
-    }
+pub fn giant_of(vertices: usize) -> Result<Creature, SceneError> {
+    let mut giant = giant()?;
+    giant.rig.collider = Arc::new(resample(&giant.rig.collider, vertices)?);
+    Ok(giant)
 }

@@ -10,7 +10,7 @@ use clamber_surface::mesh::Rig;
 use clamber_surface::rig::{Palette, Pose, Skeleton};
 use glam::Vec3;
 
-use crate::battle::{Battle, BattleError};
+use crate::battle::{Battle, SceneError};
 
 /// The time at which the clip `stab_strike` hits, seconds: its marker `hit`.
 const HIT: f64 = 0.2;
@@ -45,10 +45,10 @@ impl Hero {
     /// A hero from a file's rig.
     ///
     /// # Errors
-    /// [`BattleError`] if the skeleton is no humanoid, or the clips do not fit it.
-    pub fn new(rig: Rig) -> Result<Self, BattleError> {
-        let humanoid = Humanoid::find(&rig.skeleton).map_err(BattleError::new)?;
-        let figure = Figure::new(rig.skeleton, humanoid, rig.clips).map_err(BattleError::new)?;
+    /// [`SceneError`] if the skeleton is no humanoid, or the clips do not fit it.
+    pub fn new(rig: Rig) -> Result<Self, SceneError> {
+        let humanoid = Humanoid::find(&rig.skeleton).map_err(SceneError::new)?;
+        let figure = Figure::new(rig.skeleton, humanoid, rig.clips).map_err(SceneError::new)?;
         let body = Body::new(&figure);
         Ok(Self {
             palette: figure.skeleton().palette(body.pose())?,
@@ -62,21 +62,17 @@ impl Hero {
     /// The hero of the project's file.
     ///
     /// # Errors
-    /// [`BattleError`] if the file cannot be loaded.
-    pub fn load() -> Result<Self, BattleError> {
-        Self::new(
-            clamber_gltf::load(hero_path())
-                .map_err(BattleError::new)?
-                .rig,
-        )
+    /// [`SceneError`] if the file cannot be loaded.
+    pub fn load() -> Result<Self, SceneError> {
+        Self::new(clamber_gltf::load(hero_path())?.rig)
     }
 
     /// Poses the hero for the battle's current tick, `dt` seconds after the last one that it was posed for.
     ///
     /// # Errors
-    /// [`BattleError`] if the body cannot be posed.
-    pub fn watch(&mut self, battle: &Battle<'_>, dt: f64) -> Result<(), BattleError> {
-        let head = battle.creature().skeleton.find("head");
+    /// [`SceneError`] if the body cannot be posed.
+    pub fn watch(&mut self, battle: &Battle<'_>, dt: f64) -> Result<(), SceneError> {
+        let head = battle.creature().rig.skeleton.find("head");
         let head = head.and_then(|head| battle.palette().model_from_joint(head));
         let root = battle.surface().world_from_model();
         let look_at = head.map(|head| root.transform_point(head.translation));
@@ -93,7 +89,7 @@ impl Hero {
             };
             self.body.update(&self.figure, &frame, dt)
         });
-        posed.map_err(BattleError::new)?;
+        posed.map_err(SceneError::new)?;
         let mut pose = self.body.pose().clone();
         show_sword(self.figure.skeleton(), &mut pose);
         self.palette = self.figure.skeleton().palette(&pose)?;
@@ -101,7 +97,7 @@ impl Hero {
     }
 
     /// Plays the clip for what a fighter does with its weapons.
-    fn play(&mut self, fighter: &Fighter) -> Result<(), BattleError> {
+    fn play(&mut self, fighter: &Fighter) -> Result<(), SceneError> {
         let set = self.figure.animations();
         let wanted = weapon_clip(set, fighter, self.loosed);
         let holds = fighter.climber().state().mode.is_holding();
@@ -127,7 +123,7 @@ impl Hero {
             };
             self.body
                 .set_act(&self.figure, act, fade)
-                .map_err(BattleError::new)?;
+                .map_err(SceneError::new)?;
             self.shown = shown;
         }
         if let (Some((_, Some(time))), Some(layer)) = (wanted, self.body.act_mut()) {

@@ -3,9 +3,6 @@
 use serde::Serializer;
 
 /// Serialises a finite number as a number, any other as text (`inf`, `-inf`, `NaN`), where JSON would have `null`.
-///
-/// # Errors
-/// Those of the serializer.
 pub(crate) fn number<S: Serializer>(number: &f64, serializer: S) -> Result<S::Ok, S::Error> {
     if number.is_finite() {
         serializer.serialize_f64(*number)

@@ -24,6 +24,7 @@ pub mod climbs;
 pub mod controllers;
 mod creature;
 pub mod duel;
+mod error;
 pub mod giant;
 #[cfg(any(feature = "record", feature = "render"))]
 pub mod hero;
@@ -41,5 +42,6 @@ pub mod solid_angle;
 pub mod test_data;
 pub mod valley;
 
-pub use creature::{Creature, CreatureError};
+pub use creature::Creature;
+pub use error::SceneError;
 pub use person::person;

@@ -180,14 +180,14 @@ impl Table {
         if let Some(folder) = path.parent() {
             std::fs::create_dir_all(folder)?;
         }
-        let header = self.columns.iter().map(|c| quoted(c)).collect();
-        let rows = self
-            .rows
-            .iter()
-            .map(|row| row.iter().map(|c| quoted(c)).collect());
-        let lines = std::iter::once(header).chain(rows);
-        let text: String = lines
-            .map(|line: Vec<String>| line.join(",") + "\n")
+        let header: Vec<String> = self.columns.iter().map(|c| (*c).to_owned()).collect();
+        let line = |row: &Vec<String>| {
+            let cells: Vec<String> = row.iter().map(|cell| quoted(cell)).collect();
+            cells.join(",") + "\n"
+        };
+        let text: String = std::iter::once(&header)
+            .chain(&self.rows)
+            .map(line)
             .collect();
         std::fs::write(path, text)
     }
@@ -203,25 +203,12 @@ fn quoted(cell: &str) -> String {
 }
 
 impl fmt::Display for Table {
-    /// Writes the table as Markdown with aligned columns.
+    /// Writes the table as Markdown.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let width = |column: usize| {
-            let cells = self.rows.iter().map(|row| row[column].chars().count());
-            cells.fold(self.columns[column].chars().count(), usize::max)
-        };
-        let widths: Vec<usize> = (0..self.columns.len()).map(width).collect();
-        let line = |f: &mut fmt::Formatter<'_>, cells: &[&str]| {
-            for (cell, width) in cells.iter().zip(&widths) {
-                write!(f, "| {cell:<width$} ")?;
-            }
-            writeln!(f, "|")
-        };
-        line(f, &self.columns)?;
+        writeln!(f, "| {} |", self.columns.join(" | "))?;
         writeln!(f, "|{}", "---|".repeat(self.columns.len()))?;
-        for row in &self.rows {
-            line(f, &row.iter().map(String::as_str).collect::<Vec<_>>())?;
-        }
-        Ok(())
+        let mut rows = self.rows.iter();
+        rows.try_for_each(|row| writeln!(f, "| {} |", row.join(" | ")))
     }
 }
 
@@ -257,7 +244,7 @@ mod tests {
         table.push(vec!["a, \"b\"".into(), "1.5".into()]);
         assert_eq!(
             table.to_string(),
-            "| name   | us  |\n|---|---|\n| a, \"b\" | 1.5 |\n"
+            "| name | us |\n|---|---|\n| a, \"b\" | 1.5 |\n"
         );
         let folder = std::env::temp_dir().join(format!("clamber-table-{}", std::process::id()));
         let path = folder.join("table.csv");

@@ -11,7 +11,7 @@ use clamber_surface::rig::Palette;
 use clamber_world::rapier3d::dynamics::RigidBodyHandle;
 use glam::DVec3;
 
-use crate::battle::{Battle, BattleError, Triangles, outcrop};
+use crate::battle::{Battle, SceneError, Triangles, outcrop};
 use crate::hero::{Hero, hero_path};
 use crate::valley;
 
@@ -35,20 +35,11 @@ pub struct Stage {
     plates: Vec<(RenderMeshId, u32)>,
 }
 
-impl From<RenderError> for BattleError {
-    fn from(error: RenderError) -> Self {
-        Self::new(error)
-    }
-}
-
 impl Stage {
     /// Adds the meshes of the ground, the outcrop and the hero to a renderer. `creature` has the ids of the creature's
     /// meshes in the same renderer, from [`add_visual`] or [`add_collider`].
-    ///
-    /// # Errors
-    /// [`BattleError`].
-    pub fn new(renderer: &mut Renderer, creature: Vec<RenderMeshId>) -> Result<Self, BattleError> {
-        let model = clamber_gltf::load(hero_path()).map_err(BattleError::new)?;
+    pub fn new(renderer: &mut Renderer, creature: Vec<RenderMeshId>) -> Result<Self, SceneError> {
+        let model = clamber_gltf::load(hero_path())?;
         Ok(Self {
             creature,
             ground: add_plain(renderer, &valley::mesh(GROUND_CELL), [1.0; 3], Look::Ground)?,
@@ -78,9 +69,6 @@ impl Stage {
     }
 
     /// Draws the battle's rocks as well.
-    ///
-    /// # Errors
-    /// [`RenderError`].
     pub fn add_rocks(
         &mut self,
         renderer: &mut Renderer,
@@ -114,10 +102,7 @@ impl Stage {
     }
 
     /// Poses the hero for the battle's current tick, `dt` seconds after the last one that was watched.
-    ///
-    /// # Errors
-    /// [`BattleError`].
-    pub fn watch(&mut self, battle: &Battle<'_>, dt: f64) -> Result<(), BattleError> {
+    pub fn watch(&mut self, battle: &Battle<'_>, dt: f64) -> Result<(), SceneError> {
         self.hero.watch(battle, dt)?;
         self.watched = true;
         Ok(())
@@ -177,9 +162,6 @@ pub fn beside(battle: &Battle<'_>, away: DVec3) -> Camera {
 }
 
 /// Adds the visual meshes of a creature's file to a renderer, with fur and stone where the file has them.
-///
-/// # Errors
-/// [`RenderError`].
 pub fn add_visual(
     renderer: &mut Renderer,
     model: &Model,
@@ -190,9 +172,6 @@ pub fn add_visual(
 }
 
 /// Adds a collider to a renderer, in one colour.
-///
-/// # Errors
-/// [`RenderError`].
 pub fn add_collider(
     renderer: &mut Renderer,
     mesh: &ColliderMesh,

@@ -62,14 +62,14 @@ impl Workload {
     /// # Errors
     /// If the creature has no clip `walk`, or the clip does not fit it.
     pub fn new(creature: &Creature, riders: usize, ticks: usize) -> Result<Self, Box<dyn Error>> {
-        let mesh = creature.collider.clone();
+        let mesh = creature.rig.collider.clone();
         let mut surface = SkinnedSurface::new(mesh.clone());
         let edge = mean_edge(&mesh);
         let mut rng = fastrand::Rng::with_seed(4);
-        let walk = creature.clips.iter().find(|clip| clip.name == "walk");
+        let walk = creature.rig.clips.iter().find(|clip| clip.name == "walk");
         let walk = walk.ok_or("the giant cannot walk")?;
-        let rest = creature.skeleton.rest_pose();
-        surface.place(&creature.skeleton.palette(&rest)?, Similarity::IDENTITY)?;
+        let rest = creature.rig.skeleton.rest_pose();
+        surface.place(&creature.rig.skeleton.palette(&rest)?, Similarity::IDENTITY)?;
         let mut seats = Vec::with_capacity(riders);
         let wanted = if riders == 1 { CHOICES } else { riders };
         while seats.len() < wanted {
@@ -81,7 +81,7 @@ impl Workload {
         }
         let palette = |tick: usize| -> Result<Palette, Box<dyn Error>> {
             let pose = walk.sample(&rest, tick as f64 / RATE, Playback::Loop)?;
-            Ok(creature.skeleton.palette(&pose)?)
+            Ok(creature.rig.skeleton.palette(&pose)?)
         };
         if riders == 1 {
             let mut hits = Vec::new();

@@ -49,7 +49,7 @@ impl<'a> Rocks<'a> {
     /// # Errors
     /// If the creature cannot be posed, or a rock cannot collide with its skin.
     pub fn new(creature: &'a Creature, count: usize, seed: u64) -> Result<Self, Box<dyn Error>> {
-        let rest = creature.skeleton.rest_pose();
+        let rest = creature.rig.skeleton.rest_pose();
         let (low, high) = creature.bounds(&rest)?;
         let ground = valley::height(0.0, 0.0) - f64::from(low.y);
         let root = Similarity::from_translation(DVec3::new(0.0, ground, 0.0));
@@ -68,7 +68,7 @@ impl<'a> Rocks<'a> {
             fading: rest.clone(),
             rest,
             palette: Palette::default(),
-            surface: SkinnedSurface::new(Arc::clone(&creature.collider)),
+            surface: SkinnedSurface::new(Arc::clone(&creature.rig.collider)),
             world,
             debris,
             rocks,
@@ -165,7 +165,7 @@ impl<'a> Rocks<'a> {
         let share = ((self.time - self.began) / FADE).clamp(0.0, 1.0);
         let share = share * share * (3.0 - 2.0 * share);
         self.pose.blend_in(&self.fading, share)?;
-        let skeleton = &self.creature.skeleton;
+        let skeleton = &self.creature.rig.skeleton;
         Ok(skeleton.palette_into(&self.pose, &mut self.palette)?)
     }
 }

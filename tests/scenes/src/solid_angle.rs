@@ -2,8 +2,7 @@
 //!
 //! It sums over all triangles and uses none of the library's queries, so that tests can judge them by it.
 
-pub use clamber_surface::measure::winding_number;
-use clamber_surface::measure::winding_of;
+use clamber_surface::measure::{winding_number, winding_of};
 use clamber_surface::mesh::{ColliderMesh, TriangleId};
 use clamber_surface::surface::SkinnedSurface;
 use glam::{DVec3, Vec3};
@@ -36,7 +35,7 @@ mod tests {
     #[test]
     fn the_trunk_is_inside_and_the_gap_between_the_legs_outside() {
         let giant = giant().unwrap();
-        let (skeleton, mesh) = (&giant.skeleton, &giant.collider);
+        let (skeleton, mesh) = (&giant.rig.skeleton, &giant.rig.collider);
         let rest = skeleton.rest_pose();
         let palette = skeleton.palette(&rest).unwrap();
         let positions = skin(mesh, palette.matrices()).unwrap();

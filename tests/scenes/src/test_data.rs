@@ -4,7 +4,7 @@
 use std::io::Write;
 use std::path::PathBuf;
 
-use crate::{Creature, CreatureError};
+use crate::{Creature, SceneError};
 
 /// The environment variable that names the folder.
 pub const VARIABLE: &str = "CLAMBER_TEST_DATA";
@@ -101,11 +101,11 @@ const FIVE_MODELS: [&str; 5] = [
 /// Five creatures for measurements. If [`VARIABLE`] is not set, prints that `test` was skipped, and returns none.
 ///
 /// # Errors
-/// [`CreatureError`] if one cannot be loaded.
+/// [`SceneError`] if one cannot be loaded.
 ///
 /// # Panics
 /// As [`file()`].
-pub fn five_creatures(test: &str) -> Result<Vec<Creature>, CreatureError> {
+pub fn five_creatures(test: &str) -> Result<Vec<Creature>, SceneError> {
     let paths = five_models(test).into_iter();
     paths.map(|path| Creature::load(&path)).collect()
 }

@@ -21,14 +21,14 @@ const POSES: u32 = 4;
 /// Compares all queries over the poses of all clips; returns the number of hits.
 fn assert_agreement(creature: &Creature) -> usize {
     let mut rng = fastrand::Rng::with_seed(0x5eed);
-    let mut surface = SkinnedSurface::new(creature.collider.clone());
-    let rest = creature.skeleton.rest_pose();
+    let mut surface = SkinnedSurface::new(creature.rig.collider.clone());
+    let rest = creature.rig.skeleton.rest_pose();
     let mut hits = 0;
-    for clip in &creature.clips {
+    for clip in &creature.rig.clips {
         for k in 0..POSES {
             let time = clip.duration() * f64::from(k) / f64::from(POSES);
             let pose = clip.sample(&rest, time, Playback::Loop).unwrap();
-            let palette = creature.skeleton.palette(&pose).unwrap();
+            let palette = creature.rig.skeleton.palette(&pose).unwrap();
             let world_from_model = Similarity {
                 rotation: DQuat::IDENTITY,
                 scale: 3.0,
@@ -49,6 +49,7 @@ fn assert_agreement(creature: &Creature) -> usize {
 fn the_giant_answers_like_brute_force() {
     let mut giant = giant_of(3_000).unwrap();
     giant
+        .rig
         .clips
         .retain(|clip| ["idle", "walk", "shake"].contains(&clip.name.as_str()));
     let found = assert_agreement(&giant);

@@ -18,16 +18,16 @@ const POSES: u32 = 12;
 /// The largest error of any coordinate of any vertex over the poses of all clips, as a share of its bound, and the
 /// number of vertices that were compared.
 fn worst_share(creature: &Creature) -> (f64, usize) {
-    let rest = creature.skeleton.rest_pose();
+    let rest = creature.rig.skeleton.rest_pose();
     let (mut worst, mut compared) = (0.0f64, 0);
-    for clip in &creature.clips {
+    for clip in &creature.rig.clips {
         for k in 0..POSES {
             let time = clip.duration() * f64::from(k) / f64::from(POSES);
             let pose = clip.sample(&rest, time, Playback::Loop).unwrap();
-            let palette = creature.skeleton.palette(&pose).unwrap();
+            let palette = creature.rig.skeleton.palette(&pose).unwrap();
             let matrices = palette.matrices();
-            let skinned = skin(&creature.collider, matrices).unwrap();
-            let share = skinning_error_share(&creature.collider, matrices, &skinned);
+            let skinned = skin(&creature.rig.collider, matrices).unwrap();
+            let share = skinning_error_share(&creature.rig.collider, matrices, &skinned);
             let context = format!("{}, {}, {time} s", creature.name, clip.name);
             assert!(share <= 1.0, "{context}: {share}");
             worst = worst.max(share);
@@ -40,8 +40,12 @@ fn worst_share(creature: &Creature) -> (f64, usize) {
 #[test]
 fn a_moved_vertex_and_nan_exceed_the_bound() {
     let giant = giant().unwrap();
-    let palette = giant.skeleton.palette(&giant.skeleton.rest_pose()).unwrap();
-    let mesh = &giant.collider;
+    let palette = giant
+        .rig
+        .skeleton
+        .palette(&giant.rig.skeleton.rest_pose())
+        .unwrap();
+    let mesh = &giant.rig.collider;
     let mut positions = skin(mesh, palette.matrices()).unwrap();
     let share = |p: &[Vec3]| skinning_error_share(mesh, palette.matrices(), p);
     assert!((0.01..1.0).contains(&share(&positions)));
@@ -62,7 +66,7 @@ fn the_giant_stays_within_the_bound() {
 fn five_models_stay_within_the_bound_over_all_clips() {
     for creature in test_data::five_creatures("skinning accuracy").unwrap() {
         let name = &creature.name;
-        assert!(!creature.clips.is_empty(), "{name}");
+        assert!(!creature.rig.clips.is_empty(), "{name}");
         let (worst, compared) = worst_share(&creature);
         println!("{name}: {worst:.3} of the bound, {compared} vertices");
         assert!(worst > 0.05, "{name}: nothing was measured");

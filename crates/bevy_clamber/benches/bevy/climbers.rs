@@ -73,7 +73,10 @@ pub(crate) fn measure(
     let mut surface = SkinnedSurface::new(giants.mesh());
     let mut palette = Palette::default();
     let mut group = ClimberGroup::default();
-    creature.skeleton.palette_into(&poses[0], &mut palette)?;
+    creature
+        .rig
+        .skeleton
+        .palette_into(&poses[0], &mut palette)?;
     surface.place(&palette, Similarity::IDENTITY)?;
     let mut climbers = spawn(&mut giants, &surface, count)?;
     let (mut core, mut bevy, mut frames) = (Vec::new(), Vec::new(), Vec::new());
@@ -216,7 +219,7 @@ fn step(
     (giant, surface): (Entity, &mut SkinnedSurface),
     group: &mut ClimberGroup,
 ) -> Result<(), Box<dyn Error>> {
-    creature.skeleton.palette_into(pose, palette)?;
+    creature.rig.skeleton.palette_into(pose, palette)?;
     surface.advance(palette, Similarity::IDENTITY)?;
     let giant = (ObstacleId(giant.to_bits()), &*surface as &dyn Obstacle);
     let cores = climbers.iter();

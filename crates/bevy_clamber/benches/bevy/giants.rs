@@ -27,8 +27,8 @@ pub(crate) struct Giants {
 
 impl Giants {
     pub(crate) fn new(mut app: App, creature: &Creature, count: usize, timing: PoseTiming) -> Self {
-        let mesh = common::add_mesh(&mut app, mesh(&creature.collider));
-        let joints = creature.skeleton.joints();
+        let mesh = common::add_mesh(&mut app, mesh(&creature.rig.collider));
+        let joints = creature.rig.skeleton.joints();
         let bind = joints
             .iter()
             .map(|j| DMat4::from(j.inverse_bind.to_f64()).as_mat4());

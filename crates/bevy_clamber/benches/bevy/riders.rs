@@ -42,7 +42,7 @@ pub(crate) fn over(
     let triangles = mesh.triangles().len();
     let mut all = Vec::new();
     for pose in poses {
-        surface.advance(&creature.skeleton.palette(pose)?, Similarity::IDENTITY)?;
+        surface.advance(&creature.rig.skeleton.palette(pose)?, Similarity::IDENTITY)?;
         let rider = |index: usize| -> Result<Rider, Box<dyn Error>> {
             let triangle = TriangleId(((index * 2 + 1) * triangles / (2 * riders)) as u32);
             let anchor = surface.anchor(triangle, [0.5, 0.25, 0.25])?;

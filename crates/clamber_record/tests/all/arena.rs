@@ -505,7 +505,7 @@ fn what_attacks_have_let_out_is_drawn() {
         }
     });
     let brain = Brain::from_json(&file.to_string(), 1.0 / 60.0).unwrap();
-    let kind = giant::giant().unwrap().with_brain(brain).unwrap();
+    let kind = CreatureKind::new(&giant::model().unwrap().rig, brain).unwrap();
     let mut arena = Arena::new(ArenaConfig::default()).unwrap();
     let config = CreatureConfig {
         position: DVec3::X * 12.0,

@@ -262,7 +262,7 @@ fn first_difference(
         if recorded.tick > 0 {
             battle.step_with(recorded.input)?;
         }
-        Ok::<_, battle::BattleError>(Replayed {
+        Ok::<_, battle::SceneError>(Replayed {
             state: *battle.climber().state(),
             palette_fingerprint: palette_fingerprint(battle.palette()),
             scene_fingerprint: Some(battle.scene_fingerprint()),
@@ -399,7 +399,7 @@ fn a_tick_that_is_refused_changes_nothing() {
     let whole = Recording::from_bytes(record(&options)).unwrap();
     let out = Vec::new();
     let how = RecordOptions::waiting();
-    let mut recorder = Recorder::new(out, whole.info(), &creature.skeleton, how).unwrap();
+    let mut recorder = Recorder::new(out, whole.info(), &creature.rig.skeleton, how).unwrap();
     let stranger = Palette::default();
     let view = |tick, palette| TickView {
         tick,

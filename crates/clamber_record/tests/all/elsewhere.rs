@@ -447,7 +447,7 @@ fn what_is_lost_at_the_end_is_told() {
             ..RecordOptions::default()
         };
         let disk = Disk::default();
-        let mut recorder = Recorder::new(disk.clone(), &info, &creature.skeleton, how).unwrap();
+        let mut recorder = Recorder::new(disk.clone(), &info, &creature.rig.skeleton, how).unwrap();
         for tick in 0..=600 {
             if tick > 0 {
                 battle.step(options.input_at(tick)).unwrap();

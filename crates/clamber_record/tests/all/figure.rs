@@ -58,7 +58,11 @@ fn info(battle: &Battle<'_>) -> RecordingInfo {
     let creature = battle.creature();
     RecordingInfo {
         creature: creature.name.clone(),
-        creature_fingerprint: creature_fingerprint(&creature.skeleton, &[], &creature.collider),
+        creature_fingerprint: creature_fingerprint(
+            &creature.rig.skeleton,
+            &[],
+            &creature.rig.collider,
+        ),
         tick_seconds: TICK,
         climber: *battle.climber().config(),
         settings: Default::default(),
@@ -67,7 +71,7 @@ fn info(battle: &Battle<'_>) -> RecordingInfo {
 }
 
 fn recorder(battle: &Battle<'_>) -> Recorder<Vec<u8>> {
-    let skeleton = &battle.creature().skeleton;
+    let skeleton = &battle.creature().rig.skeleton;
     let options = RecordOptions::waiting();
     Recorder::new(Vec::new(), &info(battle), skeleton, options).unwrap()
 }
@@ -163,7 +167,7 @@ fn a_figure_that_does_not_fit_is_refused() {
     );
     recorder.figure(&figure(&hero)).unwrap();
     let another = FigureView {
-        skeleton: &creature.skeleton,
+        skeleton: &creature.rig.skeleton,
         palette: battle.palette(),
         ..figure(&hero)
     };
@@ -209,7 +213,7 @@ fn a_recording_that_fails_ends_before_the_tick_that_fails() {
             chunk_ticks: 1000,
             ..RecordOptions::waiting()
         };
-        let skeleton = &creature.skeleton;
+        let skeleton = &creature.rig.skeleton;
         let mut recorder = Recorder::new(out.clone(), &info(&battle), skeleton, how).unwrap();
         for tick in 0..40 {
             if tick > 0 {

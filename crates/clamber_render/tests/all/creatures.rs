@@ -17,13 +17,13 @@ use clamber_surface::surface::SkinnedSurface;
 use glam::{DVec3, Vec3};
 
 fn palettes(creature: &Creature) -> Vec<Palette> {
-    let rest = creature.skeleton.rest_pose();
-    let mut palettes = vec![creature.skeleton.palette(&rest).unwrap()];
-    for clip in &creature.clips {
+    let rest = creature.rig.skeleton.rest_pose();
+    let mut palettes = vec![creature.rig.skeleton.palette(&rest).unwrap()];
+    for clip in &creature.rig.clips {
         let pose = clip
             .sample(&rest, 0.37 * clip.duration(), Playback::Loop)
             .unwrap();
-        palettes.push(creature.skeleton.palette(&pose).unwrap());
+        palettes.push(creature.rig.skeleton.palette(&pose).unwrap());
     }
     palettes
 }
@@ -37,12 +37,12 @@ fn the_device_poses_the_skin_as_the_collider_does() {
     let mut creatures = vec![giant().unwrap()];
     creatures.extend(test_data::five_creatures("posing").unwrap());
     for creature in &creatures {
-        let mesh = add_collider(&mut renderer, &creature.collider, [1.0; 3]).unwrap();
+        let mesh = add_collider(&mut renderer, &creature.rig.collider, [1.0; 3]).unwrap();
         let (mut worst, mut poses) = (0.0f64, 0);
         for palette in palettes(creature) {
             let posed = renderer.posed_positions(mesh, &palette).unwrap();
             let skinned =
-                clamber_surface::skin::skin(&creature.collider, palette.matrices()).unwrap();
+                clamber_surface::skin::skin(&creature.rig.collider, palette.matrices()).unwrap();
             let far = |bound: Vec3, p: &Vec3| bound.max(p.abs());
             let extent = f64::from(skinned.iter().fold(Vec3::ZERO, far).max_element());
             for (seen, touched) in posed.iter().zip(&skinned) {
@@ -85,7 +85,7 @@ fn the_climber_stands_on_the_creature_and_its_triangle_lies_under_its_foot() {
     };
     let giant = giant().unwrap();
     let mut renderer = Renderer::new(gpu, WIDTH, ROWS).unwrap();
-    let skin = add_collider(&mut renderer, &giant.collider, [0.0, 0.0, 1.0]).unwrap();
+    let skin = add_collider(&mut renderer, &giant.rig.collider, [0.0, 0.0, 1.0]).unwrap();
     // The climber is drawn as a pillar on its contact.
     let corners: Vec<Vec3> = (0..8)
         .map(|i| {
@@ -109,7 +109,7 @@ fn the_climber_stands_on_the_creature_and_its_triangle_lies_under_its_foot() {
         ..RenderMesh::default()
     });
     let figure = figure.unwrap();
-    let mut surface = SkinnedSurface::new(giant.collider.clone());
+    let mut surface = SkinnedSurface::new(giant.rig.collider.clone());
     let root = Similarity::from_translation(DVec3::new(3e4, 0.0, -7e3));
     for palette in palettes(&giant) {
         surface.place(&palette, root).unwrap();

@@ -49,14 +49,14 @@ enum Aim {
 pub(crate) fn sets(queries: usize) -> Result<Vec<Set>, Box<dyn Error>> {
     let giant = giant()?;
     let walk = giant.clip_like(&["walk"]).ok_or("the giant cannot walk")?;
-    let pose = walk.sample(&giant.skeleton.rest_pose(), 0.4, Playback::Loop)?;
-    let palette = giant.skeleton.palette(&pose)?;
+    let pose = walk.sample(&giant.rig.skeleton.rest_pose(), 0.4, Playback::Loop)?;
+    let palette = giant.rig.skeleton.palette(&pose)?;
     let needles = Arc::new(needles()?);
     let still = Palette::from_matrices([Affine::IDENTITY]);
     let set = |name, mesh: &Arc<ColliderMesh>, palette: &Palette, place, aim| {
         Set::new(name, mesh, palette, place, aim, queries)
     };
-    let (skin, origin) = (&giant.collider, DVec3::ZERO);
+    let (skin, origin) = (&giant.rig.collider, DVec3::ZERO);
     Ok(vec![
         set("ordinary", skin, &palette, origin, Aim::Inside)?,
         set("grazing", skin, &palette, origin, Aim::Grazing)?,

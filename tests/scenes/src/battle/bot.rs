@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use clamber_climber::{ClimberInput, ClimberMode};
-use clamber_colossus::{AttackPhase, Brain, CreatureConfig};
+use clamber_colossus::{AttackPhase, Brain, CreatureConfig, CreatureKind};
 use clamber_fight::{Arena, ArenaConfig, CreatureId};
 use clamber_navigation::{Bot, BotConfig, ClimbGraph, Danger, Forecast, Goal, View};
 use glam::DVec3;
@@ -12,7 +12,7 @@ use super::choreography::no_height;
 use super::eyes::Eyes;
 use super::fencer::Fencer;
 use super::outcrop::Crossing;
-use super::{BattleError, BattleOptions, CREATURE, TICK};
+use super::{BattleOptions, CREATURE, SceneError, TICK};
 use crate::{Creature, valley};
 
 /// Place where the creature begins, x and z, metres: beyond the outcrop.
@@ -42,8 +42,8 @@ pub(super) fn arena(
     creature: &Creature,
     brain: Brain,
     options: &BattleOptions,
-) -> Result<Arena, BattleError> {
-    let kind = creature.with_brain(brain)?;
+) -> Result<Arena, SceneError> {
+    let kind = CreatureKind::new(&creature.rig, brain)?;
     // The height in the brain's file is at a scale of 1.
     let tall = kind.brain().file().body.height.unwrap_or(kind.height());
     let scale = options.height() / tall;
@@ -133,12 +133,12 @@ pub(super) struct Planner {
 }
 
 impl Planner {
-    /// A bot against the creature of an arena. [`BattleError`] if no weak point can be reached from the ground.
+    /// A bot against the creature of an arena. [`SceneError`] if no weak point can be reached from the ground.
     pub(super) fn new(
         arena: &Arena,
         graph: Arc<ClimbGraph>,
         creature: &Creature,
-    ) -> Result<Self, BattleError> {
+    ) -> Result<Self, SceneError> {
         let life = giant(arena);
         let leads = |target: &Target| {
             let mut entries = graph.entries().iter();
@@ -147,7 +147,7 @@ impl Planner {
         let targets: Vec<Target> = targets(life, &graph).into_iter().filter(leads).collect();
         if targets.is_empty() {
             let name = &creature.name;
-            return Err(BattleError::new(format!(
+            return Err(SceneError::new(format!(
                 "found no way up {name}: no grippable skin leads from near the ground to a weak point; try --story ride"
             )));
         }
@@ -164,7 +164,7 @@ impl Planner {
             forecast,
             fencer: Fencer::default(),
             crossing: Crossing::default(),
-            eyes: Eyes::new(&creature.collider),
+            eyes: Eyes::new(&creature.rig.collider),
             highest: highest.map(|(_, index)| index),
             arrived: None,
         })

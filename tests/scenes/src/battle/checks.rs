@@ -411,7 +411,8 @@ fn describe(battle: &Battle<'_>, what: &str, place: DVec3) -> String {
         let joint = surface
             .mesh()
             .joint_of(TriangleId(near.material.key as u32));
-        let joint = joint.and_then(|joint| battle.creature().skeleton.joints().get(joint.index()));
+        let joint =
+            joint.and_then(|joint| battle.creature().rig.skeleton.joints().get(joint.index()));
         let (distance, joint) = (near.distance, joint.map_or("no joint", |joint| &joint.name));
         format!("{distance:.3} m from skin of {joint} that moves at {speed:.1} m/s")
     });

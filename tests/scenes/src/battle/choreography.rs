@@ -1,14 +1,12 @@
 //! The timetable of a creature in a ride: which clip plays when, and where the creature is. It depends only on the ticks
 //! that have passed.
 
-use std::collections::BTreeSet;
-
 use clamber_animation::SeamProbe;
 use clamber_surface::geometry::{Similarity, rotation_from_axis_angle};
 use clamber_surface::rig::{Clip, Palette, Playback, Pose};
 use glam::DVec3;
 
-use super::BattleError;
+use super::SceneError;
 use super::repeat::Repeat;
 use crate::{Creature, valley};
 
@@ -60,13 +58,13 @@ impl<'a> Choreography<'a> {
     /// A creature that is scaled to be `height` metres tall in its first pose.
     ///
     /// # Errors
-    /// [`BattleError`] if the creature is flat in its first pose, or a clip does not fit its skeleton.
-    pub(super) fn new(creature: &'a Creature, height: f64) -> Result<Self, BattleError> {
+    /// [`SceneError`] if the creature is flat in its first pose, or a clip does not fit its skeleton.
+    pub(super) fn new(creature: &'a Creature, height: f64) -> Result<Self, SceneError> {
         let mut acts = acts(creature);
-        let rest = creature.skeleton.rest_pose();
+        let rest = creature.rig.skeleton.rest_pose();
         let mut first = rest.clone();
         if let Some(clip) = acts[0].clip {
-            creature.clips[clip].sample_into(0.0, Playback::Loop, &mut first)?;
+            creature.rig.clips[clip].sample_into(0.0, Playback::Loop, &mut first)?;
         }
         let (low, high) = creature.bounds(&first)?;
         let tall = f64::from(high.y) - f64::from(low.y);
@@ -74,11 +72,11 @@ impl<'a> Choreography<'a> {
         if !(scale.is_normal() && scale > 0.0) {
             return Err(no_height(creature, height));
         }
-        let probe = SeamProbe::new(&creature.skeleton, &creature.collider, tall);
+        let probe = SeamProbe::new(&creature.rig.skeleton, &creature.rig.collider, tall);
         let repeats = |act: &&mut Act| act.repeat != Repeat::Hold;
         for act in acts.iter_mut().filter(repeats) {
             if let Some(clip) = act.clip {
-                act.repeat = Repeat::of(probe.measure(&creature.clips[clip])?);
+                act.repeat = Repeat::of(probe.measure(&creature.rig.clips[clip])?);
             }
         }
         let speed = creature
@@ -111,8 +109,8 @@ impl<'a> Choreography<'a> {
     /// Poses the creature for the current tick: its palette, and its place in the world.
     ///
     /// # Errors
-    /// [`BattleError`] if a clip does not fit the skeleton.
-    pub(super) fn pose(&mut self) -> Result<(&Palette, Similarity), BattleError> {
+    /// [`SceneError`] if a clip does not fit the skeleton.
+    pub(super) fn pose(&mut self) -> Result<(&Palette, Similarity), SceneError> {
         let (now, before, share) = self.moment();
         self.pose.clone_from(&self.rest);
         if let Some((clip, time)) = self.clip(before) {
@@ -125,7 +123,7 @@ impl<'a> Choreography<'a> {
             }
             self.pose.blend_in(&self.fading, share)?;
         }
-        let skeleton = &self.creature.skeleton;
+        let skeleton = &self.creature.rig.skeleton;
         skeleton.palette_into(&self.pose, &mut self.palette)?;
         Ok((&self.palette, self.world_from_model()))
     }
@@ -143,20 +141,9 @@ impl<'a> Choreography<'a> {
         format!("{} at {time:.2} s{fading}", clip.name)
     }
 
-    /// Names of the clips that are not loops and are therefore played back and forth.
-    pub(super) fn turned_back(&self) -> Vec<String> {
-        let acts = self
-            .acts
-            .iter()
-            .filter(|act| act.repeat == Repeat::BackAndForth);
-        let clips: BTreeSet<usize> = acts.filter_map(|act| act.clip).collect();
-        let name = |clip: usize| self.creature.clips[clip].name.clone();
-        clips.into_iter().map(name).collect()
-    }
-
     /// The clip that an act plays, and the time in it, seconds.
     fn clip(&self, act: usize) -> Option<(&'a Clip, f64)> {
-        let clip = &self.creature.clips[self.acts[act].clip?];
+        let clip = &self.creature.rig.clips[self.acts[act].clip?];
         Some((clip, self.acts[act].repeat.time(self.time, clip.duration())))
     }
 
@@ -202,9 +189,9 @@ impl<'a> Choreography<'a> {
 }
 
 /// The creature cannot be scaled to a height, metres.
-pub(super) fn no_height(creature: &Creature, height: f64) -> BattleError {
+pub(super) fn no_height(creature: &Creature, height: f64) -> SceneError {
     let name = &creature.name;
-    BattleError::new(format!(
+    SceneError::new(format!(
         "{name} has no height in its first pose, so it cannot be scaled to {height} m"
     ))
 }
@@ -217,6 +204,7 @@ fn acts(creature: &Creature) -> Vec<Act> {
     let index = |words: &[&str]| {
         let clip = creature.clip_like(words)?;
         creature
+            .rig
             .clips
             .iter()
             .position(|other| std::ptr::eq(other, clip))
@@ -235,7 +223,7 @@ fn acts(creature: &Creature) -> Vec<Act> {
         }
         return acts;
     }
-    let lively = creature.clips.iter().enumerate().filter(|(_, clip)| {
+    let lively = creature.rig.clips.iter().enumerate().filter(|(_, clip)| {
         let name = clip.name.to_lowercase();
         !name.contains("death") && !name.contains("die")
     });

@@ -37,47 +37,4 @@ pub use rider::Intent;
 pub use rockfall::{Rockfall, Triangles};
 pub use scene::{Battle, BattleSnapshot, CREATURE, CreatureState, TERRAIN, TICK};
 
-use std::error::Error;
-
-use crate::CreatureError;
-use clamber_climber::ClimberError;
-use clamber_colossus::ColossusError;
-use clamber_fight::ArenaError;
-use clamber_navigation::NavigationError;
-use clamber_surface::rig::RigError;
-use clamber_surface::surface::SurfaceError;
-use clamber_world::DebrisError;
-
-/// Why a battle cannot be made, stepped, recorded or drawn.
-#[derive(Debug, thiserror::Error)]
-#[error(transparent)]
-pub struct BattleError(Box<dyn Error + Send + Sync>);
-
-impl BattleError {
-    /// An error of another library, or a sentence.
-    pub fn new(error: impl Into<Box<dyn Error + Send + Sync>>) -> Self {
-        Self(error.into())
-    }
-}
-
-macro_rules! from {
-    ($($error:ty),+) => {$(
-        impl From<$error> for BattleError {
-            fn from(error: $error) -> Self {
-                Self(error.into())
-            }
-        }
-    )+};
-}
-
-from!(
-    ArenaError,
-    ClimberError,
-    ColossusError,
-    CreatureError,
-    DebrisError,
-    NavigationError,
-    RigError,
-    SurfaceError
-);
-from!(String, serde_json::Error);
+pub use crate::SceneError;

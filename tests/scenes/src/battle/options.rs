@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use clamber_colossus::Brain;
 use clap::Parser;
 
-use super::{BattleError, Intent, TICK};
+use super::{Intent, SceneError, TICK};
 use crate::{Creature, giant};
 
 /// Height that a creature from a file is scaled to, metres.
@@ -118,31 +118,31 @@ impl BattleOptions {
     /// Options from the settings that [`BattleOptions::to_settings`] gave.
     ///
     /// # Errors
-    /// [`BattleError`] if the settings are not options of a battle.
-    pub fn from_settings(settings: &BTreeMap<String, String>) -> Result<Self, BattleError> {
+    /// [`SceneError`] if the settings are not options of a battle.
+    pub fn from_settings(settings: &BTreeMap<String, String>) -> Result<Self, SceneError> {
         let arguments = settings
             .iter()
             .map(|(name, value)| format!("--{name}={value}"));
         Self::try_parse_from(std::iter::once("battle".to_owned()).chain(arguments))
-            .map_err(BattleError::new)
+            .map_err(SceneError::new)
     }
 
     /// The creature's brain; `None` in a ride.
     ///
     /// # Errors
-    /// [`BattleError`] if the file is no brain, for a climb without a brain, and for a ride with one.
-    pub(super) fn load_brain(&self) -> Result<Option<Brain>, BattleError> {
+    /// [`SceneError`] if the file is no brain, for a climb without a brain, and for a ride with one.
+    pub(super) fn load_brain(&self) -> Result<Option<Brain>, SceneError> {
         let path = match (self.story(), &self.brain) {
             (Story::Ride, None) => return Ok(None),
             (Story::Ride, Some(_)) => {
                 let reason = "a creature lives by its brain in a climb: add --story climb";
-                return Err(BattleError::new(reason));
+                return Err(SceneError::new(reason));
             }
             (Story::Climb, Some(path)) => path.clone(),
             (Story::Climb, None) if self.creature.is_none() => giant::brain_path(),
             (Story::Climb, None) => {
                 let reason = "a creature of a file needs a brain to be fought: add --brain FILE, or --story ride";
-                return Err(BattleError::new(reason));
+                return Err(SceneError::new(reason));
             }
         };
         let text = std::fs::read_to_string(&path)
@@ -155,8 +155,8 @@ impl BattleOptions {
     /// Loads the creature.
     ///
     /// # Errors
-    /// [`BattleError`] if its file cannot be loaded.
-    pub fn load_creature(&self) -> Result<Creature, BattleError> {
+    /// [`SceneError`] if its file cannot be loaded.
+    pub fn load_creature(&self) -> Result<Creature, SceneError> {
         Ok(match &self.creature {
             Some(path) => Creature::load(path)?,
             None => giant::giant()?,

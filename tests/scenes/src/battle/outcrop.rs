@@ -5,7 +5,7 @@ use clamber_climber::{Climber, ClimberInput, ClimberMode};
 use clamber_world::rapier3d::prelude::*;
 use glam::DVec3;
 
-use super::BattleError;
+use super::SceneError;
 use super::rockfall::Triangles;
 use crate::valley;
 
@@ -68,7 +68,7 @@ pub fn mesh() -> Triangles {
 }
 
 /// Adds the outcrop to the valley.
-pub(super) fn insert(world: &mut PhysicsWorld) -> Result<(), BattleError> {
+pub(super) fn insert(world: &mut PhysicsWorld) -> Result<(), SceneError> {
     let (corners, triangles) = mesh();
     let collider = ColliderBuilder::trimesh(corners, triangles);
     let collider =

@@ -12,7 +12,7 @@ use clamber_surface::geometry::Similarity;
 use clamber_world::rapier3d::dynamics::RigidBodyHandle;
 
 use super::rockfall::Triangles;
-use super::{Battle, BattleError, BattleOptions, BattleSnapshot, CREATURE, TERRAIN, TICK, outcrop};
+use super::{Battle, BattleOptions, BattleSnapshot, CREATURE, SceneError, TERRAIN, TICK, outcrop};
 use crate::hero::Hero;
 use crate::valley;
 
@@ -21,12 +21,6 @@ const SNAPSHOT_EVERY: u64 = 60;
 
 /// Distance between neighbouring corners of the ground, metres.
 const CELL: f64 = 4.0;
-
-impl From<RecordError> for BattleError {
-    fn from(error: RecordError) -> Self {
-        Self::new(error)
-    }
-}
 
 /// Records a battle tick by tick.
 pub struct BattleRecorder<W: Write> {
@@ -46,15 +40,12 @@ struct Scenery {
 
 impl<W: Write + Send + 'static> BattleRecorder<W> {
     /// A recorder for a battle that was made from `options`. It writes to `out`.
-    ///
-    /// # Errors
-    /// [`BattleError`] with the errors of [`Recorder::new`].
     pub fn new(
         out: W,
         battle: &Battle<'_>,
         options: &BattleOptions,
         how: RecordOptions,
-    ) -> Result<Self, BattleError> {
+    ) -> Result<Self, SceneError> {
         let creature = battle.creature();
         let info = RecordingInfo {
             creature: creature.name.clone(),
@@ -64,7 +55,7 @@ impl<W: Write + Send + 'static> BattleRecorder<W> {
             settings: options.to_settings(),
             version: RecordingInfo::VERSION.to_owned(),
         };
-        let mut recorder = Recorder::new(out, &info, &creature.skeleton, how)?;
+        let mut recorder = Recorder::new(out, &info, &creature.rig.skeleton, how)?;
         recorder.name(CREATURE, &creature.name);
         recorder.name(TERRAIN, "ground");
         Ok(Self {
@@ -85,8 +76,8 @@ impl<W: Write + Send + 'static> BattleRecorder<W> {
     /// every second.
     ///
     /// # Errors
-    /// [`BattleError`] if the recorder refuses the tick, or the hero cannot be posed.
-    pub fn tick(&mut self, battle: &Battle<'_>) -> Result<(), BattleError> {
+    /// [`SceneError`] if the recorder refuses the tick, or the hero cannot be posed.
+    pub fn tick(&mut self, battle: &Battle<'_>) -> Result<(), SceneError> {
         self.recorder.tick(&TickView {
             tick: battle.tick(),
             input: battle.input(),
@@ -147,10 +138,7 @@ impl<W: Write + Send + 'static> BattleRecorder<W> {
     }
 
     /// Ends the recording and returns its writer.
-    ///
-    /// # Errors
-    /// [`BattleError`] with the errors of [`Recorder::finish`].
-    pub fn finish(self) -> Result<W, BattleError> {
+    pub fn finish(self) -> Result<W, SceneError> {
         Ok(self.recorder.finish()?)
     }
 }
@@ -179,7 +167,11 @@ fn scenery(battle: &Battle<'_>) -> Vec<Scenery> {
 /// Fingerprint of the creature, and of its brain.
 fn fingerprint(battle: &Battle<'_>) -> u64 {
     let creature = battle.creature();
-    let body = creature_fingerprint(&creature.skeleton, &creature.clips, &creature.collider);
+    let body = creature_fingerprint(
+        &creature.rig.skeleton,
+        &creature.rig.clips,
+        &creature.rig.collider,
+    );
     let brain = battle.life().map(|life| life.kind().brain().file());
     // The brain as it is read, whatever the layout of its file.
     let text = brain.and_then(|file| serde_json::to_string(file).ok());
@@ -211,9 +203,9 @@ pub struct Replay {
 /// snapshot at or before that tick, otherwise at the first tick. After a gap it goes on from the snapshot there.
 ///
 /// # Errors
-/// [`BattleError`] if the battle cannot be made again, for example because the creature's file is missing or has
+/// [`SceneError`] if the battle cannot be made again, for example because the creature's file is missing or has
 /// changed, or the recording has no such tick.
-pub fn replay(recording: &Recording, from: Option<u64>) -> Result<Replay, BattleError> {
+pub fn replay(recording: &Recording, from: Option<u64>) -> Result<Replay, SceneError> {
     let mut runs = recording
         .runs()
         .filter(|run| from.is_none_or(|from| *run.end() >= from));
@@ -232,14 +224,14 @@ pub fn replay(recording: &Recording, from: Option<u64>) -> Result<Replay, Battle
 }
 
 /// [`replay`] of ticks without a gap, up to `last`.
-fn replay_run(recording: &Recording, from: Option<u64>, last: u64) -> Result<Replay, BattleError> {
+fn replay_run(recording: &Recording, from: Option<u64>, last: u64) -> Result<Replay, SceneError> {
     let info = recording.info();
     let options = BattleOptions::from_settings(&info.settings)?;
     let creature = options.load_creature()?;
     let rocks = if from.is_some() { 0 } else { options.rocks };
     let mut battle = Battle::new(&creature, &BattleOptions { rocks, ..options })?;
     if fingerprint(&battle) != info.creature_fingerprint {
-        return Err(BattleError::new(format!(
+        return Err(SceneError::new(format!(
             "{} is not the creature that was recorded; bring back the files that it and its brain were loaded from",
             creature.name
         )));
@@ -257,7 +249,7 @@ fn replay_run(recording: &Recording, from: Option<u64>, last: u64) -> Result<Rep
         if recorded.tick > start {
             battle.step_with(recorded.input)?;
         }
-        Ok::<_, BattleError>(Replayed {
+        Ok::<_, SceneError>(Replayed {
             state: *battle.climber().state(),
             palette_fingerprint: palette_fingerprint(battle.palette()),
             scene_fingerprint: from.is_none().then(|| battle.scene_fingerprint()),
@@ -271,7 +263,7 @@ fn replay_run(recording: &Recording, from: Option<u64>, last: u64) -> Result<Rep
         Ok(_) => None,
         Err(ReplayError::Differs(difference)) => Some(difference),
         Err(ReplayError::Scene { error, .. }) => return Err(error),
-        Err(error) => return Err(BattleError::new(error.to_string())),
+        Err(error) => return Err(SceneError::new(error.to_string())),
     };
     Ok(Replay {
         from: start,

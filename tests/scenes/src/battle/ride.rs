@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use super::choreography::Choreography;
 use super::rider::Rider;
-use super::{BattleError, CREATURE, TERRAIN, TICK};
+use super::{CREATURE, SceneError, TERRAIN, TICK};
 use crate::Creature;
 
 /// A creature that plays its clips by a timetable, and its rider.
@@ -25,9 +25,9 @@ pub(super) struct Ride<'a> {
 
 impl<'a> Ride<'a> {
     /// A creature `height` metres tall at the beginning of its timetable, without a rider yet.
-    pub(super) fn new(creature: &'a Creature, height: f64) -> Result<Self, BattleError> {
+    pub(super) fn new(creature: &'a Creature, height: f64) -> Result<Self, SceneError> {
         let mut choreography = Choreography::new(creature, height)?;
-        let mut surface = SkinnedSurface::new(Arc::clone(&creature.collider));
+        let mut surface = SkinnedSurface::new(Arc::clone(&creature.rig.collider));
         let (palette, world_from_model) = choreography.pose()?;
         surface.place(palette, world_from_model)?;
         Ok(Self {
@@ -42,7 +42,7 @@ impl<'a> Ride<'a> {
     }
 
     /// Poses the creature for the next tick.
-    pub(super) fn advance(&mut self) -> Result<(), BattleError> {
+    pub(super) fn advance(&mut self) -> Result<(), SceneError> {
         let before = self.surface.world_from_model().translation;
         self.choreography.advance(TICK);
         let (palette, world_from_model) = self.choreography.pose()?;
@@ -57,7 +57,7 @@ impl<'a> Ride<'a> {
         input: &ClimberInput,
         terrain: &dyn Obstacle,
         rules: &StepRules<'_>,
-    ) -> Result<(), BattleError> {
+    ) -> Result<(), SceneError> {
         let obstacles: [(ObstacleId, &dyn Obstacle); 2] =
             [(TERRAIN, terrain), (CREATURE, &self.surface)];
         self.report = self.climber.step_with(input, &obstacles, rules, TICK)?;
@@ -65,7 +65,7 @@ impl<'a> Ride<'a> {
     }
 
     /// Restores the time of the clips, seconds, and the distance walked, metres; the skin stands there without motion.
-    pub(super) fn go_to(&mut self, time: f64, walked: f64) -> Result<(), BattleError> {
+    pub(super) fn go_to(&mut self, time: f64, walked: f64) -> Result<(), SceneError> {
         (self.choreography.time, self.choreography.walked) = (time, walked);
         let (palette, world_from_model) = self.choreography.pose()?;
         self.surface.place(palette, world_from_model)?;
@@ -76,7 +76,7 @@ impl<'a> Ride<'a> {
 
 /// A climber for a ride, in the air `drop` metres above a place. No acceleration of the creature throws it off or makes
 /// it hang.
-pub(super) fn rider_above(place: DVec3, drop: f64) -> Result<Climber, BattleError> {
+pub(super) fn rider_above(place: DVec3, drop: f64) -> Result<Climber, SceneError> {
     let strong = ClimberConfig::colossus_climber().grip;
     let mut config = ClimberConfig::walker();
     config.ground.throw_acceleration = f64::INFINITY;

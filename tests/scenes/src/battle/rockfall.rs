@@ -8,7 +8,7 @@ use clamber_world::rapier3d::prelude::*;
 use clamber_world::{Debris, DebrisConfig};
 use glam::{DVec3, Vec3};
 
-use super::{BattleError, CREATURE, TICK};
+use super::{CREATURE, SceneError, TICK};
 use crate::rocks::scatter;
 use crate::{solid_angle, valley};
 
@@ -61,7 +61,7 @@ impl Rockfall {
         seed: u64,
         above: DVec3,
         height: f64,
-    ) -> Result<Self, BattleError> {
+    ) -> Result<Self, SceneError> {
         let scale = (height / HEIGHT).clamp(SMALLEST, 1.0);
         let rocks = scatter(world, count, seed, above, scale);
         let mut debris = Debris::new(DebrisConfig::default());
@@ -90,7 +90,7 @@ impl Rockfall {
         tick: u64,
         world: &mut PhysicsWorld,
         above: DVec3,
-    ) -> Result<f64, BattleError> {
+    ) -> Result<f64, SceneError> {
         let start = Instant::now();
         let surfaces = [(CREATURE, surface)];
         let (bodies, colliders) = (&mut world.bodies, &mut world.colliders);

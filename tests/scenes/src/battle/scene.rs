@@ -19,7 +19,7 @@ use serde::{Deserialize, Serialize};
 use super::bot::{Planner, arena, giant};
 use super::ride::{Ride, rider_above};
 use super::rider::Rider;
-use super::{BattleError, BattleOptions, Counts, Intent, Rockfall, outcrop};
+use super::{BattleOptions, Counts, Intent, Rockfall, SceneError, outcrop};
 use crate::{Creature, valley};
 
 /// Length of a tick, seconds.
@@ -107,9 +107,9 @@ impl<'a> Battle<'a> {
     /// creature's back, and rocks above the back.
     ///
     /// # Errors
-    /// [`BattleError`] if the creature has no skin to be dropped on, is flat, or cannot be climbed up to a weak point; or
+    /// [`SceneError`] if the creature has no skin to be dropped on, is flat, or cannot be climbed up to a weak point; or
     /// if a file cannot be read.
-    pub fn new(creature: &'a Creature, options: &BattleOptions) -> Result<Self, BattleError> {
+    pub fn new(creature: &'a Creature, options: &BattleOptions) -> Result<Self, SceneError> {
         let (height, seed) = (options.height(), options.seed);
         let perch = |surface: &SkinnedSurface| {
             find_perch(surface, height, seed).ok_or_else(|| {
@@ -125,7 +125,10 @@ impl<'a> Battle<'a> {
             let mut arena = arena(creature, brain, options)?;
             let life = giant(&arena);
             let perch = perch(life.surface())?;
-            let living = creature.as_it_lives(life.kind());
+            let living = Creature {
+                rig: life.kind().rig(),
+                ..creature.clone()
+            };
             outcrop::insert(&mut world)?;
             let (climber, position) = climber_before_the_outcrop(seed);
             let plates = life
@@ -176,8 +179,8 @@ impl<'a> Battle<'a> {
     /// Runs one tick: in a climb with the bot's input, in a ride with the input that carries out an intent.
     ///
     /// # Errors
-    /// [`BattleError`] if a clip does not fit the creature.
-    pub fn step(&mut self, intent: Intent) -> Result<(), BattleError> {
+    /// [`SceneError`] if a clip does not fit the creature.
+    pub fn step(&mut self, intent: Intent) -> Result<(), SceneError> {
         let start = Instant::now();
         let seconds = self.counts.tick as f64 * TICK;
         let input = match &mut self.part {
@@ -193,8 +196,8 @@ impl<'a> Battle<'a> {
     /// Runs one tick with a given input, such as one from a recording.
     ///
     /// # Errors
-    /// [`BattleError`] if a clip does not fit the creature, or the input is not finite.
-    pub fn step_with(&mut self, input: ClimberInput) -> Result<(), BattleError> {
+    /// [`SceneError`] if a clip does not fit the creature, or the input is not finite.
+    pub fn step_with(&mut self, input: ClimberInput) -> Result<(), SceneError> {
         let start = Instant::now();
         if let Part::Rides(ride) = &mut self.part {
             ride.advance()?;
@@ -203,7 +206,7 @@ impl<'a> Battle<'a> {
     }
 
     /// The rest of a tick that began at `start`.
-    fn step_advanced(&mut self, input: ClimberInput, start: Instant) -> Result<(), BattleError> {
+    fn step_advanced(&mut self, input: ClimberInput, start: Instant) -> Result<(), SceneError> {
         let bodies = &self.world.bodies;
         let fixed = |_: ColliderHandle, collider: &Collider| is_fixed(bodies, collider);
         let terrain = RapierTerrain::of_world(&self.world, &self.before).with_filter(&fixed);
@@ -258,7 +261,7 @@ impl<'a> Battle<'a> {
     }
 
     /// Drops a rider on the creature's back again if it has been on the ground for a while or is out of the valley.
-    fn lift_if_grounded(&mut self) -> Result<(), BattleError> {
+    fn lift_if_grounded(&mut self) -> Result<(), SceneError> {
         let Part::Rides(ride) = &mut self.part else {
             return Ok(());
         };
@@ -311,12 +314,12 @@ impl<'a> Battle<'a> {
     /// Given the same inputs, creature and climber then go on with the same bits. The rocks stay where they are.
     ///
     /// # Errors
-    /// [`BattleError`] if the climber rejects the state, or the snapshot is of the other story.
+    /// [`SceneError`] if the climber rejects the state, or the snapshot is of the other story.
     pub fn restore(
         &mut self,
         snapshot: &BattleSnapshot,
         state: ClimberState,
-    ) -> Result<(), BattleError> {
+    ) -> Result<(), SceneError> {
         match (&mut self.part, &snapshot.creature) {
             (Part::Fights { arena, .. }, CreatureState::Fights(state)) => arena.restore(state)?,
             (Part::Rides(ride), CreatureState::Plays { time, walked }) => {
@@ -324,7 +327,7 @@ impl<'a> Battle<'a> {
                 ride.go_to(*time, *walked)?;
             }
             _ => {
-                return Err(BattleError::new(
+                return Err(SceneError::new(
                     "the snapshot is of a climb and the battle a ride, or the other way round",
                 ));
             }

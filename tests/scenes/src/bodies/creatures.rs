@@ -36,13 +36,13 @@ pub fn mount(
     let clip = creature
         .clip_like(&[mount.clip])
         .ok_or("the creature has no such clip")?;
-    let rest = creature.skeleton.rest_pose();
+    let rest = creature.rig.skeleton.rest_pose();
     let (mut place, ground) = creature.standing(HEIGHT)?;
     place.translation -= DVec3::Y * ground;
-    let collider = creature.collider.clone();
+    let collider = creature.rig.collider.clone();
     let mut surface = SkinnedSurface::new(collider.clone());
     let pose = clip.sample(&rest, 0.0, clamber_surface::rig::Playback::Loop)?;
-    surface.place(&creature.skeleton.palette(&pose)?, place)?;
+    surface.place(&creature.rig.skeleton.palette(&pose)?, place)?;
     // Towards the nearest skin at that height.
     let eye = DVec3::Y * (mount.height * HEIGHT) + mount.from * (2.0 * HEIGHT);
     let mut found = None;
@@ -59,7 +59,7 @@ pub fn mount(
     let (_, start) = found.ok_or("nothing to hold at this height")?;
     // Clips are made for creatures of 2 m; by Froude's law larger ones are slower.
     let rate = 1.0 / (HEIGHT / 2.0).sqrt();
-    let animation = (creature.skeleton.clone(), clip.clone());
+    let animation = (creature.rig.skeleton.clone(), clip.clone());
     Ok((
         Thing::creature(collider, animation, rate, move |_| place),
         start,
@@ -67,9 +67,6 @@ pub fn mount(
 }
 
 /// Holds on to a creature and climbs: up for a second, still for a second, aside, down, and so on.
-///
-/// # Errors
-/// As [`mount`].
 pub fn climb(creature: &Creature, at: &Mount, speed: f64) -> Result<Scene, Box<dyn Error>> {
     let mut config = ClimberConfig::colossus_climber();
     config.stamina = None;

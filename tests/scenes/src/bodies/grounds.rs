@@ -3,7 +3,6 @@
 use std::error::Error;
 
 use clamber_climber::{ClimberConfig, ClimberInput};
-use clamber_surface::geometry::Similarity;
 use clamber_surface::mesh::SurfaceKind;
 use glam::DVec3;
 
@@ -26,36 +25,29 @@ fn scene(name: String, speed: f64, things: Vec<Thing>, feet: DVec3) -> Scene {
     Scene { config, ..scene }
 }
 
-fn moving_floor(
-    motion: impl Fn(f64) -> Similarity + 'static,
-) -> Result<Vec<Thing>, Box<dyn Error>> {
-    let floor = Thing::solid(&Solid::floor(60.0), SurfaceKind::Stone, motion)?;
-    Ok(vec![floor])
-}
-
 /// Level ground, walked on at a speed; 0 stands.
 pub fn flat(speed: f64) -> Made {
     let name = format!("flat at {speed} m/s");
-    Ok(scene(name, speed, vec![floor()?], DVec3::ZERO))
+    Ok(scene(name, speed, vec![floor(still)?], DVec3::ZERO))
 }
 
 /// A platform that goes up at 5 m/s.
 pub fn lift(speed: f64) -> Made {
-    let things = moving_floor(|time| shifted(DVec3::Y * (5.0 * time)))?;
+    let things = vec![floor(|time| shifted(DVec3::Y * (5.0 * time)))?];
     let name = format!("lift at {speed} m/s");
     Ok(scene(name, speed, things, DVec3::ZERO))
 }
 
 /// A platform that turns by 0.5 rad a second, walked on 6 m from its axis.
 pub fn turntable(speed: f64) -> Made {
-    let things = moving_floor(|time| turned(DVec3::Y, 0.5 * time))?;
+    let things = vec![floor(|time| turned(DVec3::Y, 0.5 * time))?];
     let name = format!("turntable at {speed} m/s");
     Ok(scene(name, speed, things, DVec3::X * 6.0))
 }
 
 /// A ramp along +Z, up or, with a negative angle, down, radians.
 pub fn ramp(angle: f64, speed: f64) -> Made {
-    let things = moving_floor(move |_| turned(DVec3::X, -angle))?;
+    let things = vec![floor(move |_| turned(DVec3::X, -angle))?];
     let name = format!("ramp of {:.0} degrees at {speed} m/s", angle.to_degrees());
     let mut scene = scene(name, speed, things, DVec3::ZERO);
     scene.start += DVec3::Y * (scene.config.body.radius * (1.0 / libm::cos(angle) - 1.0));
@@ -97,7 +89,7 @@ pub fn block() -> Made {
     }
     let block = Thing::solid(&Solid::Mesh(mesh), SurfaceKind::Stone, still)?;
     let (name, feet) = ("one foot on a block".into(), DVec3::Y * 0.4);
-    let mut scene = scene(name, 0.0, vec![floor()?, block], feet);
+    let mut scene = scene(name, 0.0, vec![floor(still)?, block], feet);
     scene.input = Box::new(|_| ClimberInput::IDLE);
     Ok(scene)
 }

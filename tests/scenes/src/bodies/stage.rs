@@ -128,9 +128,9 @@ pub(super) fn still(_: f64) -> Similarity {
     Similarity::IDENTITY
 }
 
-/// A floor of stone.
-pub(super) fn floor() -> Result<Thing, Box<dyn Error>> {
-    Thing::solid(&Solid::floor(60.0), SurfaceKind::Stone, still)
+/// A floor of stone that moves.
+pub(super) fn floor(motion: impl Fn(f64) -> Similarity + 'static) -> Result<Thing, Box<dyn Error>> {
+    Thing::solid(&Solid::floor(60.0), SurfaceKind::Stone, motion)
 }
 
 /// The direction if the condition holds, or else zero.
@@ -160,9 +160,6 @@ pub struct Stage<'s> {
 
 impl<'s> Stage<'s> {
     /// At the start.
-    ///
-    /// # Errors
-    /// For a scene with bad numbers.
     pub fn new(scene: &'s Scene) -> Result<Self, Box<dyn Error>> {
         let mut surfaces = Vec::new();
         for thing in &scene.things {
@@ -177,11 +174,6 @@ impl<'s> Stage<'s> {
             events: Vec::new(),
             time: 0.0,
         })
-    }
-
-    /// The scene.
-    pub fn scene(&self) -> &'s Scene {
-        self.scene
     }
 
     /// What there is, for bodies.
@@ -200,9 +192,6 @@ impl<'s> Stage<'s> {
     }
 
     /// Lets a tick pass: everything moves, then the climber steps. Everything can be gripped that is fur.
-    ///
-    /// # Errors
-    /// For a scene with bad numbers.
     pub fn tick(&mut self, dt: f64) -> Result<(), Box<dyn Error>> {
         let input = (self.scene.input)(&Moment {
             time: self.time,
@@ -214,7 +203,7 @@ impl<'s> Stage<'s> {
         }
         let ids = (0..).map(ObstacleId);
         let obstacles = ids.zip(self.surfaces.iter().map(|surface| surface as &dyn Obstacle));
-        let obstacles: Vec<(ObstacleId, &dyn Obstacle)> = obstacles.collect();
+        let obstacles: Vec<_> = obstacles.collect();
         let rules = if self.scene.grips_all {
             StepRules::by(&|query| query.usual().with_grip(true))
         } else {

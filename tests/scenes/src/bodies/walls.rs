@@ -23,8 +23,7 @@ fn block(
     [low, high]: [[f64; 3]; 2],
     motion: impl Fn(f64) -> Similarity + 'static,
 ) -> Made<Thing> {
-    let [low, high] = [low, high].map(DVec3::from_array);
-    Thing::solid(&Solid::Block { low, high }, kind, motion)
+    Thing::solid(&Solid::block(low, high), kind, motion)
 }
 
 fn stone(corners: [[f64; 3]; 2]) -> Made<Thing> {
@@ -82,7 +81,10 @@ fn towards(moment: &Moment<'_>) -> DVec3 {
 
 /// A scene before a ledge 3 m above the ground.
 fn at_a_ledge(name: &str, input: impl Fn(&Moment<'_>) -> ClimberInput + 'static) -> Made<Scene> {
-    let things = vec![floor()?, stone([[-50.0, -2.0, 0.0], [50.0, 3.0, 8.0]])?];
+    let things = vec![
+        floor(still)?,
+        stone([[-50.0, -2.0, 0.0], [50.0, 3.0, 8.0]])?,
+    ];
     let start = DVec3::new(0.0, 2.2, -0.42);
     Ok(Scene::new(name, 5.0, start, things, input))
 }
@@ -113,7 +115,7 @@ pub fn drop_off() -> Made<Scene> {
 
 /// Stands, jumps after half a second, and falls from another 3 m.
 pub fn fall() -> Made<Scene> {
-    let things = vec![floor()?, stone([[-3.0, 2.0, -3.0], [3.0, 3.0, 1.0]])?];
+    let things = vec![floor(still)?, stone([[-3.0, 2.0, -3.0], [3.0, 3.0, 1.0]])?];
     let start = DVec3::new(0.0, 3.42, 0.0);
     Ok(Scene::new("jump and fall", 3.5, start, things, |moment| {
         ClimberInput {
@@ -125,7 +127,10 @@ pub fn fall() -> Made<Scene> {
 
 /// Steps off a wall of half a metre.
 pub fn step_off() -> Made<Scene> {
-    let things = vec![floor()?, stone([[-3.0, -1.0, -3.0], [3.0, 0.45, 0.6]])?];
+    let things = vec![
+        floor(still)?,
+        stone([[-3.0, -1.0, -3.0], [3.0, 0.45, 0.6]])?,
+    ];
     let start = DVec3::new(0.0, 0.86, 0.0);
     Ok(Scene::new("steps off", 3.0, start, things, |moment| {
         let walks = moment.time > 0.4 && moment.time < 1.4;
@@ -139,7 +144,7 @@ pub fn all_holds() -> Made<Scene> {
         let shakes = ((time - 3.0) / 0.4).clamp(0.0, 1.0) * ((5.0 - time) / 0.4).clamp(0.0, 1.0);
         shifted(DVec3::X * (0.2 * shakes * libm::sin(12.0 * (time - 3.0))))
     };
-    let things = vec![floor()?, fur(-4.0, motion)?];
+    let things = vec![floor(still)?, fur(-4.0, motion)?];
     let start = STANDING - DVec3::Z * 0.5;
     Ok(Scene::new("all holds", 9.0, start, things, |moment| {
         let walk = when(moment.time < 1.0 && moment.time > 0.6, DVec3::Z);
@@ -157,7 +162,7 @@ pub fn all_holds() -> Made<Scene> {
 
 /// Stands, and is knocked over; tumbles, lies and gets up.
 pub fn knock() -> Made<Scene> {
-    let things = vec![floor()?];
+    let things = vec![floor(still)?];
     Ok(Scene::new(
         "knocked over",
         5.0,
@@ -179,7 +184,7 @@ fn below_a_ceiling(name: &str, low: f64) -> Made<Scene> {
     let motion =
         move |time: f64| shifted(DVec3::Y * (low + (1.6 - 0.8 * time).max(0.0)) - DVec3::Z * 6.0);
     let corners = [[-3.0, -3.0, 0.0], [3.0, 3.0, 12.0]];
-    let things = vec![floor()?, block(SurfaceKind::Stone, corners, motion)?];
+    let things = vec![floor(still)?, block(SurfaceKind::Stone, corners, motion)?];
     Ok(Scene::new(name, 4.0, STANDING, things, |_| {
         ClimberInput::IDLE
     }))

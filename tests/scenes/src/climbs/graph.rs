@@ -115,7 +115,7 @@ pub fn climb_by(
     };
     let mut bot = Bot::new(Arc::clone(&graph), BotConfig::default());
     let mut climber = standing(&stage, config, &graph, first)?;
-    let mut future = FutureSkin::new(Arc::clone(&creature.collider));
+    let mut future = FutureSkin::new(Arc::clone(&creature.rig.collider));
     let tick = 1.0 / options.rate;
     for seconds in (0..(options.seconds * options.rate) as u64).map(|index| index as f64 * tick) {
         stage.advance(seconds)?;

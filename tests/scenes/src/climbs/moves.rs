@@ -49,8 +49,9 @@ impl Moves {
 
     /// The first clip with one of these words in its name, or else the first clip, in a loop.
     pub(super) fn one(creature: &Creature, words: &[&str], rate: f64) -> Self {
-        let clip = creature.clip_like(words).or(creature.clips.first());
-        let index = clip.and_then(|clip| creature.clips.iter().position(|c| c.name == clip.name));
+        let clip = creature.clip_like(words).or(creature.rig.clips.first());
+        let index =
+            clip.and_then(|clip| creature.rig.clips.iter().position(|c| c.name == clip.name));
         Self {
             played: index
                 .map(|index| (index, Repeat::Loop))
@@ -68,8 +69,8 @@ impl Moves {
         own: f64,
         height: f64,
     ) -> Result<Self, Box<dyn Error>> {
-        let all = || 0..creature.clips.len();
-        let name = |clip: usize| creature.clips[clip].name.to_lowercase();
+        let all = || 0..creature.rig.clips.len();
+        let name = |clip: usize| creature.rig.clips[clip].name.to_lowercase();
         let lives = |clip: &usize| {
             let name = name(*clip);
             let mut words = name.split(|letter: char| !letter.is_alphabetic());
@@ -87,10 +88,10 @@ impl Moves {
         if clips.is_empty() {
             clips.extend(all().find(lives).or(all().next()));
         }
-        let probe = SeamProbe::new(&creature.skeleton, &creature.collider, own);
+        let probe = SeamProbe::new(&creature.rig.skeleton, &creature.rig.collider, own);
         let mut played = Vec::new();
         for clip in clips {
-            played.push((clip, Repeat::of(probe.measure(&creature.clips[clip])?)));
+            played.push((clip, Repeat::of(probe.measure(&creature.rig.clips[clip])?)));
         }
         Ok(Self {
             played,
@@ -101,7 +102,7 @@ impl Moves {
 
     /// The pose at a time, seconds.
     pub(super) fn pose(&self, creature: &Creature, seconds: f64) -> Result<Pose, RigError> {
-        let mut pose = creature.skeleton.rest_pose();
+        let mut pose = creature.rig.skeleton.rest_pose();
         let Some((played, since)) = self.at(seconds) else {
             return Ok(pose);
         };
@@ -112,7 +113,7 @@ impl Moves {
             && faded < 1.0
             && let Some((before, _)) = self.at(seconds - TURN)
         {
-            let mut other = creature.skeleton.rest_pose();
+            let mut other = creature.rig.skeleton.rest_pose();
             self.sample(creature, before, TURN + since, &mut other)?;
             let share = faded * faded * (3.0 - 2.0 * faded);
             pose.blend_in(&other, 1.0 - share)?;
@@ -127,7 +128,7 @@ impl Moves {
         since: f64,
         pose: &mut Pose,
     ) -> Result<(), RigError> {
-        let clip = &creature.clips[clip];
+        let clip = &creature.rig.clips[clip];
         let time = repeat.time(since * self.rate, clip.duration());
         clip.sample_into(time, Playback::Clamp, pose)
     }
@@ -154,7 +155,7 @@ impl Moves {
         let mut forecast = Forecast::still();
         for step in 0..(2.0 * TURN / AHEAD) as u32 {
             if let Some(((clip, repeat), since)) = self.at(seconds + f64::from(step) * AHEAD) {
-                let clip = &creature.clips[clip];
+                let clip = &creature.rig.clips[clip];
                 let time = repeat.time(since * self.rate, clip.duration());
                 forecast = forecast.then(graph, &clip.name, time, AHEAD);
             }

@@ -5,7 +5,7 @@ use glam::Vec3;
 use pathfinding::directed::dijkstra::dijkstra;
 use pathfinding::undirected::connected_components::components;
 
-use crate::{Creature, CreatureError};
+use crate::{Creature, SceneError};
 
 /// Separate pieces of skin are joined by ways where they are nearer than this share of the creature's height.
 const GAP: f32 = 0.04;
@@ -34,12 +34,15 @@ impl Ways {
     /// All ways over a creature, at rest.
     ///
     /// # Errors
-    /// [`CreatureError`] if the rest pose does not fit the collider.
-    pub fn new(creature: &Creature) -> Result<Self, CreatureError> {
-        let palette = creature.skeleton.palette(&creature.skeleton.rest_pose())?;
-        let rest = clamber_surface::skin::skin(&creature.collider, palette.matrices())?;
+    /// [`SceneError`] if the rest pose does not fit the collider.
+    pub fn new(creature: &Creature) -> Result<Self, SceneError> {
+        let palette = creature
+            .rig
+            .skeleton
+            .palette(&creature.rig.skeleton.rest_pose())?;
+        let rest = clamber_surface::skin::skin(&creature.rig.collider, palette.matrices())?;
         let mut neighbours: Vec<Vec<u32>> = vec![Vec::new(); rest.len()];
-        for corners in creature.collider.triangles() {
+        for corners in creature.rig.collider.triangles() {
             for k in 0..3 {
                 let (a, b) = (corners[k], corners[(k + 1) % 3]);
                 neighbours[a.index()].push(b.0);

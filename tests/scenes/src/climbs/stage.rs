@@ -11,7 +11,7 @@ use clamber_surface::surface::SkinnedSurface;
 use glam::DVec3;
 
 use super::moves::Moves;
-use crate::{Creature, CreatureError};
+use crate::{Creature, SceneError};
 
 /// How a creature moves while it is climbed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,15 +54,15 @@ impl<'a> Stage<'a> {
         motion: Motion,
     ) -> Result<Self, Box<dyn Error>> {
         let (place, ground) = creature.standing(height)?;
-        let mut triangle_at = vec![None; creature.collider.positions().len()];
-        for corners in creature.collider.triangles() {
+        let mut triangle_at = vec![None; creature.rig.collider.positions().len()];
+        for corners in creature.rig.collider.triangles() {
             for vertex in corners {
                 triangle_at[vertex.index()] = Some(*corners);
             }
         }
         let mut stage = Self {
             creature,
-            surface: SkinnedSurface::new(creature.collider.clone()),
+            surface: SkinnedSurface::new(creature.rig.collider.clone()),
             triangle_at,
             place,
             ground,
@@ -83,28 +83,25 @@ impl<'a> Stage<'a> {
     /// Puts the creature into its pose at a time, seconds, without motion.
     ///
     /// # Errors
-    /// [`CreatureError`] if a clip does not fit.
-    pub fn place(&mut self, time: f64) -> Result<(), CreatureError> {
+    /// [`SceneError`] if a clip does not fit.
+    pub fn place(&mut self, time: f64) -> Result<(), SceneError> {
         let (palette, root) = self.pose(time)?;
         Ok(self.surface.place(&palette, root)?)
     }
 
     /// Moves the creature on to its pose at a time, seconds: the next tick.
-    ///
-    /// # Errors
-    /// As [`Stage::place`].
-    pub fn advance(&mut self, time: f64) -> Result<(), CreatureError> {
+    pub fn advance(&mut self, time: f64) -> Result<(), SceneError> {
         let (palette, root) = self.pose(time)?;
         Ok(self.surface.advance(&palette, root)?)
     }
 
-    pub(super) fn pose(&self, time: f64) -> Result<(Palette, Similarity), CreatureError> {
+    pub(super) fn pose(&self, time: f64) -> Result<(Palette, Similarity), SceneError> {
         let pose = self.moves.pose(self.creature, time)?;
         let mut root = self.place;
         if self.sways {
             root.translation += DVec3::new(0.05, 0.02, 0.03) * libm::sin(1.2 * TAU * time);
         }
-        Ok((self.creature.skeleton.palette(&pose)?, root))
+        Ok((self.creature.rig.skeleton.palette(&pose)?, root))
     }
 
     /// The clips that the creature is about to play from a time on, seconds.

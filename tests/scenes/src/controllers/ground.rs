@@ -96,10 +96,7 @@ fn bumps(name: &'static str, [width, height]: [f64; 2], every: f64, count: u32) 
     let mut set = Set::new(DVec3::ZERO).with_still(Solid::floor(30.0));
     for k in 0..count {
         let x = 1.0 + every * f64::from(k);
-        set = set.with_still(Solid::Block {
-            low: DVec3::new(x, -0.5, -2.0),
-            high: DVec3::new(x + width, height, 2.0),
-        });
+        set = set.with_still(Solid::block([x, -0.5, -2.0], [x + width, height, 2.0]));
     }
     let scene = Scene::new(28, name, 240, set, |seen| {
         (11.0 - seen.end().x).max(seen.end().z.abs())

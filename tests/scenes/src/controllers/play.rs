@@ -19,12 +19,6 @@ pub struct Seen {
 }
 
 impl Seen {
-    /// Each position with its time.
-    pub fn timed(&self) -> impl Iterator<Item = (f64, DVec3)> {
-        let ticks = self.positions.iter().enumerate();
-        ticks.map(|(tick, p)| (self.dt * (tick as f64 + 1.0), *p))
-    }
-
     /// The last position.
     pub fn end(&self) -> DVec3 {
         self.positions.last().copied().unwrap_or(self.start)
@@ -32,9 +26,9 @@ impl Seen {
 
     /// The largest value of a function of time and position; at least 0.
     pub fn most(&self, of: impl Fn(f64, DVec3) -> f64) -> f64 {
-        self.timed()
-            .map(|(time, p)| of(time, p))
-            .fold(0.0, f64::max)
+        let ticks = self.positions.iter().enumerate();
+        let values = ticks.map(|(tick, p)| of(self.dt * (tick as f64 + 1.0), *p));
+        values.fold(0.0, f64::max)
     }
 }
 
@@ -102,9 +96,6 @@ const SETTLE: u32 = 60;
 pub trait Controller {
     /// Takes the world to a time, in seconds, and the character with it. Returns the time that the character's part of
     /// the tick took, in microseconds.
-    ///
-    /// # Errors
-    /// Whatever kept the controller from stepping.
     fn step(&mut self, time: f64, input: &Input) -> Result<f64, Box<dyn Error>>;
 
     /// The centre of the capsule's lower ball: [`RADIUS`](super::RADIUS) above the feet.
@@ -127,9 +118,6 @@ pub struct Outcome {
 }
 
 /// Plays a scene, or its first `most` ticks.
-///
-/// # Errors
-/// The first of the controller's.
 pub fn play(
     scene: &Scene,
     character: &mut dyn Controller,

@@ -26,12 +26,15 @@ pub struct Mesh {
 }
 
 impl Solid {
+    /// An axis-aligned box between its smallest and its largest corner.
+    pub fn block(low: [f64; 3], high: [f64; 3]) -> Self {
+        let [low, high] = [low, high].map(DVec3::from_array);
+        Self::Block { low, high }
+    }
+
     /// A floor, 1 m thick. Its top is a square around the origin, `half` metres to each side.
     pub fn floor(half: f64) -> Self {
-        Self::Block {
-            low: DVec3::new(-half, -1.0, -half),
-            high: DVec3::new(half, 0.0, half),
-        }
+        Self::block([-half, -1.0, -half], [half, 0.0, half])
     }
 
     /// A level field of `columns` by 16 squares of 1 m. It starts at `x` along X, and reaches 8 m to both sides.

@@ -9,10 +9,7 @@ use super::solid::Solid;
 /// A wall pushes an idle character. Error: its depth in the wall beyond the padding, or its distance off the floor or
 /// to a side.
 fn pushed(name: &'static str, speed: f64, ticks: u32) -> Scene {
-    let wall = Solid::Block {
-        low: DVec3::new(-3.0, -0.5, -5.0),
-        high: DVec3::new(-1.0, 4.0, 5.0),
-    };
+    let wall = Solid::block([-3.0, -0.5, -5.0], [-1.0, 4.0, 5.0]);
     let set = Set::new(DVec3::ZERO)
         .with_still(Solid::floor(80.0))
         .with(wall, move |time| shifted(DVec3::X * (speed * time)));
@@ -32,10 +29,7 @@ fn pushed(name: &'static str, speed: f64, ticks: u32) -> Scene {
 /// A wall pushes an idle character to and fro. Error: as [`pushed`], or how far the character goes beyond the wall's
 /// reach.
 fn shoved() -> Scene {
-    let wall = Solid::Block {
-        low: DVec3::new(-2.0, 0.0, -3.0),
-        high: DVec3::new(-1.0, 3.0, 3.0),
-    };
+    let wall = Solid::block([-2.0, 0.0, -3.0], [-1.0, 3.0, 3.0]);
     let way = |time: f64| 3.0 * libm::sin(time);
     let set = Set::new(DVec3::ZERO)
         .with_still(Solid::floor(20.0))
@@ -62,16 +56,10 @@ fn alongside(number: u32, name: &'static str, wall: Vec<Solid>, walk: DVec3) -> 
 }
 
 pub(super) fn scenes() -> Vec<Scene> {
-    let smooth = Solid::Block {
-        low: DVec3::new(-20.0, -1.0, -1.0 - RADIUS),
-        high: DVec3::new(20.0, 3.0, -RADIUS),
-    };
+    let smooth = Solid::block([-20.0, -1.0, -1.0 - RADIUS], [20.0, 3.0, -RADIUS]);
     let pillars = (0..30u32).map(|k| {
         let x = -1.0 + 0.2 * f64::from(k);
-        Solid::Block {
-            low: DVec3::new(x, -0.5, -0.2 - RADIUS),
-            high: DVec3::new(x + 0.2, 2.0, -RADIUS),
-        }
+        Solid::block([x, -0.5, -0.2 - RADIUS], [x + 0.2, 2.0, -RADIUS])
     });
     let (name, walk) = ("a walk along a wall, into it", DVec3::new(5.0, 0.0, -1.0));
     let along = alongside(5, name, vec![smooth], walk);

@@ -14,9 +14,9 @@ use clamber_world::{HalfSpace, Obstacle, ObstacleId};
 use glam::DVec3;
 
 #[cfg(feature = "record")]
-pub use record::{is_duel, record, replay};
+pub use record::{record, replay};
 
-use crate::{Creature, giant};
+use crate::giant;
 
 /// Ticks a second.
 pub const RATE: u64 = 60;
@@ -38,13 +38,10 @@ impl Duel {
     pub fn kind() -> Result<Arc<CreatureKind>, Box<dyn Error>> {
         let brain = std::fs::read_to_string(giant::brain_path())?;
         let brain = Brain::from_json(&brain, 1.0 / RATE as f64)?;
-        Ok(Arc::new(Creature::load(&giant::path())?.with_brain(brain)?))
+        Ok(Arc::new(CreatureKind::new(&giant::model()?.rig, brain)?))
     }
 
     /// One climber above the giant's back, and one before it.
-    ///
-    /// # Errors
-    /// None.
     pub fn new(kind: &Arc<CreatureKind>) -> Result<Self, ArenaError> {
         let mut arena = Arena::new(ArenaConfig::default())?;
         arena.add_creature(Arc::clone(kind), CreatureConfig::default())?;
@@ -56,9 +53,6 @@ impl Duel {
     }
 
     /// An arena that knows the giant, and nobody in it yet: for a late joiner, who gets its state from the others.
-    ///
-    /// # Errors
-    /// None.
     pub fn empty(kind: &Arc<CreatureKind>) -> Result<Self, ArenaError> {
         let mut arena = Arena::new(ArenaConfig::default())?;
         arena.add_kind(Arc::clone(kind))?;
@@ -105,9 +99,6 @@ impl Duel {
     }
 
     /// Steps the arena over the ground.
-    ///
-    /// # Errors
-    /// As of [`Arena::step_with`].
     pub fn step(
         arena: &mut Arena,
         ground: &HalfSpace,

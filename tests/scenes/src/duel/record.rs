@@ -58,15 +58,6 @@ pub fn record(
     Ok(arena.fingerprint())
 }
 
-/// True if a recording is of a duel.
-pub fn is_duel(recording: &ArenaRecording) -> bool {
-    recording
-        .info()
-        .settings
-        .get("scene")
-        .is_some_and(|scene| scene == "duel")
-}
-
 /// Fights a recorded duel again, from the last saved state at or before a tick, or from the first tick.
 ///
 /// # Errors
@@ -75,7 +66,8 @@ pub fn replay(
     recording: &ArenaRecording,
     from: Option<u64>,
 ) -> Result<ArenaReplay, Box<dyn Error>> {
-    if !is_duel(recording) {
+    let scene = recording.info().settings.get("scene");
+    if scene.is_none_or(|scene| scene != "duel") {
         return Err("this is a recording of another scene than a duel".into());
     }
     let Duel { mut arena, ground } = Duel::new(&Duel::kind()?)?;

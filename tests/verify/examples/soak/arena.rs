@@ -6,7 +6,7 @@ mod orders;
 use std::sync::Arc;
 
 use clamber_climber::{ClimberInput, StepRules};
-use clamber_colossus::{Brain, CreatureConfig};
+use clamber_colossus::{Brain, CreatureConfig, CreatureKind};
 use clamber_fight::{Arena, ArenaConfig, FighterConfig, Order};
 use clamber_scenes::Creature;
 use clamber_world::{HalfSpace, Obstacle, ObstacleId};
@@ -107,7 +107,10 @@ fn make(giant: &Creature, rng: &mut Rng) -> (Arena, DVec3) {
     let origin = DVec3::new(lot(rng) * far, lot(rng) * 100.0, lot(rng) * far);
     let mut made = || -> Result<Arena, Box<dyn std::error::Error>> {
         let brain = std::fs::read_to_string(clamber_scenes::giant::brain_path())?;
-        let kind = Arc::new(giant.with_brain(Brain::from_json(&brain, 1.0 / 60.0)?)?);
+        let kind = Arc::new(CreatureKind::new(
+            &giant.rig,
+            Brain::from_json(&brain, 1.0 / 60.0)?,
+        )?);
         let mut arena = Arena::new(ArenaConfig {
             seed: rng.u64(..),
             stuck_arrows: rng.u32(0..8),

@@ -117,7 +117,7 @@ struct Life {
 impl Life {
     fn new(giant: &clamber_scenes::Creature, seed: u64) -> Fallible<Self> {
         let brain = Brain::from_json(&std::fs::read_to_string(giant::brain_path())?, TICK)?;
-        let kind = Arc::new(giant.with_brain(brain)?);
+        let kind = Arc::new(CreatureKind::new(&giant.rig, brain)?);
         let brain = kind.brain();
         let is_leaf = |state: &StateId| {
             let mut others = brain.states().filter(|other| other != state);

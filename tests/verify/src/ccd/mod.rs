@@ -3,18 +3,17 @@
 //!
 //! The answers to a file's queries are checked in rational numbers, with the exact points of the file.
 
-mod error;
 mod options;
 mod report;
 mod stage;
 
+use std::error::Error;
 use std::time::Duration;
 
 use crate::exact::{Apart, Claim, Last, Motion, number};
 use crate::queries::{FileQuery, read_queries};
 use indicatif::{ProgressBar, ProgressStyle};
 
-pub use error::CcdError;
 pub use options::CcdOptions;
 pub use report::CcdReport;
 pub use stage::{Answer, CAP, Stage};
@@ -22,8 +21,8 @@ pub use stage::{Answer, CAP, Stage};
 /// Runs all queries of all files. Shows a progress bar on standard error.
 ///
 /// # Errors
-/// [`CcdError`] if a file cannot be read, or the library rejects a query.
-pub fn run(options: &CcdOptions) -> Result<CcdReport, CcdError> {
+/// If a file cannot be read, or the library rejects a query.
+pub fn run(options: &CcdOptions) -> Result<CcdReport, Box<dyn Error>> {
     let mut files = Vec::new();
     for file in &options.files {
         files.push((file, read_queries(file)?));
@@ -40,11 +39,8 @@ pub fn run(options: &CcdOptions) -> Result<CcdReport, CcdError> {
         for query in queries {
             let (pair, tolerance) = (query.rounded(), query.tolerance());
             let answer = stage.sweep(&pair, tolerance);
-            let answer = answer.map_err(|source| CcdError::Surface {
-                file: (*file).clone(),
-                line: query.line(),
-                source,
-            })?;
+            let answer =
+                answer.map_err(|error| format!("{}:{}: {error}", file.display(), query.line()))?;
             took += answer.took;
             report.worst_steps = report.worst_steps.max(answer.steps);
             report.count(query, &answer.claim());

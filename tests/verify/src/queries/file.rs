@@ -2,12 +2,12 @@
 //! Large-Scale Benchmark and an Inclusion-Based Algorithm for Continuous Collision Detection*. A query has
 //! eight rows. Each row is a vertex in rational numbers, and whether the query's motion ever touches.
 
+use std::error::Error;
 use std::path::Path;
 
 use dashu_int::IBig;
 use dashu_ratio::Relaxed;
 
-use super::error::{QueryFileError, RowError};
 use super::query::{FileQuery, QueryKind};
 use crate::exact::Exact;
 
@@ -18,13 +18,10 @@ const ROWS: usize = 8;
 /// the path is the kind of the queries.
 ///
 /// # Errors
-/// [`QueryFileError`] if the file cannot be read, the path contains neither kind, a row is not valid, or the file ends
-/// within a query.
-pub fn read_queries(file: &Path) -> Result<Vec<FileQuery>, QueryFileError> {
-    let text = std::fs::read_to_string(file).map_err(|source| QueryFileError::Read {
-        file: file.to_owned(),
-        source,
-    })?;
+/// If the file cannot be read, the path contains neither kind, a row is not valid, or the file ends within a query.
+pub fn read_queries(file: &Path) -> Result<Vec<FileQuery>, Box<dyn Error>> {
+    let text = std::fs::read_to_string(file);
+    let text = text.map_err(|error| format!("{}: {error}", file.display()))?;
     parse_queries(file, &text)
 }
 
@@ -32,36 +29,31 @@ pub fn read_queries(file: &Path) -> Result<Vec<FileQuery>, QueryFileError> {
 ///
 /// # Errors
 /// As [`read_queries`].
-pub fn parse_queries(file: &Path, text: &str) -> Result<Vec<FileQuery>, QueryFileError> {
-    let kind = kind_of(file).ok_or_else(|| QueryFileError::Kind {
-        file: file.to_owned(),
-    })?;
-    let of_row = |line: usize, reason: RowError| QueryFileError::Row {
-        file: file.to_owned(),
-        line,
-        reason,
-    };
+pub fn parse_queries(file: &Path, text: &str) -> Result<Vec<FileQuery>, Box<dyn Error>> {
+    let name = file.display();
+    let kind = kind_of(file)
+        .ok_or_else(|| format!("{name}: expected `edge-edge` or `vertex-face` in the path"))?;
+    let of_row = |line: usize, reason: &str| format!("{name}:{line}: {reason}");
     let mut rows = Vec::new();
     for (index, row) in text.lines().enumerate() {
-        rows.push(parse_row(row).map_err(|reason| of_row(index + 1, reason))?);
+        rows.push(parse_row(row).map_err(|reason| of_row(index + 1, &reason))?);
     }
     let (whole, rest) = rows.as_chunks::<ROWS>();
     if !rest.is_empty() {
-        return Err(QueryFileError::Rows {
-            file: file.to_owned(),
-            rows: rows.len(),
-        });
+        let rows = rows.len();
+        return Err(format!("{name}: {rows} rows, not a multiple of the 8 rows of a query").into());
     }
     let mut queries = Vec::new();
     for (index, rows) in whole.iter().enumerate() {
         let line = index * ROWS + 1;
         let touches = rows[0].1;
         if let Some(other) = rows.iter().position(|(_, label)| *label != touches) {
-            return Err(of_row(line + other, RowError::LabelDiffers));
+            let reason = "column 7 differs from column 7 of the query's first row";
+            return Err(of_row(line + other, reason).into());
         }
         let points = rows.each_ref().map(|(point, _)| point.clone());
         let query = FileQuery::new(kind, points, touches, line);
-        queries.push(query.map_err(|reason| of_row(line, reason))?);
+        queries.push(query.map_err(|reason| of_row(line, &reason))?);
     }
     Ok(queries)
 }
@@ -76,12 +68,10 @@ fn kind_of(file: &Path) -> Option<QueryKind> {
     }
 }
 
-fn parse_row(row: &str) -> Result<(Exact, bool), RowError> {
+fn parse_row(row: &str) -> Result<(Exact, bool), String> {
     let columns: Vec<&str> = row.split(',').map(str::trim).collect();
     let [x, x_over, y, y_over, z, z_over, label] = columns[..] else {
-        return Err(RowError::Columns {
-            found: columns.len(),
-        });
+        return Err(format!("expected 7 columns, found {}", columns.len()));
     };
     let point = [
         parse_number(1, x, x_over)?,
@@ -91,24 +81,19 @@ fn parse_row(row: &str) -> Result<(Exact, bool), RowError> {
     let touches = match label {
         "0" => false,
         "1" => true,
-        _ => {
-            let found = label.to_owned();
-            return Err(RowError::Label { found });
-        }
+        _ => return Err(format!("column 7: expected 0 or 1, found `{label}`")),
     };
     Ok((point, touches))
 }
 
-fn parse_number(column: usize, over: &str, under: &str) -> Result<Relaxed, RowError> {
+fn parse_number(column: usize, over: &str, under: &str) -> Result<Relaxed, String> {
     let [over, under] = [(column, over), (column + 1, under)].map(|(column, text)| {
-        text.parse::<IBig>().map_err(|_| RowError::Integer {
-            column,
-            found: text.to_owned(),
-        })
+        let parsed = text.parse::<IBig>();
+        parsed.map_err(|_| format!("column {column}: expected an integer, found `{text}`"))
     });
     let (over, under) = (over?, under?);
     if under == IBig::ZERO {
-        return Err(RowError::Denominator { column: column + 1 });
+        return Err(format!("column {}: a denominator of 0", column + 1));
     }
     Ok(Relaxed::from_parts_signed(over, under))
 }

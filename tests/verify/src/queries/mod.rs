@@ -4,10 +4,8 @@
 //! collapsed face. A query is moved to the origin in exact arithmetic, and rounded to f32 ([`FileQuery::rounded`]). Its
 //! radius is far larger than the rounding, so a sweep must find every contact.
 
-mod error;
 mod file;
 mod query;
 
-pub use error::{QueryFileError, RowError};
 pub use file::{parse_queries, read_queries};
 pub use query::{FileQuery, QueryKind};

@@ -1,7 +1,6 @@
 use dashu_ratio::Relaxed;
 use glam::Vec3;
 
-use super::error::RowError;
 use crate::exact::{Exact, ExactPair, exact, minus, rounded};
 use crate::{Core, MovingPair};
 
@@ -44,12 +43,14 @@ impl FileQuery {
         points: [Exact; 8],
         touches: bool,
         line: usize,
-    ) -> Result<Self, RowError> {
+    ) -> Result<Self, String> {
         let [a, b, c, d, e, f, g, h] = points.each_ref().map(|p| minus(p, &points[0]));
         let points = [[a, b, c, d], [e, f, g, h]];
         let extent = extent(points.as_flattened());
         if extent != 0.0 && !EXTENTS.contains(&extent) {
-            return Err(RowError::Extent { extent });
+            return Err(format!(
+                "a query of extent {extent:e} does not fit f32: expected 1e-30 to 1e30, or 0"
+            ));
         }
         Ok(Self {
             kind,

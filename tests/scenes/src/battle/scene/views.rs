@@ -103,14 +103,6 @@ impl<'a> Battle<'a> {
         }
     }
 
-    /// Names of the clips that are not loops and are therefore played back and forth.
-    pub fn turned_back(&self) -> Vec<String> {
-        match &self.part {
-            Part::Fights { .. } => Vec::new(),
-            Part::Rides(ride) => ride.choreography.turned_back(),
-        }
-    }
-
     /// The arena of a climb.
     pub fn arena(&self) -> Option<&Arena> {
         match &self.part {
