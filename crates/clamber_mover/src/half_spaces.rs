@@ -53,7 +53,7 @@ const LONGER: f64 = 8.0;
 /// interval.
 const ATTEMPTS: usize = 150;
 
-/// All points y with `normal . y >= offset`.
+/// A plane that a mover stays on one side of: the half-space of all points or velocities y with `normal . y >= offset`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MovePlane {
     /// Unit normal that points into the half-space. Planes whose normal is shorter than a half, longer than 2, or not

@@ -27,12 +27,15 @@ pub struct GraphConfig {
     /// `clamber_colossus::Creature::rate`. Default: 1.
     pub clip_rate: f64,
     /// Parts of the skin that can be removed one by one, such as plates of armour. The skin below them is divided into
-    /// patches as well. A living creature's plates are `clamber_colossus::CreatureKind::plates`. Default: none.
+    /// patches as well. A living creature's plates are `clamber_colossus::CreatureKind::plates`. Default: none; at most 65,536.
     pub plates: Vec<Vec<TriangleId>>,
 }
 
 /// Allowed rates of clips, as a share of the file's rate.
 const CLIP_RATES: std::ops::RangeInclusive<f64> = 1e-4..=1e4;
+
+/// Largest number of plates: patches store their plate's number in 16 bits.
+const MOST_PLATES: usize = 1 << 16;
 
 impl GraphConfig {
     /// The defaults for a climber.
@@ -83,6 +86,10 @@ impl GraphConfig {
         }
         if !self.ground.is_finite() {
             return Err(out_of_range("ground", "finite", self.ground));
+        }
+        if self.plates.len() > MOST_PLATES {
+            let found = self.plates.len() as f64;
+            return Err(out_of_range("plates.len()", "at most 65,536", found));
         }
         Ok(())
     }

@@ -65,10 +65,10 @@ impl FutureSkin {
     /// Poses the skin at a future time, without motion. False if that pose is not known.
     pub(crate) fn place(
         &mut self,
-        future: &mut dyn PoseForecast,
+        forecast: &mut dyn PoseForecast,
         seconds: f64,
     ) -> Result<bool, NavigationError> {
-        let Some(place) = future.pose(seconds, &mut self.palette) else {
+        let Some(place) = forecast.pose(seconds, &mut self.palette) else {
             return Ok(false);
         };
         self.surface.place(&self.palette, place)?;
@@ -78,10 +78,10 @@ impl FutureSkin {
     /// Moves the skin on to a future time. False if that pose is not known.
     pub(crate) fn advance(
         &mut self,
-        future: &mut dyn PoseForecast,
+        forecast: &mut dyn PoseForecast,
         seconds: f64,
     ) -> Result<bool, NavigationError> {
-        let Some(place) = future.pose(seconds, &mut self.palette) else {
+        let Some(place) = forecast.pose(seconds, &mut self.palette) else {
             return Ok(false);
         };
         self.surface.advance(&self.palette, place)?;

@@ -41,25 +41,25 @@ impl FutureSkin {
     /// fit the skin, [`NavigationError::OutOfRange`] if `dt` is not positive and finite.
     pub fn landing(
         &mut self,
-        flight: &Airborne<'_>,
-        future: &mut dyn PoseForecast,
+        airborne: &Airborne<'_>,
+        forecast: &mut dyn PoseForecast,
         dt: f64,
         most: f64,
     ) -> Result<Option<Landing>, NavigationError> {
         check_step(dt)?;
-        let mut flies = flight.climber.clone();
-        if !self.place(future, 0.0)? {
+        let mut flies = airborne.climber.clone();
+        if !self.place(forecast, 0.0)? {
             return Ok(None);
         }
         let ticks = (most / dt).clamp(0.0, 1e6) as u64;
         for tick in 1..=ticks {
             let seconds = tick as f64 * dt;
-            if !self.advance(future, seconds)? {
+            if !self.advance(forecast, seconds)? {
                 return Ok(None);
             }
-            let mut around: Vec<(ObstacleId, &dyn Obstacle)> = flight.others.to_vec();
-            around.push((flight.creature, self.surface()));
-            flies.step_with(flight.input, &around, flight.rules, dt)?;
+            let mut around: Vec<(ObstacleId, &dyn Obstacle)> = airborne.others.to_vec();
+            around.push((airborne.creature, self.surface()));
+            flies.step_with(airborne.input, &around, airborne.rules, dt)?;
             let state = flies.state();
             if state.support.is_some() {
                 let state = *state;

@@ -133,7 +133,7 @@ impl FutureSkin {
         &mut self,
         climber: &Climber,
         creature: ObstacleId,
-        future: &mut dyn PoseForecast,
+        forecast: &mut dyn PoseForecast,
         dt: f64,
         most: f64,
     ) -> Result<Ride, NavigationError> {
@@ -152,13 +152,13 @@ impl FutureSkin {
             velocity: state.support_velocity,
         };
         let mut attachment = support.attachment;
-        if !self.place(future, 0.0)? {
+        if !self.place(forecast, 0.0)? {
             return Ok(Ride::Unknown);
         }
         let ticks = (most / dt).clamp(0.0, 1e6) as u64;
         for tick in 1..=ticks {
             let seconds = tick as f64 * dt;
-            if !self.advance(future, seconds)? {
+            if !self.advance(forecast, seconds)? {
                 return Ok(Ride::Unknown);
             }
             let slack = 0.1 * config.body.radius;
@@ -189,7 +189,7 @@ impl FutureSkin {
         &mut self,
         climber: &Climber,
         creature: ObstacleId,
-        future: &mut dyn PoseForecast,
+        forecast: &mut dyn PoseForecast,
         dt: f64,
         most: f64,
     ) -> Result<f64, NavigationError> {
@@ -212,7 +212,7 @@ impl FutureSkin {
         let mut before = None;
         let looks = (most / dt).clamp(0.0, 1e4) as u64;
         for look in 0..=looks {
-            if !self.place(future, look as f64 * dt)? {
+            if !self.place(forecast, look as f64 * dt)? {
                 break;
             }
             let material = &support.attachment.material;

@@ -122,11 +122,11 @@ impl Hero {
                 None => end,
             };
             self.body
-                .set_act(&self.figure, act, fade)
+                .set_overlay(&self.figure, act, fade)
                 .map_err(SceneError::new)?;
             self.shown = shown;
         }
-        if let (Some((_, Some(time))), Some(layer)) = (wanted, self.body.act_mut()) {
+        if let (Some((_, Some(time))), Some(layer)) = (wanted, self.body.overlay_mut()) {
             (layer.time, layer.speed) = (time, 0.0);
         }
         Ok(())

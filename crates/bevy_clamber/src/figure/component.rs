@@ -124,7 +124,7 @@ impl ClimberFigure {
         &self.body
     }
 
-    /// The body, to [play clips over it](Body::set_act).
+    /// The body, to [play clips over it](Body::set_overlay).
     pub fn body_mut(&mut self) -> &mut Body {
         &mut self.body
     }

@@ -150,25 +150,25 @@ impl Body {
     }
 
     /// Plays a clip over the body's own, such as a raised weapon or a gesture, faded in within `fade` seconds. `None`
-    /// ends the act, faded out in the same way.
+    /// ends the clip, faded out in the same way.
     ///
     /// # Errors
     /// [`AnimationError`] for a clip or mask that the figure does not have, or numbers that are out of range. The body
     /// does not change then.
-    pub fn set_act(
+    pub fn set_overlay(
         &mut self,
         figure: &Figure,
-        act: Option<OverlayClip>,
+        clip: Option<OverlayClip>,
         fade: f64,
     ) -> Result<(), AnimationError> {
-        if let Some(act) = &act {
-            figure.animations().clip(act.layer.clip)?;
+        if let Some(clip) = &clip {
+            figure.animations().clip(clip.layer.clip)?;
         }
-        self.player.set_act(figure, act, fade)
+        self.player.set_overlay(figure, clip, fade)
     }
 
-    /// The layer of the current act, to set its time; `None` without an act.
-    pub fn act_mut(&mut self) -> Option<&mut Layer> {
-        self.player.act_mut()
+    /// The layer of the overlay clip, to set its time; `None` without such a clip.
+    pub fn overlay_mut(&mut self) -> Option<&mut Layer> {
+        self.player.overlay_mut()
     }
 }

@@ -38,8 +38,8 @@ enum Base {
 /// fn draw(figure: &Figure, body: &mut Body) -> Result<(), Box<dyn std::error::Error>> {
 ///     let clip = figure.animations().find("draw").ok_or("no such clip")?;
 ///     let layer = Layer { mask: Some(figure.upper_body()), ..Layer::once(clip) };
-///     body.set_act(figure, Some(OverlayClip { layer, hands: [true, false] }), 0.2)?;
-///     Ok(()) // `act_mut` tells its time; then "aim", "loose", and `None`
+///     body.set_overlay(figure, Some(OverlayClip { layer, hands: [true, false] }), 0.2)?;
+///     Ok(()) // `overlay_mut` tells its time; then "aim", "loose", and `None`
 /// }
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,7 +57,8 @@ pub struct OverlayClip {
 pub(crate) struct Player {
     animator: Animator,
     base: Option<Base>,
-    act: Option<[bool; 2]>,
+    /// While an overlay clip plays, the hands that follow it.
+    overlay: Option<[bool; 2]>,
     buffers: PoseBuffers,
     events: Vec<AnimationEvent>,
     gets_up: bool,
@@ -68,7 +69,7 @@ impl Player {
         Self {
             animator: Animator::default(),
             base: None,
-            act: None,
+            overlay: None,
             buffers: PoseBuffers::default(),
             events: Vec::new(),
             gets_up: false,
@@ -84,30 +85,30 @@ impl Player {
         &self.events
     }
 
-    pub(crate) fn act_mut(&mut self) -> Option<&mut Layer> {
-        self.act?;
+    pub(crate) fn overlay_mut(&mut self) -> Option<&mut Layer> {
+        self.overlay?;
         self.animator.layers_mut().last_mut()
     }
 
-    /// True for each hand, left and right, that follows an act instead of holding.
+    /// True for each hand, left and right, that follows the overlay clip instead of holding.
     pub(crate) fn busy_hands(&self) -> [bool; 2] {
-        self.act.unwrap_or_default()
+        self.overlay.unwrap_or_default()
     }
 
-    pub(crate) fn set_act(
+    pub(crate) fn set_overlay(
         &mut self,
         figure: &Figure,
-        act: Option<OverlayClip>,
+        clip: Option<OverlayClip>,
         fade: f64,
     ) -> Result<(), AnimationError> {
-        let had = self.act.is_some();
+        let had = self.overlay.is_some();
         self.animator.change(figure.animations(), fade, |layers| {
             if had {
                 layers.pop();
             }
-            layers.extend(act.map(|act| act.layer));
+            layers.extend(clip.map(|clip| clip.layer));
         })?;
-        self.act = act.map(|act| act.hands);
+        self.overlay = clip.map(|clip| clip.hands);
         Ok(())
     }
 
@@ -178,7 +179,7 @@ impl Player {
         }
         let fade = if self.base.is_some() { FADE_TIME } else { 0.0 };
         let clip = |clip: BodyClip| figure.clips().get(clip);
-        let keeps = usize::from(self.act.is_some());
+        let keeps = usize::from(self.overlay.is_some());
         let start = start_of(figure, base);
         self.animator.change(figure.animations(), fade, |layers| {
             let own = layers.len() - keeps;

@@ -193,22 +193,22 @@ fn a_hand_with_a_weapon_leaves_its_hold() {
         },
         hands: [false, true],
     };
-    cling.body.set_act(&figure, Some(act), 0.2).unwrap();
-    assert_eq!(cling.body.act_mut().unwrap().kind, LayerKind::Override);
+    cling.body.set_overlay(&figure, Some(act), 0.2).unwrap();
+    assert_eq!(cling.body.overlay_mut().unwrap().kind, LayerKind::Override);
     for _ in 0..20 {
         cling.step(&figure, 0.0);
     }
     assert!(cling.body.hold(Extremity::Hand(Side::Right)).is_none());
     assert!(cling.body.hold(Extremity::Hand(Side::Left)).is_some());
-    cling.body.set_act(&figure, None, 0.2).unwrap();
-    assert!(cling.body.act_mut().is_none());
+    cling.body.set_overlay(&figure, None, 0.2).unwrap();
+    assert!(cling.body.overlay_mut().is_none());
     for _ in 0..40 {
         cling.step(&figure, 0.0);
     }
     assert!(cling.body.hold(Extremity::Hand(Side::Right)).is_some());
     let mut wrong = act;
     wrong.layer.clip.0 = 1000;
-    assert!(cling.body.set_act(&figure, Some(wrong), 0.2).is_err());
+    assert!(cling.body.set_overlay(&figure, Some(wrong), 0.2).is_err());
 }
 
 /// An act may begin at any moment of a climb: the act takes its hand only when the other hand holds, and that hand goes
@@ -232,7 +232,7 @@ fn an_act_never_takes_both_hands() {
                         },
                         hands: [true, false],
                     };
-                    body.set_act(&figure, Some(act), 0.2).unwrap();
+                    body.set_overlay(&figure, Some(act), 0.2).unwrap();
                 }
                 stage.tick(DT).unwrap();
                 let obstacles = stage.obstacles();

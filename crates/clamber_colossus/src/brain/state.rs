@@ -169,6 +169,7 @@ impl Brain {
     /// A hash of the names of its states and moods, in their order, and of the moods' fading times.
     pub(crate) fn own_mark(&self) -> u64 {
         let mut hash = Fingerprint::default();
+        hash.word(self.states.len() as u64);
         for state in &self.states {
             hash.text(&state.path);
         }

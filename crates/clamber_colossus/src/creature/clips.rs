@@ -26,7 +26,7 @@ pub(super) enum Playing {
     /// The clip of turning to the left (0) or to the right (1).
     Turn(u8),
     /// The clip of a state's act.
-    StateAction(StateId),
+    Act(StateId),
 }
 
 /// Markers that the clips passed in the last step: index of the clip, and of the marker in the clip.
@@ -169,9 +169,7 @@ impl Clips {
         Self {
             animator: self.animator.clone(),
             playing: match self.playing {
-                Playing::StateAction(state) => {
-                    same(state).map_or(Playing::Idle, Playing::StateAction)
-                }
+                Playing::Act(state) => same(state).map_or(Playing::Idle, Playing::Act),
                 other => other,
             },
         }
@@ -179,7 +177,7 @@ impl Clips {
 
     /// True if a brain with `states` states can play this clip.
     pub(super) fn fits(&self, states: usize) -> bool {
-        !matches!(self.playing, Playing::StateAction(state) if state.index() >= states)
+        !matches!(self.playing, Playing::Act(state) if state.index() >= states)
     }
 }
 
@@ -194,7 +192,7 @@ impl Creature {
             return Ok(());
         };
         let clips = &mut self.state.clips;
-        clips.playing = Playing::StateAction(state);
+        clips.playing = Playing::Act(state);
         let fade = self.kind.brain().fade(state);
         clips.change(&self.kind, (clip, playback), [0.0, 1.0], fade)
     }
@@ -216,8 +214,8 @@ impl Creature {
         };
         // After a change of the brain, a clip that is not in this gait may still play.
         let layer = self.state.animator().layers().first();
-        let is_played = matches!(playing, Playing::StateAction(_))
-            || layer.is_some_and(|layer| layer.clip == clip);
+        let is_played =
+            matches!(playing, Playing::Act(_)) || layer.is_some_and(|layer| layer.clip == clip);
         if self.state.clips.playing == playing && is_played {
             return Ok(());
         }
@@ -236,6 +234,6 @@ impl Creature {
             let clip = self.kind.clips().clip(layer.clip);
             clip.is_ok_and(|clip| layer.time >= clip.duration())
         });
-        self.state.clips.playing != Playing::StateAction(state) || is_over
+        self.state.clips.playing != Playing::Act(state) || is_over
     }
 }

@@ -343,7 +343,7 @@ impl Creature {
             Playing::Turn(_) => {
                 (course.yaw_rate.abs() / (gait.turn_rate * self.size.rate)).min(1.0)
             }
-            Playing::Idle | Playing::StateAction(_) => 1.0,
+            Playing::Idle | Playing::Act(_) => 1.0,
         }
     }
 

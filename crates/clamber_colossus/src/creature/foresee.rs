@@ -84,7 +84,7 @@ impl Creature {
                 course.ahead -= speed * dt;
                 course.back = (course.back + speed.min(0.0) * dt).max(0.0);
                 let sleeps = self.is_put_to_sleep() && state.clips.playing() == Playing::Idle;
-                let plays = !matches!(state.clips.playing(), Playing::StateAction(_)) && !sleeps;
+                let plays = !matches!(state.clips.playing(), Playing::Act(_)) && !sleeps;
                 if let Some(layer) = animator.layers_mut().first_mut().filter(|_| plays) {
                     layer.speed = self.clip_speed(gait, state.clips.playing(), &course);
                 }

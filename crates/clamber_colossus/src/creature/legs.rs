@@ -266,7 +266,7 @@ impl Creature {
                 MOST_ASIDE_ACCELERATION
             },
             // The clip of a strike or a fall may lift a standing foot faster than `MOST_UP_ACCELERATION` allows.
-            most_up: if matches!(self.state.clips.playing(), Playing::StateAction(_)) {
+            most_up: if matches!(self.state.clips.playing(), Playing::Act(_)) {
                 STRIKE_ACCELERATION
             } else {
                 MOST_UP_ACCELERATION
@@ -353,13 +353,13 @@ impl Creature {
             Playing::Walk => gait?.walk_contacts.get(leg),
             Playing::Turn(side) => gait?.turn_contacts[usize::from(side.min(1))].get(leg),
             Playing::Idle => gait?.idle_contacts.get(leg),
-            Playing::StateAction(state) => self.kind.act(state).contacts.get(leg),
+            Playing::Act(state) => self.kind.act(state).contacts.get(leg),
         }
     }
 
     /// The leg that aims, until its strike is over.
     fn aimed_leg(&self) -> Option<usize> {
-        let Playing::StateAction(state) = self.state.clips.playing() else {
+        let Playing::Act(state) = self.state.clips.playing() else {
             return None;
         };
         let strike = self.kind.act(state).strike.as_ref()?;

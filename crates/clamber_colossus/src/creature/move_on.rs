@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::clips::Playing;
 use super::course::{Course, Wanted};
-use super::state::{is_fast, is_large};
+use super::state::is_fast;
 use super::way::Way;
 use super::{Creature, CreatureEvent, Surroundings};
 use crate::angle::nearest_turn;
@@ -84,7 +84,7 @@ impl Motion {
     /// True if all numbers are in the range that a creature reaches.
     pub(super) fn is_within_range(&self) -> bool {
         let numbers = [self.yaw, self.speed, self.yaw_rate, self.steepness];
-        !is_large(self.yaw) && !numbers.into_iter().any(is_fast)
+        !numbers.into_iter().any(is_fast)
     }
 }
 
@@ -174,7 +174,7 @@ impl Creature {
         } else if way.is_some() {
             self.state.clips.go_on();
         }
-        if !(matches!(playing, Playing::StateAction(_)) || sleeps && playing == Playing::Idle) {
+        if !(matches!(playing, Playing::Act(_)) || sleeps && playing == Playing::Idle) {
             self.state.clips.set_speed(clip_speed);
         }
         let stands = self.state.speed() == 0.0 && !self.is_turning();
@@ -191,7 +191,7 @@ impl Creature {
         } = *wanted;
         let moves = self.state.speed() > 0.0 && !self.state.acting.halts();
         let playing = self.state.clips.playing();
-        let acts = matches!(playing, Playing::StateAction(_)) && way.is_none();
+        let acts = matches!(playing, Playing::Act(_)) && way.is_none();
         if moves {
             Playing::Walk
         } else if turns_on_spot && gait.turn.is_some() && self.state.speed() >= 0.0 {

@@ -120,7 +120,7 @@ impl Striking {
 impl Creature {
     /// State and phase of the current attack; `None` while the creature does not attack.
     pub fn attack(&self) -> Option<(StateId, AttackPhase)> {
-        let Playing::StateAction(state) = self.state.clips.playing() else {
+        let Playing::Act(state) = self.state.clips.playing() else {
             return None;
         };
         let Some(StateAction::Attack(_)) = self.kind.brain().act(state) else {

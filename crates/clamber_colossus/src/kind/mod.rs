@@ -186,6 +186,7 @@ impl CreatureKind {
         let body = creature_fingerprint(&self.skeleton, self.clips.clips(), &self.mesh);
         let mut hash = Fingerprint::new(body);
         hash.numbers([self.brain.tick()]);
+        hash.word(self.weak_points.len() as u64);
         for point in &self.weak_points {
             hash.text(&point.name);
             hash.floats(&point.position.to_array());
@@ -199,7 +200,10 @@ impl CreatureKind {
     }
 
     /// The creature as it lives by its brain, whose file may turn it, and change its clips, materials and weak points.
-    /// The breath, which is added to other clips, is left out.
+    /// The breath, which is added to other clips, and the names of materials are left out.
+    ///
+    /// It is a copy of all clips, made for climb graphs and recordings: make it once, not in each tick. For a second
+    /// kind, take the rig from the file: the changes of the brain's file would be made twice.
     pub fn rig(&self) -> Rig {
         let breath = usize::from(self.breathe.is_some());
         let clips = self.clips.clips();

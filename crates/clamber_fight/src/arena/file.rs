@@ -8,7 +8,7 @@ use clamber_surface::Fingerprint;
 const MAGIC: [u8; 8] = *b"clamarna";
 
 /// Version of the format. Raise it with every change to the saved data; other versions are refused.
-const VERSION: u32 = 8;
+const VERSION: u32 = 9;
 
 /// Bytes before the state: [`MAGIC`], version, hash of the configuration, checksum.
 const HEADER: usize = 8 + 4 + 8 + 8;

@@ -148,8 +148,10 @@ impl Flavor for Hasher {
 
 /// Adds a value in the form in which postcard writes it.
 fn take(hash: &mut Fingerprint, value: &impl Serialize) {
-    // Postcard fails only for sequences of unknown length, and a state has none.
-    if let Ok(next) = postcard::serialize_with_flavor(value, Hasher(*hash)) {
-        *hash = next;
+    // Postcard fails only for sequences of unknown length, and a state has none. If one had, its hash would be that of
+    // no other value.
+    match postcard::serialize_with_flavor(value, Hasher(*hash)) {
+        Ok(next) => *hash = next,
+        Err(error) => hash.text(&error.to_string()),
     }
 }

@@ -1,6 +1,6 @@
 //! Arrows and stones: in flight, stuck, and falling.
 
-mod flight;
+mod ballistics;
 mod step;
 mod stuck;
 
@@ -8,7 +8,7 @@ use clamber_world::{Attachment, ObstacleId};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-pub use flight::Ballistics;
+pub use ballistics::Ballistics;
 pub(crate) use step::{Air, Flown};
 pub(crate) use stuck::place_on;
 

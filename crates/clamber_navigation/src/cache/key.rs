@@ -2,14 +2,13 @@
 
 use std::fmt::{self, Write as _};
 
-use xxhash_rust::xxh3::Xxh3;
-
 use clamber_surface::mesh::Rig;
+use xxhash_rust::xxh3::Xxh3;
 
 use crate::GraphConfig;
 
 /// Version of the graph's content. Raise it when graphs of the same creature change; otherwise old files are read.
-const FORMAT: u32 = 7;
+const FORMAT: u32 = 8;
 
 /// A hash that takes text.
 struct Digest(Xxh3);

@@ -11,9 +11,8 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use xxhash_rust::xxh3::xxh3_128;
-
 use clamber_surface::mesh::Rig;
+use xxhash_rust::xxh3::xxh3_128;
 
 use crate::{ClimbGraph, GraphConfig, NavigationError, Progress};
 

@@ -12,7 +12,8 @@ impl ClimbGraph {
                 .iter()
                 .all(|patch| is_there(patch.triangle.index())),
             self.entries.iter().all(|entry| entry.patch < patches),
-            self.plates
+            self.config
+                .plates
                 .iter()
                 .flatten()
                 .all(|triangle| is_there(triangle.index())),

@@ -1,10 +1,9 @@
 //! Measures how hard each clip shakes each patch, and how it tilts it.
 
+use clamber_surface::mesh::Rig;
 use clamber_surface::rig::{Clip, Palette, Playback, Pose};
 use clamber_surface::surface::SurfaceError;
 use glam::{DVec3, Vec3};
-
-use clamber_surface::mesh::Rig;
 
 use crate::graph::Patch;
 use crate::progress::{Stage, Tell};
@@ -64,8 +63,6 @@ pub(crate) struct Moment {
 #[cfg_attr(feature = "cache", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct ClipFacts {
     pub(crate) clips: Vec<ClipSlices>,
-    /// The rate at which the clips are played, as a share of the file's.
-    rate: f64,
     /// Number of patches.
     patches: usize,
     /// Shake, excess and slope of each patch in each slice: `slice * patches + patch`.
@@ -82,7 +79,6 @@ impl ClipFacts {
     ) -> Result<Self, NavigationError> {
         let mut facts = Self {
             clips: Vec::new(),
-            rate: config.clip_rate,
             patches: patches.len(),
             moments: Vec::new(),
         };
@@ -102,7 +98,8 @@ impl ClipFacts {
         patches: &[Patch],
         tell: &mut dyn FnMut() -> Result<(), NavigationError>,
     ) -> Result<(), NavigationError> {
-        let lasts = clip.duration() / self.rate;
+        let rate = config.clip_rate;
+        let lasts = clip.duration() / rate;
         let slices = lasts / SLICE_SECONDS + 1.0;
         let all = self.moments.len() as f64 + slices * patches.len() as f64;
         if !(slices <= MOST_SLICES_OF_CLIP && all <= MOST_SLICES_OF_PATCHES) {
@@ -121,7 +118,7 @@ impl ClipFacts {
         let mut riders = vec![Rider::default(); patches.len()];
         let mut played = Played::new(rig, clip)?;
         // Before its beginning, a loop plays its end.
-        let loops = played.is_loop(&seats, lasts, self.rate, tell)?;
+        let loops = played.is_loop(&seats, lasts, rate, tell)?;
         let lead = if loops { ticks.min(LEAD_TICKS) } else { 0 };
         self.clips.push(ClipSlices {
             name: clip.name.clone(),
@@ -135,9 +132,9 @@ impl ClipFacts {
             }
             let seconds = (tick as f64 - lead as f64) * TICK;
             let time = if lead > 0 {
-                (seconds * self.rate).rem_euclid(clip.duration().max(f64::MIN_POSITIVE))
+                (seconds * rate).rem_euclid(clip.duration().max(f64::MIN_POSITIVE))
             } else {
-                (seconds * self.rate).min(clip.duration())
+                (seconds * rate).min(clip.duration())
             };
             let skin = played.at(time)?;
             for (rider, seat) in riders.iter_mut().zip(&seats) {
@@ -160,11 +157,6 @@ impl ClipFacts {
             }
         }
         Ok(())
-    }
-
-    /// The rate at which the clips are played, as a share of the file's.
-    pub(crate) fn rate(&self) -> f64 {
-        self.rate
     }
 
     /// The number, among the slices of all clips, of a clip's slice. A slice beyond the clip's end wraps around to its

@@ -36,7 +36,7 @@ pub(super) fn entries(survey: &Survey, patches: &[Patch], patch_of: &[u32]) -> V
         let (Some(seat), Some(lowest)) = (piece.seat, lowest.get_mut(*patch as usize)) else {
             continue;
         };
-        let height = seat.dot(jumps.up) - survey.ground;
+        let height = seat.dot(jumps.up) - survey.config.ground;
         let is_new = height <= highest && height < *lowest;
         if is_new && (jumps.is_free_below(seat) || jumps.lead_forwards_to(seat)) {
             *lowest = height;
@@ -120,7 +120,7 @@ impl<'a> Jumps<'a> {
         Self {
             surface: &survey.surface,
             up: climber.up(),
-            ground: survey.ground,
+            ground: survey.config.ground,
             radius: survey.config.radius(),
             rise: climber.ground.jump_speed,
             walk: climber.ground.walk_speed,

@@ -39,8 +39,6 @@ pub struct ClimbGraph {
     pub(crate) leaps: Leaps,
     pub(crate) entries: Vec<Entry>,
     pub(crate) clips: ClipFacts,
-    /// One triangle of each plate, by which its removal is noticed.
-    pub(crate) plates: Vec<Option<TriangleId>>,
     pub(crate) locator: Locator,
 }
 
@@ -50,8 +48,9 @@ impl ClimbGraph {
     /// `progress` is called repeatedly. If it returns [`ControlFlow::Break`], the build is cancelled.
     ///
     /// # Errors
-    /// [`NavigationError`] if a number of the configuration is out of its range, if the creature has no
-    /// skin or cannot be posed, if it has too many patches or too long clips, and if the caller cancels.
+    /// [`NavigationError`] if a number of the configuration is out of its range, if a plate has a triangle that the skin
+    /// does not have, if the creature has no skin or cannot be posed, if it has too many patches or too long clips, and
+    /// if the caller cancels.
     pub fn build(
         rig: &Rig,
         config: &GraphConfig,
@@ -77,12 +76,6 @@ impl ClimbGraph {
             entries: entries::entries(survey, &patches, &patch_of),
             locator: Locator::new(survey, &patch_of, &rig.collider),
             clips,
-            plates: survey
-                .config
-                .plates
-                .iter()
-                .map(|plate| plate.first().copied())
-                .collect(),
             patches,
         };
         graph.leaps = Leaps::find(&graph, rig, tell)?;
@@ -139,11 +132,13 @@ impl ClimbGraph {
     /// removed.
     pub fn is_there(&self, patch: usize, surface: &SkinnedSurface) -> bool {
         self.patches.get(patch).is_some_and(|patch| {
-            let plate = patch
-                .below
-                .and_then(|plate| *self.plates.get(usize::from(plate))?);
+            // One triangle of a plate tells whether it is removed.
+            let plate = patch.below.and_then(|plate| {
+                let plate = self.config.plates.get(usize::from(plate))?;
+                plate.first()
+            });
             surface.is_enabled(patch.triangle)
-                && plate.is_none_or(|triangle| !surface.is_enabled(triangle))
+                && plate.is_none_or(|triangle| !surface.is_enabled(*triangle))
         })
     }
 

@@ -50,7 +50,7 @@ impl Forecast {
             && seconds > 0.0
         {
             // Clips pass at the graph's rate, so seconds of the file are scaled.
-            let from = from / graph.clips.rate() % graph.clips.seconds(clip);
+            let from = from / graph.config.clip_rate % graph.clips.seconds(clip);
             let first = (from / SLICE_SECONDS).round() as usize;
             let slices = first..first + in_slices(seconds).max(1);
             let slices = slices.filter_map(|slice| graph.clips.slice(clip, slice));

@@ -4,10 +4,9 @@ use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 use std::ops::ControlFlow;
 
+use clamber_surface::mesh::Rig;
 use clamber_surface::rig::WeakPoint;
 use glam::DVec3;
-
-use clamber_surface::mesh::Rig;
 
 use crate::clips::{HARDEST, SLICE_SECONDS};
 use crate::graph::{NO_PATCH, Reachable};

@@ -8,7 +8,7 @@ mod seat;
 mod split;
 
 use clamber_surface::mesh::{Rig, TriangleId};
-use clamber_surface::surface::SkinnedSurface;
+use clamber_surface::surface::{SkinnedSurface, SurfaceError};
 use glam::DVec3;
 
 use crate::progress::{Stage, Tell};
@@ -38,8 +38,6 @@ const OPPOSITE_COSINE: f64 = -0.87;
 #[derive(Clone, Debug)]
 pub(crate) struct Survey {
     pub(crate) config: GraphConfig,
-    /// Height of the ground, metres.
-    pub(crate) ground: f64,
     /// The pieces, sorted by place.
     pub(crate) pieces: Vec<Piece>,
     /// The parts of triangles from which the pieces are made.
@@ -73,9 +71,8 @@ impl Survey {
         let mut plate_of = vec![NO_PLATE; rig.collider.triangles().len()];
         for (plate, triangles) in (0..).zip(&config.plates) {
             for triangle in triangles {
-                if let Some(of) = plate_of.get_mut(triangle.index()) {
-                    *of = plate;
-                }
+                let of = plate_of.get_mut(triangle.index());
+                *of.ok_or(SurfaceError::Triangle(*triangle))? = plate;
             }
         }
         let plate = |triangle: TriangleId| plate_of[triangle.index()];
@@ -117,7 +114,6 @@ impl Survey {
         }
         Ok(Self {
             config: config.clone(),
-            ground: config.ground,
             links: Links::new(&pieces, config.link()),
             pieces,
             bits,

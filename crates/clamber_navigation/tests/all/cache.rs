@@ -10,6 +10,8 @@ use clamber_navigation::{
     CachedGraph, ClimbGraph, Footing, Forecast, GraphConfig, GraphOrigin, NavigationError, Start,
 };
 use clamber_surface::mesh::SurfaceKind::Fur;
+use clamber_surface::mesh::TriangleId;
+use clamber_surface::surface::SurfaceError;
 use fastrand::Rng;
 use glam::Vec3;
 
@@ -207,4 +209,30 @@ fn a_ground_that_is_nowhere_is_refused() {
         );
         assert!(is_ground, "{ground}: {refused:?}");
     }
+}
+
+#[test]
+fn plates_that_the_skin_does_not_have_and_too_many_plates_are_refused() {
+    let build = |plates| {
+        let mut calls = 0;
+        let config = GraphConfig {
+            plates,
+            ..climber()
+        };
+        let go_on = |_| {
+            calls += 1;
+            ControlFlow::Continue(())
+        };
+        (
+            ClimbGraph::build(&body().rig(), &config, go_on).map(drop),
+            calls,
+        )
+    };
+    let (refused, calls) = build(vec![vec![TriangleId(0)], vec![TriangleId(u32::MAX)]]);
+    let missing = SurfaceError::Triangle(TriangleId(u32::MAX));
+    assert_eq!(refused, Err(NavigationError::Surface(missing)));
+    assert_eq!(calls, 0);
+    let (refused, _) = build(vec![Vec::new(); (1 << 16) + 1]);
+    let message = refused.unwrap_err().to_string();
+    assert_eq!(message, "plates.len() must be at most 65,536, but is 65537");
 }

@@ -70,8 +70,9 @@ pub(super) struct Lineage {
 impl Lineage {
     /// The lineage of a mesh that has just been built.
     pub(super) fn of(mesh: &ColliderMesh) -> Self {
+        let counts = [mesh.positions.len(), mesh.triangles.len()].map(|count| count as u32);
         let positions = mesh.positions.iter().flat_map(|p| p.to_array());
-        let words = positions.map(f32::to_bits);
+        let words = counts.into_iter().chain(positions.map(f32::to_bits));
         let words = words.chain(mesh.influences.words());
         let words = words.chain(mesh.triangles.iter().flatten().map(|corner| corner.0));
         Self {

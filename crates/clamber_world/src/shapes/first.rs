@@ -2,8 +2,8 @@ use glam::DVec3;
 use parry3d::bounding_volume::Aabb;
 use parry3d::shape::Shape;
 
-use super::reach::{SweptBounds, is_usable, is_usable_radius};
 use super::sweep::sweep_shape_where;
+use super::swept_bounds::{SweptBounds, is_usable, is_usable_radius};
 use super::{ShapeTouch, Tick, sweep_shape};
 use crate::{Contact, SweepContact, WorldCapsule};
 
@@ -31,7 +31,7 @@ use crate::{Contact, SweepContact, WorldCapsule};
 pub struct FirstContact {
     capsule: WorldCapsule,
     displacements: [DVec3; 2],
-    reach: SweptBounds,
+    bounds: SweptBounds,
     first: Option<SweepContact>,
 }
 
@@ -54,19 +54,19 @@ impl FirstContact {
         Some(Self {
             capsule: *capsule,
             displacements,
-            reach: SweptBounds::new(&path, radius + 2.0 * capsule.sweep_tolerance()),
+            bounds: SweptBounds::new(&path, radius + 2.0 * capsule.sweep_tolerance()),
             first: None,
         })
     }
 
     /// Bounding box of the capsule's whole path, enlarged by the tolerance.
     pub fn bounds(&self) -> Aabb {
-        self.reach.bounds()
+        self.bounds.bounds()
     }
 
     /// True if a shape that stays within this box may be touched no later than the first contact so far.
     pub fn may_meet(&self, bounds: &Aabb) -> bool {
-        self.reach.meets(bounds, self.limit())
+        self.bounds.meets(bounds, self.limit())
     }
 
     /// Tests a shape of a body whose poses are `tick`, and keeps the contact if it is the first so far. `key` becomes

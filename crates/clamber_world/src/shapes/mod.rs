@@ -10,16 +10,16 @@ mod holds;
 mod moved;
 mod overlap;
 mod parts;
-mod reach;
 mod sweep;
+mod swept_bounds;
 mod tick;
 
 pub use first::FirstContact;
 pub use holds::holds;
 pub use moved::Moved;
 pub use overlap::{ShapeContact, overlap_shape};
-pub use reach::SweptBounds;
 pub use sweep::{ShapeSweep, ShapeTouch, sweep_shape};
+pub use swept_bounds::SweptBounds;
 pub use tick::Tick;
 
 use std::cmp::Ordering;

@@ -7,7 +7,7 @@ use parry3d::shape::Shape;
 
 use super::convex::{Convex, MovingConvex};
 use super::parts::{Part, visit_parts};
-use super::reach::SweptBounds;
+use super::swept_bounds::SweptBounds;
 use crate::RigidPose;
 use crate::{Contact, MaterialPoint};
 

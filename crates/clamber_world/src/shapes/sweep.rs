@@ -8,7 +8,7 @@ use super::ShapeContact;
 use super::convex::{Convex, MovingConvex};
 use super::overlap::{half_space, solid};
 use super::parts::{Part, visit_parts};
-use super::reach::{SweptBounds, is_usable, is_usable_radius};
+use super::swept_bounds::{SweptBounds, is_usable, is_usable_radius};
 use crate::RigidPose;
 use crate::WorldCapsule;
 

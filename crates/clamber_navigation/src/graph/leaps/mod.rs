@@ -4,13 +4,12 @@ mod find;
 mod play;
 
 use clamber_climber::{ClimberConfig, ClimberInput};
+use clamber_surface::mesh::Rig;
 use glam::DVec3;
 
 #[cfg(feature = "cache")]
 use super::Patch;
 use super::{ClimbGraph, Footing};
-use clamber_surface::mesh::Rig;
-
 use crate::NavigationError;
 use crate::clips::SLICE_SECONDS;
 use crate::progress::{Stage, Tell};

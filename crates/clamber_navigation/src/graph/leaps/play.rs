@@ -1,14 +1,13 @@
 //! Plays jumps by climbers on the skin as it moves.
 
 use clamber_climber::{Climber, ClimberInput, ClimberMode, ClimberState, ContactQuery, StepRules};
+use clamber_surface::mesh::Rig;
 use clamber_surface::rig::{Palette, Playback, Pose};
 use clamber_surface::surface::SkinnedSurface;
 use clamber_world::{Obstacle, ObstacleId};
 use glam::DVec3;
 
 use super::{Aim, ClimbGraph, Footing, LONGEST_FLIGHT};
-use clamber_surface::mesh::Rig;
-
 use crate::NavigationError;
 use crate::clips::TICK;
 use crate::graph::Spot;
