@@ -32,7 +32,7 @@ enum Root {
 
 /// Whether a tick's queries touch so many clusters that the next tick is skinned ahead.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Touch {
+enum MoverContact {
     Little,
     Everything,
 }
@@ -68,7 +68,7 @@ impl Scene {
         }
     }
 
-    fn tick(&mut self, tick: usize, root: Root, touch: Touch) {
+    fn tick(&mut self, tick: usize, root: Root, touch: MoverContact) {
         let shift = match root {
             Root::Still => 0.0,
             Root::Moving => tick as f64 * 0.1,
@@ -108,7 +108,7 @@ impl Scene {
                 }
             }
         }
-        if touch == Touch::Everything {
+        if touch == MoverContact::Everything {
             let everything = Capsule::ball(Vec3::ZERO, f32::MAX).unwrap();
             let hits = &mut self.hits;
             self.surface.in_model().overlap_capsule(&everything, hits);
@@ -120,7 +120,7 @@ impl Scene {
 #[test]
 fn a_steady_tick_allocates_nothing() {
     for root in [Root::Still, Root::Moving] {
-        for touch in [Touch::Little, Touch::Everything] {
+        for touch in [MoverContact::Little, MoverContact::Everything] {
             let mut scene = Scene::new();
             // Reserves memory for all hits that a tick may have.
             scene.hits.reserve(scene.surface.mesh().triangles().len());
@@ -135,7 +135,11 @@ fn a_steady_tick_allocates_nothing() {
             }
             let diagnostics = scene.surface.diagnostics();
             let ahead = diagnostics.clusters_skinned == diagnostics.clusters;
-            assert_eq!(ahead, touch == Touch::Everything, "{case}: {diagnostics:?}");
+            assert_eq!(
+                ahead,
+                touch == MoverContact::Everything,
+                "{case}: {diagnostics:?}"
+            );
             assert!(scene.found > 500, "{case}: {}", scene.found);
         }
     }
@@ -144,6 +148,6 @@ fn a_steady_tick_allocates_nothing() {
 #[test]
 fn the_counter_sees_an_allocation() {
     let mut scene = Scene::new();
-    let found = measure(|| scene.tick(0, Root::Still, Touch::Little));
+    let found = measure(|| scene.tick(0, Root::Still, MoverContact::Little));
     assert!(found.count_total > 0, "{found:?}");
 }

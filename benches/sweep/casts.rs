@@ -166,7 +166,7 @@ impl Field {
                     hits += 1;
                     // Measured along the motion: in grazing contacts a small difference in depth is a long distance
                     // along it.
-                    let off = (ours.time - theirs).abs() * f64::from(cast.motion.length());
+                    let off = (ours.fraction - theirs).abs() * f64::from(cast.motion.length());
                     worst = worst.max(off / f64::from(cast.sphere.radius));
                 }
                 (Some(_), None) => only_ours += 1,

@@ -2,7 +2,7 @@
 
 use clamber::climber::{ClimberMode, CustomMode, ModeContext, NextMode};
 use clamber::glam::DVec3;
-use clamber::mover::Touch;
+use clamber::mover::MoverContact;
 
 /// Index into [`ModeContext::memory`] of the seconds of wall runs since the climber last stood.
 const RAN: usize = 3;
@@ -27,20 +27,20 @@ pub(crate) struct WallRun {
 }
 
 /// The nearest wall beside the climber. The edge at a wall's end does not count.
-fn wall_beside(context: &mut ModeContext<'_, '_>) -> Option<Touch> {
+fn wall_beside(context: &mut ModeContext<'_, '_>) -> Option<MoverContact> {
     let (body, up, position) = (context.body(), context.up(), context.position());
     let touches = context.mover().overlap(&body, position, REACH);
-    let is_wall = |touch: &&Touch| {
+    let is_wall = |touch: &&MoverContact| {
         touch.normal.dot(up).abs() < LEAN && touch.normal.dot(touch.contact.normal) > 0.9
     };
-    let distance = |touch: &&Touch| touch.contact.distance;
+    let distance = |touch: &&MoverContact| touch.contact.distance;
     let walls = touches.iter().filter(is_wall);
     let nearest = walls.min_by(|a, b| distance(a).total_cmp(&distance(b)));
     nearest.copied()
 }
 
 /// The level part of a vector along the touched face, not around its edges.
-fn along(wall: &Touch, vector: DVec3, up: DVec3) -> DVec3 {
+fn along(wall: &MoverContact, vector: DVec3, up: DVec3) -> DVec3 {
     let level = wall.contact.normal.cross(up).normalize_or_zero();
     level * level.dot(vector)
 }

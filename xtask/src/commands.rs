@@ -1,9 +1,9 @@
 //! Checks that a step of `cargo xtask ci` or `cargo xtask nightly` runs each command in the documentation, or that
-//! `docs/commands.md` gives the reason why not; and that the packages, targets, features, steps and files that a command
-//! names exist.
+//! `docs/commands.md` gives the reason why not; and that the packages, targets, features, steps and files that a
+//! command names exist.
 //!
-//! A step runs a command if it runs the same targets, with all features that are on there, and includes ignored tests if
-//! the command does. Programs must get the same options. The comparison ignores:
+//! A step runs a command if it runs the same targets, with all features that are on there, and includes ignored tests
+//! if the command does. Programs must get the same options. The comparison ignores:
 //!
 //! - the profile: each step chooses its own, mostly the profile of tests;
 //! - the values of a program's options, such as of `--seconds`, and the program's files: a step has to be brief;
@@ -53,7 +53,11 @@ fn visit(main: &Metadata, tell: impl Fn(&str, &str)) -> Result<(), String> {
     let mut wrong: Vec<String> = without_link.iter().map(link).collect();
     for (command, page) in &commands {
         let runs = match reasons.remove(command).filter(|reason| !reason.is_empty()) {
-            Some(reason) => plan.check_names(command).map(|()| Some(reason)),
+            Some(reason) => match plan.step_for(command, page) {
+                Ok(Some(step)) => Err(format!("{step} runs it, but {LIST} gives a reason")),
+                Ok(None) => Ok(Some(reason)),
+                Err(why) => Err(why),
+            },
             None => plan.step_for(command, page),
         };
         match runs {
@@ -284,7 +288,7 @@ ci: golden <= cargo xtask ci --only golden
 nightly: soak <= cargo xtask soak --minutes 10
 ci: tests <= clamber inspect --humanoid FILE
 ci: tests <= cargo run -p clamber_cli -- inspect FILE
-nightly: app <= cd examples/bevy && cargo run --release -- --screenshot a.png
+nightly: app <= cd examples/bevy && cargo run --release -- --script a --screenshot a.png
 none <= cargo run --release --example battle -- --pilot bot
 none <= cargo run --release --example battle -- --out x | cat
 none <= cargo test -p clamber_gltf --lib -- --ignored

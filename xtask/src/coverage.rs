@@ -16,13 +16,37 @@ use crate::workspace::{files, folder, no_faults, read};
 /// Pages with programs that are not compiled. The test `readme` of `bevy_clamber` compiles the same programs.
 const COMPILED: &str = "README.md crates/bevy_clamber/README.md docs/recipes/falling_crates.md";
 
+/// The file whose modules are the pages of `docs/recipes` with programs.
+const RECIPES: &str = "tests/scenes/src/recipes.rs";
+
 /// Fails if there are gaps.
 pub(crate) fn check(main: &Metadata) -> Result<(), String> {
     let plan = Plan::read(main)?;
+    let recipes = read(&plan.root.join(RECIPES))?;
     let mut found = gaps(&plan);
+    let compiles = Part::new("bevy_clamber", "test", "readme");
+    if !plan
+        .calls
+        .iter()
+        .any(|(_, call)| call.parts.contains(&compiles))
+    {
+        found.push(format!("no step compiles the programs of {COMPILED}"));
+    }
     for file in files(&plan.root)? {
         if matches!(file.extension(), Some("rs" | "md")) {
-            found.extend(gaps_in(&plan, &file, &read(&plan.root.join(&file))?));
+            let text = read(&plan.root.join(&file))?;
+            found.extend(gaps_in(&plan, &file, &text));
+            let page = file
+                .strip_prefix("docs/recipes")
+                .ok()
+                .map(|page| page.file_stem());
+            let is_module = |page: &str| recipes.split_whitespace().any(|word| word == page);
+            if let Some(Some(page)) = page
+                && text.contains("```rust")
+                && !is_module(page)
+            {
+                found.push(format!("{file}: {RECIPES} does not compile its programs"));
+            }
         }
     }
     no_faults(&found, ": xtask/steps.txt has the steps")

@@ -65,6 +65,11 @@ pub(crate) fn run_all(metadata: &Metadata) -> Result<(), String> {
     std::fs::create_dir_all("target").map_err(|error| format!("target: {error}"))?;
     let data = std::env::var(DATA).ok();
     let queries = query_files(data.as_deref())?;
+    let given = LINES.lines().filter(|line| !line.starts_with('#'));
+    let given = given.map(|line| line.split(' ').next().unwrap_or_default());
+    if let Some(name) = given.clone().find(|name| !examples.contains_key(*name)) {
+        return Err(format!("xtask/examples.txt: no example is called {name}"));
+    }
     for (name, binary) in &examples {
         let mut all = lines(name);
         if data.is_some() && name == ON_MODELS.0 {

@@ -53,8 +53,8 @@ fn lint(name: &str, feature: &str) -> Result<(), String> {
     cargo(&(line + " -- -D warnings"))
 }
 
-/// The calls of each library's tests with each of its features that is not on in `tests`. The facade has no tests in its
-/// library: its features belong to other crates.
+/// The calls of each package's tests with each of its features that is not on in `tests`. The facade's features belong
+/// to other crates, which have their own tests.
 pub(crate) fn runs(metadata: &Metadata, tests: &[String]) -> Result<Vec<String>, String> {
     let packages = metadata.workspace_packages().into_iter();
     let mut missing: Vec<(&str, String)> = packages.flat_map(features).collect();
@@ -67,7 +67,7 @@ pub(crate) fn runs(metadata: &Metadata, tests: &[String]) -> Result<Vec<String>,
         });
     }
     let line = |(name, feature)| {
-        format!("test -p {name} --features {feature} --quiet --lib {IGNORE_RUST_VERSION}")
+        format!("test -p {name} --features {feature} --quiet --lib --tests {IGNORE_RUST_VERSION}")
     };
     Ok(missing.into_iter().map(line).collect())
 }

@@ -41,7 +41,8 @@ enum Task {
         only: Option<String>,
     },
     /// Runs the checks that take too long for CI: every case of tests that have short forms, golden runs in other
-    /// builds, other libraries, the app on all of Bevy, a soak of half an hour. Takes some two hours on a cold target.
+    /// builds, other libraries, the app on all of Bevy, a soak of half an hour and an hour of the giant's life. Takes some
+    /// three hours on a cold target.
     /// Adds a line for each step to nightly.md in the target folder.
     Nightly {
         /// Run only the steps whose name contains this.
@@ -52,8 +53,8 @@ enum Task {
     Face,
     /// Prints all commands in the documentation, with the step that runs each, or the reason why none does.
     Commands,
-    /// Runs stress cases of every family, every fuzz target on random bytes and whole battles, in release, with fresh
-    /// seeds until the time is up. Checks that nothing panics, all numbers are finite, answers equal brute force,
+    /// Runs stress cases of every family, every fuzz target on random bytes, whole battles and arenas, in release, with
+    /// fresh seeds until the time is up. Checks that nothing panics, all numbers are finite, answers equal brute force,
     /// bounds hold, closed skin lets no ray through, no contact is missed or late, and that among queries with similar
     /// work the slowest thousandth takes at most 20 medians. Ends with a report, also in target/soak/report.md, which
     /// says how to repeat each finding. Fails if there is a finding.

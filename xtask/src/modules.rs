@@ -17,9 +17,17 @@ pub(crate) fn check(metadata: &Metadata) -> Result<(), String> {
     for package in metadata.workspace_packages() {
         let prefix = format!("{}: ", package.name);
         let mut lines = ORDER.lines().filter_map(|line| line.strip_prefix(&prefix));
-        let words: Vec<&str> = lines.next().unwrap_or_default().split(' ').collect();
+        let words = lines.next().unwrap_or_default().split(' ');
+        let words: Vec<&str> = words.filter(|word| !word.is_empty()).collect();
         for library in package.targets.iter().filter(|target| target.is_lib()) {
-            for (from, to) in arrows(&library.src_path)? {
+            let (modules, arrows) = arrows(&library.src_path)?;
+            let is_known = |word: &str| match word.split_once('>') {
+                Some((from, to)) => arrows.contains(&(from.to_owned(), to.to_owned())),
+                None => word == "|" || modules.contains(word),
+            };
+            let unknown = words.iter().filter(|word| !is_known(word));
+            wrong.extend(unknown.map(|word| format!("{prefix}{word}, which the library lacks")));
+            for (from, to) in arrows {
                 let place = |module: &str| words.iter().position(|known| *known == module);
                 let is_allowed = place(&format!("{from}>{to}")).is_some();
                 match (place(&from), place(&to)) {
@@ -33,14 +41,18 @@ pub(crate) fn check(metadata: &Metadata) -> Result<(), String> {
     no_faults(&wrong, ": imports against the order in xtask/modules.txt")
 }
 
-/// The imports between different top-level modules of a library.
-fn arrows(root: &Utf8Path) -> Result<BTreeSet<(String, String)>, String> {
+/// Imports: from a module to another.
+type Arrows = BTreeSet<(String, String)>;
+
+/// The top-level modules of a library, and the imports between different ones.
+fn arrows(root: &Utf8Path) -> Result<(BTreeSet<String>, Arrows), String> {
     let (folder, exports) = (root.parent().unwrap_or(root), read(root)?);
     let mut sources = files(folder)?;
     sources.retain(|file| {
         let is_declared = exports.contains(&format!("mod {};", module(file)));
         let mut parts = file.iter().map(|part| part.trim_end_matches(".rs"));
-        let is_test = parts.any(|part| matches!(part, "tests" | "testing" | "agreement"));
+        let is_test = parts.any(|part| matches!(part, "tests" | "testing"));
+        let is_test = is_test || file == "surface/agreement.rs";
         is_declared && !is_test && file.extension() == Some("rs")
     });
     let modules: BTreeSet<&str> = sources.iter().map(|file| module(file)).collect();
@@ -52,7 +64,7 @@ fn arrows(root: &Utf8Path) -> Result<BTreeSet<(String, String)>, String> {
         owners.extend(names.filter_map(|name| Some((name, module?))));
     }
     owners.extend(modules.iter().map(|module| (*module, *module)));
-    let mut arrows = BTreeSet::new();
+    let mut arrows = Arrows::new();
     for file in &sources {
         let depth = file.iter().count() - usize::from(file.file_stem() == Some("mod"));
         for name in imported(&read(&folder.join(file))?, depth) {
@@ -61,7 +73,8 @@ fn arrows(root: &Utf8Path) -> Result<BTreeSet<(String, String)>, String> {
         }
     }
     arrows.retain(|(from, to)| from != to);
-    Ok(arrows)
+    let modules = modules.into_iter().map(str::to_owned).collect();
+    Ok((modules, arrows))
 }
 
 /// The top-level module of a file.

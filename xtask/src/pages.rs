@@ -1,6 +1,6 @@
-//! Finds the commands of the documentation: lines of blocks that are marked `sh`, `bash` or `console`, and indented lines
-//! and words in backticks that begin with a known program. Pages are all Markdown files but the changelog, which describes earlier
-//! versions.
+//! Finds the commands of the documentation: lines of blocks that are marked `sh`, `bash` or `console`, and indented
+//! lines and words in backticks that begin with a known program. Pages are all Markdown files but the changelog, which
+//! describes earlier versions.
 
 use std::collections::BTreeMap;
 

@@ -43,6 +43,12 @@ pub(crate) fn steps(metadata: &Metadata) -> Result<Vec<Step>, String> {
             steps.push(Step { name, runs, checks });
         }
     }
+    let is_missing = |name: &&str| steps.iter().all(|step| step.name != *name);
+    if let Some(name) = CHECKS.iter().map(|(name, _)| *name).find(is_missing) {
+        return Err(format!(
+            "{name} has a check, and is no step of xtask/steps.txt"
+        ));
+    }
     let more = features::runs(metadata, &steps[0].runs)?;
     let mut all = steps.iter_mut();
     let step = all.find(|step| step.name == "nightly: features");
@@ -75,9 +81,9 @@ fn words(metadata: &Metadata, name: &str) -> String {
         }
         _ => {
             let mut defined = STEPS.lines().filter_map(|line| line.split_once(" = "));
-            words += defined
-                .find(|(known, _)| *known == name)
-                .map_or("", |it| it.1);
+            let defined = defined.find(|(known, _)| *known == name);
+            // An option that cargo refuses, with the name in its error.
+            words += &defined.map_or(format!("--undefined={name}"), |it| it.1.to_owned());
         }
     }
     words

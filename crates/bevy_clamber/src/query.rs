@@ -283,11 +283,11 @@ impl<P: SurfacePose> SurfaceQuery<'_, '_, P> {
             let found = EntitySweepHit {
                 hit: self.hit(entity, &hit.hit),
                 separation_normal: hit.separation_normal.as_vec3(),
-                time: hit.time as f32,
+                time: hit.fraction as f32,
                 started_inside: hit.started_inside,
                 undecided: hit.undecided,
             };
-            Some((hit.time, found))
+            Some((hit.fraction, found))
         });
         let earlier = hits.min_by(|(time, a), (other, b)| {
             let by_time = time.total_cmp(other);
@@ -340,7 +340,7 @@ impl<P: SurfacePose> SurfaceQuery<'_, '_, P> {
         found.ok_or(AnchorError::NoSurface(entity))
     }
 
-    fn hit(&self, entity: Entity, hit: &surface::WorldHit) -> EntityHit {
+    fn hit(&self, entity: Entity, hit: &surface::SurfaceHit<DVec3>) -> EntityHit {
         world_hit(entity, hit, self.origin.0)
     }
 
@@ -357,7 +357,7 @@ impl<P: SurfacePose> SurfaceQuery<'_, '_, P> {
         &self,
         filter: &SurfaceFilter<'_>,
         max_distance: f32,
-        find: impl Fn(&SkinnedSurface, f64) -> Option<surface::WorldHit>,
+        find: impl Fn(&SkinnedSurface, f64) -> Option<surface::SurfaceHit<DVec3>>,
     ) -> Option<EntityHit> {
         let mut max_distance = f64::from(max_distance);
         let mut nearest: Option<(f64, EntityHit)> = None;
@@ -418,7 +418,11 @@ pub(crate) fn in_f64(ray: Ray3d, origin: DVec3) -> (DVec3, DVec3) {
 }
 
 /// A hit relative to Bevy's origin.
-pub(crate) fn world_hit(entity: Entity, hit: &surface::WorldHit, origin: DVec3) -> EntityHit {
+pub(crate) fn world_hit(
+    entity: Entity,
+    hit: &surface::SurfaceHit<DVec3>,
+    origin: DVec3,
+) -> EntityHit {
     EntityHit {
         entity,
         point: (hit.point - origin).as_vec3(),

@@ -228,7 +228,7 @@ impl ClimberObstacle {
             // At the last step a contact is reported rather than missed, so that no contact is late.
             if touches || step == MAX_SWEEP_STEPS {
                 return Some(SweepContact {
-                    time,
+                    fraction: time,
                     contact: self.contact(&apart),
                     separation_normal: apart.away,
                     started_inside: step == 0 && gap <= 0.0,
@@ -305,7 +305,7 @@ impl Obstacle for ClimberObstacle {
         // Swept in the frame of this body, in which it is at rest at its final position.
         let ways = displacements.map(|way| way - self.way);
         let mut hit = self.meet(&capsule.moved(self.way), ways)?;
-        hit.contact.point -= self.way * (1.0 - hit.time);
+        hit.contact.point -= self.way * (1.0 - hit.fraction);
         Some(hit)
     }
 

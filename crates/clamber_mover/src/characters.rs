@@ -5,13 +5,13 @@
 //! nor presses it into an obstacle. Where walls and characters together leave no room, the solver ignores the
 //! characters.
 
-use clamber_world::{CharacterBody, Obstacle, ObstacleId, Others, WorldCapsule};
+use clamber_world::{CharacterBody, Obstacle, ObstacleId, Others, SweepContact, WorldCapsule};
 use glam::DVec3;
 
 use crate::half_spaces::MovePlane;
 use crate::mover::{find, path_among};
 use crate::slide::TOUCH;
-use crate::{Hit, IntoOthers, Mover, Path, Touch};
+use crate::{IntoOthers, Mover, MoverContact, Path};
 
 /// The characters among the obstacles of a tick, as a movement sees them.
 #[derive(Clone, Copy)]
@@ -28,19 +28,19 @@ pub(crate) struct Characters<'a> {
 
 impl Characters<'_> {
     /// True for a contact with a character.
-    pub(crate) fn has(&self, touch: &Touch) -> bool {
+    pub(crate) fn has(&self, touch: &MoverContact) -> bool {
         self.of(touch).is_some()
     }
 
     /// The character that a contact is with; `None` for a contact with another obstacle.
-    fn of(&self, touch: &Touch) -> Option<CharacterBody> {
+    fn of(&self, touch: &MoverContact) -> Option<CharacterBody> {
         let obstacle = self.any.then(|| find(self.obstacles, touch.obstacle))?;
         obstacle?.character()
     }
 
     /// The offset of a half-space of a contact with a character, lowered by the allowed depth. The half-space contains
     /// the frame's displacement.
-    fn offset(&self, path: &Path, half_space: &MovePlane, touch: &Touch) -> f64 {
+    fn offset(&self, path: &Path, half_space: &MovePlane, touch: &MoverContact) -> f64 {
         if self.yielding {
             return f64::NEG_INFINITY;
         }
@@ -49,7 +49,7 @@ impl Characters<'_> {
     }
 
     /// Depth to which the body may overlap the character of a contact, metres; 0 for other obstacles.
-    pub(crate) fn allowed(&self, path: &Path, touch: &Touch) -> f64 {
+    pub(crate) fn allowed(&self, path: &Path, touch: &MoverContact) -> f64 {
         let (Some(into), Some(other)) = (self.into, self.of(touch)) else {
             return 0.0;
         };
@@ -72,30 +72,39 @@ impl Characters<'_> {
     }
 
     /// True for a contact with a character that is beside the body at the start of a movement.
-    pub(crate) fn has_beside(&self, path: &Path, touch: &Touch, up: DVec3) -> bool {
+    pub(crate) fn has_beside(&self, path: &Path, touch: &MoverContact, up: DVec3) -> bool {
         let body = path.body.at(path.start);
         self.of(touch)
             .is_some_and(|other| is_beside(&body, &other.capsule, up))
     }
 
     /// True if a hit along `way` stops the body. A character stops only the body's own motion, relative to the frame.
-    pub(crate) fn stop(&self, path: &Path, hit: &Hit, way: DVec3) -> bool {
-        if !self.has(&hit.touch) {
+    pub(crate) fn stop(&self, path: &Path, hit: &SweepContact<MoverContact>, way: DVec3) -> bool {
+        if !self.has(&hit.contact) {
             return true;
         }
         let half_space = self.half_space_of_hit(path, hit, way);
-        let offset = self.offset(path, &half_space, &hit.touch);
+        let offset = self.offset(path, &half_space, &hit.contact);
         half_space.normal.dot(way) < offset - TOUCH * path.body.radius
     }
 
     /// The half-space of a contact that a sweep along `way` found: its plane is where the touched material is at the
     /// tick's end.
-    pub(crate) fn half_space_of_hit(&self, path: &Path, hit: &Hit, way: DVec3) -> MovePlane {
-        let Hit { touch, time, .. } = hit;
+    pub(crate) fn half_space_of_hit(
+        &self,
+        path: &Path,
+        hit: &SweepContact<MoverContact>,
+        way: DVec3,
+    ) -> MovePlane {
+        let SweepContact {
+            contact: touch,
+            fraction,
+            ..
+        } = hit;
         let (obstacle, contact) = (touch.obstacle, &touch.contact);
         let motion = path_among(self.obstacles, obstacle, &contact.material, self.dt);
         let end = motion.map_or(contact.point, |motion| motion.position);
-        let on_axis = path.end_of(way, *time, contact.point);
+        let on_axis = path.end_of(way, *fraction, contact.point);
         MovePlane {
             normal: touch.normal,
             offset: touch.normal.dot(end - path.start - on_axis) + path.body.radius,
@@ -104,7 +113,7 @@ impl Characters<'_> {
 
     /// Depth from which a contact may push the body out, metres, at most `depth`, the actual depth. `way` is the body's
     /// displacement.
-    pub(crate) fn depth(&self, path: &Path, touch: &Touch, way: DVec3, depth: f64) -> f64 {
+    pub(crate) fn depth(&self, path: &Path, touch: &MoverContact, way: DVec3, depth: f64) -> f64 {
         if depth <= 0.0 || !self.has(touch) {
             depth
         } else if self.yielding {
@@ -163,7 +172,7 @@ impl<'a> Mover<'a> {
 
     /// True if a contact is with another character
     /// ([`Obstacle::character`](clamber_world::Obstacle::character)).
-    pub fn is_character(&self, touch: &Touch) -> bool {
+    pub fn is_character(&self, touch: &MoverContact) -> bool {
         self.characters().has(touch)
     }
 
@@ -171,7 +180,7 @@ impl<'a> Mover<'a> {
     pub(crate) fn add_contact(
         &mut self,
         path: &Path,
-        touch: Touch,
+        touch: MoverContact,
         half_space: MovePlane,
         wall: Option<MovePlane>,
     ) {

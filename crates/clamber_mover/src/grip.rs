@@ -1,6 +1,6 @@
 use glam::DVec3;
 
-use crate::{Mover, MoverBody, Touch};
+use crate::{Mover, MoverBody, MoverContact};
 
 /// Contacts farther than the nearest by less than this fraction of the body's radius count as equally near.
 const AS_NEAR: f64 = 0.05;
@@ -21,9 +21,9 @@ impl Mover<'_> {
         body: &MoverBody,
         position: DVec3,
         reach: f64,
-        can_grip: impl Fn(&Touch) -> bool,
-        merit: impl Fn(&Touch) -> f64,
-    ) -> Option<Touch> {
+        can_grip: impl Fn(&MoverContact) -> bool,
+        merit: impl Fn(&MoverContact) -> f64,
+    ) -> Option<MoverContact> {
         // Nearly always there is a grip close to the body. A contact that is farther than the nearest grip by more than
         // `as_near` cannot be chosen. So the grip found within this short reach is also the grip of the whole reach.
         let as_near = AS_NEAR * body.radius;
@@ -43,9 +43,9 @@ impl Mover<'_> {
         body: &MoverBody,
         position: DVec3,
         reach: f64,
-        can_grip: &impl Fn(&Touch) -> bool,
-        merit: &impl Fn(&Touch) -> f64,
-    ) -> Option<Touch> {
+        can_grip: &impl Fn(&MoverContact) -> bool,
+        merit: &impl Fn(&MoverContact) -> f64,
+    ) -> Option<MoverContact> {
         let overlaps = self.overlap(&body.crouched(), position, reach).iter();
         let distances = overlaps.map(|touch| touch.contact.distance);
         // Within this distance no obstacle can block the line to a contact: no contact is nearer than the nearest one,
@@ -88,7 +88,7 @@ impl Mover<'_> {
 
     /// True if no obstacle blocks the line from a position to a contact, with obstacles in their current state. The
     /// last `slack` metres of the line are ignored. Also true for input that is not finite.
-    pub fn can_reach(&mut self, position: DVec3, touch: &Touch, slack: f64) -> bool {
+    pub fn can_reach(&mut self, position: DVec3, touch: &MoverContact, slack: f64) -> bool {
         let way = touch.contact.point - position;
         let length = way.length() - slack;
         length <= 0.0 || self.cast_ray(position, way, length).is_none()

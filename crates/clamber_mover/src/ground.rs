@@ -1,10 +1,10 @@
 //! Support of a body: the ground below it, and the contacts of a movement that hold it up.
 
-use clamber_world::WorldCapsule;
+use clamber_world::{SweepContact, WorldCapsule};
 use glam::DVec3;
 
 use crate::half_spaces::{MovePlane, project_onto_half_spaces};
-use crate::{Hit, Mover, MoverBody, Touch};
+use crate::{Mover, MoverBody, MoverContact};
 
 /// Parameters of a search for ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,7 +24,7 @@ pub struct GroundProbe {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ground {
     /// The contact that the body would stand on.
-    pub touch: Touch,
+    pub touch: MoverContact,
     /// Position of the body on the ground, in world space.
     pub position: DVec3,
 }
@@ -81,17 +81,21 @@ impl Mover<'_> {
     pub fn find_ground_below(&mut self, probe: &GroundProbe, position: DVec3) -> Option<Ground> {
         let body = &probe.body;
         let down = -probe.up * (probe.reach + body.margin);
-        let Hit { touch, time, .. } = self.meet_ground(probe, position, down)?;
+        let SweepContact {
+            contact: touch,
+            fraction,
+            ..
+        } = self.meet_ground(probe, position, down)?;
         // Raises the body until it just touches the contact that its core has met.
         let rise = (body.radius - touch.contact.distance) / touch.normal.dot(probe.up);
-        let position = position + down * time + probe.up * rise;
+        let position = position + down * fraction + probe.up * rise;
         Some(Ground { touch, position })
     }
 
     /// The nearest ground, for a body with no ground straight below.
     fn find_ground_beside(&mut self, probe: &GroundProbe, position: DVec3) -> Option<Ground> {
         let body = &probe.body;
-        let mut best: Option<Touch> = None;
+        let mut best: Option<MoverContact> = None;
         self.overlap(&body.crouched(), position, probe.reach);
         for touch in self.overlaps() {
             let nearer = best.is_none_or(|best| touch.contact.distance < best.contact.distance);
@@ -104,24 +108,33 @@ impl Mover<'_> {
         // meet the ground first in a cast.
         let way = (best.contact.distance - body.core_radius()).max(0.0) + probe.least();
         let toward = -best.normal * way;
-        let Hit { touch, time, .. } = self.meet_ground(probe, position, toward)?;
+        let SweepContact {
+            contact: touch,
+            fraction,
+            ..
+        } = self.meet_ground(probe, position, toward)?;
         let position =
-            position + toward * time + touch.normal * (body.radius - touch.contact.distance);
+            position + toward * fraction + touch.normal * (body.radius - touch.contact.distance);
         Some(Ground { touch, position })
     }
 
     /// The first contact of the body's core along `way`, if it is ground.
-    fn meet_ground(&mut self, probe: &GroundProbe, position: DVec3, way: DVec3) -> Option<Hit> {
+    fn meet_ground(
+        &mut self,
+        probe: &GroundProbe,
+        position: DVec3,
+        way: DVec3,
+    ) -> Option<SweepContact<MoverContact>> {
         let core = probe.body.core_at(position);
         let hit = self.cast_past_characters(&core, way, probe.up)?;
-        let is_level = !hit.started_inside && probe.is_ground(hit.touch.normal);
-        (is_level && self.is_ground(&hit.touch)).then_some(hit)
+        let is_level = !hit.started_inside && probe.is_ground(hit.contact.normal);
+        (is_level && self.is_ground(&hit.contact)).then_some(hit)
     }
 
     /// The contact of the last movement that holds the body up: the most level of the contacts that can, if its slope
     /// is at most `max_slope`, radians, or if the contacts together leave the body no way down. `None` if the body is
     /// not held up.
-    pub fn holding_up(&self, up: DVec3, max_slope: f64) -> Option<Touch> {
+    pub fn holding_up(&self, up: DVec3, max_slope: f64) -> Option<MoverContact> {
         let ground = self.touched().iter().filter(|touch| self.is_ground(touch));
         let best = ground.copied().reduce(|best, touch| {
             if touch.normal.dot(up) > best.normal.dot(up) {
@@ -156,12 +169,12 @@ impl Mover<'_> {
         body: &MoverBody,
         position: DVec3,
         up: DVec3,
-        met: &Touch,
-    ) -> Option<Touch> {
+        met: &MoverContact,
+    ) -> Option<MoverContact> {
         let as_near = AS_NEAR * body.margin;
         self.overlap(&body.crouched(), position, body.margin);
         let underfoot = || {
-            let is_met = |touch: &&Touch| {
+            let is_met = |touch: &&MoverContact| {
                 let same_side = touch.normal.dot(met.normal) > SAME_SIDE;
                 touch.obstacle == met.obstacle && same_side && self.is_ground(touch)
             };
@@ -171,7 +184,7 @@ impl Mover<'_> {
         let nearest = distances.fold(f64::INFINITY, f64::min);
         let as_near = underfoot().filter(|touch| touch.contact.distance <= nearest + as_near);
         as_near.copied().reduce(|best, touch| {
-            let level = |touch: &Touch| touch.contact.normal.dot(up);
+            let level = |touch: &MoverContact| touch.contact.normal.dot(up);
             let rise = level(&touch) - level(&best);
             let nearer = touch.contact.distance < best.contact.distance;
             if rise > ONE_FACE || rise >= -ONE_FACE && nearer {
@@ -222,7 +235,7 @@ impl Mover<'_> {
         // Limits the rise to the room below a ceiling, which would otherwise block every way from there.
         let room = self.obstruction(&core, up * height);
         let rise = room.map_or(height, |hit| {
-            (height * hit.time - probe.body.margin).max(0.0)
+            (height * hit.fraction - probe.body.margin).max(0.0)
         });
         let rise = up * rise;
         let raised = core.moved(rise);

@@ -8,7 +8,7 @@
 use clamber_world::WorldCapsule;
 use glam::DVec3;
 
-use crate::{Mover, MoverBody, Touch, slope};
+use crate::{Mover, MoverBody, MoverContact, slope};
 
 /// Parameters of [`Mover::find_ledge`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -113,7 +113,7 @@ const TOUCHES: f64 = 1.04;
 #[non_exhaustive]
 pub struct Ledge {
     /// The contact of a hand with the ledge's top, beyond the edge.
-    pub touch: Touch,
+    pub touch: MoverContact,
     /// Level unit vector straight towards the wall.
     pub facing: DVec3,
     /// Point of the wall in world space, straight ahead of the position that the ledge was found from, and at that
@@ -140,21 +140,21 @@ impl Mover<'_> {
         if ahead.started_inside {
             return None;
         }
-        let facing = straight_at(&ahead.touch, probe)?;
+        let facing = straight_at(&ahead.contact, probe)?;
         let wall = self.cast(&hand, facing * reach)?;
         if wall.started_inside {
             return None;
         }
-        let to_wall = reach * wall.time + hand_radius;
+        let to_wall = reach * wall.fraction + hand_radius;
         let above = WorldCapsule::ball(position + height + up * hand_radius, hand_radius);
         let inward = facing * (to_wall + hand_radius + BEYOND * body.radius);
         if !self.is_free(&above, inward) {
             return None;
         }
         let top = self.cast(&above.moved(inward), -height)?;
-        let is_top = !top.started_inside && slope(top.touch.normal, up) <= probe.max_slope;
+        let is_top = !top.started_inside && slope(top.contact.normal, up) <= probe.max_slope;
         is_top.then_some(Ledge {
-            touch: top.touch,
+            touch: top.contact,
             facing,
             wall: position + facing * to_wall,
         })
@@ -200,7 +200,7 @@ impl Mover<'_> {
         let before = hold.wall_ahead(position) - (STEP + SLACK + PLACES) * radius;
         let aside = up * (hold.height(position) - DEPTHS[1] * radius) + facing * before;
         let hand = WorldCapsule::ball(position + aside, PLACES * radius);
-        let free = self.cast(&hand, way).map_or(1.0, |hit| hit.time);
+        let free = self.cast(&hand, way).map_or(1.0, |hit| hit.fraction);
         // With the tolerance, rounding does not add a place to a whole number of places.
         let places = (way.length() / (PLACES * radius) - SLACK).ceil().max(1.0);
         let mut place = 0.0;
@@ -332,12 +332,18 @@ impl Mover<'_> {
 
     /// The top under a ball that comes down onto a point at the height of the ledge. It starts `rise` above the point,
     /// a fraction of the body's radius.
-    fn top_below(&mut self, hold: &LedgeHold, point: DVec3, rise: f64, ball: f64) -> Option<Touch> {
+    fn top_below(
+        &mut self,
+        hold: &LedgeHold,
+        point: DVec3,
+        rise: f64,
+        ball: f64,
+    ) -> Option<MoverContact> {
         let LedgeHold { body, up, .. } = *hold;
         let above = WorldCapsule::ball(point + up * (rise * body.radius + ball), ball);
         let top = self.cast(&above, -up * ((rise + STEP + SLACK) * body.radius))?;
-        let is_top = !top.started_inside && slope(top.touch.normal, up) <= hold.max_slope;
-        is_top.then_some(top.touch)
+        let is_top = !top.started_inside && slope(top.contact.normal, up) <= hold.max_slope;
+        is_top.then_some(top.contact)
     }
 }
 
@@ -349,7 +355,7 @@ fn toward(normal: DVec3, up: DVec3) -> Option<(DVec3, bool)> {
 }
 
 /// The level direction straight towards a wall; `None` if the probe faces the wall too obliquely.
-fn straight_at(wall: &Touch, probe: &LedgeProbe) -> Option<DVec3> {
+fn straight_at(wall: &MoverContact, probe: &LedgeProbe) -> Option<DVec3> {
     let normal = wall.normal;
     let level = normal - probe.up * normal.dot(probe.up);
     let straight = (-level).normalize_or(probe.facing);

@@ -26,4 +26,4 @@ pub use half_spaces::{MovePlane, Projection, project_onto_half_spaces};
 pub use ledge::{Ledge, LedgeHold, LedgeProbe};
 pub use mover::{Mover, MoverMemory};
 pub use path::{Arm, Begin, IntoOthers, Moved, Path, Walking};
-pub use touch::{Hit, Touch};
+pub use touch::MoverContact;

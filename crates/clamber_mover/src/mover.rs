@@ -10,7 +10,8 @@ use crate::characters::is_beside;
 use crate::filters::{ContactFilter, ContactFilters, accepts};
 use crate::half_spaces::MovePlane;
 use crate::surroundings::Surroundings;
-use crate::{Hit, IntoOthers, MoverBody, MoverError, Touch};
+use crate::touch::met;
+use crate::{IntoOthers, MoverBody, MoverContact, MoverError};
 
 /// Memory that movers reuse, so that a steady tick allocates nothing. It carries no state from tick to tick.
 #[derive(Clone, Debug, Default)]
@@ -18,10 +19,10 @@ pub struct MoverMemory {
     contacts: Vec<Contact>,
     /// Contacts that the core started inside of, or that crush it. Sweeps ignore them. Each is in its state at the
     /// start of the tick.
-    pub(crate) passed: Vec<Touch>,
+    pub(crate) passed: Vec<MoverContact>,
     /// Room that the wanted movement lacks between the half-spaces, metres. It is not updated once the body is crushed.
     pub(crate) lacking: f64,
-    pub(crate) overlaps: Vec<Touch>,
+    pub(crate) overlaps: Vec<MoverContact>,
     pub(crate) half_spaces: Vec<MovePlane>,
     /// Vertical walls that replace steep slopes. The slopes themselves are in `half_spaces`.
     pub(crate) walls: Vec<MovePlane>,
@@ -29,7 +30,7 @@ pub struct MoverMemory {
     pub(crate) yielding_walls: Vec<MovePlane>,
     /// True if walls and other characters left no room in the last movement, so that characters were ignored.
     pub(crate) characters_yield: bool,
-    pub(crate) touched: Vec<Touch>,
+    pub(crate) touched: Vec<MoverContact>,
     /// Velocities of the contacts in `touched`, at the same indices.
     pub(crate) velocities: Vec<Option<DVec3>>,
     surroundings: Surroundings,
@@ -156,7 +157,7 @@ impl<'a> Mover<'a> {
 
     /// Positions of the material at a contact at the start and at the end of the tick. It is the part of
     /// [`Mover::motion`] that needs no frame, and takes a fraction of the time.
-    pub fn path_of(&self, touch: &Touch) -> Option<WorldPath> {
+    pub fn path_of(&self, touch: &MoverContact) -> Option<WorldPath> {
         path_among(
             self.obstacles,
             touch.obstacle,
@@ -167,7 +168,7 @@ impl<'a> Mover<'a> {
 
     /// Fixes a point at `place`, in world space, to the material of a contact. Call [`Attachment::follow`] in later
     /// ticks.
-    pub fn attach(&self, touch: &Touch, place: DVec3) -> Attachment {
+    pub fn attach(&self, touch: &MoverContact, place: DVec3) -> Attachment {
         let motion = self.motion(touch.obstacle, &touch.contact.material);
         Attachment::with_motion(touch.obstacle, &touch.contact, motion.as_ref(), place)
     }
@@ -193,7 +194,7 @@ impl<'a> Mover<'a> {
     ///
     /// If the body was pressed through a surface, only the nearest of the contacts that face inward are kept. They are
     /// turned outward and get a negative distance.
-    pub fn overlap(&mut self, body: &MoverBody, position: DVec3, reach: f64) -> &[Touch] {
+    pub fn overlap(&mut self, body: &MoverBody, position: DVec3, reach: f64) -> &[MoverContact] {
         let capsule = body.at(position).with_radius(body.radius + reach);
         let pressed = PRESSED * body.core_radius();
         let as_near = AS_NEAR * body.core_radius();
@@ -215,7 +216,7 @@ impl<'a> Mover<'a> {
                     contact.separation_normal(capsule.nearest_on_axis(contact.point))
                 };
                 if contact.point.is_finite() && contact.distance.is_finite() && normal.is_finite() {
-                    memory.overlaps.push(Touch {
+                    memory.overlaps.push(MoverContact {
                         obstacle: id,
                         contact: *contact,
                         normal,
@@ -230,13 +231,17 @@ impl<'a> Mover<'a> {
 
     /// The result of the last [`Mover::overlap`]. [`Mover::slide`], [`Mover::find_ground`], [`Mover::still_underfoot`]
     /// and [`Mover::find_grip`] also overwrite it.
-    pub fn overlaps(&self) -> &[Touch] {
+    pub fn overlaps(&self) -> &[MoverContact] {
         &self.memory.overlaps
     }
 
     /// The first contact over the tick of a capsule whose ends move by `ways`, while the obstacles move as well.
     /// `capsule` is the capsule at the start of the tick.
-    pub fn sweep(&mut self, capsule: &WorldCapsule, ways: [DVec3; 2]) -> Option<Hit> {
+    pub fn sweep(
+        &mut self,
+        capsule: &WorldCapsule,
+        ways: [DVec3; 2],
+    ) -> Option<SweepContact<MoverContact>> {
         self.first_solid(capsule, ways, TargetMotion::Moving)
     }
 
@@ -246,12 +251,12 @@ impl<'a> Mover<'a> {
         &mut self,
         capsule: &WorldCapsule,
         ways: [DVec3; 2],
-        mut counts: impl FnMut(&Hit) -> bool,
-    ) -> Option<Hit> {
+        mut counts: impl FnMut(&SweepContact<MoverContact>) -> bool,
+    ) -> Option<SweepContact<MoverContact>> {
         let solid = self.filters.solid;
         self.first(capsule, ways, |id, obstacle| {
             let mut counts = |sweep: &SweepContact| {
-                accepts(solid, id, obstacle, &sweep.contact) && counts(&Hit::new(id, sweep))
+                accepts(solid, id, obstacle, &sweep.contact) && counts(&met(id, sweep))
             };
             obstacle.cast_capsule_where(capsule, ways, TargetMotion::Moving, &mut counts)
         })
@@ -262,12 +267,12 @@ impl<'a> Mover<'a> {
         &mut self,
         capsule: &WorldCapsule,
         ways: [DVec3; 2],
-        mut counts: impl FnMut(&Hit) -> bool,
-    ) -> Option<Hit> {
+        mut counts: impl FnMut(&SweepContact<MoverContact>) -> bool,
+    ) -> Option<SweepContact<MoverContact>> {
         let solid = self.filters.solid;
         self.first(capsule, ways, |id, obstacle| {
             let mut counts = |sweep: &SweepContact| {
-                accepts(solid, id, obstacle, &sweep.contact) && counts(&Hit::new(id, sweep))
+                accepts(solid, id, obstacle, &sweep.contact) && counts(&met(id, sweep))
             };
             let moving = TargetMotion::Moving;
             obstacle.cast_capsule_past_overlaps(capsule, ways, moving, &mut counts)
@@ -286,20 +291,29 @@ impl<'a> Mover<'a> {
     ) -> bool {
         let core = body.core_at(start + correction);
         let characters = self.characters();
-        self.sweep_past_overlaps(&core, [end - start; 2], |hit| !characters.has(&hit.touch))
+        self.sweep_past_overlaps(&core, [end - start; 2], |hit| !characters.has(&hit.contact))
             .is_none()
     }
 
     /// The first contact of a capsule that moves by `way`, metres in world space. The obstacles do not move: they are
     /// in their state at the end of the tick. `None` if the capsule meets no obstacle, and for input that is not
     /// finite.
-    pub fn cast(&mut self, capsule: &WorldCapsule, way: DVec3) -> Option<Hit> {
+    pub fn cast(
+        &mut self,
+        capsule: &WorldCapsule,
+        way: DVec3,
+    ) -> Option<SweepContact<MoverContact>> {
         self.first_solid(capsule, [way; 2], TargetMotion::Still)
     }
 
     /// The first contact along a ray, against obstacles in their current state. `length` is in metres and may be
     /// infinite; `direction` may have any length but zero.
-    pub fn cast_ray(&mut self, origin: DVec3, direction: DVec3, length: f64) -> Option<Touch> {
+    pub fn cast_ray(
+        &mut self,
+        origin: DVec3,
+        direction: DVec3,
+        length: f64,
+    ) -> Option<MoverContact> {
         if length.is_nan() || length < 0.0 {
             return None;
         }
@@ -314,7 +328,7 @@ impl<'a> Mover<'a> {
         let solid = self.filters.solid;
         let surroundings = &mut self.memory.surroundings;
         let near = surroundings.near(self.obstacles, middle, reach);
-        let mut first: Option<Touch> = None;
+        let mut first: Option<MoverContact> = None;
         for (id, obstacle) in near {
             let contact = match solid {
                 None => obstacle.cast_ray(origin, direction, length),
@@ -326,9 +340,9 @@ impl<'a> Mover<'a> {
             let Some(contact) = contact else {
                 continue;
             };
-            let nearer = |best: Touch| contact.distance < best.contact.distance;
+            let nearer = |best: MoverContact| contact.distance < best.contact.distance;
             if contact.distance.is_finite() && first.is_none_or(nearer) {
-                first = Some(Touch {
+                first = Some(MoverContact {
                     obstacle: id,
                     contact,
                     normal: -direction,
@@ -351,7 +365,11 @@ impl<'a> Mover<'a> {
     }
 
     /// The first contact that blocks a capsule along `way`, by the rules of [`Mover::is_free`].
-    pub(crate) fn obstruction(&mut self, capsule: &WorldCapsule, way: DVec3) -> Option<Hit> {
+    pub(crate) fn obstruction(
+        &mut self,
+        capsule: &WorldCapsule,
+        way: DVec3,
+    ) -> Option<SweepContact<MoverContact>> {
         if !self.has_characters {
             return self.cast(capsule, way);
         }
@@ -375,7 +393,7 @@ impl<'a> Mover<'a> {
         capsule: &WorldCapsule,
         way: DVec3,
         up: DVec3,
-    ) -> Option<Hit> {
+    ) -> Option<SweepContact<MoverContact>> {
         if !self.has_characters {
             return self.cast(capsule, way);
         }
@@ -400,7 +418,7 @@ impl<'a> Mover<'a> {
         capsule: &WorldCapsule,
         ways: [DVec3; 2],
         target: TargetMotion,
-    ) -> Option<Hit> {
+    ) -> Option<SweepContact<MoverContact>> {
         let solid = self.filters.solid;
         self.first(capsule, ways, |id, obstacle| {
             let Some(is_solid) = solid else {
@@ -416,7 +434,7 @@ impl<'a> Mover<'a> {
         capsule: &WorldCapsule,
         ways: [DVec3; 2],
         mut ask: impl FnMut(ObstacleId, &dyn Obstacle) -> Option<SweepContact>,
-    ) -> Option<Hit> {
+    ) -> Option<SweepContact<MoverContact>> {
         // Bounding ball of the whole sweep: the capsule's ball, moved by half the mean displacement of the ends. Its
         // radius grows by the length of that half, and by the distance of each end's displacement from the mean.
         let (middle, reach) = capsule.bounding_ball();
@@ -424,15 +442,15 @@ impl<'a> Mover<'a> {
         let turn = (ways[1] - ways[0]).length() * 0.5;
         let (middle, reach) = (middle + half, reach + half.length() + turn);
         let near = self.memory.surroundings.near(self.obstacles, middle, reach);
-        let mut first: Option<Hit> = None;
+        let mut first: Option<SweepContact<MoverContact>> = None;
         for (id, obstacle) in near {
             let Some(hit) = ask(id, obstacle) else {
                 continue;
             };
-            let hit = Hit::new(id, &hit);
-            let is_sound = (0.0..=1.0).contains(&hit.time) && hit.touch.is_finite();
+            let hit = met(id, &hit);
+            let is_sound = (0.0..=1.0).contains(&hit.fraction) && hit.contact.is_finite();
             // Obstacles come by ascending id. If times are equal, the lowest id is kept.
-            if is_sound && first.is_none_or(|best| hit.time < best.time) {
+            if is_sound && first.is_none_or(|best| hit.fraction < best.fraction) {
                 first = Some(hit);
             }
         }
@@ -440,23 +458,23 @@ impl<'a> Mover<'a> {
     }
 
     /// True if a contact can hold a body up, by [`ContactFilters::ground`].
-    pub(crate) fn is_ground(&self, touch: &Touch) -> bool {
+    pub(crate) fn is_ground(&self, touch: &MoverContact) -> bool {
         self.is_accepted(self.filters.ground, touch)
     }
 
     /// True if walking may climb onto a contact, by [`ContactFilters::step`].
-    pub(crate) fn is_step(&self, touch: &Touch) -> bool {
+    pub(crate) fn is_step(&self, touch: &MoverContact) -> bool {
         self.is_accepted(self.filters.step, touch)
     }
 
-    fn is_accepted(&self, filter: Option<&ContactFilter<'_>>, touch: &Touch) -> bool {
+    fn is_accepted(&self, filter: Option<&ContactFilter<'_>>, touch: &MoverContact) -> bool {
         let obstacle = filter.and_then(|_| self.obstacle(touch.obstacle));
         obstacle.is_none_or(|obstacle| accepts(filter, touch.obstacle, obstacle, &touch.contact))
     }
 
     /// True if the body was pressed through a contact's face, but not deep: it is then pushed back to the side from
     /// which it came.
-    pub(crate) fn is_pressed_into(body: &MoverBody, touch: &Touch) -> bool {
+    pub(crate) fn is_pressed_into(body: &MoverBody, touch: &MoverContact) -> bool {
         touch.faces_inward() && touch.contact.distance < PRESSED * body.core_radius()
     }
 }
@@ -495,7 +513,7 @@ pub(crate) fn path_among(
 /// is unrelated to the depth in another.
 fn turn_outward_by_body(
     obstacle: &dyn Obstacle,
-    touches: &mut Vec<Touch>,
+    touches: &mut Vec<MoverContact>,
     first: usize,
     limits: [f64; 2],
 ) {
@@ -514,7 +532,11 @@ fn turn_outward_by_body(
 
 /// Turns the nearest contacts of one body outward if they face inward and are nearer than `pressed`. The body's other
 /// inward contacts are then dropped, since a body outside does not meet them.
-fn turn_outward(touches: &mut Vec<Touch>, of_body: Range<usize>, [pressed, as_near]: [f64; 2]) {
+fn turn_outward(
+    touches: &mut Vec<MoverContact>,
+    of_body: Range<usize>,
+    [pressed, as_near]: [f64; 2],
+) {
     let distances = touches[of_body.clone()]
         .iter()
         .map(|touch| touch.contact.distance);

@@ -13,11 +13,12 @@
 //! planes solved together: Jolt's CharacterVirtual, box3d's mover, avian's velocity projection. These methods collect
 //! planes near the start, with a margin, from obstacles at rest.)
 
+use clamber_world::SweepContact;
 use glam::DVec3;
 
 use crate::half_spaces::{MovePlane, Projection, project_where_it_pays};
 use crate::mover::path_among;
-use crate::{Begin, Hit, Moved, Mover, Path, Touch, Walking};
+use crate::{Begin, Moved, Mover, MoverContact, Path, Walking};
 
 /// Maximum number of rounds of one movement, each with a sweep, an overlap query, or both. Corners take two or three
 /// rounds. After the last round the body stops at the sweep's first contact.
@@ -140,7 +141,7 @@ impl Mover<'_> {
 
     /// The contacts of the last movement, in the order in which they were found: those that the body touches at the
     /// end, and those that stopped it. A contact may be listed twice.
-    pub fn touched(&self) -> &[Touch] {
+    pub fn touched(&self) -> &[MoverContact] {
         &self.memory.touched
     }
 
@@ -148,12 +149,13 @@ impl Mover<'_> {
     /// over the tick, so that the body gets no deeper.
     fn go_with_overlaps(&mut self, path: &Path, moved: &mut Moved) {
         let mut inside = std::mem::take(&mut self.memory.passed);
-        inside.sort_unstable_by(Touch::order);
+        inside.sort_unstable_by(MoverContact::order);
         inside.truncate(PUSHES);
         for (index, touch) in inside.iter().enumerate() {
             // The nearest contact of a face gives the body's depth; the others are inner edges of the face.
             let margin = path.body.margin;
-            let continues = |nearer: &Touch| touch.continues(touch.contact.point, nearer, margin);
+            let continues =
+                |nearer: &MoverContact| touch.continues(touch.contact.point, nearer, margin);
             let is_known = inside[..index].iter().any(continues);
             if is_known || Self::is_pressed_into(&path.body, touch) {
                 continue;
@@ -190,7 +192,7 @@ impl Mover<'_> {
         let Some(hit) = hit else {
             return false;
         };
-        let touch = hit.touch;
+        let touch = hit.contact;
         let motion = self.path_of(&touch);
         let end = motion.map_or(touch.contact.point, |motion| motion.position);
         let offset = self.characters().half_space_of_hit(path, &hit, way).offset;
@@ -207,14 +209,14 @@ impl Mover<'_> {
     }
 
     /// The first contact along `way`. Contacts that the core starts inside of are ignored, and stored in `passed`.
-    fn sweep_at_first(&mut self, path: &Path, way: DVec3) -> Option<Hit> {
+    fn sweep_at_first(&mut self, path: &Path, way: DVec3) -> Option<SweepContact<MoverContact>> {
         let core = path.core();
         let mut inside = std::mem::take(&mut self.memory.passed);
         inside.clear();
         let characters = self.characters();
         let hit = self.sweep_where(&core, path.ways(way), |hit| {
-            if hit.started_inside && hit.touch.is_finite() {
-                inside.push(hit.touch);
+            if hit.started_inside && hit.contact.is_finite() {
+                inside.push(hit.contact);
             }
             !hit.started_inside && characters.stop(path, hit, way)
         });
@@ -223,7 +225,7 @@ impl Mover<'_> {
     }
 
     /// The first contact along `way`, except contacts that the core started inside of or is crushed by.
-    fn sweep_from(&mut self, path: &Path, way: DVec3) -> Option<Hit> {
+    fn sweep_from(&mut self, path: &Path, way: DVec3) -> Option<SweepContact<MoverContact>> {
         let core = path.core();
         let inside = std::mem::take(&mut self.memory.passed);
         let margin = path.body.margin;
@@ -233,7 +235,7 @@ impl Mover<'_> {
             if !characters.stop(path, hit, way) {
                 return false;
             }
-            let touch = &hit.touch;
+            let touch = &hit.contact;
             let mut of_its_face = inside
                 .iter()
                 .filter(|other| touch.is_on_face_of(other))
@@ -253,10 +255,15 @@ impl Mover<'_> {
     /// tick.
     fn stop(&mut self, path: &Path, moved: &mut Moved) {
         let way = moved.position - path.start;
-        if let Some(Hit { touch, time, .. }) = self.sweep_from(path, way) {
+        if let Some(SweepContact {
+            contact: touch,
+            fraction,
+            ..
+        }) = self.sweep_from(path, way)
+        {
             let end = self.path_of(&touch);
             let carried = end.map_or(DVec3::ZERO, |motion| motion.position - touch.contact.point);
-            moved.position = path.start + way * time + carried;
+            moved.position = path.start + way * fraction + carried;
         }
     }
 
@@ -271,7 +278,7 @@ impl Mover<'_> {
             let capsule = body.at(moved.position);
             // The half-spaces are already relaxed by `missing_room`, so they allow this much more depth.
             let mut deepest = moved.missing_room + touching;
-            let mut worst: Option<Touch> = None;
+            let mut worst: Option<MoverContact> = None;
             let characters = self.characters();
             let way = moved.position - path.start;
             for touch in self.overlaps() {
@@ -324,14 +331,14 @@ impl Mover<'_> {
     }
 
     /// Adds a half-space that pushes a body at `position` out of a contact that overlaps it.
-    fn keep_off(&mut self, path: &Path, touch: Touch, position: DVec3) {
+    fn keep_off(&mut self, path: &Path, touch: MoverContact, position: DVec3) {
         let depth = path.body.radius - touch.contact.distance;
         let offset = touch.normal.dot(position - path.start) + depth;
         self.add_half_space(path, touch, offset, position);
     }
 
     /// Adds a contact with its half-space. `position` is where the body would be without it.
-    fn add_half_space(&mut self, path: &Path, touch: Touch, offset: f64, position: DVec3) {
+    fn add_half_space(&mut self, path: &Path, touch: MoverContact, offset: f64, position: DVec3) {
         let half_space = MovePlane {
             normal: touch.normal,
             offset,

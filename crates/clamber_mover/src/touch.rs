@@ -6,7 +6,7 @@ use glam::DVec3;
 /// A contact between the body and an obstacle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
-pub struct Touch {
+pub struct MoverContact {
     /// The obstacle.
     pub obstacle: ObstacleId,
     /// The contact itself. `contact.distance` is measured from the body's axis. It is negative inside a solid, and
@@ -19,7 +19,7 @@ pub struct Touch {
     pub swept: bool,
 }
 
-impl Touch {
+impl MoverContact {
     /// Orders by distance, obstacle, material and point, so that the order in which contacts were found does not
     /// matter.
     pub(crate) fn order(a: &Self, b: &Self) -> Ordering {
@@ -79,30 +79,18 @@ impl Touch {
     }
 }
 
-/// The first contact of a moving body.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct Hit {
-    /// The contact at that time.
-    pub touch: Touch,
-    /// Time of contact as a fraction of the movement, 0 to 1.
-    pub time: f64,
-    /// True if the moving body and the obstacle overlap at the start; the time is then 0.
-    pub started_inside: bool,
-}
-
-impl Hit {
-    pub(crate) fn new(obstacle: ObstacleId, sweep: &SweepContact) -> Self {
-        Self {
-            touch: Touch {
-                obstacle,
-                contact: sweep.contact,
-                normal: sweep.separation_normal,
-                swept: true,
-            },
-            time: sweep.time,
-            started_inside: sweep.started_inside,
-        }
+/// What a sweep found, with the obstacle that it met.
+pub(crate) fn met(obstacle: ObstacleId, sweep: &SweepContact) -> SweepContact<MoverContact> {
+    SweepContact {
+        fraction: sweep.fraction,
+        contact: MoverContact {
+            obstacle,
+            contact: sweep.contact,
+            normal: sweep.separation_normal,
+            swept: true,
+        },
+        separation_normal: sweep.separation_normal,
+        started_inside: sweep.started_inside,
     }
 }
 

@@ -3,7 +3,7 @@ use glam::DVec3;
 
 use crate::half_spaces::{MovePlane, project_where_it_pays};
 use crate::slide::STEEPEST_PUSH;
-use crate::{Mover, Touch};
+use crate::{Mover, MoverContact};
 
 /// Maximum number of half-spaces that limit a velocity together. Further contacts are ignored.
 const STOPS: usize = 24;
@@ -14,7 +14,7 @@ fn velocity_in(motion: Option<&WorldPath>) -> DVec3 {
 
 impl Mover<'_> {
     /// Velocity of the material at a contact, metres a second; zero if the material has no motion.
-    pub fn velocity_of(&self, touch: &Touch) -> DVec3 {
+    pub fn velocity_of(&self, touch: &MoverContact) -> DVec3 {
         let known = self.touched().iter().zip(&self.memory.velocities);
         let mut same = known.filter(|(other, velocity)| {
             let is_same = other.contact.material == touch.contact.material;
@@ -62,7 +62,7 @@ impl Mover<'_> {
         velocity: DVec3,
         frame: DVec3,
         limit: Option<MovePlane>,
-        velocity_of: impl Fn(&Touch, DVec3) -> DVec3,
+        velocity_of: impl Fn(&MoverContact, DVec3) -> DVec3,
     ) -> DVec3 {
         if limit.is_none() && self.touched().is_empty() {
             return velocity;

@@ -110,7 +110,7 @@ impl Obstacle for HalfSpace {
                 (gap - slack) / approach
             };
             Some(SweepContact {
-                time,
+                fraction: time,
                 contact: self.contact(end + way * time),
                 separation_normal: self.normal,
                 started_inside,
@@ -118,7 +118,7 @@ impl Obstacle for HalfSpace {
         });
         contacts.min_by(|a, b| {
             let nearer = a.contact.distance.total_cmp(&b.contact.distance);
-            a.time.total_cmp(&b.time).then(nearer)
+            a.fraction.total_cmp(&b.fraction).then(nearer)
         })
     }
 
@@ -201,12 +201,12 @@ mod tests {
             match slope.cast_capsule(&capsule, ways, TargetMotion::Moving) {
                 None => assert!(gap([DVec3::ZERO; 2]) > 0.0 && gap(ways) > -1e-9),
                 Some(hit) if gap([DVec3::ZERO; 2]) <= 0.0 => {
-                    assert!(hit.started_inside && hit.time == 0.0);
+                    assert!(hit.started_inside && hit.fraction == 0.0);
                 }
                 Some(hit) => {
                     met += 1;
-                    let gap = gap(ways.map(|way| way * hit.time));
-                    assert!(!hit.started_inside && (0.0..=1.0).contains(&hit.time));
+                    let gap = gap(ways.map(|way| way * hit.fraction));
+                    assert!(!hit.started_inside && (0.0..=1.0).contains(&hit.fraction));
                     assert!((-1e-9..=capsule.sweep_tolerance()).contains(&gap), "{gap}");
                     let off = hit.contact.distance - capsule.radius;
                     assert!((off - gap).abs() < 1e-8, "{off}, {gap}");

@@ -65,17 +65,18 @@ impl Contact {
     }
 }
 
-/// The first contact of a moving capsule with an obstacle.
+/// The first contact of a moving capsule: with an obstacle, or as `SweepContact<ShapeContact>` with a
+/// [shape](crate::shapes::sweep_shape).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SweepContact {
-    /// Time of contact as a fraction of the tick, and so of each displacement, 0..=1.
-    pub time: f64,
+pub struct SweepContact<C = Contact> {
+    /// Fraction of the tick, and so of each displacement, until the contact, 0..=1.
+    pub fraction: f64,
     /// The contact at that time. Its distance is from the capsule's segment.
-    pub contact: Contact,
+    pub contact: C,
     /// Unit vector from the contact's point towards the capsule's segment. Where the segment crosses a triangle or is
     /// inside a solid, it is the contact's normal.
     pub separation_normal: DVec3,
-    /// True if they overlap at the start; the time is then 0.
+    /// True if they overlap at the start; the fraction is then 0.
     pub started_inside: bool,
 }
 
@@ -261,7 +262,7 @@ pub trait Obstacle {
         let way = direction.try_normalize()? * length;
         let ball = WorldCapsule::ball(origin, 0.0);
         let hit = self.cast_capsule(&ball, [way; 2], TargetMotion::Still)?;
-        let distance = hit.time * length;
+        let distance = hit.fraction * length;
         Some(Contact {
             distance,
             ..hit.contact
@@ -287,7 +288,7 @@ pub trait Obstacle {
         let length = max_distance.min(farthest(self.bounds(), origin));
         let way = direction.try_normalize()? * length;
         let at = |sweep: &SweepContact| Contact {
-            distance: sweep.time * length,
+            distance: sweep.fraction * length,
             ..sweep.contact
         };
         let ball = WorldCapsule::ball(origin, 0.0);

@@ -3,15 +3,15 @@
 use clamber_surface::geometry::rotation_from_axis_angle;
 use clamber_surface::mesh::TriangleId;
 use clamber_surface::surface::{
-    Anchor, CastOptions, SkinnedSurface, SurfacePoint, TargetMotion, WorldHit, WorldPath,
-    WorldSweepHit,
+    Anchor, CastOptions, SkinnedSurface, SurfaceHit, SurfacePoint, SweepHit, TargetMotion,
+    WorldPath,
 };
 use glam::{DQuat, DVec3, Quat};
 
 use crate::{Contact, MaterialPoint, Obstacle, PointMotion, SweepContact, WorldCapsule};
 
-impl From<WorldHit> for Contact {
-    fn from(hit: WorldHit) -> Self {
+impl From<SurfaceHit<DVec3>> for Contact {
+    fn from(hit: SurfaceHit<DVec3>) -> Self {
         Self {
             point: hit.point,
             normal: hit.normal,
@@ -22,10 +22,10 @@ impl From<WorldHit> for Contact {
     }
 }
 
-impl From<WorldSweepHit> for SweepContact {
-    fn from(hit: WorldSweepHit) -> Self {
+impl From<SweepHit<DVec3>> for SweepContact {
+    fn from(hit: SweepHit<DVec3>) -> Self {
         Self {
-            time: hit.time,
+            fraction: hit.fraction,
             contact: hit.hit.into(),
             separation_normal: hit.separation_normal,
             started_inside: hit.started_inside,
@@ -76,7 +76,7 @@ fn cast_where(
     options: &CastOptions,
     counts: &mut dyn FnMut(&SweepContact) -> bool,
 ) -> Option<SweepContact> {
-    let mut counts = |hit: &WorldSweepHit| counts(&(*hit).into());
+    let mut counts = |hit: &SweepHit<DVec3>| counts(&(*hit).into());
     let space = surface.in_world();
     let hit = space.cast_capsule_where(capsule, displacements, options, &mut counts);
     hit.map(SweepContact::from)

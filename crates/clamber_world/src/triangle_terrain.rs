@@ -169,7 +169,7 @@ mod tests {
                 triangles.cast_capsule(&ball, [way; 2], TargetMotion::Moving),
                 half.cast_capsule(&ball, [way; 2], TargetMotion::Moving),
             );
-            let time = |hit: &Option<SweepContact>| hit.map_or(2.0, |hit| hit.time);
+            let time = |hit: &Option<SweepContact>| hit.map_or(2.0, |hit| hit.fraction);
             assert!((time(&a) - time(&b)).abs() < 1e-3, "{a:?} {b:?}");
             // Some balls overlap the ground at the start.
             let target = [TargetMotion::Moving, TargetMotion::Still][usize::from(lot(1.0) > 0.0)];

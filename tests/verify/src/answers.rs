@@ -53,7 +53,7 @@ macro_rules! answer_as_surface {
                     } => {
                         let hit = capsule(shape)
                             .and_then(|capsule| self.closest_to_capsule(&capsule, max_distance));
-                        found.extend(hit.as_ref().map(capsule_row));
+                        found.extend(hit.as_ref().map(surface_row));
                     }
                     Question::OverlapCapsule { shape } => {
                         let mut hits = Vec::new();
@@ -68,8 +68,8 @@ macro_rules! answer_as_surface {
                             if among == Among::All {
                                 return self.cast_capsule(&capsule, cast.displacements, &options);
                             }
-                            let counts = &mut |hit: &SweepHit| {
-                                among.counts(hit.triangle.0, hit.started_inside)
+                            let counts = &mut |sweep: &SweepHit| {
+                                among.counts(sweep.hit.triangle.0, sweep.started_inside)
                             };
                             self.cast_capsule_where(&capsule, cast.displacements, &options, counts)
                         });
@@ -106,8 +106,7 @@ macro_rules! answer_as_surface {
             use $surface::geometry::{Capsule, Ray};
             use $surface::measure::BruteForce;
             use $surface::surface::{
-                CapsuleHit, CastOptions, ModelSpace, MovingTriangle, SurfaceHit, SweepHit,
-                TargetMotion,
+                CastOptions, ModelSpace, MovingTriangle, SurfaceHit, SweepHit, TargetMotion,
             };
 
     $crate::answer_as_surface!(@impl ModelSpace);
@@ -153,30 +152,13 @@ macro_rules! answer_as_surface {
                 Found::Hit(surface_hit(hit))
             }
 
-            fn capsule_row(hit: &CapsuleHit) -> Found {
-                Found::Nearest {
-                    hit: surface_hit(&hit.surface),
-                    segment: hit.segment,
-                    along: hit.along,
-                }
-            }
-
-            fn sweep_row(hit: &SweepHit) -> Found {
+            fn sweep_row(sweep: &SweepHit) -> Found {
                 Found::Contact {
-                    hit: Hit {
-                        mesh: hashed(&hit.mesh),
-                        triangle: hit.triangle.0,
-                        part: hit.part.0,
-                        tag: hashed(&hit.tag),
-                        barycentric: hit.barycentric,
-                        point: hit.point,
-                        normal: hit.normal,
-                        distance: hit.distance,
-                    },
-                    time: hit.time,
-                    separation_normal: hit.separation_normal,
-                    started_inside: hit.started_inside,
-                    undecided: hit.undecided,
+                    hit: surface_hit(&sweep.hit),
+                    fraction: sweep.fraction,
+                    separation_normal: sweep.separation_normal,
+                    started_inside: sweep.started_inside,
+                    undecided: sweep.undecided,
                 }
             }
 

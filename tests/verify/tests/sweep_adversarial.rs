@@ -57,8 +57,11 @@ fn sliding_past_is_no_contact_and_starting_inside_is_one_at_time_zero() {
     });
     each(Kind::Inside, 500, 83, |case, answer| {
         let hit = answer.hit.unwrap();
-        assert!(hit.time == 0.0 && hit.started_inside, "{case:?} {hit:?}");
-        for normal in [hit.separation_normal, hit.normal] {
+        assert!(
+            hit.fraction == 0.0 && hit.started_inside,
+            "{case:?} {hit:?}"
+        );
+        for normal in [hit.separation_normal, hit.hit.normal] {
             let length = normal.length();
             assert!((length - 1.0).abs() < 1e-6, "{case:?} {hit:?}");
         }

@@ -351,7 +351,7 @@ impl DrawnTouchable<'_, '_> {
         let mut meet = |obstacle: &dyn Obstacle| {
             let left = first.unwrap_or(1.0);
             if let Some(hit) = obstacle.cast_capsule(ball, [way * left; 2], TargetMotion::Still) {
-                first = Some(left * hit.time);
+                first = Some(left * hit.fraction);
             }
         };
         let touches =

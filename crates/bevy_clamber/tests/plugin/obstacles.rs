@@ -301,8 +301,11 @@ fn casts_of_capsules_agree_in_avian_and_rapier() {
         was_inside = a.started_inside;
         carried += usize::from(motion.unwrap().velocity != DVec3::ZERO);
         // A cast that approaches slowly may stop anywhere within the tolerance.
-        grazed += usize::from((a.time - b.time).abs() > 1e-3);
-        assert!((a.time - b.time).abs() < 0.05, "{question}: {a:?} {b:?}");
+        grazed += usize::from((a.fraction - b.fraction).abs() > 1e-3);
+        assert!(
+            (a.fraction - b.fraction).abs() < 0.05,
+            "{question}: {a:?} {b:?}"
+        );
         assert_eq!(
             a.started_inside, b.started_inside,
             "{question}: {a:?} {b:?}"

@@ -96,12 +96,12 @@ fn sweeps_agree_with_small_steps() {
         let told = || format!("{body:?} {other:?} by {displacements:?}: {hit:?}, {touch:?}");
         if let Some(touch) = touch {
             let hit = hit.unwrap();
-            assert!(hit.time <= touch, "{}", told());
-            let is_near = gap(hit.time) <= other.sweep_tolerance() + 1e-9;
+            assert!(hit.fraction <= touch, "{}", told());
+            let is_near = gap(hit.fraction) <= other.sweep_tolerance() + 1e-9;
             assert!(is_near || case % 2 == 1, "{}", told());
             early += u32::from(!is_near);
             let away = other
-                .with_ends_moved(displacement(hit.time))
+                .with_ends_moved(displacement(hit.fraction))
                 .nearest_on_axis(hit.contact.point);
             let distance = away.distance(hit.contact.point);
             assert!(
@@ -111,7 +111,7 @@ fn sweeps_agree_with_small_steps() {
             );
             met += 1;
         } else if let Some(hit) = hit {
-            let is_near = gap(hit.time) <= other.sweep_tolerance() + 1e-9;
+            let is_near = gap(hit.fraction) <= other.sweep_tolerance() + 1e-9;
             assert!(is_near || case % 2 == 1, "{}", told());
             early += u32::from(!is_near);
         }
@@ -234,6 +234,6 @@ fn grazing_contacts_are_never_reported_late() {
             .unwrap();
         let height = 0.8 - deep;
         let touch = (30.0 - (0.64 - height * height).sqrt()) / 60.0;
-        assert!(hit.time <= touch + 1e-12, "{deep}: {hit:?}, {touch}");
+        assert!(hit.fraction <= touch + 1e-12, "{deep}: {hit:?}, {touch}");
     }
 }

@@ -1,6 +1,6 @@
 //! Being carried by a material point, attaching to one, and detaching from it.
 
-use clamber_mover::Touch;
+use clamber_mover::MoverContact;
 use clamber_world::{Attachment, Continuity, PointMotion};
 use glam::{DQuat, DVec3};
 
@@ -114,12 +114,12 @@ impl Tick<'_> {
 
     /// True if the material can carry the climber: its motion is known. An obstacle that answers queries but reports no
     /// motion blocks the climber, but cannot be stood on or held.
-    pub(super) fn carries(&self, touch: &Touch) -> bool {
+    pub(super) fn carries(&self, touch: &MoverContact) -> bool {
         self.mover.path_of(touch).is_some()
     }
 
     /// Attaches the climber, at a position, to a contact.
-    pub(super) fn attach(&mut self, touch: &Touch, position: DVec3) {
+    pub(super) fn attach(&mut self, touch: &MoverContact, position: DVec3) {
         let motion = self.mover.motion(touch.obstacle, &touch.contact.material);
         let attachment =
             Attachment::with_motion(touch.obstacle, &touch.contact, motion.as_ref(), position);

@@ -1,6 +1,6 @@
 //! Custom modes: modes of the game's own.
 
-use clamber_mover::{Ground, Moved, Mover, MoverBody, Touch};
+use clamber_mover::{Ground, Moved, Mover, MoverBody, MoverContact};
 use glam::DVec3;
 
 use super::Tick;
@@ -184,7 +184,7 @@ impl<'a> ModeContext<'_, 'a> {
     }
 
     /// Contacts of the last movement.
-    pub fn touched(&self) -> &[Touch] {
+    pub fn touched(&self) -> &[MoverContact] {
         self.tick.mover.touched()
     }
 
@@ -213,13 +213,13 @@ impl<'a> ModeContext<'_, 'a> {
     /// The rule for a contact: whether it may be stood on, gripped and so on
     /// ([`StepRules::contact`](crate::StepRules)). [`ModeContext::mover`] does not find contacts that are not solid.
     /// The mode itself has to keep the rest of the rule.
-    pub fn rule(&self, touch: &Touch) -> ContactRule {
+    pub fn rule(&self, touch: &MoverContact) -> ContactRule {
         self.tick.judge.rule_of(touch)
     }
 
     /// Attaches the climber to a contact, for example on a wall that it runs along. The contact carries it from now on.
     /// Call it before a change to a mode that needs a support.
-    pub fn attach(&mut self, touch: &Touch) {
+    pub fn attach(&mut self, touch: &MoverContact) {
         let place = self.here();
         self.tick.attach(touch, place);
     }

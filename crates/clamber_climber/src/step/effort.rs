@@ -1,6 +1,6 @@
 //! Blows, shakes, stamina and damage.
 
-use clamber_mover::Touch;
+use clamber_mover::MoverContact;
 use clamber_world::{ObstacleId, PointMotion};
 use glam::DVec3;
 
@@ -124,7 +124,7 @@ impl Tick<'_> {
 
     /// True if hands in flight can hold a contact: it does not pass them too fast, and stamina suffices. A catch costs
     /// stamina by its speed; up to the walking speed, it is free.
-    pub(super) fn catches(&mut self, touch: &Touch, fastest: f64) -> bool {
+    pub(super) fn catches(&mut self, touch: &MoverContact, fastest: f64) -> bool {
         // The speed is taken before contacts: whether the tick ends in a contact is chance.
         let velocity = self.flew_at.unwrap_or(self.state.velocity);
         let speed = (velocity - self.mover.velocity_of(touch)).length();

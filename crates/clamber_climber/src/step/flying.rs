@@ -1,6 +1,6 @@
 //! Falling, sliding and tumbling: motion under gravity, with contacts.
 
-use clamber_mover::{Ground, Touch};
+use clamber_mover::{Ground, MoverContact};
 use glam::DVec3;
 
 use super::ground::GRAZING_COSINE;
@@ -232,7 +232,7 @@ impl Tick<'_> {
         }
     }
 
-    pub(super) fn friction_of(&self, touch: &Touch) -> f64 {
+    pub(super) fn friction_of(&self, touch: &MoverContact) -> f64 {
         if self.rules.contact.is_none() {
             return 1.0;
         }
@@ -275,7 +275,7 @@ impl Tick<'_> {
 
     /// True if the climber moves away from a contact, both at the velocity `falling`, which contacts have not clipped,
     /// and at its velocity now.
-    fn leaves(&self, touch: &Touch, falling: DVec3) -> bool {
+    fn leaves(&self, touch: &MoverContact, falling: DVec3) -> bool {
         let up = self.config.up();
         let obstacle = self.mover.obstacle(touch.obstacle);
         let other = obstacle.and_then(|obstacle| obstacle.character());

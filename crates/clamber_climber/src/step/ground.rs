@@ -1,6 +1,6 @@
 //! Finding the ground underfoot.
 
-use clamber_mover::{Ground, GroundProbe, Touch};
+use clamber_mover::{Ground, GroundProbe, MoverContact};
 use glam::DVec3;
 
 use super::Tick;
@@ -56,10 +56,10 @@ impl Tick<'_> {
         let body = self.body();
         let margin = body.margin;
         self.mover.overlap(&body, position, margin);
-        let is_steep = |touch: &Touch| {
+        let is_steep = |touch: &MoverContact| {
             self.config.slope(touch.contact.normal) > max_slope || self.is_refused(touch)
         };
-        let ends = |slope: &Touch| {
+        let ends = |slope: &MoverContact| {
             let mut level = self
                 .mover
                 .overlaps()

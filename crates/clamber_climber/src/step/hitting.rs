@@ -7,7 +7,7 @@
 //! Another object may hold the obstacle that was hit: a crate that lies against a wall stops a climber as the wall
 //! would. This shows one tick later, when the obstacle has not given way.
 
-use clamber_mover::Touch;
+use clamber_mover::MoverContact;
 use glam::DVec3;
 
 use super::Tick;
@@ -92,7 +92,7 @@ impl Tick<'_> {
     ///
     /// A stream of bodies looks the same. So an obstacle counts as held only if it does no more than stop the climber.
     /// An obstacle that would make the climber faster through the air is treated by its mass.
-    fn is_held(&self, touch: &Touch) -> bool {
+    fn is_held(&self, touch: &MoverContact) -> bool {
         let Some((before, now)) = self.met_again(touch) else {
             return false;
         };
@@ -108,7 +108,7 @@ impl Tick<'_> {
 
     /// The velocities of a contact along its normal, in the last tick and in this one. `None` if the climber did not
     /// touch the obstacle in the last tick, or if a blow has driven the climber into it since.
-    fn met_again(&self, touch: &Touch) -> Option<(f64, f64)> {
+    fn met_again(&self, touch: &MoverContact) -> Option<(f64, f64)> {
         let normal = touch.normal;
         let is_known = self.presses_on(normal) && self.was_touched(touch);
         let blow = self.input.blow.map_or(DVec3::ZERO, |blow| blow.velocity);
@@ -151,7 +151,7 @@ impl Tick<'_> {
     }
 
     /// True if the climber touched a contact's material at the start of the tick.
-    fn was_touched(&self, touch: &Touch) -> bool {
+    fn was_touched(&self, touch: &MoverContact) -> bool {
         let body = self.body();
         self.mover.path_of(touch).is_some_and(|path| {
             let axis = body.at(self.began).nearest_on_axis(path.previous_position);
@@ -161,13 +161,13 @@ impl Tick<'_> {
     }
 
     /// True for a contact with an obstacle that can be pushed, if the climber also touched it in the last tick.
-    pub(super) fn hit_before(&self, touch: &Touch) -> bool {
+    pub(super) fn hit_before(&self, touch: &MoverContact) -> bool {
         self.response_at(touch, -touch.normal) > 0.0 && self.met_again(touch).is_some()
     }
 
     /// The velocity of a contact that moves at `velocity`, after the last movement has hit it. Along the contact's
     /// normal it is no slower than the climber, which has shared its momentum with all obstacles that it hit.
-    pub(super) fn velocity_after_hit(&self, touch: &Touch, velocity: DVec3) -> DVec3 {
+    pub(super) fn velocity_after_hit(&self, touch: &MoverContact, velocity: DVec3) -> DVec3 {
         let normal = touch.normal;
         let closing = (velocity - self.wanted - self.recoil).dot(normal);
         let is_hit = self.recoil != DVec3::ZERO

@@ -1,6 +1,6 @@
 //! Gripping a hold and climbing on it.
 
-use clamber_mover::Touch;
+use clamber_mover::MoverContact;
 use glam::{DQuat, DVec3};
 
 use super::carrying::Carried;
@@ -80,7 +80,7 @@ impl Tick<'_> {
     }
 
     /// Grips a contact from a position.
-    pub(super) fn take_hold(&mut self, touch: &Touch, place: DVec3) -> NextMode {
+    pub(super) fn take_hold(&mut self, touch: &MoverContact, place: DVec3) -> NextMode {
         self.attach(touch, place);
         self.face(-touch.normal);
         self.state.velocity = self.state.base_velocity;
@@ -273,7 +273,7 @@ impl Tick<'_> {
         position: DVec3,
         grip: &GripConfig,
         holds: Option<DVec3>,
-    ) -> Option<Touch> {
+    ) -> Option<MoverContact> {
         let input = self.input;
         let judge = self.judge;
         let body = self.body();
@@ -300,7 +300,7 @@ impl Tick<'_> {
 
     /// Attaches the climber to the contact that it climbs onto. It turns a corner when it lies flat on a face whose
     /// normal differs from the last face's.
-    fn climb_on_to(&mut self, carried: &Carried, touch: &Touch, position: DVec3) {
+    fn climb_on_to(&mut self, carried: &Carried, touch: &MoverContact, position: DVec3) {
         let face = carried.support.attachment.frame * carried.support.face;
         self.attach(touch, position);
         let lies_flat = touch.normal.dot(touch.contact.normal) > FLAT_ON_FACE_COSINE;

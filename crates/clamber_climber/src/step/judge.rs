@@ -1,6 +1,6 @@
 //! Queries of the game's rule for contacts.
 
-use clamber_mover::Touch;
+use clamber_mover::MoverContact;
 use clamber_world::{Contact, Obstacle, ObstacleId, SurfaceKind};
 use glam::DVec3;
 
@@ -56,7 +56,7 @@ impl Judge<'_> {
     }
 
     /// The rule for a contact that the mover found.
-    pub(super) fn rule_of(&self, touch: &Touch) -> ContactRule {
+    pub(super) fn rule_of(&self, touch: &MoverContact) -> ContactRule {
         match self.obstacle(touch.obstacle) {
             Some(obstacle) => self.rule(touch.obstacle, obstacle, &touch.contact),
             None => ContactRule::PASS,
@@ -64,7 +64,7 @@ impl Judge<'_> {
     }
 
     /// True if hands may grip a contact.
-    pub(super) fn grips(&self, touch: &Touch) -> bool {
+    pub(super) fn grips(&self, touch: &MoverContact) -> bool {
         // The tag is checked first: the usual rule looks up the obstacle, and there may be many.
         let is_ruled = self.rules.contact.is_some();
         (is_ruled || touch.contact.tag.kind == SurfaceKind::Fur) && self.rule_of(touch).grip
@@ -104,12 +104,12 @@ impl Judge<'_> {
 
 impl Tick<'_> {
     /// True if a ledge can carry the climber, and may be hung from.
-    pub(super) fn can_hang_from(&self, touch: &Touch) -> bool {
+    pub(super) fn can_hang_from(&self, touch: &MoverContact) -> bool {
         self.carries(touch) && self.judge.rule_of(touch).hang
     }
 
     /// True if the rule keeps the climber from standing on a contact, however level it is.
-    pub(super) fn is_refused(&self, touch: &Touch) -> bool {
+    pub(super) fn is_refused(&self, touch: &MoverContact) -> bool {
         self.judge.rules.contact.is_some() && !self.judge.rule_of(touch).stand
     }
 

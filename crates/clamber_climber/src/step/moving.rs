@@ -1,6 +1,6 @@
 //! Moving the body, and recording its contacts.
 
-use clamber_mover::{Begin, Moved, Path, Touch};
+use clamber_mover::{Begin, Moved, MoverContact, Path};
 use glam::DVec3;
 
 use super::Tick;
@@ -146,7 +146,7 @@ impl Tick<'_> {
         }
     }
 
-    fn list(&mut self, touch: &Touch, closing_speed: f64, phase: ContactPhase) {
+    fn list(&mut self, touch: &MoverContact, closing_speed: f64, phase: ContactPhase) {
         let (obstacle, contact) = (touch.obstacle, &touch.contact);
         let apart = ONE_CONTACT * self.config.body.radius;
         let is_known = self.contacts.iter().any(|known| {

@@ -1,7 +1,7 @@
 //! Weight on the support, and the reaction to every push and to every change of the climber's own velocity, if the
 //! support can be pushed.
 
-use clamber_mover::Touch;
+use clamber_mover::MoverContact;
 use clamber_world::{Attachment, MaterialPoint, ObstacleId};
 use glam::DVec3;
 
@@ -86,7 +86,7 @@ impl Tick<'_> {
 
     /// Brakes the climber's velocity `along` a contact, relative to the contact, by at most `braked`, and gives the
     /// contact the reaction. The braking ends when both have the same speed. Returns the speed that is left.
-    pub(super) fn rub(&mut self, touch: &Touch, along: DVec3, braked: f64) -> f64 {
+    pub(super) fn rub(&mut self, touch: &MoverContact, along: DVec3, braked: f64) -> f64 {
         let way = along.normalize_or_zero();
         let mass = self.config.body.mass;
         let response = self.response_at(touch, way);
@@ -99,7 +99,7 @@ impl Tick<'_> {
     }
 
     /// Changes the climber's velocity against a contact, which gets the reaction.
-    fn change_against(&mut self, touch: &Touch, change: DVec3) {
+    fn change_against(&mut self, touch: &MoverContact, change: DVec3) {
         self.state.velocity += change;
         self.rides += change;
         if self.response_at(touch, change.normalize_or_zero()) > 0.0 {
@@ -250,7 +250,7 @@ impl Tick<'_> {
 
     /// Bounces off a contact at a speed, reduced to the share that the two masses leave the climber, and gives the
     /// contact the reaction.
-    pub(super) fn bounce(&mut self, touch: &Touch, speed: f64) {
+    pub(super) fn bounce(&mut self, touch: &MoverContact, speed: f64) {
         let mass = self.config.body.mass;
         let response = self.response_at(touch, touch.normal);
         let change = touch.normal * (speed / (1.0 + response * mass));
@@ -288,7 +288,7 @@ impl Tick<'_> {
     }
 
     /// The speed along a unit vector that a contact gains from an impulse of 1 N s in this direction.
-    pub(super) fn response_at(&self, touch: &Touch, direction: DVec3) -> f64 {
+    pub(super) fn response_at(&self, touch: &MoverContact, direction: DVec3) -> f64 {
         let material = &touch.contact.material;
         self.mover
             .push_response(touch.obstacle, material, direction)
@@ -296,7 +296,7 @@ impl Tick<'_> {
 
     /// True for contacts that the climber stands on or holds: its support, and while it stands, all contacts that are
     /// level enough to be underfoot.
-    pub(super) fn is_on(&self, touch: &Touch) -> bool {
+    pub(super) fn is_on(&self, touch: &MoverContact) -> bool {
         let is_underfoot = self.state.mode == ClimberMode::Standing
             && self.config.slope(touch.normal) <= self.standing_slope();
         let is_support = self.attachment().is_some_and(|attachment| {

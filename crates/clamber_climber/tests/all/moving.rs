@@ -44,7 +44,7 @@ impl Obstacle for MovingHalfSpace {
         let mut hit = self
             .at_rest
             .cast_capsule(&start, ways, TargetMotion::Still)?;
-        hit.contact.point += before + (now - before) * hit.time;
+        hit.contact.point += before + (now - before) * hit.fraction;
         Some(hit)
     }
 

@@ -41,10 +41,10 @@ impl Bits {
 
     pub(crate) fn sweeps<'a>(&mut self, hits: impl IntoIterator<Item = &'a SweepHit>) {
         for hit in hits {
-            self.word(u64::from(hit.triangle.0) + 1);
-            self.singles(hit.barycentric);
-            self.positions(&[hit.point, hit.separation_normal, hit.normal]);
-            self.doubles([hit.time, hit.distance]);
+            self.word(u64::from(hit.hit.triangle.0) + 1);
+            self.singles(hit.hit.barycentric);
+            self.positions(&[hit.hit.point, hit.separation_normal, hit.hit.normal]);
+            self.doubles([hit.fraction, hit.hit.distance]);
             self.word(u64::from(hit.started_inside) + 2 * u64::from(hit.undecided));
         }
     }

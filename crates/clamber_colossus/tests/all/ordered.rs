@@ -370,7 +370,7 @@ impl Obstacle for Counting<'_> {
     ) -> Option<SweepContact> {
         let hits = self.all().into_iter();
         let hits = hits.filter_map(|one| one.cast_capsule(capsule, displacements, target));
-        hits.min_by(|a, b| a.time.total_cmp(&b.time))
+        hits.min_by(|a, b| a.fraction.total_cmp(&b.fraction))
     }
 
     fn cast_capsule_where(
@@ -383,7 +383,7 @@ impl Obstacle for Counting<'_> {
         let hits = self.all().into_iter();
         let hits =
             hits.filter_map(|one| one.cast_capsule_where(capsule, displacements, target, counts));
-        hits.min_by(|a, b| a.time.total_cmp(&b.time))
+        hits.min_by(|a, b| a.fraction.total_cmp(&b.fraction))
     }
 
     fn motion(&self, _: &MaterialPoint, _: f64) -> Option<PointMotion> {

@@ -519,7 +519,7 @@ impl Fighter {
             creature,
             at: contact.material,
             place: contact.point,
-            time: hit.time,
+            time: hit.fraction,
             damage: sword.stab_damage * charge,
         });
         let obstacle = creature_obstacle(creature);

@@ -59,7 +59,7 @@ impl Around<'_> {
         let way = to - from;
         let time = |obstacle: &dyn Obstacle| {
             let hit = obstacle.cast_capsule(&ball, [way; 2], TargetMotion::Still)?;
-            Some(hit.time)
+            Some(hit.fraction)
         };
         let terrain = self.terrain.iter().filter_map(|(_, one)| time(*one));
         let times = terrain.chain(self.skins.iter().filter_map(|(_, skin)| time(skin)));

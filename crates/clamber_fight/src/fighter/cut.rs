@@ -1,8 +1,9 @@
 //! Cuts: the blade is swept along its arc while the skin moves.
 
 use clamber_surface::geometry::WorldCapsule;
-use clamber_surface::surface::{CastOptions, SkinnedSurface, WorldSweepHit};
+use clamber_surface::surface::{CastOptions, SkinnedSurface, SweepHit};
 use clamber_world::ObstacleId;
+use glam::DVec3;
 
 use super::{Blade, FighterFrame, SwordConfig};
 use crate::arena::{CreatureId, Skins, creature_obstacle};
@@ -20,7 +21,7 @@ const MOST_CHORDS: f64 = 1e4;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BladeHit {
     pub(crate) creature: CreatureId,
-    pub(crate) hit: WorldSweepHit,
+    pub(crate) hit: SweepHit<DVec3>,
     /// Time of the contact, as a share of the tick.
     pub(crate) time: f64,
 }
@@ -123,7 +124,7 @@ impl Sweeps<'_> {
             self.hits.push(BladeHit {
                 creature,
                 hit,
-                time: span[0] + (span[1] - span[0]) * hit.time,
+                time: span[0] + (span[1] - span[0]) * hit.fraction,
             });
         }
     }
@@ -135,7 +136,7 @@ impl Sweeps<'_> {
         [from, to]: [f64; 2],
         [before, after]: [Blade; 2],
         thicker: f64,
-    ) -> Option<WorldSweepHit> {
+    ) -> Option<SweepHit<DVec3>> {
         let capsule = WorldCapsule {
             ends: [before.hilt, before.tip],
             radius: self.radius + thicker,
@@ -144,7 +145,7 @@ impl Sweeps<'_> {
         let options = CastOptions::MOVING
             .during(from, to)
             .with_tolerance(capsule.sweep_tolerance());
-        let mut is_new = |hit: &WorldSweepHit| {
+        let mut is_new = |hit: &SweepHit<DVec3>| {
             !self
                 .struck
                 .contains(&(creature_obstacle(creature), hit.hit.part.0))

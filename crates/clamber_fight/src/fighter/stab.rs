@@ -107,7 +107,8 @@ impl Fighter {
             let hit = skin.in_world().cast_capsule(&capsule, ways, &options)?;
             Some((creature, SweepContact::from(hit)))
         });
-        let first = contacts.min_by(|a, b| a.1.time.total_cmp(&b.1.time).then(a.0.cmp(&b.0)));
+        let first =
+            contacts.min_by(|a, b| a.1.fraction.total_cmp(&b.1.fraction).then(a.0.cmp(&b.0)));
         first.filter(|(creature, hit)| {
             // The point is taken at the end of the tick, where the rays see obstacles.
             let contact = &hit.contact;

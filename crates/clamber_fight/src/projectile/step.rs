@@ -73,7 +73,7 @@ impl<'a> Air<'a> {
             let hit = obstacle.cast_capsule(&ball, [way; 2], TargetMotion::Moving)?;
             Some((id, obstacle, hit))
         });
-        hits.min_by(|a, b| a.2.time.total_cmp(&b.2.time).then(a.0.cmp(&b.0)))
+        hits.min_by(|a, b| a.2.fraction.total_cmp(&b.2.fraction).then(a.0.cmp(&b.0)))
     }
 }
 
@@ -138,7 +138,7 @@ impl Projectile {
             };
             return Flown::There;
         };
-        let at_contact = velocity + (faster - velocity) * hit.time;
+        let at_contact = velocity + (faster - velocity) * hit.fraction;
         let motion = obstacle.motion(&hit.contact.material, air.dt);
         let relative = at_contact - motion.map_or(DVec3::ZERO, |motion| motion.velocity);
         self.hit(id, &hit, relative, out);
@@ -184,7 +184,7 @@ impl Projectile {
                 creature,
                 at: hit.contact.material,
                 place: hit.contact.point,
-                time: hit.time,
+                time: hit.fraction,
                 damage,
             });
         }

@@ -20,7 +20,7 @@ pub(super) fn stick(
     let motion = touched.motion(&hit.contact.material, dt)?;
     let now = motion.frame.unwrap_or(DQuat::IDENTITY);
     // The frame at the time of the contact: the rest of the tick's turn was still ahead.
-    let then = part_of_turn(motion.turn, 1.0 - hit.time).conjugate() * now;
+    let then = part_of_turn(motion.turn, 1.0 - hit.fraction).conjugate() * now;
     let in_material = then.conjugate() * direction;
     Some(ProjectileMotion::Stuck {
         at: Attachment {

@@ -47,11 +47,11 @@ fn a_grip_at_the_body_is_the_grip_of_the_whole_reach_and_nothing_is_before_it() 
             let above = radius * (1.0 + lot(0.4)) + f64::from(height) * lot(0.5).abs();
             let position = DVec3::new(lot(2.0), above, lot(2.0));
             let (every, salt) = (1 + rng.u64(0..4), rng.u64(0..9));
-            let can_grip = |touch: &Touch| {
+            let can_grip = |touch: &MoverContact| {
                 let is_ground = touch.obstacle == ObstacleId(1);
                 is_ground && (touch.contact.material.key + salt).is_multiple_of(every)
             };
-            let merit = |touch: &Touch| touch.normal.x.max(0.0);
+            let merit = |touch: &MoverContact| touch.normal.x.max(0.0);
             let reach = radius * [0.05, 0.5, 1.5][rng.usize(0..3)];
             let wanted = mover.grip_within(&body, position, reach, &can_grip, &merit);
             let grip = mover.find_grip(&body, position, reach, can_grip, merit);

@@ -45,7 +45,7 @@ impl Obstacle for Ball {
         );
         let contact = found.pop()?;
         (0.0..=1.0).contains(&time).then_some(SweepContact {
-            time,
+            fraction: time,
             contact,
             separation_normal: contact.normal,
             started_inside: false,
@@ -167,11 +167,11 @@ fn what_is_not_solid_is_not_there_for_any_query() {
         let mut mover = mover.with_filters(filters);
         let down = DVec3::NEG_Y * 4.0;
         let met = mover.cast(&body.at(above), down).unwrap();
-        assert!((met.time - 0.65).abs() < 1e-4, "{met:?}");
+        assert!((met.fraction - 0.65).abs() < 1e-4, "{met:?}");
         let met = mover.sweep(&body.at(above), [down; 2]).unwrap();
-        assert!((met.time - 0.65).abs() < 1e-4, "{met:?}");
+        assert!((met.fraction - 0.65).abs() < 1e-4, "{met:?}");
         let met = mover.sweep_where(&body.at(above), [down; 2], |_| true);
-        assert_eq!(met.unwrap().touch.obstacle, ObstacleId(2));
+        assert_eq!(met.unwrap().contact.obstacle, ObstacleId(2));
         let met = mover.cast_ray(above, DVec3::NEG_Y, 9.0).unwrap();
         assert!((met.contact.distance - 3.0).abs() < 1e-5, "{met:?}");
         assert!(mover.is_free(&body.at(above), DVec3::NEG_Y * 2.0));

@@ -15,7 +15,7 @@ mod world_capsule;
 
 pub use affine::Affine;
 pub use capsule::Capsule;
-pub use moving_capsule::{MovingCapsule, TriangleTouch};
+pub use moving_capsule::{MovingCapsule, TriangleContact};
 pub use quaternion::{rotation_from_axis_angle, rotation_vector};
 pub use ray::Ray;
 pub use similarity::{Similarity, SimilarityError};

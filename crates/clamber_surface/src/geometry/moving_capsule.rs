@@ -33,9 +33,9 @@ pub struct MovingCapsule {
 /// The first contact of a moving capsule with a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
-pub struct TriangleTouch {
-    /// Share of the motion, 0..=1; never later than the first contact.
-    pub time: f64,
+pub struct TriangleContact {
+    /// Fraction of the motion, 0..=1; never later than the first contact.
+    pub fraction: f64,
     /// Weights of the triangle's corners: not negative, sum 1 up to rounding.
     pub barycentric: DVec3,
     /// The contact point on the triangle, at that time.
@@ -53,7 +53,7 @@ pub struct TriangleTouch {
     pub separation_normal: DVec3,
     /// True if capsule and triangle overlap at time 0.
     pub started_inside: bool,
-    /// True if the solver could not certify the distance within the tolerance. There is no contact before `time`.
+    /// True if the solver could not certify the distance within the tolerance. There is no contact before `fraction`.
     pub undecided: bool,
 }
 
@@ -88,7 +88,7 @@ impl MovingCapsule {
     ///
     /// The time of the contact is never later than the first touch, and for valid input `None` guarantees that there is
     /// no touch up to `limit`. A `limit` above 1 counts as 1. At the time of the contact the distance is at most the
-    /// radius plus `tolerance`, unless the contact is [undecided](TriangleTouch::undecided). A tolerance below 2^-45 of
+    /// radius plus `tolerance`, unless the contact is [undecided](TriangleContact::undecided). A tolerance below 2^-45 of
     /// the lengths involved counts as 2^-45 of them. The triangle is hit from both sides and may have collapsed.
     ///
     /// `None` as well if a number is not finite or larger than 2^100, or if radius, `tolerance` or `limit` is negative.
@@ -97,7 +97,7 @@ impl MovingCapsule {
         corners: [[DVec3; 3]; 2],
         tolerance: f64,
         limit: f64,
-    ) -> Option<TriangleTouch> {
+    ) -> Option<TriangleContact> {
         let usable = |length: f64| (0.0..=MAX_COORDINATE).contains(&length);
         if !(self.is_usable(corners) && usable(tolerance) && usable(limit)) {
             return None;
@@ -118,7 +118,7 @@ impl MovingCapsule {
         for (corner, end) in then.iter_mut().zip(end) {
             *corner += (end - *corner) * contact.time;
         }
-        Some(TriangleTouch {
+        Some(TriangleContact {
             distance: contact.distance,
             undecided: contact.undecided,
             started_inside: contact.time == 0.0 && contact.distance <= self.radius,
@@ -129,12 +129,12 @@ impl MovingCapsule {
     /// The point of a triangle nearest to the capsule's segment at time 0, at any distance. The result has time 0.
     ///
     /// `None` if a number is not finite or larger than 2^100, or if the radius is negative.
-    pub fn nearest_of_triangle(&self, corners: [DVec3; 3]) -> Option<TriangleTouch> {
+    pub fn nearest_of_triangle(&self, corners: [DVec3; 3]) -> Option<TriangleContact> {
         if !self.is_usable([corners; 2]) {
             return None;
         }
         let nearest = nearest_to_axis(corners, self.start);
-        Some(TriangleTouch {
+        Some(TriangleContact {
             distance: nearest.distance,
             started_inside: nearest.distance <= self.radius,
             ..self.touch(corners, nearest.barycentric, 0.0)
@@ -151,7 +151,7 @@ impl MovingCapsule {
     }
 
     /// A touch with its distance measured; `started_inside` and `undecided` are left false.
-    fn touch(&self, corners: [DVec3; 3], barycentric: DVec3, time: f64) -> TriangleTouch {
+    fn touch(&self, corners: [DVec3; 3], barycentric: DVec3, time: f64) -> TriangleContact {
         let [a, b, c] = corners;
         let point = a * barycentric.x + b * barycentric.y + c * barycentric.z;
         let [first, last] = self.at(time);
@@ -167,8 +167,8 @@ impl MovingCapsule {
         let away = apart.try_normalize();
         let away = away.filter(|_| apart.length() > size * ALL_BUT_TOUCHING);
         let normal = (b - a).cross(c - a).try_normalize();
-        TriangleTouch {
-            time,
+        TriangleContact {
+            fraction: time,
             barycentric,
             point,
             normal,
@@ -231,7 +231,7 @@ mod tests {
                 };
                 still.nearest_of_triangle(then).unwrap().distance - capsule.radius
             };
-            let until = touch.map_or(1.0, |touch| touch.time);
+            let until = touch.map_or(1.0, |touch| touch.fraction);
             let inside = touch.is_some_and(|touch| touch.started_inside);
             for step in 0..200 {
                 let time = until * f64::from(step) / 200.0;
@@ -246,18 +246,18 @@ mod tests {
                 continue;
             };
             met += 1;
-            let apart = gap(touch.time);
+            let apart = gap(touch.fraction);
             assert!(
                 apart <= 1e-4 + 1e-9 && !touch.undecided,
                 "{round} {touch:?}: {apart}"
             );
             assert_eq!(
                 inside,
-                touch.time == 0.0 && apart <= 0.0,
+                touch.fraction == 0.0 && apart <= 0.0,
                 "{round} {touch:?}"
             );
             // Point, direction and distance agree with the segment at that time.
-            let [a, b] = capsule.at(touch.time);
+            let [a, b] = capsule.at(touch.fraction);
             let on_axis = a + (b - a) * touch.on_axis;
             let off = touch.point + touch.separation_normal * touch.distance - on_axis;
             assert!(off.length() < 1e-9, "{round} {touch:?}: {off}");

@@ -2,13 +2,11 @@
 
 use glam::Vec3;
 
-use super::hit::{Best, Earliest, First, FoundPoint, capsule_hit, sort_by_distance, sort_by_time};
+use super::hit::{Best, Earliest, First, FoundPoint, sort_by_distance, sort_by_time};
 use super::instance::Instance;
 use super::probe::{Probe, Sweep, with_probe};
 use super::span::Span;
-use super::{
-    CapsuleHit, CastOptions, ModelSpace, MovingTriangle, SurfaceHit, SweepHit, TargetMotion, length,
-};
+use super::{CastOptions, ModelSpace, MovingTriangle, SurfaceHit, SweepHit, TargetMotion, length};
 use crate::geometry::triangle::{ShearedRay, first_contact};
 use crate::geometry::{Capsule, Ray};
 use crate::mesh::{PartId, TriangleId};
@@ -91,10 +89,9 @@ impl<'a> BruteForce<'a> {
     }
 
     /// Reference for [`ModelSpace::closest_to_capsule`].
-    pub fn closest_to_capsule(&self, capsule: &Capsule, max_distance: f32) -> Option<CapsuleHit> {
+    pub fn closest_to_capsule(&self, capsule: &Capsule, max_distance: f32) -> Option<SurfaceHit> {
         let reach = f64::from(capsule.radius()) + length(max_distance)?;
-        let surface = with_probe!(capsule, [Vec3::ZERO; 2], probe => self.closest(&probe, reach));
-        Some(capsule_hit(capsule, surface?))
+        with_probe!(capsule, [Vec3::ZERO; 2], probe => self.closest(&probe, reach))
     }
 
     fn closest<const N: usize>(&self, probe: &Probe<N>, reach: f64) -> Option<SurfaceHit> {

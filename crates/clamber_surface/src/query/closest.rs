@@ -2,11 +2,11 @@ use fearless_simd::{Simd, dispatch};
 use glam::Vec3;
 
 use super::cluster::PosedCluster;
-use super::hit::{Best, FoundPoint, capsule_hit};
+use super::hit::{Best, FoundPoint};
 use super::instance::Instance;
 use super::probe::{BLUR, Probe, with_probe};
 use super::traverse::traverse;
-use super::{CapsuleHit, ModelSpace, SurfaceHit, broad, length, root};
+use super::{ModelSpace, SurfaceHit, broad, length, root};
 use crate::geometry::triangle::{Corners8, Points8};
 use crate::geometry::{Capsule, round_up_to_f32};
 
@@ -19,14 +19,12 @@ impl ModelSpace<'_> {
         self.instance.closest(&probe, length(max_distance)?)
     }
 
-    /// The material point nearest to a capsule's segment, and the point of the segment nearest to it; made for limbs.
-    /// It is at most `max_distance` away from the capsule, which may overlap the skin.
-    pub fn closest_to_capsule(&self, capsule: &Capsule, max_distance: f32) -> Option<CapsuleHit> {
+    /// The material point nearest to a capsule's segment, made for limbs. Its `distance` is 0 where they cross. It is at most `max_distance` away from the capsule, which may overlap the skin.
+    pub fn closest_to_capsule(&self, capsule: &Capsule, max_distance: f32) -> Option<SurfaceHit> {
         let reach = f64::from(capsule.radius()) + length(max_distance)?;
-        let surface = with_probe!(capsule, [Vec3::ZERO; 2], probe => {
+        with_probe!(capsule, [Vec3::ZERO; 2], probe => {
             self.instance.closest(&probe, reach)
-        });
-        Some(capsule_hit(capsule, surface?))
+        })
     }
 }
 

@@ -5,25 +5,26 @@ use glam::{DVec3, Vec3};
 use super::instance::Instance;
 use super::probe::Sweep;
 use crate::geometry::triangle::{Contact, TrianglePoint, point_at, widened};
-use crate::geometry::{Capsule, round_to_f32, widen};
+use crate::geometry::{round_to_f32, widen};
 use crate::mesh::{MeshId, PartId, SurfaceTag, TriangleId};
 
-/// A material point that a query found.
+/// A material point that a query found: in model space, or in world space as `SurfaceHit<DVec3>`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
-pub struct SurfaceHit {
+pub struct SurfaceHit<V = Vec3> {
     /// The mesh that the triangle belongs to.
     pub mesh: MeshId,
     /// The triangle's id.
     pub triangle: TriangleId,
     /// Weights of the triangle's corners: not negative, sum 1 up to rounding.
     pub barycentric: [f32; 3],
-    /// The point, in model space.
-    pub point: Vec3,
-    /// Outward unit normal of the deformed triangle, in model space. If the triangle has collapsed: the unit vector
-    /// from the point towards the ray's origin, the query's point or the middle of the capsule's segment.
-    pub normal: Vec3,
-    /// Distance from the ray's origin, the query's point or the capsule's segment, in model units.
+    /// The point.
+    pub point: V,
+    /// Outward unit normal of the deformed triangle. If the triangle has collapsed: the unit vector from the point
+    /// towards the ray's origin, the query's point or the middle of the capsule's segment; for a sweep, the separation
+    /// normal.
+    pub normal: V,
+    /// Distance from the ray's origin, the query's point or the capsule's segment, in model units or metres.
     pub distance: f64,
     /// The part that the triangle belongs to.
     pub part: PartId,
@@ -31,47 +32,20 @@ pub struct SurfaceHit {
     pub tag: SurfaceTag,
 }
 
-/// The nearest points of the surface and a capsule's segment.
+/// The first contact of a moving capsule with a triangle: in model space, or in world space as `SweepHit<DVec3>`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
-pub struct CapsuleHit {
-    /// The surface's point. Its `distance` is measured from the capsule's segment: 0 where they cross.
-    pub surface: SurfaceHit,
-    /// The segment's point, in model space.
-    pub segment: Vec3,
-    /// Position of that point on the segment: 0 at the capsule's first end, 1 at its second.
-    pub along: f32,
-}
-
-/// The first contact of a moving capsule with a triangle.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct SweepHit {
-    /// The mesh that the triangle belongs to.
-    pub mesh: MeshId,
-    /// The triangle's id.
-    pub triangle: TriangleId,
-    /// Weights of the triangle's corners: not negative, sum 1 up to rounding.
-    pub barycentric: [f32; 3],
-    /// Share of the motion until the contact, 0..=1.
-    pub time: f64,
-    /// The contact point on the triangle at that time, in model space.
-    pub point: Vec3,
-    /// Unit vector from `point` to the capsule's segment, in model space. If the segment touches the triangle itself:
-    /// the triangle's normal.
-    pub separation_normal: Vec3,
-    /// Outward unit normal of the deformed triangle at that time, in model space. If the triangle has collapsed:
-    /// `separation_normal`.
-    pub normal: Vec3,
-    /// Distance from `point` to the segment, in model units.
-    pub distance: f64,
-    /// The part that the triangle belongs to.
-    pub part: PartId,
-    /// The triangle's tag.
-    pub tag: SurfaceTag,
-    /// True if capsule and triangle overlap at the start; the time is 0 then.
+pub struct SweepHit<V = Vec3> {
+    /// The contact point on the triangle at that time; its `distance` is measured from the capsule's segment.
+    pub hit: SurfaceHit<V>,
+    /// Fraction of the motion until the contact, 0..=1.
+    pub fraction: f64,
+    /// Unit vector from the contact point to the capsule's segment. If the segment touches the triangle itself: the
+    /// triangle's normal.
+    pub separation_normal: V,
+    /// True if capsule and triangle overlap at the start; the fraction is 0 then.
     pub started_inside: bool,
-    /// True if the solver could not certify the distance within the tolerance. There is no contact before `time`.
+    /// True if the solver could not certify the distance within the tolerance. There is no contact before `fraction`.
     pub undecided: bool,
 }
 
@@ -211,25 +185,8 @@ fn by_time(a: (f64, f64, TriangleId), b: (f64, f64, TriangleId)) -> Ordering {
 
 /// Sorts contacts into the order in which [`Earliest`] prefers them.
 pub(super) fn sort_by_time(hits: &mut [SweepHit]) {
-    let key = |hit: &SweepHit| (hit.time, hit.distance, hit.triangle);
+    let key = |sweep: &SweepHit| (sweep.fraction, sweep.hit.distance, sweep.hit.triangle);
     hits.sort_unstable_by(|a, b| by_time(key(a), key(b)));
-}
-
-/// Adds the segment's nearest point to a hit on the surface.
-pub(super) fn capsule_hit(capsule: &Capsule, surface: SurfaceHit) -> CapsuleHit {
-    let [a, b] = capsule.ends().map(widen);
-    let axis = b - a;
-    let length_sq = axis.length_squared();
-    let along = if length_sq > 0.0 {
-        ((widen(surface.point) - a).dot(axis) / length_sq).clamp(0.0, 1.0)
-    } else {
-        0.0
-    };
-    CapsuleHit {
-        surface,
-        segment: (a + axis * along).as_vec3(),
-        along: along as f32,
-    }
 }
 
 impl Instance {
@@ -292,17 +249,20 @@ impl Instance {
         };
         let apart = (core - point).try_normalize().filter(|_| is_apart);
         let normal = apart.or(outward).unwrap_or(DVec3::Y);
-        Some(SweepHit {
+        let hit = SurfaceHit {
             mesh: self.mesh.id_of(triangle),
             triangle,
             barycentric: round_to_f32(weights).to_array(),
-            time: contact.time,
             point: round_to_f32(point),
-            separation_normal: round_to_f32(normal),
             normal: round_to_f32(outward.unwrap_or(normal)),
             distance: contact.distance,
             part,
             tag: self.mesh.tags()[triangle.index()],
+        };
+        Some(SweepHit {
+            hit,
+            fraction: contact.time,
+            separation_normal: round_to_f32(normal),
             started_inside: sweep.started_inside(&contact),
             undecided: contact.undecided,
         })

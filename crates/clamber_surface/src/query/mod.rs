@@ -24,7 +24,7 @@ mod traverse;
 
 pub use boxes::MovingTriangle;
 pub use cast::{CastOptions, TargetMotion};
-pub use hit::{CapsuleHit, SurfaceHit, SweepHit};
+pub use hit::{SurfaceHit, SweepHit};
 pub(crate) use instance::Instance;
 
 use glam::Vec3;

@@ -3,7 +3,7 @@ use glam::{DQuat, Quat};
 use super::deformation::{Flattened, Rest};
 use super::{SkinnedSurface, SurfaceError};
 use crate::mesh::{ColliderMesh, MeshId, TriangleId};
-use crate::query::{CapsuleHit, SurfaceHit, SweepHit};
+use crate::query::{SurfaceHit, SweepHit};
 use crate::rig::rotation_f32;
 
 /// Largest deviation of the sum of barycentric coordinates from 1, and of one coordinate below 0: covers the rounding
@@ -22,24 +22,29 @@ pub struct SurfacePoint {
     pub barycentric: [f32; 3],
 }
 
-macro_rules! point_of {
-    ($($hit:ident),*) => {$(
-        impl From<&$hit> for SurfacePoint {
-            fn from(hit: &$hit) -> Self {
-                Self {
-                    mesh: hit.mesh,
-                    triangle: hit.triangle,
-                    barycentric: hit.barycentric,
-                }
-            }
+impl<V> From<&SurfaceHit<V>> for SurfacePoint {
+    fn from(hit: &SurfaceHit<V>) -> Self {
+        Self {
+            mesh: hit.mesh,
+            triangle: hit.triangle,
+            barycentric: hit.barycentric,
         }
-    )*};
+    }
 }
-point_of!(SurfaceHit, SweepHit, Anchor);
 
-impl From<&CapsuleHit> for SurfacePoint {
-    fn from(hit: &CapsuleHit) -> Self {
-        (&hit.surface).into()
+impl<V> From<&SweepHit<V>> for SurfacePoint {
+    fn from(sweep: &SweepHit<V>) -> Self {
+        (&sweep.hit).into()
+    }
+}
+
+impl From<&Anchor> for SurfacePoint {
+    fn from(anchor: &Anchor) -> Self {
+        Self {
+            mesh: anchor.mesh,
+            triangle: anchor.triangle,
+            barycentric: anchor.barycentric,
+        }
     }
 }
 

@@ -25,7 +25,7 @@ pub(crate) mod winding;
 mod world;
 
 pub use crate::query::{
-    CapsuleHit, CastOptions, ModelSpace, MovingTriangle, SurfaceHit, SweepHit, TargetMotion,
+    CastOptions, ModelSpace, MovingTriangle, SurfaceHit, SweepHit, TargetMotion,
 };
 pub use anchor::{Anchor, SurfacePoint};
 pub use diagnostics::{ClusterState, Diagnostics};
@@ -35,4 +35,4 @@ pub use fingerprint::{creature_fingerprint, matrices_fingerprint, palette_finger
 pub use motion::{Motion, PointPath};
 pub use patch::{Patch, PatchChange};
 pub use skinned::SkinnedSurface;
-pub use world::{WorldHit, WorldMotion, WorldPath, WorldSpace, WorldSweepHit};
+pub use world::{WorldMotion, WorldPath, WorldSpace};

@@ -3,7 +3,6 @@ use glam::{DQuat, DVec3, Vec3};
 use super::motion::Motion;
 use super::{Anchor, SkinnedSurface, SurfaceError, SurfacePoint};
 use crate::geometry::{Capsule, Ray, Similarity, WorldCapsule};
-use crate::mesh::{MeshId, PartId, SurfaceTag, TriangleId};
 use crate::query::{CastOptions, SurfaceHit, SweepHit};
 
 /// A view of a surface in world space, in f64: the queries of [`ModelSpace`](super::ModelSpace) at the creature's place
@@ -16,46 +15,6 @@ use crate::query::{CastOptions, SurfaceHit, SweepHit};
 #[derive(Clone, Copy, Debug)]
 pub struct WorldSpace<'a> {
     surface: &'a SkinnedSurface,
-}
-
-/// A material point that a query found, in world space.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct WorldHit {
-    /// The mesh that the triangle belongs to.
-    pub mesh: MeshId,
-    /// The triangle's id.
-    pub triangle: TriangleId,
-    /// Weights of the triangle's corners: not negative, sum 1 up to rounding.
-    pub barycentric: [f32; 3],
-    /// The point, in world space.
-    pub point: DVec3,
-    /// Outward unit normal of the deformed triangle. If the triangle has collapsed: the unit vector from the point
-    /// towards the ray's origin, the query's point or the middle of the capsule's segment.
-    pub normal: DVec3,
-    /// Distance from the ray's origin, the query's point or the capsule's segment, metres.
-    pub distance: f64,
-    /// The part that the triangle belongs to.
-    pub part: PartId,
-    /// The triangle's tag.
-    pub tag: SurfaceTag,
-}
-
-/// The first contact of a moving capsule with skin, in world space.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct WorldSweepHit {
-    /// The contact point on the skin at that time; its `distance` is measured from the capsule's segment.
-    pub hit: WorldHit,
-    /// Share of the motion until the contact, 0..=1.
-    pub time: f64,
-    /// Unit vector from the contact point to the capsule's segment. If the segment touches the triangle itself: the
-    /// triangle's normal.
-    pub separation_normal: DVec3,
-    /// True if capsule and skin overlap at the start; the time is 0 then.
-    pub started_inside: bool,
-    /// True if the solver could not certify the distance within the tolerance: see [`SweepHit::undecided`].
-    pub undecided: bool,
 }
 
 /// The motion of an anchor over one tick, in world space. Velocities are differences over the tick's length, never
@@ -105,22 +64,6 @@ impl WorldPath {
     }
 }
 
-impl From<&WorldHit> for SurfacePoint {
-    fn from(hit: &WorldHit) -> Self {
-        Self {
-            mesh: hit.mesh,
-            triangle: hit.triangle,
-            barycentric: hit.barycentric,
-        }
-    }
-}
-
-impl From<&WorldSweepHit> for SurfacePoint {
-    fn from(hit: &WorldSweepHit) -> Self {
-        (&hit.hit).into()
-    }
-}
-
 impl SkinnedSurface {
     /// A view of the surface in world space, with its queries.
     pub fn in_world(&self) -> WorldSpace<'_> {
@@ -131,7 +74,12 @@ impl SkinnedSurface {
 impl WorldSpace<'_> {
     /// The first triangle that a ray meets, from either side, up to `max_distance` metres. `direction` may have any
     /// length but zero; distances along it are in metres.
-    pub fn cast_ray(&self, origin: DVec3, direction: DVec3, max_distance: f64) -> Option<WorldHit> {
+    pub fn cast_ray(
+        &self,
+        origin: DVec3,
+        direction: DVec3,
+        max_distance: f64,
+    ) -> Option<SurfaceHit<DVec3>> {
         let ray = self.ray(origin, direction)?;
         let hit = self
             .surface
@@ -155,7 +103,7 @@ impl WorldSpace<'_> {
         origin: DVec3,
         direction: DVec3,
         max_distance: f64,
-        hits: &mut Vec<WorldHit>,
+        hits: &mut Vec<SurfaceHit<DVec3>>,
     ) {
         hits.clear();
         if let Some(ray) = self.ray(origin, direction) {
@@ -168,7 +116,7 @@ impl WorldSpace<'_> {
     }
 
     /// The material point nearest to `point`, at most `max_distance` metres away.
-    pub fn closest_point(&self, point: DVec3, max_distance: f64) -> Option<WorldHit> {
+    pub fn closest_point(&self, point: DVec3, max_distance: f64) -> Option<SurfaceHit<DVec3>> {
         let local = self.place().inverse_transform_point_f32(point);
         let hit = self
             .surface
@@ -179,7 +127,11 @@ impl WorldSpace<'_> {
 
     /// Calls `visit` with every triangle within a capsule, each with its point closest to the capsule's segment. The
     /// order is unspecified.
-    pub fn visit_overlap_capsule(&self, capsule: &WorldCapsule, mut visit: impl FnMut(WorldHit)) {
+    pub fn visit_overlap_capsule(
+        &self,
+        capsule: &WorldCapsule,
+        mut visit: impl FnMut(SurfaceHit<DVec3>),
+    ) {
         if let Some(local) = self.capsule(capsule) {
             let is_ball = capsule.is_ball();
             let nearest = |point: DVec3| match capsule.ends {
@@ -196,10 +148,10 @@ impl WorldSpace<'_> {
         &self,
         capsule: &WorldCapsule,
         max_distance: f64,
-    ) -> Option<WorldHit> {
+    ) -> Option<SurfaceHit<DVec3>> {
         let (local, space) = (self.capsule(capsule)?, self.surface.in_model());
         let found = space.closest_to_capsule(&local, self.length(max_distance))?;
-        Some(self.hit(&found.surface, |point| capsule.nearest_on_axis(point)))
+        Some(self.hit(&found, |point| capsule.nearest_on_axis(point)))
     }
 
     /// True if a point is inside the surface: see [`ModelSpace::is_inside`](super::ModelSpace::is_inside).
@@ -216,7 +168,7 @@ impl WorldSpace<'_> {
         capsule: &WorldCapsule,
         displacements: [DVec3; 2],
         options: &CastOptions,
-    ) -> Option<WorldSweepHit> {
+    ) -> Option<SweepHit<DVec3>> {
         let (local, displacements, options) = self.cast(capsule, displacements, options)?;
         let space = self.surface.in_model();
         let hit = space.cast_capsule(&local, displacements, &options)?;
@@ -230,8 +182,8 @@ impl WorldSpace<'_> {
         capsule: &WorldCapsule,
         displacements: [DVec3; 2],
         options: &CastOptions,
-        counts: &mut dyn FnMut(&WorldSweepHit) -> bool,
-    ) -> Option<WorldSweepHit> {
+        counts: &mut dyn FnMut(&SweepHit<DVec3>) -> bool,
+    ) -> Option<SweepHit<DVec3>> {
         let (local, displacements, options) = self.cast(capsule, displacements, options)?;
         let mut counts = |hit: &SweepHit| counts(&self.sweep_hit(hit));
         let space = self.surface.in_model();
@@ -319,9 +271,9 @@ impl WorldSpace<'_> {
 
     /// Transforms a hit to world space. `origin` returns the query's origin for a point. The distance is measured again
     /// in world space, since the hit's own distance starts from an origin that was rounded to f32.
-    fn hit(&self, hit: &SurfaceHit, origin: impl Fn(DVec3) -> DVec3) -> WorldHit {
+    fn hit(&self, hit: &SurfaceHit, origin: impl Fn(DVec3) -> DVec3) -> SurfaceHit<DVec3> {
         let point = self.place().transform_point_f32(hit.point);
-        WorldHit {
+        SurfaceHit {
             mesh: hit.mesh,
             triangle: hit.triangle,
             barycentric: hit.barycentric,
@@ -333,10 +285,13 @@ impl WorldSpace<'_> {
         }
     }
 
-    fn sweep_hit(&self, hit: &SweepHit) -> WorldSweepHit {
-        let separation_normal = self.direction(hit.separation_normal).normalize_or(DVec3::Y);
-        WorldSweepHit {
-            hit: WorldHit {
+    fn sweep_hit(&self, sweep: &SweepHit) -> SweepHit<DVec3> {
+        let hit = &sweep.hit;
+        let separation_normal = self
+            .direction(sweep.separation_normal)
+            .normalize_or(DVec3::Y);
+        SweepHit {
+            hit: SurfaceHit {
                 mesh: hit.mesh,
                 triangle: hit.triangle,
                 barycentric: hit.barycentric,
@@ -346,10 +301,10 @@ impl WorldSpace<'_> {
                 part: hit.part,
                 tag: hit.tag,
             },
-            time: hit.time,
+            fraction: sweep.fraction,
             separation_normal,
-            started_inside: hit.started_inside,
-            undecided: hit.undecided,
+            started_inside: sweep.started_inside,
+            undecided: sweep.undecided,
         }
     }
 

@@ -98,10 +98,10 @@ pub(super) fn keep_out(
 /// Direction from the skin to the body at the end of the tick: the separation normal at contact, turned as the triangle
 /// has turned since then. If the body came from behind the skin, the skin's outward normal.
 fn outward(hit: &SweepHit, motion: &Motion, dt: f64) -> DVec3 {
-    if hit.separation_normal.dot(hit.normal) <= 0.0 {
+    if hit.separation_normal.dot(hit.hit.normal) <= 0.0 {
         return motion.normal.as_dvec3().normalize_or(DVec3::Y);
     }
-    let turned = motion.angular_velocity.as_dvec3() * (dt * (1.0 - hit.time));
+    let turned = motion.angular_velocity.as_dvec3() * (dt * (1.0 - hit.fraction));
     let angle = turned.length();
     let normal = hit.separation_normal.as_dvec3().normalize_or(DVec3::Y);
     if angle > 0.0 {
@@ -140,9 +140,9 @@ fn touching(
     start: [DVec3; 2],
     end: [DVec3; 2],
 ) -> DVec3 {
-    let at = |side: usize| start[side] + (end[side] - start[side]) * hit.time;
+    let at = |side: usize| start[side] + (end[side] - start[side]) * hit.fraction;
     let axis = at(1) - at(0);
-    let touched = world_from_model.transform_point_f32(hit.point);
+    let touched = world_from_model.transform_point_f32(hit.hit.point);
     let length_sq = axis.length_squared();
     let along = if length_sq > 0.0 {
         ((touched - at(0)).dot(axis) / length_sq).clamp(0.0, 1.0)

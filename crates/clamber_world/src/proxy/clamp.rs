@@ -49,8 +49,8 @@ impl ProxyBody {
             was = deepest(from, solids.clone(), &capsule).map_or(0.0, |(depth, _)| depth);
         } else {
             // For the rest of the tick the body stays where it is relative to the climber.
-            pose = between(from, to, touch.time);
-            pose.translation += way * (1.0 - touch.time);
+            pose = between(from, to, touch.fraction);
+            pose.translation += way * (1.0 - touch.fraction);
         }
         // The search assumes that the points of a turning body move in straight lines, so the body may still be too
         // deep.

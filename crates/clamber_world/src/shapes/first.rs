@@ -4,7 +4,7 @@ use parry3d::shape::Shape;
 
 use super::sweep::sweep_shape_where;
 use super::swept_bounds::{SweptBounds, is_usable, is_usable_radius};
-use super::{ShapeTouch, Tick, sweep_shape};
+use super::{ShapeContact, Tick, sweep_shape};
 use crate::{Contact, SweepContact, WorldCapsule};
 
 /// Finds the first contact of a moving capsule among many shapes. The order of the shapes does not matter.
@@ -88,7 +88,7 @@ impl FirstContact {
         counts: &mut dyn FnMut(&SweepContact) -> bool,
     ) {
         let sweep = tick.sweep(&self.capsule, self.displacements);
-        let mut counts = |touch: &ShapeTouch| counts(&tick.contact(touch, key));
+        let mut counts = |touch: &SweepContact<ShapeContact>| counts(&tick.contact(touch, key));
         if let Some(touch) = sweep_shape_where(shape, &sweep, self.limit(), &mut counts) {
             self.offer(tick.contact(&touch, key));
         }
@@ -114,7 +114,7 @@ impl FirstContact {
     }
 
     fn limit(&self) -> f64 {
-        self.first.map_or(1.0, |first| first.time)
+        self.first.map_or(1.0, |first| first.fraction)
     }
 }
 
@@ -124,7 +124,7 @@ fn precedes(contact: &SweepContact, other: &SweepContact) -> bool {
         let Contact {
             distance, material, ..
         } = sweep.contact;
-        let first = (sweep.time, distance, material.key);
+        let first = (sweep.fraction, distance, material.key);
         (
             first,
             material.coordinates,

@@ -18,7 +18,7 @@ pub use first::FirstContact;
 pub use holds::holds;
 pub use moved::Moved;
 pub use overlap::{ShapeContact, overlap_shape};
-pub use sweep::{ShapeSweep, ShapeTouch, sweep_shape};
+pub use sweep::{ShapeSweep, sweep_shape};
 pub use swept_bounds::SweptBounds;
 pub use tick::Tick;
 

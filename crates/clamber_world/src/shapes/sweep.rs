@@ -9,8 +9,7 @@ use super::convex::{Convex, MovingConvex};
 use super::overlap::{half_space, solid};
 use super::parts::{Part, visit_parts};
 use super::swept_bounds::{SweptBounds, is_usable, is_usable_radius};
-use crate::RigidPose;
-use crate::WorldCapsule;
+use crate::{RigidPose, SweepContact, WorldCapsule};
 
 /// [`WorldCapsule::sweep_tolerance`] from the radius alone.
 fn sweep_tolerance(radius: f64) -> f64 {
@@ -27,44 +26,32 @@ pub struct ShapeSweep {
     pub before: Option<RigidPose>,
 }
 
-/// The first contact of a moving capsule with a shape.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct ShapeTouch {
-    /// Time of contact as a fraction of the motion, 0..=1.
-    pub time: f64,
-    /// The contact's point on the shape at rest, and its normal and distance at `time`, all in the shape's local space.
-    pub contact: ShapeContact,
-    /// Unit vector from the contact towards the capsule's segment. Where the segment is inside a solid: the direction
-    /// of the minimum translation that leads out.
-    pub separation_normal: DVec3,
-    /// True if they overlap at the start; the time is then 0.
-    pub started_inside: bool,
-    /// True if the solver could not certify the distance within the tolerance. There is no contact before `time`.
-    pub undecided: bool,
+/// The first contact of a moving capsule with a shape, in the shape's local space: the contact's point on the shape at
+/// rest, and its normal and distance at that time.
+type Touch = SweepContact<ShapeContact>;
+
+/// True if one contact comes before another: orders by time, then by distance, then by position and direction, so that
+/// the order in which parts are visited does not matter.
+fn precedes(one: &Touch, other: &Touch) -> bool {
+    let key = |touch: &Touch| {
+        let point = touch.contact.point.to_array();
+        let place = (point, touch.separation_normal.to_array());
+        ((touch.fraction, touch.contact.distance), place)
+    };
+    key(one) < key(other)
 }
 
-impl ShapeTouch {
-    /// Orders by time, then by distance, then by position and direction, so that the order in which parts are visited
-    /// does not matter.
-    fn precedes(&self, other: &Self) -> bool {
-        let key = |touch: &Self| {
-            let place = (
-                touch.contact.point.to_array(),
-                touch.separation_normal.to_array(),
-            );
-            ((touch.time, touch.contact.distance), place)
-        };
-        key(self) < key(other)
-    }
-}
-
-/// The first contact of a moving capsule with a shape, up to the time `limit`.
+/// The first contact of a moving capsule with a shape, up to the fraction `limit` of the motion, in the shape's local
+/// space: the contact's point on the shape at rest, and its normal and distance at that time.
 ///
-/// The reported time is never later than the true one. The distance at that time is at most the radius plus
-/// [`WorldCapsule::sweep_tolerance`], unless the contact is [undecided](ShapeTouch::undecided). Triangles are
-/// two-sided. Finds nothing if a coordinate is not finite or beyond 2^100, or if the radius is negative.
-pub fn sweep_shape(shape: &dyn Shape, sweep: &ShapeSweep, limit: f64) -> Option<ShapeTouch> {
+/// The reported fraction is never later than the true one. The distance at that time is at most the radius plus
+/// [`WorldCapsule::sweep_tolerance`], unless the solver cannot certify a distance (see
+/// [`SweepHit::undecided`](clamber_surface::surface::SweepHit::undecided)). Triangles are two-sided. Finds nothing if a coordinate is not finite or beyond 2^100, or if the radius is negative.
+pub fn sweep_shape(
+    shape: &dyn Shape,
+    sweep: &ShapeSweep,
+    limit: f64,
+) -> Option<SweepContact<ShapeContact>> {
     search(shape, sweep, limit, None)
 }
 
@@ -73,8 +60,8 @@ pub(super) fn sweep_shape_where(
     shape: &dyn Shape,
     sweep: &ShapeSweep,
     limit: f64,
-    counts: &mut dyn FnMut(&ShapeTouch) -> bool,
-) -> Option<ShapeTouch> {
+    counts: &mut dyn FnMut(&Touch) -> bool,
+) -> Option<Touch> {
     search(shape, sweep, limit, Some(counts))
 }
 
@@ -82,8 +69,8 @@ fn search(
     shape: &dyn Shape,
     sweep: &ShapeSweep,
     limit: f64,
-    mut counts: Option<&mut dyn FnMut(&ShapeTouch) -> bool>,
-) -> Option<ShapeTouch> {
+    mut counts: Option<&mut dyn FnMut(&Touch) -> bool>,
+) -> Option<Touch> {
     let path = &sweep.path;
     let ends = [path.start, path.end];
     let usable = ends.iter().all(|[a, b]| is_usable(*a) && is_usable(*b));
@@ -91,7 +78,7 @@ fn search(
     if !usable {
         return None;
     }
-    let mut first: Option<ShapeTouch> = None;
+    let mut first: Option<Touch> = None;
     let reach = LazyCell::new(|| sweep.reach());
     let until = Cell::new(limit);
     visit_parts(
@@ -102,8 +89,8 @@ fn search(
             let Some(touch) = sweep.meet(part, until.get(), &mut counts) else {
                 return;
             };
-            if touch.time <= until.get() && first.is_none_or(|first| touch.precedes(&first)) {
-                until.set(touch.time);
+            if touch.fraction <= until.get() && first.is_none_or(|first| precedes(&touch, &first)) {
+                until.set(touch.fraction);
                 first = Some(touch);
             }
         },
@@ -147,8 +134,8 @@ impl ShapeSweep {
         &self,
         part: Part<'_>,
         limit: f64,
-        counts: &mut Option<&mut dyn FnMut(&ShapeTouch) -> bool>,
-    ) -> Option<ShapeTouch> {
+        counts: &mut Option<&mut dyn FnMut(&Touch) -> bool>,
+    ) -> Option<Touch> {
         let touch = match part {
             Part::Triangle(corners) => self.meet_triangle(corners, limit),
             Part::Convex(convex) => self.meet_solid(&convex, limit),
@@ -164,7 +151,7 @@ impl ShapeSweep {
                         .before
                         .map(|before| pose.inverse().compose(&before.compose(&pose))),
                 };
-                let outer = |touch: &ShapeTouch| ShapeTouch {
+                let outer = |touch: &Touch| Touch {
                     contact: ShapeContact {
                         point: pose.transform(touch.contact.point),
                         normal: pose.rotation * touch.contact.normal,
@@ -176,7 +163,7 @@ impl ShapeSweep {
                 // `search` has called `counts` for each of its parts.
                 let touch = match counts {
                     Some(counts) => {
-                        let mut counts = |touch: &ShapeTouch| counts(&outer(touch));
+                        let mut counts = |touch: &Touch| counts(&outer(touch));
                         search(part, &inner, limit, Some(&mut counts))
                     }
                     None => search(part, &inner, limit, None),
@@ -187,7 +174,7 @@ impl ShapeSweep {
         touch.filter(|touch| counts.as_mut().is_none_or(|counts| counts(touch)))
     }
 
-    fn meet_triangle(&self, corners: [Vec3; 3], limit: f64) -> Option<ShapeTouch> {
+    fn meet_triangle(&self, corners: [Vec3; 3], limit: f64) -> Option<Touch> {
         let [a, b, c] = corners.map(|corner| corner.as_dvec3());
         let start = match &self.before {
             Some(before) => [a, b, c].map(|corner| before.transform(corner)),
@@ -199,8 +186,8 @@ impl ShapeSweep {
             limit,
         )?;
         let weights = touch.barycentric;
-        Some(ShapeTouch {
-            time: touch.time,
+        Some(SweepContact {
+            fraction: touch.fraction,
             contact: ShapeContact {
                 point: a * weights.x + b * weights.y + c * weights.z,
                 normal: touch.normal.unwrap_or(touch.separation_normal),
@@ -208,11 +195,10 @@ impl ShapeSweep {
             },
             separation_normal: touch.separation_normal,
             started_inside: touch.started_inside,
-            undecided: touch.undecided,
         })
     }
 
-    fn meet_solid(&self, convex: &Convex<'_>, limit: f64) -> Option<ShapeTouch> {
+    fn meet_solid(&self, convex: &Convex<'_>, limit: f64) -> Option<Touch> {
         let moving = MovingConvex {
             convex,
             before: self.before,
@@ -239,17 +225,16 @@ impl ShapeSweep {
                 }
             }
         };
-        Some(ShapeTouch {
-            time,
+        Some(SweepContact {
+            fraction: time,
             contact,
             separation_normal: contact.normal,
             started_inside: time == 0.0 && contact.distance <= self.path.radius,
-            undecided: touch.undecided,
         })
     }
 
     /// Solved relative to the half-space: the points of an infinite solid that turns have no largest speed.
-    fn meet_half_space(&self, normal: DVec3) -> Option<ShapeTouch> {
+    fn meet_half_space(&self, normal: DVec3) -> Option<Touch> {
         let path = self.seen_from_shape();
         let starts = path.start.map(|end| normal.dot(end) - path.radius);
         let ends = path.end.map(|end| normal.dot(end) - path.radius);
@@ -264,12 +249,11 @@ impl ShapeSweep {
         }
         let at = path.at(time);
         let contact = half_space(normal, at);
-        Some(ShapeTouch {
-            time,
+        Some(SweepContact {
+            fraction: time,
             contact,
             separation_normal: normal,
             started_inside: time == 0.0 && contact.distance <= path.radius,
-            undecided: false,
         })
     }
 }

@@ -2,7 +2,7 @@ use clamber_surface::geometry::MovingCapsule;
 use clamber_surface::mesh::SurfaceTag;
 use glam::DVec3;
 
-use super::{ShapeSweep, ShapeTouch};
+use super::{ShapeContact, ShapeSweep};
 use crate::RigidPose;
 use crate::{Contact, MaterialPoint, SweepContact, WorldCapsule};
 
@@ -43,18 +43,20 @@ impl Tick {
 
     /// Converts the result of such a sweep to the space of the poses. `key` becomes the [`MaterialPoint::key`]. The tag
     /// is the default; the caller sets it.
-    pub fn contact(&self, touch: &ShapeTouch, key: u64) -> SweepContact {
+    pub fn contact(&self, touch: &SweepContact<ShapeContact>, key: u64) -> SweepContact {
         let separation_normal =
             (self.now.rotation * touch.separation_normal).normalize_or(DVec3::Y);
         let normal = (self.now.rotation * touch.contact.normal).normalize_or(separation_normal);
         let at_rest = touch.contact.point;
         let now = self.now.transform(at_rest);
         let point = match &self.before {
-            Some(before) => before.transform(at_rest) * (1.0 - touch.time) + now * touch.time,
+            Some(before) => {
+                before.transform(at_rest) * (1.0 - touch.fraction) + now * touch.fraction
+            }
             None => now,
         };
         SweepContact {
-            time: touch.time,
+            fraction: touch.fraction,
             contact: Contact {
                 point,
                 normal,

@@ -173,7 +173,7 @@ fn capsule_queries_are_in_world_metres() {
     let ball = WorldCapsule::ball(at(1.0, 4.0), 1.0);
     let met =
         Obstacle::cast_capsule(&surface, &ball, [DVec3::Z * -6.0; 2], TargetMotion::Still).unwrap();
-    assert!((met.time - 0.5).abs() < 2e-5, "{met:?}");
+    assert!((met.fraction - 0.5).abs() < 2e-5, "{met:?}");
     assert!(
         (met.separation_normal - DVec3::Z).length() < 1e-6,
         "{met:?}"
@@ -210,7 +210,7 @@ fn capsule_queries_are_in_world_metres() {
     assert!((1.98..2.01).contains(&nearest), "{contacts:?}");
     let met =
         Obstacle::cast_capsule(&surface, &rod, [DVec3::Z * -3.0; 2], TargetMotion::Still).unwrap();
-    assert!((met.time - 0.5).abs() < 0.02, "{met:?}");
+    assert!((met.fraction - 0.5).abs() < 0.02, "{met:?}");
 
     // The square moves 2 m nearer over the tick.
     let moved = Similarity {
@@ -221,7 +221,7 @@ fn capsule_queries_are_in_world_metres() {
     surface.advance(&palette, moved).unwrap();
     let met = Obstacle::cast_capsule(&surface, &ball, [DVec3::Z * -4.0; 2], TargetMotion::Moving)
         .unwrap();
-    assert!((met.time - 0.5).abs() < 3e-5, "{met:?}");
+    assert!((met.fraction - 0.5).abs() < 3e-5, "{met:?}");
     assert!(
         (met.contact.point - at(1.0, 1.0)).length() < 2e-4,
         "{met:?}"
@@ -231,7 +231,7 @@ fn capsule_queries_are_in_world_metres() {
     let inside = WorldCapsule::ball(at(1.0, 0.5), 1.0);
     let met =
         Obstacle::cast_capsule(&surface, &inside, [DVec3::ZERO; 2], TargetMotion::Moving).unwrap();
-    assert!(met.started_inside && met.time == 0.0, "{met:?}");
+    assert!(met.started_inside && met.fraction == 0.0, "{met:?}");
     assert!((met.contact.distance - 0.5).abs() < 1e-5, "{met:?}");
 }
 
@@ -312,7 +312,7 @@ fn world_and_model_queries_agree() {
     };
 
     let found = world.closest_to_capsule(&capsule, 5.0 * scale).unwrap();
-    let expected = model.closest_to_capsule(&local, 5.0).unwrap().surface;
+    let expected = model.closest_to_capsule(&local, 5.0).unwrap();
     close(found.point, place(expected.point));
     assert!((found.distance - expected.distance * scale).abs() < 1e-5 * scale);
     assert!(world.closest_to_capsule(&capsule, 0.5 * scale).is_none());
@@ -338,20 +338,20 @@ fn world_and_model_queries_agree() {
             let ways = [turned.transform_vector(way.as_dvec3()); 2];
             let found = world.cast_capsule(&ball, ways, &options).unwrap();
             assert!(
-                (found.time - expected.time).abs() < 1e-5,
+                (found.fraction - expected.fraction).abs() < 1e-5,
                 "{found:?} {expected:?}"
             );
-            close(found.hit.point, place(expected.point));
+            close(found.hit.point, place(expected.hit.point));
             close(
                 found.separation_normal * scale,
                 aim(expected.separation_normal) * scale,
             );
-            close(found.hit.normal * scale, aim(expected.normal) * scale);
+            close(found.hit.normal * scale, aim(expected.hit.normal) * scale);
             // The skin's own normal is the same from either side; the separation normal points to where the ball comes
             // from.
             let sides = found.separation_normal.dot(found.hit.normal);
             assert!(
-                sides * f64::from(start.y) * f64::from(expected.normal.y) > 0.9,
+                sides * f64::from(start.y) * f64::from(expected.hit.normal.y) > 0.9,
                 "{found:?}"
             );
         }

@@ -7,21 +7,12 @@ pub enum Found {
     Any,
     /// A point of the surface.
     Hit(Hit),
-    /// The nearest points of the surface and a capsule's segment.
-    Nearest {
-        /// The surface's point. Its distance is measured from the segment.
-        hit: Hit,
-        /// The segment's point.
-        segment: Vec3,
-        /// Position of that point on the segment, from 0 to 1.
-        along: f32,
-    },
     /// The first contact of a moving capsule with a triangle.
     Contact {
         /// The surface's point at that time, and its distance from the segment.
         hit: Hit,
-        /// Share of the motion until the contact, from 0 to 1.
-        time: f64,
+        /// Fraction of the motion until the contact, from 0 to 1.
+        fraction: f64,
         /// Unit vector from the surface's point to the segment.
         separation_normal: Vec3,
         /// True if capsule and triangle overlap at the start.
@@ -69,7 +60,7 @@ impl Found {
     /// The surface's point, if this row has one.
     pub fn hit(&self) -> Option<&Hit> {
         match self {
-            Self::Hit(hit) | Self::Nearest { hit, .. } | Self::Contact { hit, .. } => Some(hit),
+            Self::Hit(hit) | Self::Contact { hit, .. } => Some(hit),
             Self::Any | Self::Triangle { .. } => None,
         }
     }
@@ -86,24 +77,20 @@ impl Found {
     }
 
     /// Name of a field whose value no valid answer has: weights that are negative or do not add up to 1, a coordinate
-    /// or distance that is not finite, a normal whose length is not 1, a negative distance, a time outside 0..=1, a
-    /// time other than 0 of a contact that started inside. `None` if the row is valid.
+    /// or distance that is not finite, a normal whose length is not 1, a negative distance, a fraction outside 0..=1, a
+    /// fraction other than 0 of a contact that started inside. `None` if the row is valid.
     pub fn fault(&self) -> Option<&'static str> {
         let own = match self {
             Self::Any | Self::Hit(_) => None,
-            Self::Nearest { segment, along, .. } => {
-                let sound = segment.is_finite() && (0.0..=1.0).contains(along);
-                (!sound).then_some("segment")
-            }
             Self::Contact {
-                time,
+                fraction,
                 separation_normal,
                 started_inside,
                 ..
             } => {
-                let sound = (0.0..=1.0).contains(time) && (!started_inside || *time == 0.0);
-                let time = (!sound).then_some("time");
-                time.or((!is_unit(*separation_normal)).then_some("separation_normal"))
+                let sound = (0.0..=1.0).contains(fraction) && (!started_inside || *fraction == 0.0);
+                let fraction = (!sound).then_some("fraction");
+                fraction.or((!is_unit(*separation_normal)).then_some("separation_normal"))
             }
             Self::Triangle {
                 previous, current, ..
@@ -131,25 +118,15 @@ impl Found {
                 bits.push("kind", [2]);
                 hit.bits(&mut bits);
             }
-            Self::Nearest {
-                hit,
-                segment,
-                along,
-            } => {
-                bits.push("kind", [3]);
-                hit.bits(&mut bits);
-                bits.floats("segment", segment.to_array());
-                bits.floats("along", [*along]);
-            }
             Self::Contact {
                 hit,
-                time,
+                fraction,
                 separation_normal,
                 started_inside,
                 undecided,
             } => {
                 bits.push("kind", [4]);
-                bits.push("time", [time.to_bits()]);
+                bits.push("fraction", [fraction.to_bits()]);
                 hit.bits(&mut bits);
                 bits.floats("separation_normal", separation_normal.to_array());
                 bits.push("started_inside", [(*started_inside).into()]);

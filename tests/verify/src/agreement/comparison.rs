@@ -283,9 +283,9 @@ mod tests {
             let row = Found::Hit(hit);
             assert_eq!(wrong(&[row], &[row]), Some(field));
         }
-        let contact = |time, separation_normal, started_inside| Found::Contact {
+        let contact = |fraction, separation_normal, started_inside| Found::Contact {
             hit: HIT,
-            time,
+            fraction,
             separation_normal,
             started_inside,
             undecided: false,
@@ -293,9 +293,9 @@ mod tests {
         let sound = contact(0.5, Vec3::Y, false);
         assert_eq!(wrong(&[sound], &[sound]), None);
         for (field, row) in [
-            ("time", contact(1.5, Vec3::Y, false)),
-            ("time", contact(f64::NAN, Vec3::Y, false)),
-            ("time", contact(0.5, Vec3::Y, true)),
+            ("fraction", contact(1.5, Vec3::Y, false)),
+            ("fraction", contact(f64::NAN, Vec3::Y, false)),
+            ("fraction", contact(0.5, Vec3::Y, true)),
             ("separation_normal", contact(0.5, Vec3::ZERO, false)),
         ] {
             assert_eq!(wrong(&[row], &[row]), Some(field));

@@ -38,8 +38,7 @@ pub enum Question {
         /// Largest distance.
         max_distance: f32,
     },
-    /// The nearest points of the surface and a capsule's segment: at most one
-    /// [`Found::Nearest`](super::Found::Nearest).
+    /// The point of the surface nearest to a capsule's segment: at most one [`Found::Hit`](super::Found::Hit).
     ClosestToCapsule {
         /// The capsule.
         shape: Shape,

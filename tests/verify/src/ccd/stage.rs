@@ -35,7 +35,7 @@ impl Answer {
     /// The claim of the answer, for the checks of [`exact`](crate::exact).
     pub fn claim(&self) -> Claim {
         Claim {
-            time: self.hit.map(|hit| hit.time),
+            time: self.hit.map(|hit| hit.fraction),
             undecided: self.hit.is_some_and(|hit| hit.undecided),
         }
     }

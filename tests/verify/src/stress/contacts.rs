@@ -108,7 +108,12 @@ fn compare(
     posed.surface.in_model().answer(question, &mut found);
     let found = found.first();
     let mut time = f64::INFINITY;
-    if let Some(contact @ Found::Contact { hit, time: at, .. }) = found {
+    if let Some(
+        contact @ Found::Contact {
+            hit, fraction: at, ..
+        },
+    ) = found
+    {
         assert_near(posed, question, mover, hit, *at, contact.is_undecided());
         time = *at;
     }

@@ -46,7 +46,7 @@ impl Obstacle for Broken {
 impl Broken {
     fn met(&self) -> SweepContact {
         SweepContact {
-            time: f64::NAN,
+            fraction: f64::NAN,
             contact: self.nonsense(),
             separation_normal: DVec3::NAN,
             started_inside: false,

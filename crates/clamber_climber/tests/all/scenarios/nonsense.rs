@@ -42,7 +42,7 @@ impl Obstacle for Broken<'_> {
         let mut hit = self.inner.cast_capsule(capsule, displacements, target)?;
         match target {
             TargetMotion::Still => hit.separation_normal = self.bad,
-            TargetMotion::Moving => hit.time = self.bad.x,
+            TargetMotion::Moving => hit.fraction = self.bad.x,
         }
         Some(hit)
     }

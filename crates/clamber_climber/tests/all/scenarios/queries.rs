@@ -65,7 +65,7 @@ pub(crate) fn a_sliver_is_hit_exactly_where_it_is() {
                 "{played:?}: {truth} from {corners:?}"
             );
             if let Some(hit) = hit {
-                let at = from + way * hit.time;
+                let at = from + way * hit.fraction;
                 let distance = distance(at, &corners);
                 let allowed = if hit.started_inside {
                     0.0..=0.2
@@ -122,7 +122,7 @@ pub(crate) fn a_cast_that_starts_inside_hits_at_time_0() {
             });
             assert!(hit.is_some(), "{played:?}: nothing at {height}");
             let hit = hit.unwrap();
-            assert_eq!(hit.time, 0.0, "{played:?}");
+            assert_eq!(hit.fraction, 0.0, "{played:?}");
             assert!(hit.started_inside, "{played:?}");
             assert!(
                 (hit.contact.normal - DVec3::Y).length() <= 1e-6,
@@ -253,7 +253,11 @@ pub(crate) fn obstacles_that_do_not_approach_are_not_hit() {
         });
         assert!(hit.is_some(), "{played:?}: nothing where the box comes");
         let hit = hit.unwrap();
-        assert!((hit.time - 0.1).abs() <= 1e-3, "{played:?}: {}", hit.time);
+        assert!(
+            (hit.fraction - 0.1).abs() <= 1e-3,
+            "{played:?}: {}",
+            hit.fraction
+        );
         // Ball and box are both at rest.
         stage.hold();
         let ball = WorldCapsule::ball(DVec3::Y * 3.0, 0.5);

@@ -3,7 +3,7 @@
 //! The obstacle has no f32, so differences between moving frames are the climber's own rounding: at most a micrometre.
 //! Corners move on straight lines over a tick, as the corners of a skin do.
 
-use clamber_surface::geometry::{MovingCapsule, TriangleTouch};
+use clamber_surface::geometry::{MovingCapsule, TriangleContact};
 use clamber_world::{
     Contact, MaterialPoint, Obstacle, PointMotion, SurfaceKind, SurfaceTag, SweepContact,
     TargetMotion, WorldCapsule,
@@ -87,7 +87,7 @@ impl Own {
             .map(|(triangle, _)| triangle)
     }
 
-    fn contact(&self, triangle: usize, touch: &TriangleTouch) -> Contact {
+    fn contact(&self, triangle: usize, touch: &TriangleContact) -> Contact {
         Contact {
             point: touch.point,
             normal: touch.normal.unwrap_or(touch.separation_normal),
@@ -118,16 +118,16 @@ impl Own {
         // The tolerance, plus the rounding of the boxes.
         let reach = path.radius + self.tolerance * 4.0;
         for triangle in self.near(&ends, reach) {
-            let limit = first.map_or(1.0, |first| first.time);
+            let limit = first.map_or(1.0, |first| first.fraction);
             let corners = [self.of(triangle, before), self.of(triangle, &self.now)];
             let Some(touch) = path.cast_at_triangle(corners, self.tolerance, limit) else {
                 continue;
             };
             let sooner = first.is_none_or(|first| {
-                (touch.time, touch.distance) < (first.time, first.contact.distance)
+                (touch.fraction, touch.distance) < (first.fraction, first.contact.distance)
             });
             let sweep = SweepContact {
-                time: touch.time,
+                fraction: touch.fraction,
                 contact: self.contact(triangle, &touch),
                 separation_normal: touch.separation_normal,
                 started_inside: touch.started_inside,

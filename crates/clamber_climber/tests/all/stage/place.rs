@@ -217,7 +217,7 @@ impl Obstacle for Elsewhere<'_> {
         let hit = self.inner.cast_capsule(&start, ways, target)?;
         // Mapped back from the position of the other space at the time of contact.
         let then = Place {
-            now: there.before + (there.now - there.before) * hit.time,
+            now: there.before + (there.now - there.before) * hit.fraction,
             ..*there
         };
         Some(self.hit(hit, &then.inverse()))

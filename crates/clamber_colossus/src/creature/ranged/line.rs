@@ -45,10 +45,10 @@ impl Line {
         let all = around.terrain.iter().chain(around.creatures);
         let moving = TargetMotion::Moving;
         let hits = all.filter_map(|obstacle| obstacle.cast_capsule(&middle, [way; 2], moving));
-        let first = hits.min_by(|a, b| a.time.total_cmp(&b.time))?;
+        let first = hits.min_by(|a, b| a.fraction.total_cmp(&b.fraction))?;
         let out = first.separation_normal.try_normalize();
         let out = out.filter(|out| out.dot(along) < 0.0).unwrap_or(-along);
-        let share = (first.time * (length + behind) - behind) / length;
+        let share = (first.fraction * (length + behind) - behind) / length;
         Some((share.clamp(0.0, 1.0), out))
     }
 

@@ -182,5 +182,5 @@ fn first(
         let still = TargetMotion::Still;
         obstacle.cast_capsule_where(capsule, ways, still, counts)
     });
-    hits.map(|hit| hit.time).min_by(f64::total_cmp)
+    hits.map(|hit| hit.fraction).min_by(f64::total_cmp)
 }

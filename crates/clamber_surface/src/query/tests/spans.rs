@@ -70,7 +70,7 @@ fn a_part_of_a_tick_has_the_bits_of_brute_force() {
                 reference.cast_capsule_all(&stick, ways, &options, &mut expected);
                 assert_eq!(all, expected);
             }
-            let mut counts = |hit: &SweepHit| hit.triangle.0.is_multiple_of(3);
+            let mut counts = |hit: &SweepHit| hit.hit.triangle.0.is_multiple_of(3);
             let some = space.cast_capsule_where(&stick, ways, &options, &mut counts);
             assert_eq!(
                 some,
@@ -107,7 +107,7 @@ fn a_sweep_in_parts_meets_what_the_whole_sweep_meets() {
             let ways = [after[0] - a.as_dvec3(), after[1] - b.as_dvec3()].map(|way| way.as_vec3());
             let options = CastOptions::MOVING.during(from, to);
             let hit = space.cast_capsule(&capsule(a, b, 0.05), ways, &options)?;
-            Some((from + (to - from) * hit.time, hit.started_inside))
+            Some((from + (to - from) * hit.fraction, hit.started_inside))
         });
         // Times are never late. Except in grazing contacts, they are early by at most the time in which the tolerance
         // is passed.
@@ -115,12 +115,12 @@ fn a_sweep_in_parts_meets_what_the_whole_sweep_meets() {
             (Some(hit), Some((time, _))) => {
                 met += 1;
                 assert!(
-                    (hit.time - time).abs() < 2e-3,
+                    (hit.fraction - time).abs() < 2e-3,
                     "{hit:?}, in parts at {time}"
                 );
             }
             (None, None) => {}
-            (Some(hit), None) => assert!(hit.distance > 0.05, "{hit:?}"),
+            (Some(hit), None) => assert!(hit.hit.distance > 0.05, "{hit:?}"),
             (None, Some((_, inside))) => assert!(!inside, "inside of what the whole missed"),
         }
     }

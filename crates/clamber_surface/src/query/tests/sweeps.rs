@@ -38,7 +38,7 @@ fn passes(
         place(&mut surface, start + tick * step, false);
         if let Some(hit) = report(&surface) {
             assert!(!hit.undecided, "{hit:?}");
-            return Some(start + (tick - 1.0 + hit.time) * step);
+            return Some(start + (tick - 1.0 + hit.fraction) * step);
         }
     }
     None
@@ -136,7 +136,7 @@ fn a_swinging_limb_does_not_miss_a_sphere() {
                 );
                 assert_eq!(hit, plain, "{speed} m/s at {rate} Hz");
                 if hit.is_some() || at > 1.5 {
-                    break hit.map(|hit| at - angle * (1.0 - hit.time));
+                    break hit.map(|hit| at - angle * (1.0 - hit.fraction));
                 }
             };
             // The skin in front of the tube's middle has an angle of 0.2 to the ball.
@@ -161,18 +161,18 @@ fn a_hit_has_the_right_time_point_and_normals() {
         .cast_capsule(&sphere, [Vec3::NEG_Y * 4.0; 2], &CastOptions::STILL)
         .unwrap();
     // The ball touches at height 0.75 above the axis of the round tube.
-    let early = (3.0 - 0.75) / 4.0 - hit.time;
+    let early = (3.0 - 0.75) / 4.0 - hit.fraction;
     assert!((-1e-6..1e-3).contains(&early), "{hit:?}");
     assert!(
-        hit.point.distance(Vec3::new(1.5, 0.5, 0.0)) < 1e-3,
+        hit.hit.point.distance(Vec3::new(1.5, 0.5, 0.0)) < 1e-3,
         "{hit:?}"
     );
     assert!(hit.separation_normal.distance(Vec3::Y) < 1e-3, "{hit:?}");
-    assert!(hit.normal.dot(Vec3::Y) > 0.99, "{hit:?}");
-    let gap = hit.distance - 0.25;
+    assert!(hit.hit.normal.dot(Vec3::Y) > 0.99, "{hit:?}");
+    let gap = hit.hit.distance - 0.25;
     assert!((0.0..=0.25 * 2.5e-4).contains(&gap), "{hit:?}");
     assert!(!hit.started_inside && !hit.undecided, "{hit:?}");
-    let weights: f32 = hit.barycentric.iter().sum();
+    let weights: f32 = hit.hit.barycentric.iter().sum();
     assert!((weights - 1.0).abs() < 1e-6, "{hit:?}");
     // From the inside, the contact normal points inwards and the skin's normal outwards.
     let inside = ball(Vec3::new(1.5, 0.0, 0.0), 0.25);
@@ -181,7 +181,7 @@ fn a_hit_has_the_right_time_point_and_normals() {
         .cast_capsule(&inside, [Vec3::Y; 2], &CastOptions::STILL)
         .unwrap();
     assert!(
-        hit.separation_normal.y < -0.99 && hit.normal.y > 0.99,
+        hit.separation_normal.y < -0.99 && hit.hit.normal.y > 0.99,
         "{hit:?}"
     );
     // A ball that neither moves nor touches anything has no contact.
@@ -207,7 +207,11 @@ fn an_initial_overlap_is_a_contact_at_time_0_with_the_nearest_triangle() {
             .cast_capsule(&sphere, [motion; 2], &CastOptions::STILL)
             .unwrap();
         assert!(hit.started_inside, "{hit:?}");
-        assert_eq!((hit.time, hit.triangle), (0.0, nearest.triangle), "{hit:?}");
+        assert_eq!(
+            (hit.fraction, hit.hit.triangle),
+            (0.0, nearest.triangle),
+            "{hit:?}"
+        );
         assert!(hit.separation_normal.y > 0.99, "{hit:?}");
     }
     // The capsule's segment itself crosses the skin: the skin's own normal.
@@ -216,7 +220,7 @@ fn an_initial_overlap_is_a_contact_at_time_0_with_the_nearest_triangle() {
         .in_model()
         .cast_capsule(&stick, [Vec3::X; 2], &CastOptions::STILL)
         .unwrap();
-    assert!(hit.started_inside && hit.distance == 0.0, "{hit:?}");
+    assert!(hit.started_inside && hit.hit.distance == 0.0, "{hit:?}");
     assert!(hit.separation_normal.y > 0.99, "{hit:?}");
 }
 
@@ -229,7 +233,7 @@ fn all_contacts_are_sorted_by_time_and_begin_with_the_first() {
         .in_model()
         .cast_capsule_all(&sphere, [motion; 2], &CastOptions::STILL, &mut hits);
     assert!(hits.len() > 100, "{}", hits.len());
-    assert!(hits.is_sorted_by_key(|hit| hit.time), "{hits:?}");
+    assert!(hits.is_sorted_by_key(|hit| hit.fraction), "{hits:?}");
     let first = surface
         .in_model()
         .cast_capsule(&sphere, [motion; 2], &CastOptions::STILL);
@@ -255,9 +259,9 @@ fn casts_pass_through_disabled_triangles_and_parts() {
     let mut before = 0.0;
     for _ in 0..400 {
         let Some(hit) = cast(&surface) else { return };
-        assert!(hit.time >= before, "{hit:?}");
-        before = hit.time;
-        surface.disable_triangle(hit.triangle).unwrap();
+        assert!(hit.fraction >= before, "{hit:?}");
+        before = hit.fraction;
+        surface.disable_triangle(hit.hit.triangle).unwrap();
         assert_eq!(
             cast(&surface),
             BruteForce::new(surface.in_model()).cast_capsule(
@@ -351,6 +355,6 @@ fn a_mirrored_tube_keeps_outward_normals() {
         .in_model()
         .cast_capsule(&sphere, [Vec3::NEG_Y * 4.0; 2], &CastOptions::STILL)
         .unwrap();
-    assert!(hit.normal.y > 0.99, "{hit:?}");
-    assert!(hit.triangle < TriangleId(surface.mesh().triangles().len() as u32));
+    assert!(hit.hit.normal.y > 0.99, "{hit:?}");
+    assert!(hit.hit.triangle < TriangleId(surface.mesh().triangles().len() as u32));
 }

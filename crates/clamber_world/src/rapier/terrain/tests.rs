@@ -453,7 +453,7 @@ fn among_many_moving_bodies_the_first_contact_is_that_with_one_of_them_alone() {
             // No body is in the way at the end of the tick.
             let terrain = RapierTerrain::of_world(&world, &before);
             let hit = terrain.cast_capsule(&ball, way, TargetMotion::Moving);
-            hit.map(|hit| hit.time)
+            hit.map(|hit| hit.fraction)
         };
         let alone = starts.iter().filter_map(|start| first(&[*start]));
         let alone = alone.reduce(f64::min);

@@ -37,6 +37,10 @@ pub(in crate::shapes) struct ConvexTouch {
     pub(in crate::shapes) time: f64,
     /// `None` if the segment meets the core.
     pub(in crate::shapes) nearest: Option<ClosestPoints>,
+    #[cfg_attr(
+        not(test),
+        expect(dead_code, reason = "tests show that it does not happen")
+    )]
     pub(in crate::shapes) undecided: bool,
 }
 

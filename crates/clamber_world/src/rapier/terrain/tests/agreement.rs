@@ -183,8 +183,11 @@ impl Tally {
                 (met.separation_normal.length() - 1.0).abs() < 1e-6,
                 "{input:?}: {met:?}"
             );
-            assert!((0.0..=1.0).contains(&met.time), "{input:?}: {met:?}");
-            assert!(!met.started_inside || met.time == 0.0, "{input:?}: {met:?}");
+            assert!((0.0..=1.0).contains(&met.fraction), "{input:?}: {met:?}");
+            assert!(
+                !met.started_inside || met.fraction == 0.0,
+                "{input:?}: {met:?}"
+            );
         }
         // If the gap closes slowly, the tolerance makes a larger difference in time.
         let slowness = |met: &SweepContact| {
@@ -196,7 +199,7 @@ impl Tally {
             (Some(skin), Some(body)) => {
                 self.met += 1;
                 self.inside += u32::from(skin.started_inside);
-                let off = (skin.time - body.time).abs() * way.length();
+                let off = (skin.fraction - body.fraction).abs() * way.length();
                 let slowest = slowness(&skin).min(slowness(&body));
                 assert!(
                     off <= slack / slowest,
@@ -209,7 +212,7 @@ impl Tally {
             }
             (Some(met), None) | (None, Some(met)) => {
                 self.grazed += 1;
-                let left = (1.0 - met.time) * way.length();
+                let left = (1.0 - met.fraction) * way.length();
                 let touches = slack.max(1e-3) / slowness(&met);
                 assert!(
                     left.min(1.0 / touches) < 0.2,
@@ -298,7 +301,7 @@ fn sweeps_agree_for_turning_bodies() {
                     .terrain()
                     .cast_capsule(&capsule, by, TargetMotion::Moving);
                 // For turning bodies, the speed at which the gap closes is not taken into account.
-                let off = |a: SweepContact, b: SweepContact| (a.time - b.time).abs();
+                let off = |a: SweepContact, b: SweepContact| (a.fraction - b.fraction).abs();
                 match (skin, body) {
                     (Some(a), Some(b)) => {
                         tally.met += 1;
@@ -307,7 +310,7 @@ fn sweeps_agree_for_turning_bodies() {
                         assert!(off(a, b) < 5e-3, "{capsule:?} {by:?}: {a:?} {b:?}");
                         let reach = capsule.radius + 1.1e-4;
                         assert!(b.contact.distance <= reach, "{capsule:?} {by:?}: {b:?}");
-                        let axis = capsule.with_ends_moved(by.map(|end| end * b.time));
+                        let axis = capsule.with_ends_moved(by.map(|end| end * b.fraction));
                         let apart = axis.nearest_on_axis(b.contact.point) - b.contact.point;
                         let seen = apart - b.separation_normal * b.contact.distance;
                         assert!(seen.length() < 1e-6, "{capsule:?} {by:?}: {seen} {b:?}");

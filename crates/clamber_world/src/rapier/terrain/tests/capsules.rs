@@ -85,7 +85,7 @@ fn falling_ball_meets_every_kind_of_shape() {
             .cast_capsule(&ball, [by; 2], TargetMotion::Moving)
             .unwrap();
         assert_eq!(cast, swept, "{name}");
-        assert!((cast.time - 0.375).abs() < 3e-5, "{name}: {cast:?}");
+        assert!((cast.fraction - 0.375).abs() < 3e-5, "{name}: {cast:?}");
         assert!(
             (cast.separation_normal - DVec3::Y).length() < 1e-6,
             "{name}: {cast:?}"
@@ -136,7 +136,7 @@ fn a_wall_at_thirty_metres_a_second_hits_a_resting_capsule() {
         .terrain()
         .cast_capsule(&at(-0.4), [DVec3::ZERO; 2], TargetMotion::Moving)
         .unwrap();
-    assert!((met.time - 0.5).abs() < 2e-4, "{met:?}");
+    assert!((met.fraction - 0.5).abs() < 2e-4, "{met:?}");
     assert!(!met.started_inside && (met.separation_normal - DVec3::X).length() < 1e-6);
     assert!((met.contact.point.x + 0.7).abs() < 1e-4, "{met:?}");
     let dt = 1.0 / 60.0;
@@ -154,7 +154,10 @@ fn a_wall_at_thirty_metres_a_second_hits_a_resting_capsule() {
         moving
             .terrain()
             .cast_capsule(&at(-0.4), [DVec3::X * -0.5; 2], TargetMotion::Moving);
-    assert!((against.unwrap().time - 0.25).abs() < 2e-4, "{against:?}");
+    assert!(
+        (against.unwrap().fraction - 0.25).abs() < 2e-4,
+        "{against:?}"
+    );
     // The wall does not reach a capsule farther ahead. A cast sees the wall where it stands now.
     assert_eq!(
         moving
@@ -209,7 +212,7 @@ fn a_thin_plate_at_a_hundred_metres_a_second_hits_a_resting_ball() {
             .cast_capsule(&ball, [DVec3::ZERO; 2], TargetMotion::Moving)
             .unwrap();
         let expected = (0.9 - radius - 0.0005) / 1.6667;
-        assert!((met.time - expected).abs() < 1e-4, "{radius}: {met:?}");
+        assert!((met.fraction - expected).abs() < 1e-4, "{radius}: {met:?}");
         assert!(
             (met.separation_normal - DVec3::X).length() < 1e-6,
             "{radius}: {met:?}"
@@ -251,7 +254,7 @@ fn a_turning_bar_hits_a_resting_ball() {
         // The bar's near side arrives about 0.2 m before its middle, on a path of about 2.1 m. Points move in straight
         // lines, up to 2 (1 - cos(30 degrees)) = 0.27 m off the arc.
         let expected = share - 0.2 / 2.1;
-        assert!((met.time - expected).abs() < 0.06, "{share}: {met:?}");
+        assert!((met.fraction - expected).abs() < 0.06, "{share}: {met:?}");
         assert!(met.contact.distance <= 0.1001, "{met:?}");
         let mut contacts = Vec::new();
         moving.terrain().overlap_capsule(&ball, &mut contacts);
@@ -279,7 +282,7 @@ fn an_overlap_at_the_start_is_a_hit_at_time_zero_with_the_minimum_translation() 
         .terrain()
         .cast_capsule(&rod, [DVec3::ZERO; 2], TargetMotion::Moving)
         .unwrap();
-    assert!(met.started_inside && met.time == 0.0, "{met:?}");
+    assert!(met.started_inside && met.fraction == 0.0, "{met:?}");
     // The contact is with the box at its previous position.
     assert!((met.contact.distance + 0.2).abs() < 1e-6, "{met:?}");
     assert!(
@@ -403,7 +406,8 @@ fn the_order_of_insertion_does_not_matter() {
             contacts.sort_by(|a, b| a.distance.total_cmp(&b.distance));
             // Handles differ, since the bodies were made in another order.
             let shown = |contact: crate::Contact| (contact.point, contact.normal, contact.distance);
-            let sweep = |met: SweepContact| (met.time, shown(met.contact), met.separation_normal);
+            let sweep =
+                |met: SweepContact| (met.fraction, shown(met.contact), met.separation_normal);
             let contacts: Vec<_> = contacts.into_iter().map(shown).collect();
             (swept.map(sweep), cast.map(sweep), contacts)
         });
