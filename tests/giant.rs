@@ -102,15 +102,9 @@ fn the_file_has_the_expected_joints_meshes_clips_weak_points_and_tags() {
     assert_eq!(major.len(), 1);
     let joint = &model.rig.skeleton.joints()[major[0].joint.0 as usize];
     assert!(joint.name.to_lowercase().contains("head"), "{}", joint.name);
-    let has = |kind, ledge| {
-        let tag = SurfaceTag {
-            ledge,
-            ..SurfaceTag::new(kind)
-        };
-        model.rig.collider.tags().contains(&tag)
-    };
-    assert!(has(SurfaceKind::Fur, false) && has(SurfaceKind::Stone, true));
-    assert!(has(SurfaceKind::Stone, false) && has(SurfaceKind::Skin, false));
+    let tags = model.rig.collider.tags();
+    let has = |kind| tags.contains(&SurfaceTag::new(kind));
+    assert!(has(SurfaceKind::Fur) && has(SurfaceKind::Stone) && has(SurfaceKind::Skin));
     assert!(
         model.report.warnings.is_empty(),
         "{:?}",
@@ -144,16 +138,12 @@ fn its_collision_mesh_is_closed_and_faces_outwards() {
 fn ledges_are_level_and_wide_enough_to_stand_on() {
     let model = model();
     let mut area = 0.0;
-    for (corners, tag) in model
-        .rig
-        .collider
-        .triangles()
-        .iter()
-        .zip(model.rig.collider.tags().iter())
-    {
-        let [a, b, c] = corners.map(|v| model.rig.collider.positions()[v.index()].as_dvec3());
+    let collider = &model.rig.collider;
+    for triangle in &model.rig.collider_materials["stone_ledge"] {
+        let corners = collider.triangles()[triangle.index()];
+        let [a, b, c] = corners.map(|v| collider.positions()[v.index()].as_dvec3());
         let normal = (b - a).cross(c - a);
-        if tag.ledge && normal.y > 0.98 * normal.length() {
+        if normal.y > 0.98 * normal.length() {
             area += normal.length() * 0.5;
         }
     }

@@ -45,7 +45,7 @@ def thinned(mesh, share):
 def materials():
     """All materials, with their tags."""
     made = []
-    for name, (surface, ledge, colour, roughness, glow) in visual.MATERIALS.items():
+    for name, (surface, colour, roughness, glow) in visual.MATERIALS.items():
         material = bpy.data.materials.new(name)
         material.use_nodes = True
         shader = material.node_tree.nodes["Principled BSDF"]
@@ -55,7 +55,7 @@ def materials():
         if glow:
             shader.inputs["Emission"].default_value = (*glow, 1.0)
             shader.inputs["Emission Strength"].default_value = 1.0
-        material["clamber"] = {"surface": surface, "ledge": True} if ledge else {"surface": surface}
+        material["clamber"] = {"surface": surface}
         if name == "shell":
             material["clamber"]["user"] = shell.USER
         made.append(material)

@@ -101,8 +101,6 @@ def _check_mesh(document, binary, role, limits):
         corners.append(points[index])
         material = document["materials"][primitive["material"]]
         tags[material["name"]] = material["extras"]
-        ledge = material["extras"]["clamber"].get("ledge")
-        assert ledge is None or ledge is True, material
     _, welded = np.unique(np.concatenate(corners), axis=0, return_inverse=True)
     count = int(welded.max()) + 1
     assert limits[0] <= vertices <= limits[1], f"{role}: {vertices} vertices"

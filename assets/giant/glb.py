@@ -44,8 +44,6 @@ def tidy(path, moves):
     document, binary = read(path)
     for entry in document["nodes"] + document["materials"]:
         tag = entry.get("extras", {}).get("clamber")
-        if tag and "ledge" in tag:
-            tag["ledge"] = bool(tag["ledge"])
         if tag and "weak_point" in tag:
             tag["weak_point"]["major"] = bool(tag["weak_point"]["major"])
     extras = {move.name: move.extras for move in moves}

@@ -39,7 +39,7 @@ impl<'a> Contents<'a> {
             document,
             extras: extras::of_nodes(&tree.nodes, warnings)?,
             transforms: transforms::of_nodes(&tree.nodes, warnings),
-            materials: visual::materials(document, options)?,
+            materials: visual::materials(document, options, warnings)?,
             bare_tag: options.tag(None, SurfaceTag::default()),
             tree,
             reader,

@@ -1,6 +1,6 @@
 //! Reads the key `clamber` in the extras of a file's objects:
 //!
-//! - a material: `{"clamber": {"surface": "fur", "ledge": true}}`,
+//! - a material: `{"clamber": {"surface": "fur", "user": 7}}`,
 //! - a node with a mesh: `{"clamber": {"role": "collision"}}`,
 //! - a node under a joint: `{"clamber": {"weak_point": {"hit_points": 3.0, "radius": 0.4, "major": true}}}`,
 //! - an animation: `{"clamber": {"speed": 1.4, "markers": [{"name": "step_left", "time": 0.5}]}}`.
@@ -27,8 +27,8 @@ struct Extras<T> {
 struct MaterialExtras {
     #[serde(default)]
     surface: Surface,
-    #[serde(default)]
-    ledge: Flag,
+    /// A key of old files, with any value: climbers find ledges by their shape.
+    ledge: Option<serde::de::IgnoredAny>,
     #[serde(default)]
     user: u32,
 }
@@ -40,11 +40,7 @@ impl MaterialExtras {
             Surface::Fur => SurfaceKind::Fur,
             Surface::Stone => SurfaceKind::Stone,
         };
-        SurfaceTag {
-            kind,
-            ledge: self.ledge.0,
-            user: self.user,
-        }
+        SurfaceTag::new(kind).with_user(self.user)
     }
 }
 
@@ -152,14 +148,14 @@ impl TryFrom<serde_json::Value> for Flag {
     }
 }
 
-/// The tag in a material's extras; the default tag without extras.
-pub(crate) fn tag_of(material: &Material<'_>) -> Result<SurfaceTag, GltfErrorKind> {
+/// The tag in a material's extras, and true if it has a mark that is ignored; the default tag without extras.
+pub(crate) fn tag_of(material: &Material<'_>) -> Result<(SurfaceTag, bool), GltfErrorKind> {
     let object = || {
         let name = material.name().unwrap_or("without a name");
         format!("extras of material {name:?}")
     };
     let extras: MaterialExtras = ours(material.extras(), object)?;
-    Ok(extras.tag())
+    Ok((extras.tag(), extras.ledge.is_some()))
 }
 
 /// Reads the tag in a material's extras, for files that another importer loads.
@@ -168,8 +164,8 @@ pub(crate) fn tag_of(material: &Material<'_>) -> Result<SurfaceTag, GltfErrorKin
 /// begin with `{`.
 ///
 /// ```
-/// let tag = clamber_gltf::tag_in_extras(r#"{"clamber": {"surface": "stone", "ledge": true}}"#)?;
-/// assert!(tag.is_some_and(|tag| tag.ledge));
+/// let tag = clamber_gltf::tag_in_extras(r#"{"clamber": {"surface": "stone", "user": 3}}"#)?;
+/// assert!(tag.is_some_and(|tag| tag.user == 3));
 /// assert_eq!(clamber_gltf::tag_in_extras(r#"{"price": 3}"#)?, None);
 /// # Ok::<(), clamber_gltf::GltfError>(())
 /// ```
@@ -277,9 +273,9 @@ mod tests {
 
     #[test]
     fn own_extras_are_read_and_those_of_other_tools_ignored() {
-        let text = r#"{"other": [1], "clamber": {"surface": "stone", "ledge": true}}"#;
-        let stone_ledge: MaterialExtras = parse(text).unwrap();
-        assert!(matches!(stone_ledge.surface, Surface::Stone) && stone_ledge.ledge.0);
+        let text = r#"{"other": [1], "clamber": {"surface": "stone", "user": 3}}"#;
+        let stone: MaterialExtras = parse(text).unwrap();
+        assert!(matches!(stone.surface, Surface::Stone) && stone.user == 3);
         for foreign in [
             "{}",
             "7",
@@ -290,7 +286,7 @@ mod tests {
         ] {
             let skin: MaterialExtras = parse(foreign).unwrap();
             assert!(
-                matches!(skin.surface, Surface::Skin) && !skin.ledge.0,
+                matches!(skin.surface, Surface::Skin) && skin.user == 0,
                 "{foreign}"
             );
             assert_eq!(parse::<NodeExtras>(foreign).unwrap(), NodeExtras::default());
@@ -310,8 +306,7 @@ mod tests {
         let furr = error(r#"{"clamber": {"surface": "furr"}}"#).unwrap();
         assert!(furr.contains("`skin`, `fur`, `stone`"), "{furr}");
         assert!(error(r#"{"clamber": {"surfaces": "fur"}}"#).is_some());
-        assert!(error(r#"{"clamber": {"ledge": 2}}"#).is_some());
-        assert!(error(r#"{"clamber": {"ledge": 0}}"#).is_none());
+        assert!(error(r#"{"clamber": {"ledge": 2}}"#).is_none());
         let text = error(r#"{"clamber": "fur"}"#).unwrap();
         assert!(
             text.contains(r#"expected an object such as {"surface": "fur"}"#),

@@ -10,7 +10,7 @@ use gltf::{Document, Primitive};
 use crate::extras::tag_of;
 use crate::looks::Looks;
 use crate::vertices::Vertices;
-use crate::{GltfErrorKind, LoadOptions};
+use crate::{GltfErrorKind, ImportWarning, LoadOptions};
 
 /// A mesh to draw.
 ///
@@ -170,9 +170,13 @@ pub(crate) fn merged(visual: &[VisualMesh], joint_count: usize) -> Result<Collid
 pub(crate) fn materials(
     document: &Document,
     options: &LoadOptions,
+    warnings: &mut Vec<ImportWarning>,
 ) -> Result<Vec<Material>, GltfErrorKind> {
     let mut materials = Vec::new();
+    let mut ledges = 0;
     for material in document.materials() {
+        let (tag, has_ledge) = tag_of(&material)?;
+        ledges += usize::from(has_ledge);
         let pbr = material.pbr_metallic_roughness();
         materials.push(Material {
             name: material.name().map(str::to_owned),
@@ -187,8 +191,11 @@ pub(crate) fn materials(
                 AlphaMode::Blend => Alpha::Blend,
             },
             double_sided: material.double_sided(),
-            tag: options.tag(material.name(), tag_of(&material)?),
+            tag: options.tag(material.name(), tag),
         });
+    }
+    if ledges > 0 {
+        warnings.push(ImportWarning::Ledges { materials: ledges });
     }
     Ok(materials)
 }

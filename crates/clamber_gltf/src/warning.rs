@@ -46,6 +46,11 @@ pub enum ImportWarning {
         /// Number of materials.
         materials: usize,
     },
+    /// Materials whose extras mark ledges. The mark is ignored: climbers find ledges by their shape.
+    Ledges {
+        /// Number of materials.
+        materials: usize,
+    },
     /// A weak point that is under no joint, skipped.
     WeakPointWithoutJoint {
         /// Name of the node; `"node 3"` for node 3 without a name.
@@ -171,6 +176,10 @@ impl fmt::Display for ImportWarning {
             Self::Textures { materials } => write!(
                 f,
                 "materials with textures, of which only the factors were read: {materials}"
+            ),
+            Self::Ledges { materials } => write!(
+                f,
+                "ignored the key `ledge` of materials, since climbers find ledges by their shape: {materials}"
             ),
             Self::WeakPointWithoutJoint { node } => {
                 write!(f, "skipped weak point {node:?}, which is under no joint")

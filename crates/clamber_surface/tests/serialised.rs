@@ -75,7 +75,7 @@ fn maps_and_poses_keep_every_bit() {
 fn ids_and_tags_round_trip() {
     assert_stays(&(JointId(u32::MAX), VertexId(1), TriangleId(2), PartId(3)));
     assert_stays(&(IslandId(4), Playback::Loop));
-    let tag = SurfaceTag::new(SurfaceKind::Stone).with_ledge();
+    let tag = SurfaceTag::new(SurfaceKind::Stone).with_user(7);
     assert_stays(&tag.with_user(u32::MAX));
 }
 

@@ -23,7 +23,7 @@ mod tests {
     use bevy_mesh::skinning::SkinnedMesh;
     use clamber_surface::mesh::SurfaceKind;
 
-    const LEDGE: SurfaceTag = SurfaceTag::new(SurfaceKind::Stone).with_ledge();
+    const STONE: SurfaceTag = SurfaceTag::new(SurfaceKind::Stone).with_user(3);
 
     /// The tag that a mesh with these components is given.
     fn tag(world: &mut World, components: impl Bundle) -> SurfaceTag {
@@ -42,10 +42,10 @@ mod tests {
     #[test]
     fn extras_of_a_material_tag_its_meshes() {
         let mut world = World::new();
-        let ledge = r#"{"clamber": {"surface": "stone", "ledge": true}}"#;
-        assert_eq!(tag(&mut world, extras(ledge)), LEDGE);
+        let stone = r#"{"clamber": {"surface": "stone", "user": 3}}"#;
+        assert_eq!(tag(&mut world, extras(stone)), STONE);
         // Extras of a node or a primitive do not tag the surface, as in `clamber_gltf`.
-        let value = ledge.to_owned();
+        let value = stone.to_owned();
         let other = tag(&mut world, GltfExtras { value });
         assert_eq!(other, SurfaceTag::default());
         for text in ["{}", "7", "{", r#"{"clamber": {"surface": "stony"}}"#] {

@@ -260,7 +260,7 @@ fn changed_components_rebuild_the_surface() {
     app.update();
     wait(&mut app, limb.mesh);
     assert!(app.world().get::<PosedSurface>(limb.mesh).is_some());
-    let tag = SurfaceTag::new(SurfaceKind::Fur).with_ledge();
+    let tag = SurfaceTag::new(SurfaceKind::Fur).with_user(1);
     app.world_mut()
         .entity_mut(limb.mesh)
         .insert(ColliderTag(tag));

@@ -141,7 +141,7 @@ fn colliders_tags_and_anchors_are_saved_and_loaded() {
     let (mut app, floor) = scene();
     let world = app.world_mut();
     world.entity_mut(floor.mesh).insert(ColliderTag(
-        SurfaceTag::new(SurfaceKind::Stone).with_ledge(),
+        SurfaceTag::new(SurfaceKind::Stone).with_user(1),
     ));
     common::wait(&mut app, floor.mesh);
     let surface = app.world().get::<PosedSurface>(floor.mesh).unwrap();

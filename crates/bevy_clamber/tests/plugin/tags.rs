@@ -11,7 +11,7 @@ use bevy_transform::components::Transform;
 use super::common::{Limb, add_bindposes, add_mesh, app, limb_mesh, spawn_limb, wait};
 
 const FUR: SurfaceTag = SurfaceTag::new(SurfaceKind::Fur);
-const LEDGE: SurfaceTag = SurfaceTag::new(SurfaceKind::Stone).with_ledge();
+const STONE: SurfaceTag = SurfaceTag::new(SurfaceKind::Stone).with_user(1);
 
 /// A limb with a name, without a collider.
 fn named(app: &mut App, name: &str, x: f32) -> Limb {
@@ -60,7 +60,7 @@ fn an_observer_tags_meshes_that_have_no_tag() {
     let world = app.world_mut();
     world
         .entity_mut(tagged.mesh)
-        .insert((collider, ColliderTag(LEDGE)));
+        .insert((collider, ColliderTag(STONE)));
     world.entity_mut(furry.mesh).insert(collider);
     world.entity_mut(bald.mesh).insert(ColliderTag::default());
     world.entity_mut(bald.mesh).insert(collider);
@@ -69,7 +69,7 @@ fn an_observer_tags_meshes_that_have_no_tag() {
     }
     assert_eq!(tag_at(&mut app, 0.0), FUR);
     assert_eq!(tag_at(&mut app, 5.0), SurfaceTag::default());
-    assert_eq!(tag_at(&mut app, 10.0), LEDGE);
+    assert_eq!(tag_at(&mut app, 10.0), STONE);
 }
 
 #[test]

@@ -175,7 +175,7 @@ fn name_of(tag: SurfaceTag) -> String {
         SurfaceKind::Fur => "fur",
         SurfaceKind::Stone => "stone",
     };
-    format!("{kind}{}", if tag.ledge { " ledge" } else { "" })
+    kind.to_owned()
 }
 
 /// The rows of a table.

@@ -19,7 +19,7 @@ pub(crate) const DT: f64 = 1.0 / 60.0;
 pub(crate) const FUR: SurfaceTag = SurfaceTag::new(SurfaceKind::Fur);
 
 /// The tag of stone with a ledge, which cannot be gripped.
-pub(crate) const STONE: SurfaceTag = SurfaceTag::new(SurfaceKind::Stone).with_ledge();
+pub(crate) const STONE: SurfaceTag = SurfaceTag::new(SurfaceKind::Stone);
 
 /// Input that only holds the grip.
 pub(crate) const HOLD: ClimberInput = ClimberInput {

@@ -155,7 +155,6 @@ fn skin_is_fur_by_joint_and_by_material() {
             tag.kind
         },
         user: 7,
-        ..tag
     });
     let mut stony = rig.clone();
     stony.collider = Arc::new(stone);

@@ -1,6 +1,6 @@
 //! Tags from the file and from the caller.
 
-use clamber_gltf::{LoadOptions, Model, load_slice};
+use clamber_gltf::{ImportWarning, LoadOptions, Model, load_slice};
 use clamber_surface::mesh::{SurfaceKind, SurfaceTag};
 use serde_json::json;
 
@@ -56,13 +56,13 @@ fn extras_of_materials_tag_triangles_and_others_get_the_default() {
 #[test]
 fn the_tagger_is_called_for_every_material_with_its_tag_in_the_file() {
     let options = LoadOptions::default().with_tags(|name, of_file| match name {
-        Some("horn") => of_file.with_ledge().with_user(of_file.user + 1),
+        Some("horn") => of_file.with_user(of_file.user + 1),
         Some(name) => panic!("no material is called {name}"),
         None => of_file.with_user(100 + of_file.kind as u32),
     });
     let fur = SurfaceTag::new(SurfaceKind::Fur);
     let fur = fur.with_user(100 + SurfaceKind::Fur as u32);
-    let horn = SurfaceTag::new(SurfaceKind::Stone).with_ledge();
+    let horn = SurfaceTag::new(SurfaceKind::Stone);
     let bare = SurfaceTag::default().with_user(100 + SurfaceKind::Skin as u32);
     let model = load(&options);
     assert_eq!(tags(&model), [fur, fur, horn.with_user(8), bare]);
@@ -74,4 +74,22 @@ fn with_tag_tags_every_surface() {
     let stone = SurfaceTag::new(SurfaceKind::Stone).with_user(u32::MAX);
     let model = load(&LoadOptions::default().with_tag(stone));
     assert_eq!(tags(&model), [stone; 4]);
+}
+
+#[test]
+fn marks_of_ledges_are_ignored_with_a_warning() {
+    let mut file = three();
+    for material in [0, 1] {
+        file.json["materials"][material]["extras"]["clamber"]["ledge"] = json!(1);
+    }
+    let model = load_slice(&file.glb(), &LoadOptions::default()).unwrap();
+    assert_eq!(tags(&model), tags(&load(&LoadOptions::default())));
+    let ledges = ImportWarning::Ledges { materials: 2 };
+    assert!(
+        model.report.warnings.contains(&ledges),
+        "{:?}",
+        model.report
+    );
+    let other = load(&LoadOptions::default()).report.warnings;
+    assert!(!other.contains(&ledges), "{other:?}");
 }

@@ -162,9 +162,8 @@ message! {
     Tag of SurfaceTag {
         /// 0 skin, 1 fur, 2 stone.
         kind: u32 (uint32, tag = 1),
-        ledge: bool (bool, tag = 2),
         /// The game's own number.
-        user: u32 (uint32, tag = 3),
+        user: u32 (uint32, tag = 2),
     }
 }
 

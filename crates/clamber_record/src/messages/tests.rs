@@ -40,9 +40,7 @@ fn everything() -> (ClimberState, ClimberInput) {
             },
             normal,
             face,
-            tag: SurfaceTag::new(SurfaceKind::Stone)
-                .with_ledge()
-                .with_user(u32::MAX),
+            tag: SurfaceTag::new(SurfaceKind::Stone).with_user(u32::MAX),
         }),
         support_velocity: Some(support_velocity),
         shake,

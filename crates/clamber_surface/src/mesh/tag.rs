@@ -20,30 +20,14 @@ pub enum SurfaceKind {
 pub struct SurfaceTag {
     /// The material.
     pub kind: SurfaceKind,
-    /// True if a climber may hang from the triangle's rim. `clamber_climber` finds ledges by their shape and does
-    /// not read this.
-    pub ledge: bool,
     /// A number for the game, such as a sound material or a surface id. 0 by default; nothing here reads it.
     pub user: u32,
 }
 
 impl SurfaceTag {
-    /// A tag with this material, without a ledge, and with `user` 0.
+    /// A tag with this material, and with `user` 0.
     pub const fn new(kind: SurfaceKind) -> Self {
-        Self {
-            kind,
-            ledge: false,
-            user: 0,
-        }
-    }
-
-    /// The same tag with `ledge` set.
-    #[must_use]
-    pub const fn with_ledge(self) -> Self {
-        Self {
-            ledge: true,
-            ..self
-        }
+        Self { kind, user: 0 }
     }
 
     /// The same tag with another `user` number.

@@ -116,6 +116,6 @@ fn add_mesh(hash: &mut Fingerprint, mesh: &ColliderMesh) {
             SurfaceKind::Fur => 1,
             SurfaceKind::Stone => 2,
         };
-        hash.word(kind << 1 | u64::from(tag.ledge));
+        hash.word(kind);
     }
 }

@@ -135,7 +135,6 @@ pub(crate) fn options(bytes: &mut Bytes<'_>) -> BuildOptions {
 pub(crate) fn tag(bytes: &mut Bytes<'_>) -> SurfaceTag {
     SurfaceTag {
         kind: bytes.pick(&[SurfaceKind::Skin, SurfaceKind::Fur, SurfaceKind::Stone]),
-        ledge: bytes.one_in(4),
         user: 0,
     }
 }

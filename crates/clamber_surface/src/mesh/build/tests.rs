@@ -146,7 +146,7 @@ fn coincident_vertices_with_other_influences_are_reported_or_unified() {
 
 #[test]
 fn degenerate_and_duplicate_triangles_are_dropped_and_tags_follow() {
-    let stone = SurfaceTag::new(crate::mesh::SurfaceKind::Stone).with_ledge();
+    let stone = SurfaceTag::new(crate::mesh::SurfaceKind::Stone).with_user(1);
     let mut given = square();
     given.triangles = vec![[0, 0, 1], [2, 0, 1], [0, 1, 2], [3, 4, 5], [5, 4, 3]];
     given.tags = vec![SurfaceTag::default(); 5];

@@ -166,7 +166,6 @@ fn an_edit_does_not_change_other_surfaces_that_share_the_mesh() {
     assert!(Arc::ptr_eq(one.mesh(), other.mesh()));
 
     let tag = SurfaceTag {
-        ledge: true,
         ..SurfaceTag::default()
     };
     one.edit(|edit| edit.set_tag(TriangleId(0), tag)).unwrap();

@@ -166,7 +166,6 @@ fn a_change_of_tag_touches_no_cluster() {
     );
     let before = surface.diagnostics();
     let tag = SurfaceTag {
-        ledge: true,
         ..SurfaceTag::default()
     };
     surface

@@ -237,7 +237,6 @@ impl Model {
 fn any_tag(rng: &mut fastrand::Rng) -> SurfaceTag {
     SurfaceTag {
         kind: [SurfaceKind::Skin, SurfaceKind::Fur, SurfaceKind::Stone][rng.usize(0..3)],
-        ledge: rng.bool(),
         user: rng.u32(..),
     }
 }
